@@ -1,0 +1,22 @@
+# cmake --install: program, library, headers, pkg-config file, CMake package.
+include(CMakePackageConfigHelpers)
+install(TARGETS oriel liboriel EXPORT oriel-targets
+        RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+get_property(modules GLOBAL PROPERTY ORL_MODULES)
+foreach(folder src preprocess datasets)
+    install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/oriel/$<IF:$<STREQUAL:${folder},src>,.,${folder}>
+            FILES_MATCHING PATTERN "*.h" PATTERN "internal.h" EXCLUDE PATTERN "cli" EXCLUDE
+            PATTERN "shader_table.h" EXCLUDE)
+endforeach()
+install(EXPORT oriel-targets NAMESPACE oriel:: FILE oriel-targets.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oriel)
+configure_package_config_file(cmake/oriel-config.cmake.in oriel-config.cmake
+    INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oriel)
+write_basic_package_version_file(oriel-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel-config.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/oriel-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oriel)
+configure_file(cmake/oriel.pc.in oriel.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,32 @@
+// Dense depth without CUDA: PatchMatch multi-view stereo in GL compute, reading
+// and writing COLMAP's undistorted workspace.
+#ifndef ORL_PREPROCESS_DENSIFY_H
+#define ORL_PREPROCESS_DENSIFY_H
+
+#include "core/file.h"
+#include "core/progress.h"
+#include "gpu/gpu.h"
+
+struct orl_densify_params {
+    int sources;          // source photographs per reference, [1, 16]; cost grows with it
+    int iterations;       // photometric red-black sweeps, [1, 16]
+    int geometric_passes; // sweeps with geometric consistency, [0, 8]
+    int window_radius;    // NCC patch radius in pixels, [1, 15]
+    int window_step;      // patch sampling step in pixels, [1, 4]
+    uint32_t seed;
+    const char *masks_dir; // MASKS/NAME.png, 0 = not the subject; NULL: none
+};
+#define ORL_DENSIFY_DEFAULTS                                                               \
+    .sources = 8, .iterations = 4, .geometric_passes = 1, .window_radius = 5, .window_step = 2, \
+    .seed = 1
+
+// Writes WORKSPACE/stereo/{depth_maps,normal_maps}/NAME.{photometric,geometric}.bin
+// for every photograph in `photos` (names; NULL: all of the model), using only
+// those as sources. Photographs whose maps are already there are skipped. The
+// same seed gives the same maps. Interrupted, it leaves whole files only.
+enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
+                            const struct orl_names *photos,
+                            const struct orl_densify_params *params,
+                            const struct orl_progress *progress) ORL_CHECK_RESULT;
+
+#endif

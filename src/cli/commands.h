@@ -1,0 +1,29 @@
+// The commands: each parses its own arguments and returns the exit status,
+// 0 only if the whole job was done, 2 for wrong usage or unusable input.
+#ifndef ORL_CLI_COMMANDS_H
+#define ORL_CLI_COMMANDS_H
+
+#include "cli/args.h"
+#include "cli/terminal.h"
+
+struct command {
+    const char *name, *summary;
+    int (*run)(int argc, char **argv); // without the command's own name
+};
+
+int cmd_prepare(int argc, char **argv);
+int cmd_info(int argc, char **argv);
+int cmd_render(int argc, char **argv);
+int cmd_eval(int argc, char **argv);
+int cmd_synth(int argc, char **argv);
+
+// Starts a command: parses, sets `terminal` up by --quiet and --verbose. Returns false
+// when there is nothing left to do, with the exit status in *status.
+bool command_begin(const struct arg_command *command, int argc, char **argv,
+                   struct arg_common *common, struct terminal *terminal,
+                   const char **positionals, size_t *positional_count, int *status);
+// 0 for ORL_OK; 2 for argument, format, data and not-found errors; 130 when
+// cancelled; else 1.
+int command_status(enum orl_result result);
+
+#endif

@@ -1,0 +1,64 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+
+static const struct command commands[] = {
+    {0},
+};
+
+bool command_begin(const struct arg_command *command, int argc, char **argv,
+                   struct arg_common *common, struct terminal *terminal,
+                   const char **positionals, size_t *positional_count, int *status)
+{
+    struct orl_log log = orl_log_stderr(ORL_LOG_INFO);
+    enum orl_result result =
+        args_parse(&log, command, argc, argv, common, positionals, positional_count);
+    *status = command_status(result);
+    if (result != ORL_OK || common->help)
+        return false;
+    terminal_init(terminal, common->verbose ? ORL_LOG_DEBUG : ORL_LOG_INFO, common->quiet);
+    return true;
+}
+
+int command_status(enum orl_result result)
+{
+    switch (result) {
+    case ORL_OK:
+        return 0;
+    case ORL_ERR_ARGUMENT:
+    case ORL_ERR_FORMAT:
+    case ORL_ERR_DATA:
+    case ORL_ERR_NOT_FOUND:
+        return 2;
+    case ORL_ERR_CANCELLED:
+        return 130;
+    default:
+        return 1;
+    }
+}
+
+static void print_usage(FILE *out)
+{
+    fprintf(out, "usage: oriel COMMAND ...    (oriel COMMAND --help says more)\n\n");
+    for (const struct command *c = commands; c->name; c++)
+        fprintf(out, "  %-10s %s\n", c->name, c->summary);
+    fprintf(out, "  %-10s %s\n", "version", "print the version");
+}
+
+int main(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "";
+    for (const struct command *c = commands; c->name; c++)
+        if (strcmp(c->name, name) == 0)
+            return c->run(argc - 2, argv + 2);
+    if (strcmp(name, "version") == 0 || strcmp(name, "--version") == 0) {
+        printf("oriel %s\n", ORL_VERSION);
+        return 0;
+    }
+    bool help = strcmp(name, "help") == 0 || strcmp(name, "--help") == 0;
+    print_usage(help ? stdout : stderr);
+    if (!help && *name)
+        fprintf(stderr, "\noriel: error: unknown command %s\n", name);
+    return help ? 0 : 2;
+}

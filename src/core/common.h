@@ -1,0 +1,30 @@
+// General rules, stated once for every header of Oriel:
+//
+// - A function that touches files, memory or GL returns enum orl_result; the
+//   first detector logs once, callers pass the code on.
+// - struct orl_log * and struct orl_progress * may be NULL: silence.
+// - create/destroy allocate; init/finish do not. Every destroy takes a pointer
+//   to the handle, accepts NULL and half-built objects, and sets it to NULL.
+// - Parameter structs need to live only until the call returns.
+// - On failure an out parameter is left NULL or zeroed; nothing leaks.
+// - Strings are UTF-8. Angles are radians. Images are row-major, top row first.
+// - Objects are not thread-safe; different objects may be used by different
+//   threads, except those of one orl_gpu, which belong to its creating thread.
+#ifndef ORL_CORE_COMMON_H
+#define ORL_CORE_COMMON_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define ORL_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
+#define ORL_CHECK_RESULT __attribute__((warn_unused_result))
+#else
+#define ORL_PRINTF(fmt, args)
+#define ORL_CHECK_RESULT
+#endif
+
+#define ORL_COUNT(array) (sizeof(array) / sizeof((array)[0]))
+
+#endif

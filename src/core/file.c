@@ -1,0 +1,299 @@
+#include "core/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "core/memory.h"
+
+char *orl_path_join(const struct orl_log *log, const char *dir, const char *name)
+{
+    size_t length = strlen(dir);
+    const char *slash = length && dir[length - 1] == '/' ? "" : "/";
+    return orl_format(log, "%s%s%s", dir, slash, name);
+}
+
+const char *orl_path_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+bool orl_path_is_file(const char *path)
+{
+    struct stat st;
+    return stat(path, &st) == 0 && S_ISREG(st.st_mode);
+}
+
+bool orl_path_is_dir(const char *path)
+{
+    struct stat st;
+    return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
+}
+
+static enum orl_result open_to_read(const struct orl_log *log, const char *path, int *fd,
+                                    size_t *size)
+{
+    *fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (*fd < 0)
+        return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
+                        strerror(errno));
+    struct stat st;
+    const char *why = fstat(*fd, &st) != 0 ? strerror(errno)
+                      : !S_ISREG(st.st_mode) ? "not a regular file"
+                                             : NULL;
+    if (why) {
+        close(*fd);
+        *fd = -1;
+        return orl_fail(log, ORL_ERR_IO, "%s: %s", path, why);
+    }
+    *size = (size_t)st.st_size;
+    return ORL_OK;
+}
+
+enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_t max_size,
+                              uint8_t **data, size_t *size)
+{
+    *data = NULL;
+    *size = 0;
+    int fd = -1;
+    size_t total = 0, done = 0;
+    uint8_t *bytes = NULL;
+    enum orl_result result = open_to_read(log, path, &fd, &total);
+    if (result != ORL_OK)
+        return result;
+    if (total > max_size) {
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %zu bytes, more than the %zu expected", path,
+                          total, max_size);
+        goto end;
+    }
+    bytes = orl_array(log, total + 1, 1);
+    if (!bytes) {
+        result = ORL_ERR_MEMORY;
+        goto end;
+    }
+    while (done < total) {
+        ssize_t got = read(fd, bytes + done, total - done);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0) {
+            result = orl_fail(log, ORL_ERR_IO, "%s: read stopped at byte %zu of %zu: %s", path,
+                              done, total, got < 0 ? strerror(errno) : "end of file");
+            goto end;
+        }
+        done += (size_t)got;
+    }
+    *data = bytes;
+    *size = total;
+    bytes = NULL;
+end:
+    free(bytes);
+    close(fd);
+    return result;
+}
+
+enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
+                                 struct orl_atomic_file *file)
+{
+    // The suffix keeps the extension last: writers may choose a format by it.
+    const char *name = orl_path_name(path);
+    file->path = orl_strdup(log, path);
+    file->temp = orl_format(log, "%.*s.tmp%ld-%s", (int)(name - path), path, (long)getpid(), name);
+    if (file->path && file->temp)
+        return ORL_OK;
+    orl_atomic_abort(file);
+    return ORL_ERR_MEMORY;
+}
+
+enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_file *file)
+{
+    enum orl_result result = ORL_OK;
+    int fd = open(file->temp, O_RDONLY | O_CLOEXEC);
+    if (fd < 0 || fsync(fd) != 0 || rename(file->temp, file->path) != 0)
+        result = orl_fail(log, ORL_ERR_IO, "%s: %s", file->path, strerror(errno));
+    if (fd >= 0)
+        close(fd);
+    if (result == ORL_OK) {
+        free(file->temp);
+        file->temp = NULL;
+    }
+    orl_atomic_abort(file);
+    return result;
+}
+
+void orl_atomic_abort(struct orl_atomic_file *file)
+{
+    if (!file)
+        return;
+    if (file->temp)
+        unlink(file->temp);
+    free(file->temp);
+    free(file->path);
+    memset(file, 0, sizeof *file);
+}
+
+enum orl_result orl_file_write(const struct orl_log *log, const char *path, const void *data,
+                               size_t size)
+{
+    struct orl_atomic_file file = {0};
+    enum orl_result result = orl_atomic_begin(log, path, &file);
+    if (result != ORL_OK)
+        return result;
+    FILE *stream = fopen(file.temp, "wb");
+    bool ok = stream && fwrite(data, 1, size, stream) == size;
+    if (stream && fclose(stream) != 0)
+        ok = false;
+    result = ok ? orl_atomic_commit(log, &file)
+                : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    orl_atomic_abort(&file);
+    return result;
+}
+
+enum orl_result orl_dir_make(const struct orl_log *log, const char *path)
+{
+    char *copy = orl_strdup(log, path);
+    if (!copy)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    for (char *end = copy + 1; result == ORL_OK; end++) {
+        if (*end != '/' && *end != '\0')
+            continue;
+        char kept = *end;
+        *end = '\0';
+        if (mkdir(copy, 0777) != 0 && !(errno == EEXIST && orl_path_is_dir(copy)))
+            result = orl_fail(log, ORL_ERR_IO, "%s: cannot make this folder: %s", copy,
+                              strerror(errno));
+        *end = kept;
+        if (!kept)
+            break;
+    }
+    free(copy);
+    return result;
+}
+
+enum orl_result orl_dir_list(const struct orl_log *log, const char *path, struct orl_names *names)
+{
+    memset(names, 0, sizeof *names);
+    DIR *dir = opendir(path);
+    if (!dir)
+        return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
+                        strerror(errno));
+    enum orl_result result = ORL_OK;
+    for (struct dirent *entry; result == ORL_OK && (entry = readdir(dir));)
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            result = orl_names_add(log, names, entry->d_name);
+    closedir(dir);
+    if (result != ORL_OK)
+        orl_names_finish(names);
+    else
+        orl_names_sort(names);
+    return result;
+}
+
+enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
+{
+    struct stat st;
+    if (lstat(path, &st) != 0)
+        return errno == ENOENT ? ORL_OK
+                               : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    if (S_ISDIR(st.st_mode)) {
+        struct orl_names names;
+        enum orl_result result = orl_dir_list(log, path, &names);
+        for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+            char *child = orl_path_join(log, path, names.items[i]);
+            result = child ? orl_dir_remove(log, child) : ORL_ERR_MEMORY;
+            free(child);
+        }
+        orl_names_finish(&names);
+        if (result != ORL_OK)
+            return result;
+    }
+    if ((S_ISDIR(st.st_mode) ? rmdir(path) : unlink(path)) != 0)
+        return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    return ORL_OK;
+}
+
+enum orl_result orl_names_add(const struct orl_log *log, struct orl_names *names,
+                              const char *name)
+{
+    enum orl_result result = orl_grow(log, (void **)&names->items, &names->capacity,
+                                      names->count + 1, sizeof *names->items);
+    if (result != ORL_OK)
+        return result;
+    char *copy = orl_strdup(log, name);
+    if (!copy)
+        return ORL_ERR_MEMORY;
+    names->items[names->count++] = copy;
+    return ORL_OK;
+}
+
+bool orl_names_contain(const struct orl_names *names, const char *name)
+{
+    for (size_t i = 0; i < names->count; i++)
+        if (strcmp(names->items[i], name) == 0)
+            return true;
+    return false;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+void orl_names_sort(struct orl_names *names)
+{
+    if (names->count)
+        qsort(names->items, names->count, sizeof *names->items, compare_names);
+}
+
+void orl_names_finish(struct orl_names *names)
+{
+    if (!names)
+        return;
+    for (size_t i = 0; i < names->count; i++)
+        free(names->items[i]);
+    free(names->items);
+    memset(names, 0, sizeof *names);
+}
+
+enum orl_result orl_file_hash(const struct orl_log *log, const char *path, uint64_t *hash)
+{
+    *hash = 0;
+    int fd = -1;
+    size_t total = 0;
+    enum orl_result result = open_to_read(log, path, &fd, &total);
+    if (result != ORL_OK)
+        return result;
+    enum { CHUNK = 1 << 16 };
+    uint8_t *chunk = orl_array(log, CHUNK, 1);
+    XXH3_state_t *state = XXH3_createState();
+    if (!chunk || !state) {
+        result = ORL_ERR_MEMORY;
+        goto end;
+    }
+    XXH3_64bits_reset(state);
+    for (;;) {
+        ssize_t got = read(fd, chunk, CHUNK);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0) {
+            result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+            goto end;
+        }
+        if (got == 0)
+            break;
+        XXH3_64bits_update(state, chunk, (size_t)got);
+    }
+    *hash = XXH3_64bits_digest(state);
+end:
+    XXH3_freeState(state);
+    free(chunk);
+    close(fd);
+    return result;
+}

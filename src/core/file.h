@@ -1,0 +1,56 @@
+// Files and folders. Results appear under their final name only when whole.
+#ifndef ORL_CORE_FILE_H
+#define ORL_CORE_FILE_H
+
+#include "core/log.h"
+
+// "dir/name", released with free(); NULL, logged, when memory runs out.
+char *orl_path_join(const struct orl_log *log, const char *dir, const char *name);
+// The part after the last '/', pointing into `path`.
+const char *orl_path_name(const char *path);
+bool orl_path_is_file(const char *path);
+bool orl_path_is_dir(const char *path);
+
+// Reads a whole file. *data is owned by the caller (free) and followed by a
+// zero byte that *size does not count. Files above max_size are refused.
+enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_t max_size,
+                              uint8_t **data, size_t *size) ORL_CHECK_RESULT;
+// Writes to a temporary name, flushes to disk, renames.
+enum orl_result orl_file_write(const struct orl_log *log, const char *path, const void *data,
+                               size_t size) ORL_CHECK_RESULT;
+
+// For writers that need a path of their own: write to `temp`, then commit or
+// abort. Abort after commit does nothing, so clean-up can always call it.
+struct orl_atomic_file {
+    char *temp, *path; // owned
+};
+enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
+                                 struct orl_atomic_file *file) ORL_CHECK_RESULT;
+enum orl_result orl_atomic_commit(const struct orl_log *log,
+                                  struct orl_atomic_file *file) ORL_CHECK_RESULT;
+void orl_atomic_abort(struct orl_atomic_file *file);
+
+// Creates the folder and its parents; one that exists is fine.
+enum orl_result orl_dir_make(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
+// Removes the folder and all in it; one that is not there is fine. Links are
+// removed, never followed.
+enum orl_result orl_dir_remove(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
+
+// Names sorted bytewise, without "." and "..".
+struct orl_names {
+    size_t count, capacity;
+    char **items; // owned, each too
+};
+enum orl_result orl_dir_list(const struct orl_log *log, const char *path,
+                             struct orl_names *names) ORL_CHECK_RESULT;
+enum orl_result orl_names_add(const struct orl_log *log, struct orl_names *names,
+                              const char *name) ORL_CHECK_RESULT;
+bool orl_names_contain(const struct orl_names *names, const char *name);
+void orl_names_sort(struct orl_names *names);
+void orl_names_finish(struct orl_names *names);
+
+// XXH3 64-bit of the file's bytes, for change detection, not for security.
+enum orl_result orl_file_hash(const struct orl_log *log, const char *path,
+                              uint64_t *hash) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,21 @@
+// Progress and cancellation, passed down into every long job.
+#ifndef ORL_CORE_PROGRESS_H
+#define ORL_CORE_PROGRESS_H
+
+#include "core/common.h"
+
+struct orl_progress {
+    // step: short name ("densify"); done of total units; detail: what is being
+    // worked on, may be NULL. Called often; must be cheap.
+    void (*report)(void *priv, const char *step, double done, double total,
+                   const char *detail);
+    // True once the job should stop; the job then returns ORL_ERR_CANCELLED.
+    bool (*cancelled)(void *priv);
+    void *priv;
+};
+
+void orl_progress_report(const struct orl_progress *progress, const char *step,
+                         double done, double total, const char *detail);
+bool orl_progress_cancelled(const struct orl_progress *progress);
+
+#endif

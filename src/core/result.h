@@ -1,0 +1,32 @@
+// Result codes: one table gives the enum, the name and the default message.
+#ifndef ORL_CORE_RESULT_H
+#define ORL_CORE_RESULT_H
+
+#include "core/common.h"
+
+#define ORL_RESULTS(X)                                                    \
+    X(ORL_OK, "success")                                                  \
+    X(ORL_ERR_ARGUMENT, "invalid argument")                               \
+    X(ORL_ERR_MEMORY, "out of memory")                                    \
+    X(ORL_ERR_IO, "cannot read or write a file")                          \
+    X(ORL_ERR_FORMAT, "damaged or unsupported file")                      \
+    X(ORL_ERR_NOT_FOUND, "not found")                                     \
+    X(ORL_ERR_DATA, "the input cannot be used")                           \
+    X(ORL_ERR_EXTERNAL, "another program failed")                         \
+    X(ORL_ERR_GPU, "OpenGL error")                                        \
+    X(ORL_ERR_UNSUPPORTED, "not supported here")                          \
+    X(ORL_ERR_CANCELLED, "interrupted")
+
+enum orl_result {
+#define ORL_RESULT_ENUM(code, message) code,
+    ORL_RESULTS(ORL_RESULT_ENUM)
+#undef ORL_RESULT_ENUM
+    ORL_RESULT_COUNT
+};
+
+// "ORL_ERR_IO"; "unknown" outside the table.
+const char *orl_result_name(enum orl_result result);
+// "cannot read or write a file"; "unknown" outside the table.
+const char *orl_result_message(enum orl_result result);
+
+#endif

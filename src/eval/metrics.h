@@ -1,0 +1,22 @@
+// How close two pictures are.
+#ifndef ORL_EVAL_METRICS_H
+#define ORL_EVAL_METRICS_H
+
+#include "core/image.h"
+
+struct orl_metrics {
+    double psnr_db;         // RGB, 8-bit sRGB values, whole picture; 100 when identical
+    double psnr_cc_db;      // after the least-squares affine colour map (3x4) of a onto b
+    double psnr_covered_db; // over pixels with coverage > 0.5; 0 when there are none
+    double ssim;            // luma, Wang 2004: 11x11 Gaussian, sigma 1.5, whole picture
+    double coverage;        // share of pixels with coverage > 0.5
+    double completeness;    // Virtual Rephotography: share of pixels not left black
+    double ncc_error;       // Virtual Rephotography: mean of 1 - NCC over complete patches, [0, 2]
+};
+
+// a: rendered, b: photograph, both U8 x3 of one size; coverage F32 x1.
+enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_image *a,
+                                    const struct orl_image *b, const struct orl_image *coverage,
+                                    struct orl_metrics *metrics) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,143 @@
+// The GL device: headless EGL context, buffers, textures, compute programs and
+// pass timers. The only module that creates or deletes GL objects.
+//
+// Thread-safety: everything made from one orl_gpu belongs to the thread that
+// created it. All objects must be destroyed before their orl_gpu.
+#ifndef ORL_GPU_GPU_H
+#define ORL_GPU_GPU_H
+
+#include <epoxy/gl.h>
+
+#include "core/log.h"
+
+struct orl_gpu;
+
+struct orl_gpu_params {
+    const char *shader_dir; // read shaders from this folder; NULL: the embedded ones
+    bool debug;             // GL debug output to the log; errors become sticky failures
+};
+
+struct orl_gpu_caps {
+    char vendor[128], renderer[128], version[128]; // as GL says
+    bool software;               // a CPU renderer such as llvmpipe
+    size_t max_storage_block;    // bytes of one shader storage binding
+    int max_texture_size;        // pixels
+    int max_texture_layers;
+    int max_texture_units;       // samplers of one compute shader
+};
+
+// Opens a device without a display: EGL device platform first, then Mesa's
+// surfaceless one. ORL_ERR_GPU, with what was found and how to get Mesa's
+// software renderer, when there is no OpenGL 4.5 core.
+enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_params *params,
+                               struct orl_gpu **out) ORL_CHECK_RESULT;
+void orl_gpu_destroy(struct orl_gpu **gpu);
+const struct orl_gpu_caps *orl_gpu_caps(const struct orl_gpu *gpu);
+const struct orl_log *orl_gpu_log(const struct orl_gpu *gpu);
+// Waits for the device; ORL_ERR_GPU if any GL error happened since the last call.
+enum orl_result orl_gpu_finish(struct orl_gpu *gpu) ORL_CHECK_RESULT;
+// Bytes in live buffers and textures.
+size_t orl_gpu_bytes(const struct orl_gpu *gpu);
+
+// --- buffers ---
+
+struct orl_buf {
+    GLuint id;
+    size_t size;
+    const char *tag; // string literal, for GL labels and messages
+};
+// data may be NULL: zeroed.
+enum orl_result orl_buf_create(struct orl_gpu *gpu, const char *tag, size_t size,
+                               const void *data, struct orl_buf **out) ORL_CHECK_RESULT;
+void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **buf);
+void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data);
+// Waits for the device.
+void orl_buf_read(const struct orl_buf *buf, size_t offset, size_t size, void *data);
+// Every 32-bit word becomes `word`.
+void orl_buf_fill(struct orl_buf *buf, uint32_t word);
+
+// --- textures ---
+
+struct orl_tex_params {
+    int width, height;
+    int layers;      // 0: a 2D texture, otherwise a 2D array
+    int levels;      // 0: as 1
+    GLenum format;   // sized internal format, such as GL_RGBA32F
+    bool linear;     // linear filtering (and between levels); false: nearest
+    const char *tag; // string literal
+};
+struct orl_tex {
+    GLuint id;
+    struct orl_tex_params params;
+    size_t bytes;
+};
+// Zeroed; coordinates clamp to the edge.
+enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
+                               struct orl_tex **out) ORL_CHECK_RESULT;
+void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **tex);
+// Tightly packed pixels of client format/type, e.g. GL_RGB, GL_UNSIGNED_BYTE.
+void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
+                   const void *pixels);
+// As above, for the top left width x height part.
+void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int width, int height,
+                        GLenum format, GLenum type, const void *pixels);
+// Waits for the device. `size` is the room in `pixels`, in bytes.
+void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
+                  void *pixels);
+void orl_tex_make_mipmaps(struct orl_tex *tex);
+
+// --- programs and dispatch ---
+
+struct orl_prog;
+// Compiles the compute shader `file` (relative to shaders/), after expanding
+// #include "..." and adding #version 450 core and `defines` ("A 1\nB 2\n" become
+// #define lines; NULL: none). params_size: size of the std140 block at uniform
+// binding 0, 0 if it has none.
+enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const char *defines,
+                                size_t params_size, struct orl_prog **out) ORL_CHECK_RESULT;
+void orl_prog_destroy(struct orl_gpu *gpu, struct orl_prog **prog);
+
+enum { ORL_BINDINGS_MAX = 8 };
+struct orl_image_binding {
+    const struct orl_tex *tex; // NULL: not bound
+    int level;
+    GLenum access;             // GL_READ_ONLY, GL_WRITE_ONLY or GL_READ_WRITE
+};
+struct orl_buf_binding {
+    const struct orl_buf *buf; // NULL: not bound
+    size_t offset, size;       // size 0: to the end
+};
+// One compute dispatch; array index = binding point of its kind.
+struct orl_dispatch {
+    struct orl_prog *prog;
+    const void *params;        // params_size bytes for the uniform block
+    struct orl_buf_binding bufs[ORL_BINDINGS_MAX];
+    const struct orl_tex *textures[ORL_BINDINGS_MAX];
+    struct orl_image_binding images[ORL_BINDINGS_MAX];
+    unsigned groups[3];        // work groups; 0 counts as 1
+    GLbitfield barrier;        // glMemoryBarrier bits after it
+};
+void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *dispatch);
+static inline unsigned orl_groups(size_t items, unsigned group_size)
+{
+    return (unsigned)((items + group_size - 1) / group_size);
+}
+
+// --- pass timers ---
+
+struct orl_pass_time {
+    const char *name; // as given to orl_pass_begin
+    double ms;        // sum of all passes of this name since the last reset
+    unsigned count;
+};
+// Passes do not nest. `name` is a string literal. Timing is off by default and
+// costs nothing then; on software renderers an enabled timer drains the
+// pipeline, since there GL's own timestamps do not bound compute work.
+void orl_gpu_time_passes(struct orl_gpu *gpu, bool enabled);
+void orl_pass_begin(struct orl_gpu *gpu, const char *name);
+void orl_pass_end(struct orl_gpu *gpu);
+// Waits for pending timers, fills up to `capacity` rows in order of first use,
+// returns how many passes there are, and resets the sums.
+size_t orl_gpu_take_times(struct orl_gpu *gpu, struct orl_pass_time *times, size_t capacity);
+
+#endif

@@ -1,0 +1,51 @@
+// Private to src/gpu.
+#ifndef ORL_GPU_INTERNAL_H
+#define ORL_GPU_INTERNAL_H
+
+#include <epoxy/egl.h>
+
+#include "gpu/gpu.h"
+
+enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256 };
+
+struct pass_query {
+    GLuint begin, end;
+    int pass;
+};
+
+struct orl_gpu {
+    const struct orl_log *log;
+    EGLDisplay display;
+    EGLContext context;
+    struct orl_gpu_caps caps;
+    char *shader_dir; // owned; NULL: embedded
+    bool failed;      // sticky: a GL error or a high-severity message
+    bool current;     // the context could be made current
+    size_t live_bufs, live_texs, live_progs, live_bytes;
+
+    bool timing;
+    int pass; // the open one; -1: none
+    double pass_start_s;
+    struct orl_pass_time passes[ORL_PASSES_MAX];
+    size_t pass_count;
+    struct pass_query queries[ORL_QUERIES_MAX]; // names made on first use
+    size_t query_count;                         // pending
+};
+
+// Expanded source of shaders/`file`: version, defines, includes, #line. Owned by
+// the caller (free). files: names by #line source number, for messages.
+struct shader_source {
+    char *text;
+    size_t length, capacity;
+    const char *files[32];
+    size_t file_count;
+};
+enum orl_result shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
+                                   struct shader_source *source);
+void shader_source_finish(struct shader_source *source);
+
+// Logs every pending GL error as made by `where`; true if there were none.
+bool gpu_check_errors(struct orl_gpu *gpu, const char *where);
+void gpu_free_queries(struct orl_gpu *gpu);
+
+#endif

@@ -1,0 +1,169 @@
+// Buffers and textures.
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "gpu/internal.h"
+
+enum orl_result orl_buf_create(struct orl_gpu *gpu, const char *tag, size_t size,
+                               const void *data, struct orl_buf **out)
+{
+    *out = NULL;
+    struct orl_buf *buf = orl_array(gpu->log, 1, sizeof *buf);
+    if (!buf)
+        return ORL_ERR_MEMORY;
+    *buf = (struct orl_buf){.size = size ? size : 4, .tag = tag};
+    glCreateBuffers(1, &buf->id);
+    glNamedBufferStorage(buf->id, (GLsizeiptr)buf->size, size ? data : NULL,
+                         GL_DYNAMIC_STORAGE_BIT);
+    glObjectLabel(GL_BUFFER, buf->id, -1, tag);
+    gpu->live_bufs++;
+    gpu->live_bytes += buf->size;
+    if (!gpu_check_errors(gpu, tag)) {
+        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no buffer of %zu bytes on the device", tag, size);
+        orl_buf_destroy(gpu, &buf);
+        return ORL_ERR_GPU;
+    }
+    if (!data)
+        orl_buf_fill(buf, 0);
+    *out = buf;
+    return ORL_OK;
+}
+
+void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **handle)
+{
+    struct orl_buf *buf = *handle;
+    if (!buf)
+        return;
+    glDeleteBuffers(1, &buf->id);
+    gpu->live_bufs--;
+    gpu->live_bytes -= buf->size;
+    free(buf);
+    *handle = NULL;
+}
+
+void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data)
+{
+    glNamedBufferSubData(buf->id, (GLintptr)offset, (GLsizeiptr)size, data);
+}
+
+void orl_buf_read(const struct orl_buf *buf, size_t offset, size_t size, void *data)
+{
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(buf->id, (GLintptr)offset, (GLsizeiptr)size, data);
+}
+
+void orl_buf_fill(struct orl_buf *buf, uint32_t word)
+{
+    glClearNamedBufferData(buf->id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+static size_t texel_bytes(GLenum format)
+{
+    static const struct {
+        GLenum format;
+        unsigned char bytes;
+    } table[] = {
+        {GL_R8, 1},       {GL_RG8, 2},      {GL_RGBA8, 4},    {GL_SRGB8_ALPHA8, 4},
+        {GL_R16F, 2},     {GL_RG16F, 4},    {GL_RGBA16F, 8},  {GL_R32F, 4},
+        {GL_RG32F, 8},    {GL_RGBA32F, 16}, {GL_R32UI, 4},    {GL_RG32UI, 8},
+        {GL_RGBA32UI, 16}, {GL_R16, 2},     {GL_R8UI, 1},     {GL_R16UI, 2},
+    };
+    for (size_t i = 0; i < ORL_COUNT(table); i++)
+        if (table[i].format == format)
+            return table[i].bytes;
+    return 16; // for the accounting only: an upper bound
+}
+
+static void set_sampling(GLuint id, bool linear, int levels)
+{
+    GLint mag = linear ? GL_LINEAR : GL_NEAREST;
+    GLint min = levels > 1 ? (linear ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST_MIPMAP_NEAREST) : mag;
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, min);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, mag);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
+                               struct orl_tex **out)
+{
+    *out = NULL;
+    if (params->width < 1 || params->height < 1 || params->width > gpu->caps.max_texture_size ||
+        params->height > gpu->caps.max_texture_size ||
+        params->layers > gpu->caps.max_texture_layers)
+        return orl_fail(gpu->log, ORL_ERR_GPU, "%s: this device has no textures of %dx%d, %d layers",
+                        params->tag, params->width, params->height, params->layers);
+    struct orl_tex *tex = orl_array(gpu->log, 1, sizeof *tex);
+    if (!tex)
+        return ORL_ERR_MEMORY;
+    tex->params = *params;
+    if (tex->params.levels < 1)
+        tex->params.levels = 1;
+    const struct orl_tex_params *p = &tex->params;
+    size_t layers = p->layers ? (size_t)p->layers : 1;
+    for (int level = 0; level < p->levels; level++) {
+        size_t w = (size_t)(p->width >> level), h = (size_t)(p->height >> level);
+        tex->bytes += (w ? w : 1) * (h ? h : 1) * layers * texel_bytes(p->format);
+    }
+    if (p->layers) {
+        glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &tex->id);
+        glTextureStorage3D(tex->id, p->levels, p->format, p->width, p->height, p->layers);
+    } else {
+        glCreateTextures(GL_TEXTURE_2D, 1, &tex->id);
+        glTextureStorage2D(tex->id, p->levels, p->format, p->width, p->height);
+    }
+    set_sampling(tex->id, p->linear, p->levels);
+    glObjectLabel(GL_TEXTURE, tex->id, -1, p->tag);
+    gpu->live_texs++;
+    gpu->live_bytes += tex->bytes;
+    if (!gpu_check_errors(gpu, p->tag)) {
+        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device", p->tag,
+                 p->width, p->height, tex->bytes);
+        orl_tex_destroy(gpu, &tex);
+        return ORL_ERR_GPU;
+    }
+    *out = tex;
+    return ORL_OK;
+}
+
+void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
+{
+    struct orl_tex *tex = *handle;
+    if (!tex)
+        return;
+    glDeleteTextures(1, &tex->id);
+    gpu->live_texs--;
+    gpu->live_bytes -= tex->bytes;
+    free(tex);
+    *handle = NULL;
+}
+
+void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int width, int height,
+                        GLenum format, GLenum type, const void *pixels)
+{
+    if (tex->params.layers)
+        glTextureSubImage3D(tex->id, level, 0, 0, layer, width, height, 1, format, type, pixels);
+    else
+        glTextureSubImage2D(tex->id, level, 0, 0, width, height, format, type, pixels);
+}
+
+void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
+                   const void *pixels)
+{
+    int width = tex->params.width >> level, height = tex->params.height >> level;
+    orl_tex_write_part(tex, level, layer, width ? width : 1, height ? height : 1, format, type,
+                       pixels);
+}
+
+void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
+                  void *pixels)
+{
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glGetTextureImage(tex->id, level, format, type, (GLsizei)size, pixels);
+}
+
+void orl_tex_make_mipmaps(struct orl_tex *tex)
+{
+    if (tex->params.levels > 1)
+        glGenerateTextureMipmap(tex->id);
+}

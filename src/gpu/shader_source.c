@@ -1,0 +1,118 @@
+// Finds, expands and numbers shader sources.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "gpu/internal.h"
+#include "gpu/shader_table.h"
+
+enum { SHADER_MAX_BYTES = 1 << 20, INCLUDE_DEPTH_MAX = 8 };
+
+static enum orl_result append(struct orl_gpu *gpu, struct shader_source *source, const char *text,
+                              size_t length)
+{
+    enum orl_result result = orl_grow(gpu->log, (void **)&source->text, &source->capacity,
+                                      source->length + length + 1, 1);
+    if (result != ORL_OK)
+        return result;
+    memcpy(source->text + source->length, text, length);
+    source->length += length;
+    source->text[source->length] = '\0';
+    return ORL_OK;
+}
+
+// The text of one file; *owned must be freed.
+static enum orl_result find_text(struct orl_gpu *gpu, const char *file, const char **name,
+                                 const char **text, uint8_t **owned)
+{
+    *owned = NULL;
+    *text = NULL;
+    for (const struct orl_shader_file *row = orl_shader_table; row->name; row++) {
+        if (strcmp(row->name, file) != 0)
+            continue;
+        *name = row->name;
+        *text = row->text;
+    }
+    if (!*text)
+        return orl_fail(gpu->log, ORL_ERR_NOT_FOUND, "shader %s is not known", file);
+    if (!gpu->shader_dir)
+        return ORL_OK;
+    char *path = orl_path_join(gpu->log, gpu->shader_dir, file);
+    size_t size;
+    enum orl_result result =
+        path ? orl_file_read(gpu->log, path, SHADER_MAX_BYTES, owned, &size) : ORL_ERR_MEMORY;
+    free(path);
+    *text = (const char *)*owned;
+    return result;
+}
+
+static enum orl_result append_line_mark(struct orl_gpu *gpu, struct shader_source *source, int line,
+                                        size_t file_index)
+{
+    char mark[64];
+    int length = snprintf(mark, sizeof mark, "#line %d %zu\n", line, file_index);
+    return append(gpu, source, mark, (size_t)length);
+}
+
+static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source, const char *file,
+                              int depth)
+{
+    const char *text, *name = file;
+    uint8_t *owned;
+    if (depth > INCLUDE_DEPTH_MAX || source->file_count == ORL_COUNT(source->files))
+        return orl_fail(gpu->log, ORL_ERR_FORMAT, "shader %s: includes too deep or too many", file);
+    enum orl_result result = find_text(gpu, file, &name, &text, &owned);
+    if (result != ORL_OK)
+        return result;
+    size_t index = source->file_count++;
+    source->files[index] = name;
+    result = append_line_mark(gpu, source, 1, index);
+    int number = 1;
+    for (const char *line = text; result == ORL_OK && *line; number++) {
+        const char *end = strchr(line, '\n');
+        size_t length = end ? (size_t)(end - line) + 1 : strlen(line);
+        char included[128];
+        if (sscanf(line, "#include \"%127[^\"\n]\"", included) == 1) {
+            result = expand(gpu, source, included, depth + 1);
+            if (result == ORL_OK)
+                result = append_line_mark(gpu, source, number + 1, index);
+        } else {
+            result = append(gpu, source, line, length);
+        }
+        line += length;
+    }
+    if (result == ORL_OK)
+        result = append(gpu, source, "\n", 1);
+    free(owned);
+    return result;
+}
+
+enum orl_result shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
+                                   struct shader_source *source)
+{
+    static const char head[] = "#version 450 core\n";
+    memset(source, 0, sizeof *source);
+    enum orl_result result = append(gpu, source, head, sizeof head - 1);
+    for (const char *line = defines; result == ORL_OK && line && *line;) {
+        size_t length = strcspn(line, "\n");
+        result = append(gpu, source, "#define ", 8);
+        if (result == ORL_OK)
+            result = append(gpu, source, line, length);
+        if (result == ORL_OK)
+            result = append(gpu, source, "\n", 1);
+        line += length + (line[length] == '\n');
+    }
+    if (result == ORL_OK)
+        result = expand(gpu, source, file, 0);
+    if (result != ORL_OK)
+        shader_source_finish(source);
+    return result;
+}
+
+void shader_source_finish(struct shader_source *source)
+{
+    free(source->text);
+    memset(source, 0, sizeof *source);
+}

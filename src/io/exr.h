@@ -1,0 +1,38 @@
+// OpenEXR files through OpenEXRCore's C API.
+#ifndef ORL_IO_EXR_H
+#define ORL_IO_EXR_H
+
+#include "core/image.h"
+#include "scene/camera.h"
+
+enum { ORL_EXR_CHANNELS_MAX = 32 };
+
+struct orl_exr_channel {
+    char name[32];     // "R", "depth.Z", "normal.X", "coverage", ...
+    bool half;         // stored as half; false: float
+    const float *data; // first sample; not owned
+    size_t stride;     // floats from one pixel to the next
+};
+
+struct orl_exr_params {
+    int width, height;
+    struct orl_exr_channel channels[ORL_EXR_CHANNELS_MAX];
+    int channel_count;
+    // Standard attributes, written when set: worldToCamera (row vectors, left-handed, +z
+    // forward, y up, as OpenEXR defines it), worldToNDC.
+    const struct orl_view *view;
+    double exposure_s, iso, aperture; // 0: not written
+    bool srgb_primaries;              // chromaticities of Rec. 709 / sRGB
+    const char *comments;             // NULL: not written
+};
+
+// Scanlines, ZIP. Written whole or not at all.
+enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
+                              const struct orl_exr_params *params) ORL_CHECK_RESULT;
+// Reads `count` named channels into an interleaved float image (at most 4).
+// ORL_ERR_NOT_FOUND names the first channel that the file lacks.
+enum orl_result orl_exr_read(const struct orl_log *log, const char *path,
+                             const char *const *channels, int count,
+                             struct orl_image *image) ORL_CHECK_RESULT;
+
+#endif

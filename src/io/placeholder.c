@@ -1,0 +1,1 @@
+typedef int orl_placeholder;

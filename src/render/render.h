@@ -1,0 +1,67 @@
+// The frame: depth from points, visibility, colour from photographs.
+#ifndef ORL_RENDER_RENDER_H
+#define ORL_RENDER_RENDER_H
+
+#include "core/image.h"
+#include "gpu/gpu.h"
+#include "scene/scene.h"
+
+// --- methods and options ---
+
+enum orl_visibility { ORL_VISIBILITY_NONE, ORL_VISIBILITY_HARD, ORL_VISIBILITY_COUNT };
+enum orl_fill { ORL_FILL_NONE, ORL_FILL_COLOR, ORL_FILL_DEPTH, ORL_FILL_COUNT };
+enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COUNT };
+
+// Every key of --set; the table in options.c gives range, unit, cost and help.
+struct orl_render_params {
+    enum orl_color_source color;    // points: the splats' own colour; photos: blended photographs
+    enum orl_visibility visibility; // of surface points in photographs
+    enum orl_fill fill;             // of pixels that no splat covers
+    float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
+    float splat_scale;              // multiplies splat radii, (0, 16]
+    float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
+};
+
+struct orl_method {
+    const char *name, *description, *source;
+    struct orl_render_params params;
+};
+// All methods, ended by a NULL name. The first is the default.
+extern const struct orl_method orl_methods[];
+// NULL, with the list of names in the log, when unknown.
+const struct orl_method *orl_method_find(const struct orl_log *log, const char *name);
+// "key=value"; ORL_ERR_ARGUMENT lists what is allowed.
+enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_render_params *params,
+                                      const char *assignment) ORL_CHECK_RESULT;
+
+// --- the renderer ---
+
+struct orl_renderer;
+
+// Uploads the points and those photographs that may be used: `use[i]` per
+// photograph of the scene, NULL: all that are not held out. The scene and gpu
+// must outlive it.
+enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                    const bool *use, struct orl_renderer **out) ORL_CHECK_RESULT;
+void orl_renderer_destroy(struct orl_renderer **renderer);
+
+// One rendered view, in host memory. All images have the view's size.
+struct orl_frame {
+    struct orl_image color;    // F32 x3, scene-linear, Rec. 709 primaries
+    struct orl_image depth;    // F32 x1, z in scene units, 0 = none
+    struct orl_image normal;   // F32 x3, camera frame, 0 = none
+    struct orl_image coverage; // F32 x1, 1 where the proxy and a photograph cover, else 0
+};
+void orl_frame_finish(struct orl_frame *frame);
+
+// Renders and reads back; the same input gives the same bits. `skip[i]` leaves a
+// photograph out of this view (its own depth included); NULL: none.
+enum orl_result orl_renderer_draw(struct orl_renderer *renderer, const struct orl_view *view,
+                                  const struct orl_render_params *params, const bool *skip,
+                                  struct orl_frame *frame) ORL_CHECK_RESULT;
+
+// sRGB-encoded 8-bit RGB of a scene-linear image; values are clamped.
+enum orl_result orl_tone_srgb(const struct orl_log *log, const struct orl_image *linear,
+                              struct orl_image *srgb) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,168 @@
+#include "scene/camera.h"
+
+#include <math.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static bool normalize(double v[3])
+{
+    double length = sqrt(dot(v, v));
+    if (!(length > 0))
+        return false;
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+    return true;
+}
+
+bool orl_camera_valid(const struct orl_camera *c)
+{
+    return c->width > 0 && c->height > 0 && isfinite(c->fx) && isfinite(c->fy) && c->fx > 0 &&
+           c->fy > 0 && fabs(c->cx - 0.5 * c->width) <= 10.0 * c->width &&
+           fabs(c->cy - 0.5 * c->height) <= 10.0 * c->height;
+}
+
+struct orl_camera orl_camera_resized(const struct orl_camera *camera, int width, int height)
+{
+    double sx = (double)width / camera->width, sy = (double)height / camera->height;
+    return (struct orl_camera){.width = width, .height = height,
+                               .fx = camera->fx * sx, .fy = camera->fy * sy,
+                               .cx = camera->cx * sx, .cy = camera->cy * sy};
+}
+
+bool orl_pose_from_quat(const double quat_wxyz[4], const double t[3], struct orl_pose *pose)
+{
+    double w = quat_wxyz[0], x = quat_wxyz[1], y = quat_wxyz[2], z = quat_wxyz[3];
+    double norm = sqrt(w * w + x * x + y * y + z * z);
+    if (!isfinite(norm) || norm < 1e-12 || !isfinite(t[0] + t[1] + t[2]))
+        return false;
+    w /= norm, x /= norm, y /= norm, z /= norm;
+    *pose = (struct orl_pose){
+        .r = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+              {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+              {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}},
+        .t = {t[0], t[1], t[2]}};
+    return true;
+}
+
+void orl_pose_to_quat(const struct orl_pose *pose, double q[4])
+{
+    // Shepperd: divide by the largest component for accuracy.
+    const double (*r)[3] = pose->r;
+    double trace = r[0][0] + r[1][1] + r[2][2];
+    double squares[4] = {trace, r[0][0], r[1][1], r[2][2]};
+    int largest = 0;
+    for (int i = 1; i < 4; i++)
+        if (squares[i] > squares[largest])
+            largest = i;
+    double s = 2 * sqrt(fmax(1e-300, largest == 0 ? 1 + trace : 1 - trace + 2 * squares[largest]));
+    if (largest == 0) {
+        q[0] = s / 4, q[1] = (r[2][1] - r[1][2]) / s;
+        q[2] = (r[0][2] - r[2][0]) / s, q[3] = (r[1][0] - r[0][1]) / s;
+    } else {
+        int i = largest - 1, j = (i + 1) % 3, k = (i + 2) % 3;
+        q[0] = (r[k][j] - r[j][k]) / s;
+        q[1 + i] = s / 4;
+        q[1 + j] = (r[j][i] + r[i][j]) / s;
+        q[1 + k] = (r[k][i] + r[i][k]) / s;
+    }
+    if (q[0] < 0)
+        for (int i = 0; i < 4; i++)
+            q[i] = -q[i];
+}
+
+void orl_pose_centre(const struct orl_pose *pose, double centre[3])
+{
+    for (int i = 0; i < 3; i++)
+        centre[i] = -(pose->r[0][i] * pose->t[0] + pose->r[1][i] * pose->t[1] +
+                      pose->r[2][i] * pose->t[2]);
+}
+
+static void set_centre(struct orl_pose *pose, const double centre[3])
+{
+    for (int i = 0; i < 3; i++)
+        pose->t[i] = -dot(pose->r[i], centre);
+}
+
+struct orl_pose orl_pose_look_at(const double eye[3], const double target[3], const double up[3])
+{
+    struct orl_pose pose;
+    double x[3], y[3], z[3] = {target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]};
+    if (!normalize(z))
+        z[0] = 0, z[1] = 0, z[2] = 1;
+    cross(z, up, x);
+    if (!normalize(x)) { // looking along `up`: any horizontal axis will do
+        const double other[3] = {fabs(z[0]) < 0.5, fabs(z[0]) >= 0.5, 0};
+        cross(z, other, x);
+        normalize(x);
+    }
+    cross(z, x, y);
+    memcpy(pose.r[0], x, sizeof x);
+    memcpy(pose.r[1], y, sizeof y);
+    memcpy(pose.r[2], z, sizeof z);
+    set_centre(&pose, eye);
+    return pose;
+}
+
+void orl_pose_apply(const struct orl_pose *pose, const double world[3], double cam[3])
+{
+    for (int i = 0; i < 3; i++)
+        cam[i] = dot(pose->r[i], world) + pose->t[i];
+}
+
+static void slerp(const double a[4], const double b[4], double t, double out[4])
+{
+    double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+    double sign = cosine < 0 ? -1 : 1;
+    double angle = acos(fmin(1, fabs(cosine)));
+    bool tiny = angle < 1e-6;
+    double wa = tiny ? 1 - t : sin((1 - t) * angle) / sin(angle);
+    double wb = tiny ? t : sin(t * angle) / sin(angle);
+    for (int i = 0; i < 4; i++)
+        out[i] = wa * a[i] + sign * wb * b[i];
+}
+
+struct orl_view orl_view_interpolate(const struct orl_view *a, const struct orl_view *b, double t)
+{
+    struct orl_view view = {.camera = a->camera};
+    struct orl_camera other = orl_camera_resized(&b->camera, a->camera.width, a->camera.height);
+    view.camera.fx = a->camera.fx * pow(other.fx / a->camera.fx, t);
+    view.camera.fy = a->camera.fy * pow(other.fy / a->camera.fy, t);
+    view.camera.cx += t * (other.cx - a->camera.cx);
+    view.camera.cy += t * (other.cy - a->camera.cy);
+    double qa[4], qb[4], q[4], ca[3], cb[3], centre[3];
+    const double zero[3] = {0, 0, 0};
+    orl_pose_to_quat(&a->cam_from_world, qa);
+    orl_pose_to_quat(&b->cam_from_world, qb);
+    slerp(qa, qb, t, q);
+    orl_pose_centre(&a->cam_from_world, ca);
+    orl_pose_centre(&b->cam_from_world, cb);
+    for (int i = 0; i < 3; i++)
+        centre[i] = ca[i] + t * (cb[i] - ca[i]);
+    orl_pose_from_quat(q, zero, &view.cam_from_world);
+    set_centre(&view.cam_from_world, centre);
+    return view;
+}
+
+bool orl_view_project(const struct orl_view *view, const double world[3], double pixel[2],
+                      double *depth)
+{
+    double cam[3];
+    orl_pose_apply(&view->cam_from_world, world, cam);
+    *depth = cam[2];
+    if (!(cam[2] > 0))
+        return false;
+    pixel[0] = view->camera.fx * cam[0] / cam[2] + view->camera.cx;
+    pixel[1] = view->camera.fy * cam[1] / cam[2] + view->camera.cy;
+    return true;
+}

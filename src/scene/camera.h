@@ -1,0 +1,47 @@
+// Cameras and poses. Conventions are COLMAP's: x right, y down, z forward;
+// pixel centres at +0.5; a point's depth is its z in camera space.
+#ifndef ORL_SCENE_CAMERA_H
+#define ORL_SCENE_CAMERA_H
+
+#include "core/common.h"
+
+// Pinhole without distortion. u = fx x/z + cx, v = fy y/z + cy, in pixels.
+struct orl_camera {
+    int width, height;
+    double fx, fy, cx, cy;
+};
+
+// cam_from_world: x_cam = r x_world + t. r is row-major: r[row][column].
+struct orl_pose {
+    double r[3][3], t[3];
+};
+
+struct orl_view {
+    struct orl_camera camera;
+    struct orl_pose cam_from_world;
+};
+
+// Finite, positive size and focal length, principal point within ten image
+// sizes of the centre.
+bool orl_camera_valid(const struct orl_camera *camera);
+// The same camera for a picture of another size: each axis scaled by itself.
+struct orl_camera orl_camera_resized(const struct orl_camera *camera, int width, int height);
+
+// From a quaternion w x y z (normalised here) and translation. False when the
+// quaternion is zero or anything is not finite.
+bool orl_pose_from_quat(const double quat_wxyz[3 + 1], const double t[3], struct orl_pose *pose);
+// w >= 0.
+void orl_pose_to_quat(const struct orl_pose *pose, double quat_wxyz[3 + 1]);
+// Camera centre in world space: -r^T t.
+void orl_pose_centre(const struct orl_pose *pose, double centre[3]);
+// Camera at `eye` looking at `target`, image y along -up.
+struct orl_pose orl_pose_look_at(const double eye[3], const double target[3], const double up[3]);
+void orl_pose_apply(const struct orl_pose *cam_from_world, const double world[3], double cam[3]);
+// Between a (t = 0) and b (t = 1): centres linearly, rotations by slerp, focal
+// lengths geometrically; picture size of a.
+struct orl_view orl_view_interpolate(const struct orl_view *a, const struct orl_view *b, double t);
+// False behind the camera. Pixel coordinates may lie outside the picture.
+bool orl_view_project(const struct orl_view *view, const double world[3], double pixel[2],
+                      double *depth);
+
+#endif

@@ -1,0 +1,62 @@
+// COLMAP's files: sparse model (binary or text) and depth or normal maps.
+// Sizes are checked against the file before anything is allocated; errors name
+// the file, the offset and the reason.
+#ifndef ORL_SCENE_COLMAP_H
+#define ORL_SCENE_COLMAP_H
+
+#include "core/image.h"
+#include "scene/camera.h"
+
+struct orl_colmap_camera {
+    uint32_t id;
+    int model;               // COLMAP's model id; 0 SIMPLE_PINHOLE, 1 PINHOLE, ...
+    struct orl_camera pinhole; // without the distortion of other models
+    double params[12];
+    int param_count;
+};
+
+struct orl_colmap_image {
+    uint32_t id, camera_id;
+    char *name; // owned
+    struct orl_pose cam_from_world;
+    // The sparse points it sees: indices into orl_colmap_model.points.
+    uint32_t *points; // owned
+    size_t point_count;
+};
+
+struct orl_colmap_point {
+    uint64_t id;
+    double position[3]; // world
+    uint8_t rgb[3];
+    double error_px;        // mean reprojection error
+    uint32_t track_length;  // photographs that see it
+};
+
+// Images sorted by name. Points that are not finite are dropped with a warning.
+struct orl_colmap_model {
+    struct orl_colmap_camera *cameras;
+    size_t camera_count;
+    struct orl_colmap_image *images;
+    size_t image_count;
+    struct orl_colmap_point *points;
+    size_t point_count;
+};
+
+// Reads cameras, images and points3D (.bin if there, else .txt) from `dir`.
+// ORL_ERR_FORMAT for damaged files, ORL_ERR_NOT_FOUND when there are none.
+enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
+                                struct orl_colmap_model *model) ORL_CHECK_RESULT;
+void orl_colmap_finish(struct orl_colmap_model *model);
+// NULL when there is none of that id.
+const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
+                                                        uint32_t id);
+
+// "W&H&C&" then W*H*C float32, channel by channel. Depth maps have one channel
+// (z in scene units, 0 = none), normal maps three (camera frame).
+// The image is interleaved in memory.
+enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
+                                    struct orl_image *image) ORL_CHECK_RESULT;
+enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path,
+                                     const struct orl_image *image) ORL_CHECK_RESULT;
+
+#endif

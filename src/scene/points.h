@@ -1,0 +1,30 @@
+// The point cloud: one oriented disc (splat) per point.
+#ifndef ORL_SCENE_POINTS_H
+#define ORL_SCENE_POINTS_H
+
+#include "core/log.h"
+
+struct orl_points {
+    size_t count;
+    float (*position)[3]; // world, scene units
+    float (*normal)[3];   // world, unit length, towards the photographs; 0 0 0: unknown
+    float *radius;        // scene units, > 0; 0: not known yet
+    uint8_t (*color)[3];  // sRGB
+};
+
+// Room for `count` points, zeroed.
+enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points,
+                                size_t count) ORL_CHECK_RESULT;
+void orl_points_finish(struct orl_points *points);
+
+// PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue,
+// radius, in any order and scalar type; other properties and elements after
+// `vertex` are skipped. Points that are not finite are dropped and counted in a
+// warning, as are negative radii (set to 0).
+enum orl_result orl_points_read(const struct orl_log *log, const char *path,
+                                struct orl_points *points) ORL_CHECK_RESULT;
+// Binary little-endian PLY: x y z nx ny nz red green blue radius.
+enum orl_result orl_points_write(const struct orl_log *log, const char *path,
+                                 const struct orl_points *points) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,38 @@
+// A scene folder (docs/formats.md): photographs with cameras, and points.
+#ifndef ORL_SCENE_SCENE_H
+#define ORL_SCENE_SCENE_H
+
+#include "scene/camera.h"
+#include "scene/points.h"
+
+struct orl_photo {
+    char *name;           // owned; file SCENE/images/<name>
+    struct orl_view view; // size and intrinsics as of the undistorted file
+    bool test;            // held out: calibration only
+    double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
+    bool has_exposure;    // exposure_ev comes from EXIF or a list
+    int series;           // exposure series, from 0
+    float gain[3];        // multiplies linear colour; 1 1 1 unless aligned
+};
+
+struct orl_scene {
+    char *dir; // owned
+    struct orl_photo *photos;
+    size_t photo_count;
+    struct orl_points points;
+    double photo_distance; // median distance from photographs to the points they see
+};
+
+// Opens SCENE (scene.json, points.ply) or a plain COLMAP dense workspace with
+// fused.ply, whose radii are computed on the fly. A scene that prepare has not
+// finished is refused with ORL_ERR_DATA, naming the missing stage.
+enum orl_result orl_scene_open(const struct orl_log *log, const char *dir,
+                               struct orl_scene **out) ORL_CHECK_RESULT;
+void orl_scene_destroy(struct orl_scene **scene);
+// Index of the photograph of this name (with or without extension), -1 if none.
+int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
+// "SCENE/images/<name>", released with free().
+char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene,
+                           size_t photo);
+
+#endif
