@@ -38,11 +38,17 @@ enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_rend
 
 struct orl_renderer;
 
-// Uploads the points and those photographs that may be used: `use[i]` per
-// photograph of the scene, NULL: all that are not held out. The scene and gpu
-// must outlive it.
+struct orl_renderer_params {
+    const bool *use;       // per photograph: may it be used? NULL: all that are not held out
+    size_t max_vram_bytes; // plan for this much device memory; 0: no limit
+};
+
+// Uploads the points and loads photographs. When they do not fit max_vram_bytes it
+// plans with smaller photographs, then with fewer at once, and says so in the log.
+// params may be NULL. The scene and gpu must outlive it.
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                    const bool *use, struct orl_renderer **out) ORL_CHECK_RESULT;
+                                    const struct orl_renderer_params *params,
+                                    struct orl_renderer **out) ORL_CHECK_RESULT;
 void orl_renderer_destroy(struct orl_renderer **renderer);
 
 // One rendered view, in host memory. All images have the view's size.
@@ -55,7 +61,7 @@ struct orl_frame {
 void orl_frame_finish(struct orl_frame *frame);
 
 // Renders and reads back; the same input gives the same bits. `skip[i]` leaves a
-// photograph out of this view (its own depth included); NULL: none.
+// photograph out of this view; NULL: none.
 enum orl_result orl_renderer_draw(struct orl_renderer *renderer, const struct orl_view *view,
                                   const struct orl_render_params *params, const bool *skip,
                                   struct orl_frame *frame) ORL_CHECK_RESULT;
