@@ -1,0 +1,42 @@
+// Private to src/io: one reader per file format. `path` is for messages only.
+#ifndef ORL_IO_INTERNAL_H
+#define ORL_IO_INTERNAL_H
+
+#include <stdio.h>
+
+#include "io/picture.h"
+
+// Decoded pictures above this are refused: nobody photographs a gigapixel in one
+// file, and a few hostile bytes must not ask for all memory.
+#define ORL_PICTURE_MAX_PIXELS ((uint64_t)1 << 30)
+
+// Size as the header says, within ORL_IMAGE_MAX_SIDE and ORL_PICTURE_MAX_PIXELS.
+enum orl_result orl_picture_check_size(const struct orl_log *log, const char *path,
+                                       uint64_t width, uint64_t height);
+
+// Header only, from a stream at its start. exif: the EXIF block ("Exif\0\0" and TIFF
+// data), released with free(); NULL when the file has none before its pixels.
+struct orl_picture_header {
+    int width, height;
+    uint8_t *exif;
+    size_t exif_size;
+};
+enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
+                                     struct orl_picture_header *header);
+enum orl_result orl_png_read_header(const struct orl_log *log, const char *path, FILE *stream,
+                                    struct orl_picture_header *header);
+
+// channels 1 or 3.
+enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, const uint8_t *data,
+                                size_t size, int channels, struct orl_image *image);
+enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
+                               size_t size, int channels, struct orl_image *image);
+
+// From a block "Exif\0\0...". Damaged blocks say nothing, with a warning.
+enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, const uint8_t *data,
+                                size_t size, struct orl_exif *exif);
+// A malloc'ed block "Exif\0\0..." that says what `exif` says.
+enum orl_result orl_exif_encode(const struct orl_log *log, const struct orl_exif *exif,
+                                uint8_t **data, size_t *size);
+
+#endif

@@ -1,0 +1,270 @@
+// JPEG through libjpeg-turbo. libjpeg reports errors by longjmp: whatever must
+// survive one lives in struct jpeg_job, owned by the caller of the function that
+// calls setjmp.
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jpeglib.h>
+#include <jerror.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "io/internal.h"
+
+enum {
+    // Coefficients of a progressive picture at ORL_PICTURE_MAX_PIXELS.
+    MAX_MEMORY_GIB = 8,
+    // More scans than any encoder writes; each costs time in every pixel.
+    MAX_SCANS = 200,
+    // A JPEG block of 8x8 samples takes at least one bit of each component's data.
+    MAX_PIXELS_PER_BYTE = 1024,
+};
+
+struct jpeg_job {
+    const struct orl_log *log;
+    const char *path;
+    struct jpeg_error_mgr error;
+    struct jpeg_progress_mgr progress;
+    jmp_buf on_error;
+    char message[JMSG_LENGTH_MAX];
+};
+
+static void stop(j_common_ptr info)
+{
+    struct jpeg_job *job = info->client_data;
+    info->err->format_message(info, job->message);
+    longjmp(job->on_error, 1);
+}
+
+// libjpeg goes on after damage and paints the rest grey; here damage is an error.
+// Padding before the end marker, and oddities of optional markers, lose nothing.
+static void take_message(j_common_ptr info, int level)
+{
+    if (level >= 0)
+        return;
+    bool harmless = info->err->msg_code == JWRN_ADOBE_XFORM ||
+                    info->err->msg_code == JWRN_JFIF_MAJOR ||
+                    (info->err->msg_code == JWRN_EXTRANEOUS_DATA &&
+                     info->err->msg_parm.i[1] == JPEG_EOI);
+    if (!harmless)
+        stop(info);
+}
+
+static void drop_message(j_common_ptr info)
+{
+    (void)info;
+}
+
+static void limit_scans(j_common_ptr info)
+{
+    struct jpeg_job *job = info->client_data;
+    if (info->is_decompressor && ((j_decompress_ptr)info)->input_scan_number > MAX_SCANS) {
+        snprintf(job->message, sizeof job->message, "more than %d scans", MAX_SCANS);
+        longjmp(job->on_error, 1);
+    }
+}
+
+static void start_job(struct jpeg_job *job, struct jpeg_common_struct *info,
+                      const struct orl_log *log, const char *path)
+{
+    job->log = log;
+    job->path = path;
+    info->err = jpeg_std_error(&job->error);
+    job->error.error_exit = stop;
+    job->error.emit_message = take_message;
+    job->error.output_message = drop_message;
+    job->progress.progress_monitor = limit_scans;
+    info->client_data = job;
+}
+
+static enum orl_result fail(const struct jpeg_job *job)
+{
+    bool memory = job->error.msg_code == JERR_OUT_OF_MEMORY;
+    return orl_fail(job->log, memory ? ORL_ERR_MEMORY : ORL_ERR_FORMAT, "%s: JPEG: %s",
+                    job->path, job->message);
+}
+
+// --- header ---
+
+static bool is_exif(const struct jpeg_marker_struct *marker)
+{
+    return marker->marker == JPEG_APP0 + 1 && marker->data_length > 6 &&
+           memcmp(marker->data, "Exif\0", 6) == 0;
+}
+
+static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, FILE *stream,
+                                   struct orl_picture_header *header)
+{
+    if (setjmp(job->on_error))
+        return fail(job);
+    jpeg_create_decompress(info);
+    jpeg_save_markers(info, JPEG_APP0 + 1, 0xffff);
+    jpeg_stdio_src(info, stream);
+    jpeg_read_header(info, TRUE);
+    enum orl_result result =
+        orl_picture_check_size(job->log, job->path, info->image_width, info->image_height);
+    if (result != ORL_OK)
+        return result;
+    header->width = (int)info->image_width;
+    header->height = (int)info->image_height;
+    for (jpeg_saved_marker_ptr marker = info->marker_list; marker; marker = marker->next) {
+        if (!is_exif(marker) || header->exif)
+            continue;
+        header->exif = orl_array(job->log, marker->data_length, 1);
+        if (!header->exif)
+            return ORL_ERR_MEMORY;
+        memcpy(header->exif, marker->data, marker->data_length);
+        header->exif_size = marker->data_length;
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
+                                     struct orl_picture_header *header)
+{
+    struct jpeg_job job = {0};
+    struct jpeg_decompress_struct info = {0};
+    start_job(&job, (j_common_ptr)&info, log, path);
+    enum orl_result result = read_header(&job, &info, stream, header);
+    jpeg_destroy_decompress(&info);
+    return result;
+}
+
+// --- pixels ---
+
+static enum orl_result check_header(const struct jpeg_job *job,
+                                    const struct jpeg_decompress_struct *info, size_t size)
+{
+    enum orl_result result =
+        orl_picture_check_size(job->log, job->path, info->image_width, info->image_height);
+    if (result != ORL_OK)
+        return result;
+    if (info->jpeg_color_space == JCS_CMYK || info->jpeg_color_space == JCS_YCCK)
+        return orl_fail(job->log, ORL_ERR_FORMAT,
+                        "%s: CMYK print colours cannot be used; save it as RGB", job->path);
+    if ((uint64_t)info->image_width * info->image_height > (uint64_t)size * MAX_PIXELS_PER_BYTE)
+        return orl_fail(job->log, ORL_ERR_FORMAT, "%s: %zu bytes cannot hold %ux%u pixels",
+                        job->path, size, info->image_width, info->image_height);
+    return ORL_OK;
+}
+
+static enum orl_result decode(struct jpeg_job *job, j_decompress_ptr info, const uint8_t *data,
+                              size_t size, int channels, struct orl_image *image)
+{
+    if (setjmp(job->on_error))
+        return fail(job);
+    jpeg_create_decompress(info);
+    info->mem->max_memory_to_use = (long)MAX_MEMORY_GIB << 30;
+    info->progress = &job->progress;
+    jpeg_mem_src(info, data, size);
+    jpeg_read_header(info, TRUE);
+    enum orl_result result = check_header(job, info, size);
+    if (result != ORL_OK)
+        return result;
+    info->out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    result = orl_image_init(job->log, image, (int)info->image_width, (int)info->image_height,
+                            channels, ORL_PIXEL_U8);
+    if (result != ORL_OK)
+        return result;
+    jpeg_start_decompress(info);
+    while (info->output_scanline < info->output_height) {
+        JSAMPROW row = image->u8 +
+                       (size_t)info->output_scanline * (size_t)image->width * (size_t)channels;
+        jpeg_read_scanlines(info, &row, 1);
+    }
+    jpeg_finish_decompress(info); // reads up to the end marker: its absence is found here
+    return ORL_OK;
+}
+
+enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, const uint8_t *data,
+                                size_t size, int channels, struct orl_image *image)
+{
+    struct jpeg_job job = {0};
+    struct jpeg_decompress_struct info = {0};
+    start_job(&job, (j_common_ptr)&info, log, path);
+    enum orl_result result = decode(&job, &info, data, size, channels, image);
+    jpeg_destroy_decompress(&info);
+    return result;
+}
+
+// --- writing ---
+
+struct jpeg_output {
+    const struct orl_image *image;
+    int quality;
+    uint8_t *exif;
+    size_t exif_size;
+    FILE *stream;
+};
+
+static enum orl_result encode(struct jpeg_job *job, j_compress_ptr info,
+                              const struct jpeg_output *out)
+{
+    const struct orl_image *image = out->image;
+    if (setjmp(job->on_error))
+        return orl_fail(job->log, ORL_ERR_IO, "%s: %s", job->path, job->message);
+    jpeg_create_compress(info);
+    jpeg_stdio_dest(info, out->stream);
+    info->image_width = (JDIMENSION)image->width;
+    info->image_height = (JDIMENSION)image->height;
+    info->input_components = image->channels;
+    info->in_color_space = image->channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_set_defaults(info);
+    jpeg_set_quality(info, out->quality, TRUE);
+    info->optimize_coding = TRUE;
+    if (out->quality >= 90 && image->channels == 3) {
+        info->comp_info[0].h_samp_factor = 1;
+        info->comp_info[0].v_samp_factor = 1;
+    }
+    jpeg_start_compress(info, TRUE);
+    if (out->exif)
+        jpeg_write_marker(info, JPEG_APP0 + 1, out->exif, (unsigned)out->exif_size);
+    while (info->next_scanline < info->image_height) {
+        JSAMPROW row = image->u8 + (size_t)info->next_scanline * (size_t)image->width *
+                                       (size_t)image->channels;
+        jpeg_write_scanlines(info, &row, 1);
+    }
+    jpeg_finish_compress(info);
+    return ORL_OK;
+}
+
+enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
+                               const struct orl_image *image, int quality,
+                               const struct orl_exif *exif)
+{
+    ORL_REQUIRE(log, image->type == ORL_PIXEL_U8 && image->data);
+    ORL_REQUIRE(log, image->channels == 1 || image->channels == 3);
+    ORL_REQUIRE(log, quality >= 1 && quality <= 100);
+    struct jpeg_job job = {0};
+    struct jpeg_compress_struct info = {0};
+    struct orl_atomic_file file = {0};
+    struct jpeg_output out = {.image = image, .quality = quality};
+    start_job(&job, (j_common_ptr)&info, log, path);
+    enum orl_result result = ORL_OK;
+    if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: a JPEG has at most %ld pixels a side",
+                        path, JPEG_MAX_DIMENSION);
+    if (exif)
+        result = orl_exif_encode(log, exif, &out.exif, &out.exif_size);
+    if (result == ORL_OK)
+        result = orl_atomic_begin(log, path, &file);
+    if (result != ORL_OK)
+        goto end;
+    out.stream = fopen(file.temp, "wb");
+    if (!out.stream) {
+        result = orl_fail(log, ORL_ERR_IO, "%s: cannot write here", path);
+        goto end;
+    }
+    result = encode(&job, &info, &out);
+    jpeg_destroy_compress(&info);
+    if (fclose(out.stream) != 0 && result == ORL_OK)
+        result = orl_fail(log, ORL_ERR_IO, "%s: cannot write all of it", path);
+    if (result == ORL_OK)
+        result = orl_atomic_commit(log, &file);
+end:
+    orl_atomic_abort(&file);
+    free(out.exif);
+    return result;
+}
