@@ -1,0 +1,185 @@
+#include "scene/colmap.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/colmap_internal.h"
+
+// COLMAP's src/base/camera_models.h. One focal length: params are f cx cy ...;
+// two: fx fy cx cy ...
+static const struct {
+    const char *name;
+    int params, focal_lengths;
+} models[] = {
+    {"SIMPLE_PINHOLE", 3, 1},        {"PINHOLE", 4, 2},        {"SIMPLE_RADIAL", 4, 1},
+    {"RADIAL", 5, 1},                {"OPENCV", 8, 2},         {"OPENCV_FISHEYE", 8, 2},
+    {"FULL_OPENCV", 12, 2},          {"FOV", 5, 2},            {"SIMPLE_RADIAL_FISHEYE", 4, 1},
+    {"RADIAL_FISHEYE", 5, 1},        {"THIN_PRISM_FISHEYE", 12, 2},
+};
+
+int orl_colmap_model_params(int model)
+{
+    return model >= 0 && model < (int)ORL_COUNT(models) ? models[model].params : 0;
+}
+
+int orl_colmap_model_id(const char *name)
+{
+    for (size_t i = 0; i < ORL_COUNT(models); i++)
+        if (strcmp(models[i].name, name) == 0)
+            return (int)i;
+    return -1;
+}
+
+const char *orl_colmap_camera_set(struct orl_colmap_camera *camera, uint64_t width,
+                                  uint64_t height)
+{
+    if (width == 0 || height == 0 || width > ORL_IMAGE_MAX_SIDE || height > ORL_IMAGE_MAX_SIDE)
+        return "the picture size is absurd";
+    for (int i = 0; i < camera->param_count; i++)
+        if (!isfinite(camera->params[i]))
+            return "a camera parameter is not finite";
+    const double *p = camera->params;
+    bool one = models[camera->model].focal_lengths == 1;
+    camera->pinhole = (struct orl_camera){
+        .width = (int)width, .height = (int)height, .fx = p[0], .fy = one ? p[0] : p[1],
+        .cx = one ? p[1] : p[2], .cy = one ? p[2] : p[3]};
+    return orl_camera_valid(&camera->pinhole) ? NULL
+                                              : "the focal length or principal point is absurd";
+}
+
+const char *orl_colmap_name_problem(const char *name)
+{
+    if (!*name)
+        return "the picture's name is empty";
+    if (*name == '/')
+        return "the picture's name is an absolute path";
+    for (const char *part = name; part; part = strchr(part, '/')) {
+        part += *part == '/';
+        if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || part[2] == '\0'))
+            return "the picture's name leads out of its folder";
+    }
+    return NULL;
+}
+
+static int compare_points(const void *a, const void *b)
+{
+    uint64_t x = ((const struct orl_colmap_point *)a)->id;
+    uint64_t y = ((const struct orl_colmap_point *)b)->id;
+    return (x > y) - (x < y);
+}
+
+int64_t orl_colmap_point_index(const struct orl_colmap_model *model, uint64_t id)
+{
+    struct orl_colmap_point key = {.id = id};
+    const struct orl_colmap_point *found =
+        model->point_count ? bsearch(&key, model->points, model->point_count,
+                                     sizeof *model->points, compare_points)
+                           : NULL;
+    return found ? found - model->points : -1;
+}
+
+enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *path,
+                                        struct orl_colmap_model *model)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < model->point_count; i++) {
+        const double *p = model->points[i].position;
+        if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
+            model->points[kept++] = model->points[i];
+    }
+    if (kept < model->point_count)
+        orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu points are not finite: dropped", path,
+                 model->point_count - kept, model->point_count);
+    model->point_count = kept;
+    if (kept)
+        qsort(model->points, kept, sizeof *model->points, compare_points);
+    for (size_t i = 1; i < kept; i++)
+        if (model->points[i].id == model->points[i - 1].id)
+            return orl_fail(log, ORL_ERR_FORMAT, "%s: two points have the id %llu", path,
+                            (unsigned long long)model->points[i].id);
+    return ORL_OK;
+}
+
+static int compare_images(const void *a, const void *b)
+{
+    return strcmp(((const struct orl_colmap_image *)a)->name,
+                  ((const struct orl_colmap_image *)b)->name);
+}
+
+static enum orl_result check_model(const struct orl_log *log, const char *dir,
+                                   struct orl_colmap_model *model)
+{
+    for (size_t i = 0; i < model->camera_count; i++)
+        if (orl_colmap_camera_by_id(model, model->cameras[i].id) != &model->cameras[i])
+            return orl_fail(log, ORL_ERR_FORMAT, "%s: two cameras have the id %u", dir,
+                            model->cameras[i].id);
+    if (model->image_count)
+        qsort(model->images, model->image_count, sizeof *model->images, compare_images);
+    for (size_t i = 0; i < model->image_count; i++) {
+        const struct orl_colmap_image *image = &model->images[i];
+        if (!orl_colmap_camera_by_id(model, image->camera_id))
+            return orl_fail(log, ORL_ERR_FORMAT, "%s: picture %s uses camera %u, which is not there",
+                            dir, image->name, image->camera_id);
+        if (i && strcmp(image->name, image[-1].name) == 0)
+            return orl_fail(log, ORL_ERR_FORMAT, "%s: picture %s is listed twice", dir,
+                            image->name);
+    }
+    return ORL_OK;
+}
+
+// 1: binary, 0: text, -1: neither.
+static int find_kind(const struct orl_log *log, const char *dir)
+{
+    static const char *const names[] = {"cameras.txt", "cameras.bin"};
+    for (int kind = 1; kind >= 0; kind--) {
+        char *path = orl_path_join(log, dir, names[kind]);
+        bool there = path && orl_path_is_file(path);
+        free(path);
+        if (there)
+            return kind;
+    }
+    return -1;
+}
+
+enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
+                                struct orl_colmap_model *model)
+{
+    memset(model, 0, sizeof *model);
+    int kind = find_kind(log, dir);
+    if (kind < 0)
+        return orl_fail(log, ORL_ERR_NOT_FOUND,
+                        "%s: no COLMAP model here (neither cameras.bin nor cameras.txt)", dir);
+    enum orl_result result = kind ? orl_colmap_read_binary(log, dir, model)
+                                  : orl_colmap_read_text(log, dir, model);
+    if (result == ORL_OK)
+        result = check_model(log, dir, model);
+    if (result != ORL_OK)
+        orl_colmap_finish(model);
+    return result;
+}
+
+void orl_colmap_finish(struct orl_colmap_model *model)
+{
+    if (!model)
+        return;
+    for (size_t i = 0; i < model->image_count; i++) {
+        free(model->images[i].name);
+        free(model->images[i].points);
+    }
+    free(model->cameras);
+    free(model->images);
+    free(model->points);
+    memset(model, 0, sizeof *model);
+}
+
+const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
+                                                        uint32_t id)
+{
+    for (size_t i = 0; i < model->camera_count; i++)
+        if (model->cameras[i].id == id)
+            return &model->cameras[i];
+    return NULL;
+}

@@ -1,0 +1,31 @@
+// Shared by the readers of COLMAP's binary and text models.
+#ifndef ORL_SCENE_COLMAP_INTERNAL_H
+#define ORL_SCENE_COLMAP_INTERNAL_H
+
+#include "scene/colmap.h"
+
+// Number of parameters of a camera model, 0 when it is unknown.
+int orl_colmap_model_params(int model);
+// COLMAP's id of a model's name, -1 when it is unknown.
+int orl_colmap_model_id(const char *name);
+
+// Fills camera->pinhole from model and params. NULL, or what is wrong.
+const char *orl_colmap_camera_set(struct orl_colmap_camera *camera, uint64_t width,
+                                  uint64_t height);
+// NULL, or what is wrong with a picture's name. Names are joined to a folder, so
+// none may lead out of it.
+const char *orl_colmap_name_problem(const char *name);
+// Index of the point of this id, -1 when it was dropped or is not there. Points
+// must be sorted by id.
+int64_t orl_colmap_point_index(const struct orl_colmap_model *model, uint64_t id);
+// After points3D has been read: drops points that are not finite and sorts by id.
+enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *path,
+                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;
+
+// Each reads one file; points before images, since images refer to points.
+enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,
+                                       struct orl_colmap_model *model) ORL_CHECK_RESULT;
+enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,
+                                     struct orl_colmap_model *model) ORL_CHECK_RESULT;
+
+#endif

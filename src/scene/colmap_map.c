@@ -1,0 +1,98 @@
+// COLMAP's depth and normal maps (src/mvs/mat.h): "W&H&C&" and planes of float32.
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/colmap.h"
+
+// Room for three numbers of up to five digits and their '&', generously.
+enum { HEADER_MAX = 48 };
+
+// Length of the header, 0 when it is damaged.
+static size_t parse_header(const uint8_t *data, size_t size, unsigned long dims[3])
+{
+    size_t at = 0;
+    for (int i = 0; i < 3; i++) {
+        size_t start = at;
+        dims[i] = 0;
+        while (at < size && at < HEADER_MAX && data[at] >= '0' && data[at] <= '9' &&
+               dims[i] <= ORL_IMAGE_MAX_SIDE)
+            dims[i] = 10 * dims[i] + (unsigned long)(data[at++] - '0');
+        if (at == start || at >= size || data[at] != '&')
+            return 0;
+        at++;
+    }
+    return at;
+}
+
+enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
+                                    struct orl_image *image)
+{
+    memset(image, 0, sizeof *image);
+    uint8_t *data = NULL;
+    size_t size;
+    enum orl_result result = orl_file_read(log, path, SIZE_MAX / 2, &data, &size);
+    if (result != ORL_OK)
+        return result;
+    unsigned long dims[3];
+    size_t header = parse_header(data, size, dims);
+    if (!header || dims[0] < 1 || dims[1] < 1 || dims[2] < 1 || dims[0] > ORL_IMAGE_MAX_SIDE ||
+        dims[1] > ORL_IMAGE_MAX_SIDE || dims[2] > 4) {
+        result = orl_fail(log, ORL_ERR_FORMAT,
+                          "%s: byte 0: not the WIDTH&HEIGHT&CHANNELS& of a COLMAP map", path);
+        goto end;
+    }
+    size_t pixels = dims[0] * dims[1];
+    size_t expected = pixels * dims[2] * sizeof(float); // at most 2^36
+    if (size - header != expected) {
+        result = orl_fail(log, ORL_ERR_FORMAT,
+                          "%s: byte %zu: %lux%lux%lu values need %zu bytes, but %zu follow", path,
+                          header, dims[0], dims[1], dims[2], expected, size - header);
+        goto end;
+    }
+    result = orl_image_init(log, image, (int)dims[0], (int)dims[1], (int)dims[2], ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        goto end;
+    for (size_t c = 0; c < dims[2]; c++) {
+        const uint8_t *plane = data + header + c * pixels * sizeof(float);
+        for (size_t i = 0; i < pixels; i++)
+            memcpy(&image->f32[i * dims[2] + c], plane + i * sizeof(float), sizeof(float));
+    }
+end:
+    free(data);
+    return result;
+}
+
+enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path,
+                                     const struct orl_image *image)
+{
+    ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->data);
+    size_t channels = (size_t)image->channels, width = (size_t)image->width;
+    struct orl_atomic_file file = {0};
+    float *row = orl_array(log, width, sizeof *row);
+    if (!row)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = orl_atomic_begin(log, path, &file);
+    if (result != ORL_OK)
+        goto end;
+    FILE *stream = fopen(file.temp, "wb");
+    bool ok = stream && fprintf(stream, "%d&%d&%d&", image->width, image->height,
+                                image->channels) > 0;
+    for (size_t c = 0; ok && c < channels; c++)
+        for (size_t y = 0; ok && y < (size_t)image->height; y++) {
+            for (size_t x = 0; x < width; x++)
+                row[x] = image->f32[(y * width + x) * channels + c];
+            ok = fwrite(row, sizeof *row, width, stream) == width;
+        }
+    if (stream && fclose(stream) != 0)
+        ok = false;
+    result = ok ? orl_atomic_commit(log, &file)
+                : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+end:
+    orl_atomic_abort(&file);
+    free(row);
+    return result;
+}

@@ -1,0 +1,80 @@
+#include "scene/points.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points, size_t count)
+{
+    memset(points, 0, sizeof *points);
+    points->count = count;
+    points->position = orl_array(log, count, sizeof *points->position);
+    points->normal = orl_array(log, count, sizeof *points->normal);
+    points->radius = orl_array(log, count, sizeof *points->radius);
+    points->color = orl_array(log, count, sizeof *points->color);
+    if (points->position && points->normal && points->radius && points->color)
+        return ORL_OK;
+    orl_points_finish(points);
+    return ORL_ERR_MEMORY;
+}
+
+void orl_points_finish(struct orl_points *points)
+{
+    if (!points)
+        return;
+    free(points->position);
+    free(points->normal);
+    free(points->radius);
+    free(points->color);
+    memset(points, 0, sizeof *points);
+}
+
+// As in the file: packed, 31 bytes.
+enum { RECORD_SIZE = 6 * 4 + 3 + 4 };
+
+static void pack_point(const struct orl_points *points, size_t i, uint8_t record[RECORD_SIZE])
+{
+    memcpy(record, points->position[i], 12);
+    memcpy(record + 12, points->normal[i], 12);
+    memcpy(record + 24, points->color[i], 3);
+    memcpy(record + 27, &points->radius[i], 4);
+}
+
+static bool write_points(FILE *stream, const struct orl_points *points)
+{
+    bool ok = fprintf(stream, "ply\nformat binary_little_endian 1.0\n"
+                              "element vertex %zu\n"
+                              "property float x\nproperty float y\nproperty float z\n"
+                              "property float nx\nproperty float ny\nproperty float nz\n"
+                              "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                              "property float radius\nend_header\n",
+                      points->count) > 0;
+    for (size_t i = 0; ok && i < points->count; i++) {
+        uint8_t record[RECORD_SIZE];
+        pack_point(points, i, record);
+        ok = fwrite(record, RECORD_SIZE, 1, stream) == 1;
+    }
+    return ok;
+}
+
+enum orl_result orl_points_write(const struct orl_log *log, const char *path,
+                                 const struct orl_points *points)
+{
+    struct orl_atomic_file file = {0};
+    enum orl_result result = orl_atomic_begin(log, path, &file);
+    if (result != ORL_OK)
+        return result;
+    FILE *stream = fopen(file.temp, "wb");
+    bool ok = stream && write_points(stream, points);
+    if (stream && fclose(stream) != 0)
+        ok = false;
+    result = ok ? orl_atomic_commit(log, &file)
+                : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    orl_atomic_abort(&file);
+    return result;
+}
