@@ -1,0 +1,211 @@
+// Reading OpenEXR: the first part, scanlines or tiles, any compression.
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <OpenEXR/openexr.h>
+
+#include "core/file.h"
+#include "io/exr.h"
+#include "io/internal.h"
+
+// A tile is decoded whole: a few hostile bytes must not ask for much memory.
+enum { EXR_MAX_TILE_SIDE = 4096 };
+
+struct exr_reader {
+    const struct orl_log *log;
+    const char *path;
+    const char *const *names;
+    int count;
+    exr_context_t context;
+    exr_decode_pipeline_t pipe;
+    bool pipe_ready;
+    exr_attr_box2i_t window;
+    struct orl_image *image;
+    char message[512];
+};
+
+static void take_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    void *priv = NULL;
+    (void)code;
+    if (!context || exr_get_user_data(context, &priv) != EXR_ERR_SUCCESS || !priv)
+        return;
+    struct exr_reader *reader = priv;
+    snprintf(reader->message, sizeof reader->message, "%s", message);
+}
+
+static enum orl_result check(const struct exr_reader *reader, exr_result_t code)
+{
+    if (code == EXR_ERR_SUCCESS)
+        return ORL_OK;
+    return orl_fail(reader->log,
+                    code == EXR_ERR_OUT_OF_MEMORY ? ORL_ERR_MEMORY : ORL_ERR_FORMAT,
+                    "%s: OpenEXR: %s", reader->path,
+                    *reader->message ? reader->message : exr_get_default_error_message(code));
+}
+
+// --- header ---
+
+static enum orl_result find_channels(const struct exr_reader *reader)
+{
+    const exr_attr_chlist_t *list = NULL;
+    enum orl_result result = check(reader, exr_get_channels(reader->context, 0, &list));
+    for (int i = 0; i < reader->count && result == ORL_OK; i++) {
+        const exr_attr_chlist_entry_t *found = NULL;
+        for (int k = 0; k < list->num_channels && !found; k++)
+            if (strcmp(list->entries[k].name.str, reader->names[i]) == 0)
+                found = &list->entries[k];
+        if (!found)
+            result = orl_fail(reader->log, ORL_ERR_NOT_FOUND, "%s: has no channel %s",
+                              reader->path, reader->names[i]);
+        else if (found->x_sampling != 1 || found->y_sampling != 1)
+            result = orl_fail(reader->log, ORL_ERR_FORMAT, "%s: channel %s is subsampled",
+                              reader->path, reader->names[i]);
+    }
+    return result;
+}
+
+// A header may claim any size: every chunk of it takes 8 bytes in the chunk table
+// and 8 of its own, which the file must have.
+static enum orl_result check_window(struct exr_reader *reader)
+{
+    struct stat st;
+    int32_t chunks = 0;
+    enum orl_result result =
+        check(reader, exr_get_data_window(reader->context, 0, &reader->window));
+    if (result == ORL_OK)
+        result = check(reader, exr_get_chunk_count(reader->context, 0, &chunks));
+    if (result != ORL_OK)
+        return result;
+    int64_t width = (int64_t)reader->window.max.x - reader->window.min.x + 1;
+    int64_t height = (int64_t)reader->window.max.y - reader->window.min.y + 1;
+    result = orl_picture_check_size(reader->log, reader->path, width > 0 ? (uint64_t)width : 0,
+                                    height > 0 ? (uint64_t)height : 0);
+    if (result != ORL_OK)
+        return result;
+    if (stat(reader->path, &st) != 0 || chunks < 1 || (int64_t)chunks * 16 > (int64_t)st.st_size)
+        return orl_fail(reader->log, ORL_ERR_FORMAT, "%s: too short for %lldx%lld pixels",
+                        reader->path, (long long)width, (long long)height);
+    return orl_image_init(reader->log, reader->image, (int)width, (int)height, reader->count,
+                          ORL_PIXEL_F32);
+}
+
+// --- pixels ---
+
+// Decodes one chunk whose first sample belongs at column x, row y of the image.
+static exr_result_t read_chunk(struct exr_reader *reader, const exr_chunk_info_t *chunk, int x,
+                               int y)
+{
+    exr_decode_pipeline_t *pipe = &reader->pipe;
+    struct orl_image *image = reader->image;
+    if (chunk->width > image->width - x || chunk->height > image->height - y)
+        return EXR_ERR_BAD_CHUNK_LEADER;
+    bool first = !reader->pipe_ready;
+    exr_result_t code = first ? exr_decoding_initialize(reader->context, 0, chunk, pipe)
+                              : exr_decoding_update(reader->context, 0, chunk, pipe);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    reader->pipe_ready = true;
+    size_t pixel = (size_t)y * (size_t)image->width + (size_t)x;
+    for (int i = 0; i < pipe->channel_count; i++) {
+        exr_coding_channel_info_t *to = &pipe->channels[i];
+        to->decode_to_ptr = NULL;
+        for (int k = 0; k < reader->count; k++) {
+            if (strcmp(to->channel_name, reader->names[k]) != 0)
+                continue;
+            float *sample = image->f32 + pixel * (size_t)reader->count + (size_t)k;
+            to->decode_to_ptr = (uint8_t *)sample;
+            to->user_data_type = EXR_PIXEL_FLOAT;
+            to->user_bytes_per_element = sizeof(float);
+            to->user_pixel_stride = (int32_t)sizeof(float) * reader->count;
+            to->user_line_stride = (int32_t)sizeof(float) * reader->count * image->width;
+        }
+    }
+    if (first)
+        code = exr_decoding_choose_default_routines(reader->context, 0, pipe);
+    return code == EXR_ERR_SUCCESS ? exr_decoding_run(reader->context, 0, pipe) : code;
+}
+
+static exr_result_t read_scanlines(struct exr_reader *reader)
+{
+    int32_t lines = 0;
+    exr_result_t code = exr_get_scanlines_per_chunk(reader->context, 0, &lines);
+    if (code == EXR_ERR_SUCCESS && lines < 1)
+        code = EXR_ERR_BAD_CHUNK_LEADER;
+    for (int y = 0; y < reader->image->height && code == EXR_ERR_SUCCESS; y += lines) {
+        exr_chunk_info_t chunk;
+        code = exr_read_scanline_chunk_info(reader->context, 0, reader->window.min.y + y, &chunk);
+        if (code == EXR_ERR_SUCCESS)
+            code = read_chunk(reader, &chunk, 0, y);
+    }
+    return code;
+}
+
+// The finest level only.
+static exr_result_t read_tiles(struct exr_reader *reader)
+{
+    int32_t width = 0, height = 0;
+    exr_result_t code = exr_get_tile_sizes(reader->context, 0, 0, 0, &width, &height);
+    if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1))
+        code = EXR_ERR_BAD_CHUNK_LEADER;
+    for (int y = 0, row = 0; y < reader->image->height && code == EXR_ERR_SUCCESS;
+         y += height, row++) {
+        for (int x = 0, column = 0; x < reader->image->width && code == EXR_ERR_SUCCESS;
+             x += width, column++) {
+            exr_chunk_info_t chunk;
+            code = exr_read_tile_chunk_info(reader->context, 0, column, row, 0, 0, &chunk);
+            if (code == EXR_ERR_SUCCESS)
+                code = read_chunk(reader, &chunk, x, y);
+        }
+    }
+    return code;
+}
+
+static enum orl_result read_part(struct exr_reader *reader)
+{
+    exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
+    enum orl_result result = check(reader, exr_get_storage(reader->context, 0, &storage));
+    if (result != ORL_OK)
+        return result;
+    if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
+        return orl_fail(reader->log, ORL_ERR_UNSUPPORTED, "%s: deep pictures cannot be read",
+                        reader->path);
+    result = find_channels(reader);
+    if (result == ORL_OK)
+        result = check_window(reader);
+    if (result != ORL_OK)
+        return result;
+    return check(reader, storage == EXR_STORAGE_SCANLINE ? read_scanlines(reader)
+                                                         : read_tiles(reader));
+}
+
+enum orl_result orl_exr_read(const struct orl_log *log, const char *path,
+                             const char *const *channels, int count, struct orl_image *image)
+{
+    memset(image, 0, sizeof *image);
+    ORL_REQUIRE(log, count >= 1 && count <= 4);
+    if (!orl_path_is_file(path))
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such file", path);
+    struct exr_reader reader = {.log = log, .path = path, .names = channels, .count = count,
+                                .image = image};
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = take_error;
+    init.user_data = &reader;
+    init.max_image_width = ORL_IMAGE_MAX_SIDE;
+    init.max_image_height = ORL_IMAGE_MAX_SIDE;
+    init.max_tile_width = EXR_MAX_TILE_SIDE;
+    init.max_tile_height = EXR_MAX_TILE_SIDE;
+    // A file that was cut off is damaged, not something to guess about.
+    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    enum orl_result result = check(&reader, exr_start_read(&reader.context, path, &init));
+    if (result == ORL_OK)
+        result = read_part(&reader);
+    if (reader.pipe_ready)
+        exr_decoding_destroy(reader.context, &reader.pipe);
+    if (reader.context)
+        exr_finish(&reader.context);
+    if (result != ORL_OK)
+        orl_image_finish(image);
+    return result;
+}

@@ -1,0 +1,252 @@
+// Writing OpenEXR: one part, scanlines, ZIP.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <OpenEXR/openexr.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "io/exr.h"
+
+static const float half_max = 65504;
+
+struct exr_writer {
+    const struct orl_log *log;
+    const char *path;
+    const struct orl_exr_params *params;
+    exr_context_t context;
+    exr_encode_pipeline_t pipe;
+    bool pipe_ready;
+    float *rows; // one chunk's samples, channel after channel
+};
+
+// The library's own words, kept for the message that names the user's path.
+static void take_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    void *priv = NULL;
+    (void)code;
+    if (!context || exr_get_user_data(context, &priv) != EXR_ERR_SUCCESS || !priv)
+        return;
+    const struct exr_writer *writer = priv;
+    orl_logf(writer->log, ORL_LOG_DEBUG, "%s: OpenEXR: %s", writer->path, message);
+}
+
+static enum orl_result check(const struct exr_writer *writer, exr_result_t code)
+{
+    if (code == EXR_ERR_SUCCESS)
+        return ORL_OK;
+    return orl_fail(writer->log, code == EXR_ERR_OUT_OF_MEMORY ? ORL_ERR_MEMORY : ORL_ERR_IO,
+                    "%s: cannot write OpenEXR: %s", writer->path,
+                    exr_get_default_error_message(code));
+}
+
+// --- camera attributes ---
+
+// OpenEXR multiplies row vectors from the left, and its camera space has y up
+// where ours has y down (ImfStandardAttributes.h, worldToCamera).
+static exr_attr_m44f_t world_to_camera(const struct orl_pose *pose)
+{
+    exr_attr_m44f_t m = {{0}};
+    const double sign[3] = {1, -1, 1};
+    for (int out = 0; out < 3; out++) {
+        for (int in = 0; in < 3; in++)
+            m.m[4 * in + out] = (float)(sign[out] * pose->r[out][in] + 0.0); // no -0
+        m.m[12 + out] = (float)(sign[out] * pose->t[out] + 0.0);
+    }
+    m.m[15] = 1;
+    return m;
+}
+
+// (0, 0) to (1, 1) from the upper left to the lower right corner. The standard
+// leaves NDC z free: 1 - 1/z, from the plane at distance 1 to infinity.
+static exr_attr_m44f_t world_to_ndc(const struct orl_view *view)
+{
+    const struct orl_camera *c = &view->camera;
+    const struct orl_pose *pose = &view->cam_from_world;
+    exr_attr_m44f_t m = {{0}};
+    for (int row = 0; row < 4; row++) {
+        double x = row < 3 ? pose->r[0][row] : pose->t[0];
+        double y = row < 3 ? pose->r[1][row] : pose->t[1];
+        double z = row < 3 ? pose->r[2][row] : pose->t[2];
+        m.m[4 * row + 0] = (float)((c->fx * x + c->cx * z) / c->width);
+        m.m[4 * row + 1] = (float)((c->fy * y + c->cy * z) / c->height);
+        m.m[4 * row + 2] = (float)(row < 3 ? z : z - 1);
+        m.m[4 * row + 3] = (float)z;
+    }
+    return m;
+}
+
+// --- header ---
+
+static exr_result_t set_attributes(exr_context_t context, const struct orl_exr_params *params)
+{
+    exr_result_t code = exr_attr_set_string(context, 0, "software", "Oriel " ORL_VERSION);
+    if (code == EXR_ERR_SUCCESS && params->view) {
+        exr_attr_m44f_t camera = world_to_camera(&params->view->cam_from_world);
+        exr_attr_m44f_t ndc = world_to_ndc(params->view);
+        code = exr_attr_set_m44f(context, 0, "worldToCamera", &camera);
+        if (code == EXR_ERR_SUCCESS)
+            code = exr_attr_set_m44f(context, 0, "worldToNDC", &ndc);
+    }
+    const struct {
+        const char *name;
+        double value;
+    } numbers[] = {{"expTime", params->exposure_s},
+                   {"isoSpeed", params->iso},
+                   {"aperture", params->aperture}};
+    for (size_t i = 0; i < ORL_COUNT(numbers) && code == EXR_ERR_SUCCESS; i++)
+        if (numbers[i].value > 0)
+            code = exr_attr_set_float(context, 0, numbers[i].name, (float)numbers[i].value);
+    if (code == EXR_ERR_SUCCESS && params->srgb_primaries) {
+        const exr_attr_chromaticities_t rec709 = {
+            .red_x = 0.64f, .red_y = 0.33f, .green_x = 0.3f, .green_y = 0.6f,
+            .blue_x = 0.15f, .blue_y = 0.06f, .white_x = 0.3127f, .white_y = 0.329f};
+        code = exr_attr_set_chromaticities(context, 0, "chromaticities", &rec709);
+    }
+    if (code == EXR_ERR_SUCCESS && params->comments && *params->comments)
+        code = exr_attr_set_string(context, 0, "comments", params->comments);
+    return code;
+}
+
+static exr_result_t write_header(exr_context_t context, const struct orl_exr_params *params)
+{
+    int part;
+    exr_result_t code = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_initialize_required_attr_simple(context, part, params->width, params->height,
+                                                   EXR_COMPRESSION_ZIP);
+    for (int i = 0; i < params->channel_count && code == EXR_ERR_SUCCESS; i++) {
+        const struct orl_exr_channel *channel = &params->channels[i];
+        code = exr_add_channel(context, part, channel->name,
+                               channel->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+                               EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    }
+    if (code == EXR_ERR_SUCCESS)
+        code = set_attributes(context, params);
+    return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
+}
+
+// --- pixels ---
+
+static const struct orl_exr_channel *find_channel(const struct orl_exr_params *params,
+                                                  const char *name)
+{
+    for (int i = 0; i < params->channel_count; i++)
+        if (strcmp(params->channels[i].name, name) == 0)
+            return &params->channels[i];
+    return NULL;
+}
+
+// Copies the chunk's samples to `to`. A radiance above half's range becomes its
+// largest value: infinities would spread through any filter that reads the file.
+static void gather(const struct orl_exr_params *params, const struct orl_exr_channel *channel,
+                   int first_row, int rows, float *to)
+{
+    size_t width = (size_t)params->width, count = width * (size_t)rows;
+    const float *from = channel->data + (size_t)first_row * width * channel->stride;
+    for (size_t i = 0; i < count; i++) {
+        float value = from[i * channel->stride];
+        if (channel->half && isfinite(value))
+            value = fminf(fmaxf(value, -half_max), half_max);
+        to[i] = value;
+    }
+}
+
+static exr_result_t write_chunk(struct exr_writer *writer, int y)
+{
+    exr_chunk_info_t chunk;
+    exr_encode_pipeline_t *pipe = &writer->pipe;
+    exr_result_t code = exr_write_scanline_chunk_info(writer->context, 0, y, &chunk);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    bool first = !writer->pipe_ready;
+    code = first ? exr_encoding_initialize(writer->context, 0, &chunk, pipe)
+                 : exr_encoding_update(writer->context, 0, &chunk, pipe);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    writer->pipe_ready = true;
+    size_t samples = (size_t)chunk.width * (size_t)chunk.height;
+    for (int i = 0; i < pipe->channel_count; i++) {
+        exr_coding_channel_info_t *to = &pipe->channels[i];
+        const struct orl_exr_channel *from = find_channel(writer->params, to->channel_name);
+        float *rows = writer->rows + (size_t)i * samples;
+        if (!from)
+            return EXR_ERR_INVALID_ARGUMENT;
+        gather(writer->params, from, y, chunk.height, rows);
+        to->user_data_type = EXR_PIXEL_FLOAT;
+        to->user_bytes_per_element = sizeof(float);
+        to->user_pixel_stride = sizeof(float);
+        to->user_line_stride = (int32_t)((size_t)chunk.width * sizeof(float));
+        to->encode_from_ptr = (const uint8_t *)rows;
+    }
+    if (first)
+        code = exr_encoding_choose_default_routines(writer->context, 0, pipe);
+    return code == EXR_ERR_SUCCESS ? exr_encoding_run(writer->context, 0, pipe) : code;
+}
+
+static enum orl_result write_all(struct exr_writer *writer)
+{
+    const struct orl_exr_params *params = writer->params;
+    int32_t lines = 0;
+    exr_result_t code = write_header(writer->context, params);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_scanlines_per_chunk(writer->context, 0, &lines);
+    if (code != EXR_ERR_SUCCESS)
+        return check(writer, code);
+    writer->rows = orl_array(writer->log,
+                             (size_t)params->width * (size_t)lines * (size_t)params->channel_count,
+                             sizeof *writer->rows);
+    if (!writer->rows)
+        return ORL_ERR_MEMORY;
+    for (int y = 0; y < params->height && code == EXR_ERR_SUCCESS; y += lines)
+        code = write_chunk(writer, y);
+    return check(writer, code);
+}
+
+static bool params_valid(const struct orl_exr_params *params)
+{
+    if (params->width < 1 || params->width > ORL_IMAGE_MAX_SIDE || params->height < 1 ||
+        params->height > ORL_IMAGE_MAX_SIDE || params->channel_count < 1 ||
+        params->channel_count > ORL_EXR_CHANNELS_MAX)
+        return false;
+    for (int i = 0; i < params->channel_count; i++) {
+        const struct orl_exr_channel *channel = &params->channels[i];
+        if (!channel->data || !channel->stride || !channel->name[0] ||
+            !memchr(channel->name, '\0', sizeof channel->name) ||
+            find_channel(params, channel->name) != channel)
+            return false;
+    }
+    return !params->view || orl_camera_valid(&params->view->camera);
+}
+
+enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
+                              const struct orl_exr_params *params)
+{
+    ORL_REQUIRE(log, params_valid(params));
+    struct exr_writer writer = {.log = log, .path = path, .params = params};
+    struct orl_atomic_file file = {0};
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = take_error;
+    init.user_data = &writer;
+    enum orl_result result = orl_atomic_begin(log, path, &file);
+    if (result != ORL_OK)
+        return result;
+    result = check(&writer, exr_start_write(&writer.context, file.temp, EXR_WRITE_FILE_DIRECTLY,
+                                            &init));
+    if (result == ORL_OK)
+        result = write_all(&writer);
+    if (writer.pipe_ready)
+        exr_encoding_destroy(writer.context, &writer.pipe);
+    if (writer.context) {
+        exr_result_t code = exr_finish(&writer.context); // writes the chunk table
+        if (result == ORL_OK)
+            result = check(&writer, code);
+    }
+    if (result == ORL_OK)
+        result = orl_atomic_commit(log, &file);
+    orl_atomic_abort(&file);
+    free(writer.rows);
+    return result;
+}
