@@ -1,0 +1,290 @@
+#include "scene/scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/colmap.h"
+#include "scene/manifest.h"
+#include "scene/radii.h"
+
+static enum orl_result set_photo(const struct orl_log *log, const char *dir,
+                                 const struct orl_colmap_model *model,
+                                 const struct orl_colmap_image *image, struct orl_photo *photo)
+{
+    const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(model, image->camera_id);
+    if (camera->model > 1)
+        return orl_fail(log, ORL_ERR_DATA,
+                        "%s: photograph %s is not undistorted (its camera is not PINHOLE); "
+                        "run colmap image_undistorter first", dir, image->name);
+    photo->name = orl_strdup(log, image->name);
+    photo->view = (struct orl_view){camera->pinhole, image->cam_from_world};
+    for (int i = 0; i < 3; i++)
+        photo->gain[i] = 1;
+    return photo->name ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+static enum orl_result check_photo_files(const struct orl_log *log, const struct orl_scene *scene)
+{
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        char *path = orl_scene_photo_path(log, scene, i);
+        bool there = path && orl_path_is_file(path);
+        enum orl_result result = !path ? ORL_ERR_MEMORY
+                                 : there ? ORL_OK
+                                         : orl_fail(log, ORL_ERR_NOT_FOUND,
+                                                    "%s: this photograph is missing", path);
+        free(path);
+        if (result != ORL_OK)
+            return result;
+    }
+    return ORL_OK;
+}
+
+static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *scene,
+                                  const struct orl_colmap_model *model)
+{
+    if (model->image_count == 0)
+        return orl_fail(log, ORL_ERR_DATA, "%s: no photographs", scene->dir);
+    scene->photos = orl_array(log, model->image_count, sizeof *scene->photos);
+    if (!scene->photos)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < model->image_count; i++) {
+        scene->photo_count = i + 1; // so that a half-made one is released
+        enum orl_result result =
+            set_photo(log, scene->dir, model, &model->images[i], &scene->photos[i]);
+        if (result != ORL_OK)
+            return result;
+    }
+    return check_photo_files(log, scene);
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, size_t count)
+{
+    if (!count)
+        return 0;
+    qsort(values, count, sizeof *values, compare_doubles);
+    return values[count / 2];
+}
+
+static double distance(const double a[3], const double b[3])
+{
+    double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+// Without sparse observations: distances to some of the points in the picture.
+static size_t sample_distances(const struct orl_scene *scene, double *values, size_t per_photo)
+{
+    size_t count = 0, step = scene->points.count / per_photo + 1;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const struct orl_view *view = &scene->photos[i].view;
+        double centre[3];
+        orl_pose_centre(&view->cam_from_world, centre);
+        for (size_t p = 0; p < scene->points.count; p += step) {
+            const float *at = scene->points.position[p];
+            const double world[3] = {(double)at[0], (double)at[1], (double)at[2]};
+            double pixel[2], depth;
+            if (orl_view_project(view, world, pixel, &depth) && pixel[0] >= 0 && pixel[1] >= 0 &&
+                pixel[0] < view->camera.width && pixel[1] < view->camera.height)
+                values[count++] = distance(centre, world);
+        }
+    }
+    return count;
+}
+
+static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_scene *scene,
+                                          const struct orl_colmap_model *model)
+{
+    enum { SAMPLES = 1024 };
+    size_t total = 0, count = 0;
+    for (size_t i = 0; i < model->image_count; i++)
+        total += model->images[i].point_count;
+    double *values = orl_array(log, total + scene->photo_count * SAMPLES, sizeof *values);
+    if (!values)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < model->image_count; i++) {
+        double centre[3];
+        orl_pose_centre(&model->images[i].cam_from_world, centre);
+        for (size_t p = 0; p < model->images[i].point_count; p++)
+            values[count++] = distance(centre, model->points[model->images[i].points[p]].position);
+    }
+    if (!count)
+        count = sample_distances(scene, values, SAMPLES);
+    scene->photo_distance = count ? median(values, count) : 1;
+    free(values);
+    return ORL_OK;
+}
+
+// Points without radius would not be drawn.
+static void drop_flat_points(const struct orl_log *log, struct orl_scene *scene)
+{
+    struct orl_points *points = &scene->points;
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        if (!(points->radius[i] > 0))
+            continue;
+        memmove(points->position[kept], points->position[i], sizeof *points->position);
+        memmove(points->normal[kept], points->normal[i], sizeof *points->normal);
+        memmove(points->color[kept], points->color[i], sizeof *points->color);
+        points->radius[kept++] = points->radius[i];
+    }
+    if (kept < points->count)
+        orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu points have no radius: dropped",
+                 scene->dir, points->count - kept, points->count);
+    points->count = kept;
+}
+
+static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene *scene)
+{
+    double (*viewers)[3] = orl_array(log, scene->photo_count, sizeof *viewers);
+    if (!viewers)
+        return ORL_ERR_MEMORY;
+    size_t count = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (!scene->photos[i].test)
+            orl_pose_centre(&scene->photos[i].view.cam_from_world, viewers[count++]);
+    enum orl_result result = orl_points_set_radii(
+        log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
+        (const double (*)[3])viewers, count, &scene->points);
+    free(viewers);
+    return result;
+}
+
+static enum orl_result read_points(const struct orl_log *log, struct orl_scene *scene,
+                                   const char *path)
+{
+    enum orl_result result = orl_points_read(log, path, &scene->points);
+    if (result != ORL_OK)
+        return result;
+    size_t known = 0;
+    for (size_t i = 0; i < scene->points.count; i++)
+        known += scene->points.radius[i] > 0;
+    if (known)
+        drop_flat_points(log, scene);
+    else if (scene->points.count)
+        result = compute_radii(log, scene);
+    if (result == ORL_OK && scene->points.count == 0)
+        result = orl_fail(log, ORL_ERR_DATA, "%s: no usable points", path);
+    return result;
+}
+
+static enum orl_result read_model(const struct orl_log *log, const char *dir,
+                                  struct orl_colmap_model *model)
+{
+    char *sparse = orl_path_join(log, dir, "sparse");
+    char *first = sparse ? orl_path_join(log, sparse, "0") : NULL;
+    enum orl_result result = !first ? ORL_ERR_MEMORY
+                             : orl_colmap_read(log, orl_path_is_dir(first) ? first : sparse, model);
+    free(first);
+    free(sparse);
+    return result;
+}
+
+// What is in the folder: paths that are NULL are not there.
+struct folder {
+    char *manifest, *points, *fused;
+};
+
+static enum orl_result look(const struct orl_log *log, const char *dir, struct folder *folder)
+{
+    if (!orl_path_is_dir(dir))
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder", dir);
+    const char *const names[] = {"scene.json", "points.ply", "fused.ply"};
+    char **const paths[] = {&folder->manifest, &folder->points, &folder->fused};
+    for (int i = 0; i < 3; i++) {
+        *paths[i] = orl_path_join(log, dir, names[i]);
+        if (!*paths[i])
+            return ORL_ERR_MEMORY;
+        if (!orl_path_is_file(*paths[i])) {
+            free(*paths[i]);
+            *paths[i] = NULL;
+        }
+    }
+    if (folder->manifest)
+        return folder->points ? ORL_OK
+                              : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: points.ply is missing", dir);
+    enum orl_result result = orl_manifest_check_unfinished(log, dir);
+    if (result == ORL_OK && !folder->fused)
+        result = orl_fail(log, ORL_ERR_NOT_FOUND,
+                          "%s: not a scene (no scene.json) nor a COLMAP dense workspace "
+                          "(no fused.ply)", dir);
+    return result;
+}
+
+static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
+                            struct orl_colmap_model *model, const struct folder *folder)
+{
+    enum orl_result result;
+    if ((result = read_model(log, scene->dir, model)) != ORL_OK ||
+        (result = set_photos(log, scene, model)) != ORL_OK)
+        return result;
+    if (folder->manifest &&
+        (result = orl_manifest_read(log, folder->manifest, folder->points, scene)) != ORL_OK)
+        return result;
+    result = read_points(log, scene, folder->manifest ? folder->points : folder->fused);
+    return result == ORL_OK ? set_photo_distance(log, scene, model) : result;
+}
+
+enum orl_result orl_scene_open(const struct orl_log *log, const char *dir, struct orl_scene **out)
+{
+    *out = NULL;
+    struct folder folder = {0};
+    struct orl_colmap_model model = {0};
+    struct orl_scene *scene = orl_array(log, 1, sizeof *scene);
+    if (!scene)
+        return ORL_ERR_MEMORY;
+    scene->dir = orl_strdup(log, dir);
+    enum orl_result result = scene->dir ? look(log, dir, &folder) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = fill(log, scene, &model, &folder);
+    orl_colmap_finish(&model);
+    free(folder.manifest);
+    free(folder.points);
+    free(folder.fused);
+    if (result == ORL_OK)
+        *out = scene;
+    else
+        orl_scene_destroy(&scene);
+    return result;
+}
+
+void orl_scene_destroy(struct orl_scene **handle)
+{
+    struct orl_scene *scene = handle ? *handle : NULL;
+    if (!scene)
+        return;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        free(scene->photos[i].name);
+    free(scene->photos);
+    orl_points_finish(&scene->points);
+    free(scene->dir);
+    free(scene);
+    *handle = NULL;
+}
+
+int orl_scene_find_photo(const struct orl_scene *scene, const char *name)
+{
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (strcmp(scene->photos[i].name, name) == 0)
+            return (int)i;
+    size_t length = strlen(name);
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const char *photo = scene->photos[i].name, *dot = strrchr(photo, '.');
+        if (dot && (size_t)(dot - photo) == length && strncmp(photo, name, length) == 0)
+            return (int)i;
+    }
+    return -1;
+}
+
+char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+{
+    return orl_format(log, "%s/images/%s", scene->dir, scene->photos[photo].name);
+}
