@@ -43,6 +43,7 @@ void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **handle)
 
 void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data)
 {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glNamedBufferSubData(buf->id, (GLintptr)offset, (GLsizeiptr)size, data);
 }
 
@@ -54,7 +55,13 @@ void orl_buf_read(const struct orl_buf *buf, size_t offset, size_t size, void *d
 
 void orl_buf_fill(struct orl_buf *buf, uint32_t word)
 {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
     glClearNamedBufferData(buf->id, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+static int level_side(int side, int level)
+{
+    return side >> level ? side >> level : 1;
 }
 
 static size_t texel_bytes(GLenum format)
@@ -102,8 +109,8 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     const struct orl_tex_params *p = &tex->params;
     size_t layers = p->layers ? (size_t)p->layers : 1;
     for (int level = 0; level < p->levels; level++) {
-        size_t w = (size_t)(p->width >> level), h = (size_t)(p->height >> level);
-        tex->bytes += (w ? w : 1) * (h ? h : 1) * layers * texel_bytes(p->format);
+        tex->bytes += (size_t)level_side(p->width, level) * (size_t)level_side(p->height, level) *
+                      layers * texel_bytes(p->format);
     }
     if (p->layers) {
         glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &tex->id);
@@ -150,9 +157,8 @@ void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int width, in
 void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
                    const void *pixels)
 {
-    int width = tex->params.width >> level, height = tex->params.height >> level;
-    orl_tex_write_part(tex, level, layer, width ? width : 1, height ? height : 1, format, type,
-                       pixels);
+    orl_tex_write_part(tex, level, layer, level_side(tex->params.width, level),
+                       level_side(tex->params.height, level), format, type, pixels);
 }
 
 void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
@@ -160,6 +166,37 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
 {
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureImage(tex->id, level, format, type, (GLsizei)size, pixels);
+}
+
+void orl_tex_clear(struct orl_tex *tex, int level)
+{
+    // Integer formats take integer client data, the others anything.
+    GLenum f = tex->params.format;
+    bool integer = f == GL_R32UI || f == GL_RG32UI || f == GL_RGBA32UI || f == GL_R8UI ||
+                   f == GL_R16UI;
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
+    glClearTexImage(tex->id, level, integer ? GL_RED_INTEGER : GL_RED,
+                    integer ? GL_UNSIGNED_INT : GL_FLOAT, NULL);
+}
+
+enum orl_result orl_tex_copy_levels(struct orl_gpu *gpu, const struct orl_tex *from, int first,
+                                    struct orl_tex **out)
+{
+    struct orl_tex_params params = from->params;
+    if (first >= params.levels)
+        first = params.levels - 1;
+    params.levels -= first;
+    params.width = level_side(params.width, first);
+    params.height = level_side(params.height, first);
+    enum orl_result result = orl_tex_create(gpu, &params, out);
+    if (result != ORL_OK)
+        return result;
+    GLenum target = params.layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+    for (int i = 0; i < params.levels; i++)
+        glCopyImageSubData(from->id, target, first + i, 0, 0, 0, (*out)->id, target, i, 0, 0, 0,
+                           level_side(params.width, i), level_side(params.height, i),
+                           params.layers ? params.layers : 1);
+    return ORL_OK;
 }
 
 void orl_tex_make_mipmaps(struct orl_tex *tex)

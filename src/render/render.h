@@ -20,7 +20,19 @@ struct orl_render_params {
     float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
     float splat_scale;              // multiplies splat radii, (0, 16]
     float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
+    float border_px;                // photographs fade out over this width, [0, 1024] pixels
 };
+
+// One row of the option table.
+struct orl_render_option {
+    const char *key;
+    size_t offset;             // in struct orl_render_params
+    const char *const *names;  // of an enum, ended by NULL; NULL: a float
+    double min, max;           // of a float
+    const char *unit, *help;
+};
+// Ended by a NULL key.
+extern const struct orl_render_option orl_render_options[];
 
 struct orl_method {
     const char *name, *description, *source;

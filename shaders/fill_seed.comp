@@ -1,0 +1,28 @@
+// Level 0 of the filling pyramid: what is known, times its weight.
+// SEED_DEPTH: inverse depth, weighted towards far surfaces, since what a hole shows
+// lies behind its rim. Otherwise: colour.
+#define BLOCK_IMAGE
+#include "include/render_blocks.h"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+#ifdef SEED_DEPTH
+layout(r32f, binding = 0) readonly uniform image2D known;
+#else
+layout(rgba32f, binding = 0) readonly uniform image2D known; // colour * weight, weight
+#endif
+layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= area.x || at.y >= area.y)
+        return;
+    vec4 value = imageLoad(known, at);
+#ifdef SEED_DEPTH
+    float z = value.r;
+    vec4 seed = z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * (z * z * z * z) : vec4(0.0);
+#else
+    vec4 seed = value.a > 0.0 ? value / value.a : vec4(0.0);
+#endif
+    imageStore(seeded, at, seed);
+}

@@ -1,0 +1,23 @@
+// Parameter blocks shared by C and GLSL: std140, every member a multiple of 16
+// bytes, so that both sides agree without padding rules.
+#ifndef ORL_INTEROP_H
+#define ORL_INTEROP_H
+
+#ifdef __STDC_VERSION__
+#define ORL_BLOCK(name) struct name
+#define VEC4(name) float name[4]
+#define VEC4S(name, count) float name[count][4]
+#define IVEC4(name) int name[4]
+#else
+#define ORL_BLOCK(name) layout(std140, binding = 0) uniform name
+#define VEC4(name) vec4 name
+#define VEC4S(name, count) vec4 name[count]
+#define IVEC4(name) ivec4 name
+#endif
+
+// Work group sizes.
+#define ORL_POINT_GROUP 128
+#define ORL_PIXEL_GROUP_X 16
+#define ORL_PIXEL_GROUP_Y 8
+
+#endif

@@ -1,0 +1,106 @@
+// Image-space pull-push of Gortler 1996: background depth and colour for pixels that
+// nothing covers.
+#include <string.h>
+
+#include "render/internal.h"
+
+enum orl_result fill_init(struct orl_gpu *gpu, struct fill *fill)
+{
+    memset(fill, 0, sizeof *fill);
+    const struct {
+        const char *file, *defines;
+        struct orl_prog **prog;
+    } programs[] = {
+        {"fill_seed.comp", "SEED_DEPTH", &fill->seed_depth},
+        {"fill_seed.comp", NULL, &fill->seed_color},
+        {"fill_pull.comp", NULL, &fill->pull},
+        {"fill_push.comp", NULL, &fill->push},
+        {"fill_depth.comp", NULL, &fill->apply_depth},
+    };
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(programs); i++)
+        result = orl_prog_create(gpu, programs[i].file, programs[i].defines,
+                                 sizeof(struct image_block), programs[i].prog);
+    if (result != ORL_OK)
+        fill_finish(gpu, fill);
+    return result;
+}
+
+static void free_levels(struct orl_gpu *gpu, struct fill *fill)
+{
+    for (size_t i = 0; i < ORL_COUNT(fill->level); i++)
+        orl_tex_destroy(gpu, &fill->level[i]);
+    fill->width = fill->height = fill->levels = 0;
+}
+
+void fill_finish(struct orl_gpu *gpu, struct fill *fill)
+{
+    free_levels(gpu, fill);
+    orl_prog_destroy(gpu, &fill->seed_depth);
+    orl_prog_destroy(gpu, &fill->seed_color);
+    orl_prog_destroy(gpu, &fill->pull);
+    orl_prog_destroy(gpu, &fill->push);
+    orl_prog_destroy(gpu, &fill->apply_depth);
+}
+
+enum orl_result fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height)
+{
+    if (fill->width == width && fill->height == height)
+        return ORL_OK;
+    free_levels(gpu, fill);
+    enum orl_result result = ORL_OK;
+    // Down to one pixel, each level rounded up: image loads outside a level read 0.
+    for (int w = width, h = height; result == ORL_OK; w = (w + 1) / 2, h = (h + 1) / 2) {
+        struct orl_tex_params params = {.width = w, .height = h, .format = GL_RGBA32F,
+                                        .tag = "fill pyramid"};
+        result = orl_tex_create(gpu, &params, &fill->level[fill->levels]);
+        if (result == ORL_OK)
+            fill->levels++;
+        if (w == 1 && h == 1)
+            break;
+    }
+    if (result != ORL_OK) {
+        free_levels(gpu, fill);
+        return result;
+    }
+    fill->width = width;
+    fill->height = height;
+    return ORL_OK;
+}
+
+static void run(struct orl_gpu *gpu, struct orl_prog *prog, const struct orl_tex *first,
+                GLenum first_access, const struct orl_tex *second, GLenum second_access,
+                const struct orl_tex *covered)
+{
+    struct image_block block = {.area = {covered->params.width, covered->params.height}};
+    struct orl_dispatch d = {.prog = prog, .params = &block,
+                             .images = {{first, 0, first_access}, {second, 0, second_access}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_TEXTURE_FETCH_BARRIER_BIT};
+    pixel_groups(covered->params.width, covered->params.height, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+}
+
+static void spread(struct orl_gpu *gpu, struct fill *fill)
+{
+    for (int i = 1; i < fill->levels; i++)
+        run(gpu, fill->pull, fill->level[i - 1], GL_READ_ONLY, fill->level[i], GL_WRITE_ONLY,
+            fill->level[i]);
+    for (int i = fill->levels - 2; i >= 0; i--)
+        run(gpu, fill->push, fill->level[i], GL_READ_WRITE, fill->level[i + 1], GL_READ_ONLY,
+            fill->level[i]);
+}
+
+void fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth)
+{
+    run(gpu, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY, depth);
+    spread(gpu, fill);
+    run(gpu, fill->apply_depth, fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
+}
+
+void fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
+{
+    run(gpu, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
+        accumulated);
+    spread(gpu, fill);
+}

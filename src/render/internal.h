@@ -1,0 +1,106 @@
+// Private to src/render: one struct per pass, each in a file of its own.
+#ifndef ORL_RENDER_INTERNAL_H
+#define ORL_RENDER_INTERNAL_H
+
+#include "include/render_blocks.h"
+#include "render/render.h"
+
+// --- the point cloud on the device (proxy.c) ---
+
+// Points in chunks, so that no storage binding exceeds the device's limit.
+struct point_chunk {
+    struct orl_buf *positions;  // vec4: world xyz, radius
+    struct orl_buf *attributes; // uvec2: octahedral normal, colour
+    int first, count;
+};
+
+enum { PYRAMID_LEVELS_MAX = 9 };
+
+// Depth of one view, rebuilt from the points: splat, pull, push.
+struct proxy {
+    struct orl_prog *splat_depth, *splat_index, *splat_resolve, *pull, *push, *output;
+    struct point_chunk *chunks;
+    size_t chunk_count;
+};
+
+// What the proxy writes for one picture size.
+struct proxy_target {
+    int width, height, levels;
+    struct orl_buf *depth_bits, *point_index;      // one word per pixel
+    struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX];  // shaders/include/surfel.glsl
+    struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
+    struct orl_tex *splat_color;                   // sRGB; alpha 1 where a splat is
+    struct orl_tex *depth, *normal;                // z, 0: none; camera frame
+};
+
+enum orl_result proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
+                           struct proxy *proxy);
+void proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
+// Does nothing when the target has this size already.
+enum orl_result proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *target, int width,
+                                    int height);
+void proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
+// Bytes of a target of this size.
+size_t proxy_target_bytes(int width, int height);
+void proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
+                float splat_scale, struct proxy_target *target);
+
+// Work groups that cover width x height pixels.
+void pixel_groups(int width, int height, unsigned groups[3]);
+
+// --- photographs on the device (photos.c) ---
+
+struct photo_slot {
+    bool usable;
+    struct orl_tex *color;   // NULL: not resident
+    struct orl_tex *depth;   // z of the splatted proxy, NULL: not made yet
+    float depth_splat_scale; // that `depth` was made with
+    unsigned last_use;
+};
+
+struct photos {
+    const struct orl_scene *scene;
+    struct photo_slot *slots;
+    int divide;          // photographs are loaded at 1/divide of their size
+    size_t budget_bytes; // for colour and depth; 0: no limit
+    unsigned clock;
+    struct proxy_target target; // for depth maps
+};
+
+enum orl_result photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
+                            size_t budget_bytes, struct photos *photos);
+void photos_finish(struct orl_gpu *gpu, struct photos *photos);
+// Makes colour resident, and depth of that splat scale when asked for; evicts others
+// when the budget demands it.
+enum orl_result photos_require(struct orl_gpu *gpu, struct photos *photos,
+                               const struct proxy *proxy, size_t photo, bool with_depth,
+                               float splat_scale);
+
+// --- filling (fill.c) ---
+
+struct fill {
+    struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
+    int width, height, levels;
+    struct orl_tex *level[PYRAMID_LEVELS_MAX + 8]; // value * weight, weight
+};
+
+enum orl_result fill_init(struct orl_gpu *gpu, struct fill *fill);
+enum orl_result fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
+void fill_finish(struct orl_gpu *gpu, struct fill *fill);
+// Guesses background depth, as negative values, where `depth` is 0.
+void fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth);
+// Spreads `accumulated` (colour * weight, weight) over fill->level[0].
+void fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
+
+struct orl_renderer {
+    struct orl_gpu *gpu;
+    const struct orl_scene *scene;
+    struct proxy proxy;
+    struct photos photos;
+    struct fill fill;
+    struct orl_prog *gather, *points_color, *compose;
+    struct proxy_target target;
+    struct orl_tex *accumulated; // colour * weight, weight; composed in place
+};
+
+#endif

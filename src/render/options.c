@@ -1,0 +1,112 @@
+// Methods and their options: one table each.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/render.h"
+
+#define PHOTO_DEFAULTS                                                                     \
+    .color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,  \
+    .depth_tolerance = 0.01f, .splat_scale = 1.0f, .distance_floor = 0.1f,                 \
+    .border_px = 16.0f
+
+const struct orl_method orl_methods[] = {
+    {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
+     {PHOTO_DEFAULTS}},
+    {"points", "the splats' own colour: the baseline", "-",
+     {.color = ORL_COLOR_POINTS, .visibility = ORL_VISIBILITY_NONE, .fill = ORL_FILL_COLOR,
+      .depth_tolerance = 0.01f, .splat_scale = 1.0f, .distance_floor = 0.1f,
+      .border_px = 16.0f}},
+    {0},
+};
+
+static const char *const color_names[] = {"points", "photos", NULL};
+static const char *const visibility_names[] = {"none", "hard", NULL};
+static const char *const fill_names[] = {"none", "color", "depth", NULL};
+
+#define FIELD(name) offsetof(struct orl_render_params, name)
+
+const struct orl_render_option orl_render_options[] = {
+    {"color", FIELD(color), color_names, 0, 0, "",
+     "points: the splats' own colour; photos: blended photographs"},
+    {"visibility", FIELD(visibility), visibility_names, 0, 0, "",
+     "which photographs see a surface point: all, or those whose depth map agrees"},
+    {"fill", FIELD(fill), fill_names, 0, 0, "",
+     "pixels without splats: black, neighbours' colour, or photographs at a guessed depth"},
+    {"depth_tolerance", FIELD(depth_tolerance), NULL, 1e-5, 0.5, "fraction of depth",
+     "how far depths may differ on the same surface"},
+    {"splat_scale", FIELD(splat_scale), NULL, 0.01, 16, "",
+     "multiplies splat radii; larger closes more holes and fattens edges"},
+    {"distance_floor", FIELD(distance_floor), NULL, 1e-4, 1, "fraction of viewing distance",
+     "keeps Airieau's distance difference from zero"},
+    {"border_px", FIELD(border_px), NULL, 0, 1024, "pixels of the photograph",
+     "photographs fade out over this width at their border"},
+    {0},
+};
+
+const struct orl_method *orl_method_find(const struct orl_log *log, const char *name)
+{
+    char list[256] = "";
+    for (const struct orl_method *m = orl_methods; m->name; m++) {
+        if (strcmp(m->name, name) == 0)
+            return m;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, " %s", m->name);
+    }
+    orl_logf(log, ORL_LOG_ERROR, "method %s is not known; there are:%s", name, list);
+    return NULL;
+}
+
+static enum orl_result set_name(const struct orl_log *log, const struct orl_render_option *option,
+                                const char *text, int *value)
+{
+    char list[256] = "";
+    for (int i = 0; option->names[i]; i++) {
+        if (strcmp(option->names[i], text) == 0) {
+            *value = i;
+            return ORL_OK;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, " %s", option->names[i]);
+    }
+    return orl_fail(log, ORL_ERR_ARGUMENT, "%s=%s: must be one of%s", option->key, text, list);
+}
+
+static enum orl_result set_option(const struct orl_log *log,
+                                  const struct orl_render_option *option, const char *text,
+                                  struct orl_render_params *params)
+{
+    char *field = (char *)params + option->offset;
+    if (option->names) {
+        int value = 0;
+        enum orl_result result = set_name(log, option, text, &value);
+        if (result == ORL_OK)
+            memcpy(field, &value, sizeof value); // enums of this struct are ints
+        return result;
+    }
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value >= option->min && value <= option->max))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s=%s: must be a number from %g to %g",
+                        option->key, text, option->min, option->max);
+    *(float *)field = (float)value;
+    return ORL_OK;
+}
+
+enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_render_params *params,
+                                      const char *assignment)
+{
+    size_t length = strcspn(assignment, "=");
+    if (assignment[length] != '=')
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: must be KEY=VALUE", assignment);
+    char list[512] = "";
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        if (strlen(o->key) == length && strncmp(o->key, assignment, length) == 0)
+            return set_option(log, o, assignment + length + 1, params);
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, " %s", o->key);
+    }
+    return orl_fail(log, ORL_ERR_ARGUMENT, "option %.*s is not known; there are:%s", (int)length,
+                    assignment, list);
+}

@@ -1,0 +1,287 @@
+// The frame: proxy, visibility, gather, fill, read back.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/internal.h"
+
+// What stays after photographs: points, and targets of the usual sizes.
+static size_t fixed_bytes(const struct orl_scene *scene)
+{
+    int width = 1, height = 1;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const struct orl_camera *c = &scene->photos[i].view.camera;
+        width = c->width > width ? c->width : width;
+        height = c->height > height ? c->height : height;
+    }
+    return scene->points.count * 24 + 2 * proxy_target_bytes(width, height) +
+           (size_t)width * (size_t)height * (16 + 24);
+}
+
+enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                    const struct orl_renderer_params *params,
+                                    struct orl_renderer **out)
+{
+    static const struct orl_renderer_params defaults = {0};
+    const struct orl_log *log = orl_gpu_log(gpu);
+    *out = NULL;
+    params = params ? params : &defaults;
+    struct orl_renderer *r = orl_array(log, 1, sizeof *r);
+    if (!r)
+        return ORL_ERR_MEMORY;
+    r->gpu = gpu;
+    r->scene = scene;
+    size_t budget = 0;
+    if (params->max_vram_bytes) {
+        size_t fixed = fixed_bytes(scene);
+        budget = params->max_vram_bytes > fixed ? params->max_vram_bytes - fixed : 1;
+        orl_logf(log, ORL_LOG_INFO,
+                 "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
+                 "photographs", params->max_vram_bytes >> 20, fixed >> 20, budget >> 20);
+    }
+    enum orl_result result = proxy_init(gpu, &scene->points, &r->proxy);
+    if (result == ORL_OK)
+        result = photos_init(gpu, scene, params->use, budget, &r->photos);
+    if (result == ORL_OK)
+        result = fill_init(gpu, &r->fill);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "gather.comp", NULL, sizeof(struct gather_block),
+                                 &r->gather);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "points_color.comp", NULL, sizeof(struct image_block),
+                                 &r->points_color);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "compose.comp", NULL, sizeof(struct image_block),
+                                 &r->compose);
+    if (result != ORL_OK) {
+        orl_renderer_destroy(&r);
+        return result;
+    }
+    *out = r;
+    return ORL_OK;
+}
+
+void orl_renderer_destroy(struct orl_renderer **renderer)
+{
+    struct orl_renderer *r = *renderer;
+    if (!r)
+        return;
+    proxy_finish(r->gpu, &r->proxy);
+    photos_finish(r->gpu, &r->photos);
+    fill_finish(r->gpu, &r->fill);
+    orl_prog_destroy(r->gpu, &r->gather);
+    orl_prog_destroy(r->gpu, &r->points_color);
+    orl_prog_destroy(r->gpu, &r->compose);
+    proxy_target_finish(r->gpu, &r->target);
+    orl_tex_destroy(r->gpu, &r->accumulated);
+    free(r);
+    *renderer = NULL;
+}
+
+static enum orl_result resize(struct orl_renderer *r, int width, int height)
+{
+    enum orl_result result = proxy_target_resize(r->gpu, &r->target, width, height);
+    if (result == ORL_OK)
+        result = fill_resize(r->gpu, &r->fill, width, height);
+    const struct orl_tex *old = r->accumulated;
+    if (result != ORL_OK || (old && old->params.width == width && old->params.height == height))
+        return result;
+    orl_tex_destroy(r->gpu, &r->accumulated);
+    struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA32F,
+                                    .tag = "accumulated colour"};
+    return orl_tex_create(r->gpu, &params, &r->accumulated);
+}
+
+// photo_from_view = photo_from_world * world_from_view, in doubles: both translations
+// may be large where their difference is small.
+static void relative_pose(const struct orl_pose *photo, const struct orl_pose *view,
+                          struct gather_block *block)
+{
+    double eye[3], offset[3], photo_eye[3], in_view[3];
+    orl_pose_centre(view, eye);
+    orl_pose_centre(photo, photo_eye);
+    orl_pose_apply(photo, eye, offset);
+    orl_pose_apply(view, photo_eye, in_view);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++)
+                sum += photo->r[i][k] * view->r[j][k];
+            block->photo_from_view[i][j] = (float)sum;
+        }
+        block->photo_from_view[i][3] = (float)offset[i];
+        block->photo_eye[i] = (float)in_view[i];
+    }
+}
+
+static void set_focal(float out[4], const struct orl_camera *c)
+{
+    out[0] = (float)c->fx;
+    out[1] = (float)c->fy;
+    out[2] = (float)c->cx;
+    out[3] = (float)c->cy;
+}
+
+static void gather_photo(struct orl_renderer *r, const struct orl_view *view,
+                         const struct orl_render_params *params, size_t index)
+{
+    const struct orl_photo *photo = &r->scene->photos[index];
+    const struct photo_slot *slot = &r->photos.slots[index];
+    const struct orl_tex_params *size = &slot->color->params;
+    struct orl_camera camera =
+        orl_camera_resized(&photo->view.camera, size->width, size->height);
+    bool test = params->visibility == ORL_VISIBILITY_HARD;
+    struct gather_block block = {
+        .photo_size = {(float)size->width, (float)size->height, (float)(size->levels - 1),
+                       params->border_px / (float)r->photos.divide},
+        .gain = {photo->gain[0], photo->gain[1], photo->gain[2]},
+        .options = {params->depth_tolerance, params->distance_floor, test ? 1.0f : 0.0f},
+        .size = {view->camera.width, view->camera.height},
+    };
+    relative_pose(&photo->view.cam_from_world, &view->cam_from_world, &block);
+    set_focal(block.view_focal, &view->camera);
+    set_focal(block.photo_focal, &camera);
+    struct orl_dispatch d = {.prog = r->gather, .params = &block,
+                             .textures = {slot->color, test ? slot->depth : slot->color},
+                             .images = {{r->target.depth, 0, GL_READ_ONLY},
+                                        {r->accumulated, 0, GL_READ_WRITE}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+    pixel_groups(view->camera.width, view->camera.height, d.groups);
+    orl_gpu_dispatch(r->gpu, &d);
+}
+
+static enum orl_result gather(struct orl_renderer *r, const struct orl_view *view,
+                              const struct orl_render_params *params, const bool *skip)
+{
+    bool test = params->visibility == ORL_VISIBILITY_HARD;
+    for (size_t i = 0; i < r->scene->photo_count; i++) {
+        if (!r->photos.slots[i].usable || (skip && skip[i]))
+            continue;
+        enum orl_result result = photos_require(r->gpu, &r->photos, &r->proxy, i, test,
+                                                params->splat_scale);
+        if (result != ORL_OK)
+            return result;
+        orl_pass_begin(r->gpu, "gather");
+        gather_photo(r, view, params, i);
+        orl_pass_end(r->gpu);
+    }
+    return ORL_OK;
+}
+
+static void color_from_points(struct orl_renderer *r)
+{
+    struct image_block block = {.area = {r->target.width, r->target.height}};
+    struct orl_dispatch d = {.prog = r->points_color, .params = &block,
+                             .bufs = {{.buf = NULL}, {.buf = r->target.depth_bits}},
+                             .images = {{r->target.surfel_a[0], 0, GL_READ_ONLY},
+                                        {r->target.splat_color, 0, GL_READ_ONLY},
+                                        {r->accumulated, 0, GL_WRITE_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+    pixel_groups(r->target.width, r->target.height, d.groups);
+    orl_gpu_dispatch(r->gpu, &d);
+}
+
+static void compose(struct orl_renderer *r, const struct orl_render_params *params)
+{
+    struct image_block block = {.area = {r->target.width, r->target.height,
+                                         params->color == ORL_COLOR_POINTS,
+                                         params->fill != ORL_FILL_NONE}};
+    struct orl_dispatch d = {.prog = r->compose, .params = &block,
+                             .images = {{r->accumulated, 0, GL_READ_WRITE},
+                                        {r->fill.level[0], 0, GL_READ_ONLY},
+                                        {r->target.depth, 0, GL_READ_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_TEXTURE_UPDATE_BARRIER_BIT};
+    pixel_groups(r->target.width, r->target.height, d.groups);
+    orl_gpu_dispatch(r->gpu, &d);
+}
+
+static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
+                            const struct orl_render_params *params, const bool *skip)
+{
+    struct orl_gpu *gpu = r->gpu;
+    enum orl_result result = ORL_OK;
+    proxy_draw(gpu, &r->proxy, view, params->splat_scale, &r->target);
+    orl_tex_clear(r->accumulated, 0);
+    if (params->color == ORL_COLOR_PHOTOS) {
+        if (params->fill == ORL_FILL_DEPTH) {
+            orl_pass_begin(gpu, "fill");
+            fill_depth(gpu, &r->fill, r->target.depth);
+            orl_pass_end(gpu);
+        }
+        result = gather(r, view, params, skip);
+    } else {
+        orl_pass_begin(gpu, "gather");
+        color_from_points(r);
+        orl_pass_end(gpu);
+    }
+    if (result != ORL_OK)
+        return result;
+    orl_pass_begin(gpu, "fill");
+    if (params->fill != ORL_FILL_NONE)
+        fill_color(gpu, &r->fill, r->accumulated);
+    compose(r, params);
+    orl_pass_end(gpu);
+    return ORL_OK;
+}
+
+void orl_frame_finish(struct orl_frame *frame)
+{
+    orl_image_finish(&frame->color);
+    orl_image_finish(&frame->depth);
+    orl_image_finish(&frame->normal);
+    orl_image_finish(&frame->coverage);
+}
+
+static enum orl_result read_back(struct orl_renderer *r, struct orl_frame *frame)
+{
+    const struct orl_log *log = orl_gpu_log(r->gpu);
+    int width = r->target.width, height = r->target.height;
+    struct orl_image rgba = {0};
+    enum orl_result result = orl_image_init(log, &rgba, width, height, 4, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->color, width, height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->depth, width, height, 1, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->normal, width, height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->coverage, width, height, 1, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        goto end;
+    orl_tex_read(r->accumulated, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(&rgba), rgba.f32);
+    orl_tex_read(r->target.depth, 0, GL_RED, GL_FLOAT, orl_image_bytes(&frame->depth),
+                 frame->depth.f32);
+    orl_tex_read(r->target.normal, 0, GL_RGB, GL_FLOAT, orl_image_bytes(&frame->normal),
+                 frame->normal.f32);
+    for (size_t i = 0; i < (size_t)width * (size_t)height; i++) {
+        memcpy(&frame->color.f32[3 * i], &rgba.f32[4 * i], 3 * sizeof(float));
+        frame->coverage.f32[i] = rgba.f32[4 * i + 3];
+        if (frame->depth.f32[i] < 0) // a guess, not a surface
+            frame->depth.f32[i] = 0;
+    }
+    result = orl_gpu_finish(r->gpu);
+end:
+    orl_image_finish(&rgba);
+    return result;
+}
+
+enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view *view,
+                                  const struct orl_render_params *params, const bool *skip,
+                                  struct orl_frame *frame)
+{
+    const struct orl_log *log = orl_gpu_log(r->gpu);
+    memset(frame, 0, sizeof *frame);
+    if (!orl_camera_valid(&view->camera))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "this camera cannot be rendered: %dx%d, focal %g %g",
+                        view->camera.width, view->camera.height, view->camera.fx, view->camera.fy);
+    enum orl_result result = resize(r, view->camera.width, view->camera.height);
+    if (result == ORL_OK)
+        result = draw(r, view, params, skip);
+    if (result == ORL_OK)
+        result = read_back(r, frame);
+    if (result != ORL_OK)
+        orl_frame_finish(frame);
+    return result;
+}
