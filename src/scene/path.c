@@ -1,0 +1,389 @@
+#include "scene/path.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
+
+static const double pi = 3.14159265358979323846;
+
+struct orl_camera orl_camera_reframed(const struct orl_camera *camera, int width, int height)
+{
+    double scale = (double)height / camera->height;
+    return (struct orl_camera){
+        .width = width, .height = height, .fx = camera->fx * scale, .fy = camera->fy * scale,
+        .cx = 0.5 * width + (camera->cx - 0.5 * camera->width) * scale,
+        .cy = 0.5 * height + (camera->cy - 0.5 * camera->height) * scale};
+}
+
+static void set_fov_y(struct orl_camera *camera, double fov_y_rad)
+{
+    camera->fy = 0.5 * camera->height / tan(0.5 * fov_y_rad);
+    camera->fx = camera->fy;
+}
+
+static enum orl_result allocate(const struct orl_log *log, size_t count, struct orl_path *path)
+{
+    memset(path, 0, sizeof *path);
+    if (count < 1 || count > PATH_VIEWS_MAX)
+        return orl_fail(log, ORL_ERR_DATA, "a camera path of %zu views", count);
+    path->views = orl_array(log, count, sizeof *path->views);
+    if (!path->views)
+        return ORL_ERR_MEMORY;
+    path->count = count;
+    return ORL_OK;
+}
+
+void orl_path_finish(struct orl_path *path)
+{
+    free(path->views);
+    memset(path, 0, sizeof *path);
+}
+
+static bool read_numbers(const json_t *array, double *out, size_t count)
+{
+    if (!json_is_array(array) || json_array_size(array) != count)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *item = json_array_get(array, i);
+        out[i] = json_number_value(item);
+        if (!json_is_number(item) || !isfinite(out[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool read_rows(const json_t *array, size_t rows, size_t columns, double *out)
+{
+    if (!json_is_array(array) || json_array_size(array) != rows)
+        return false;
+    for (size_t i = 0; i < rows; i++)
+        if (!read_numbers(json_array_get(array, i), out + i * columns, columns))
+            return false;
+    return true;
+}
+
+static bool is_rotation(double r[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double dot = 0;
+            for (int k = 0; k < 3; k++)
+                dot += r[i][k] * r[j][k];
+            if (fabs(dot - (i == j)) > 1e-3)
+                return false;
+        }
+    return true;
+}
+
+// From a camera-to-world rotation (columns are the camera's axes) and centre.
+static bool pose_from_world_axes(double world_from_cam[3][3], const double centre[3],
+                                 struct orl_pose *pose)
+{
+    for (int i = 0; i < 3; i++) {
+        pose->t[i] = 0;
+        for (int j = 0; j < 3; j++) {
+            pose->r[i][j] = world_from_cam[j][i];
+            pose->t[i] -= world_from_cam[j][i] * centre[j];
+        }
+    }
+    return is_rotation(pose->r);
+}
+
+// --- interpolation ---
+
+static void spline_centre(const struct orl_path *keys, size_t segment, double t, double out[3])
+{
+    double c[4][3];
+    for (int k = 0; k < 4; k++) {
+        size_t last = keys->count - 1;
+        size_t i = segment + (size_t)k;
+        i = i == 0 ? 0 : i - 1;
+        orl_pose_centre(&keys->views[i > last ? last : i].cam_from_world, c[k]);
+    }
+    for (int i = 0; i < 3; i++)
+        out[i] = 0.5 * (2 * c[1][i] + (c[2][i] - c[0][i]) * t +
+                        (2 * c[0][i] - 5 * c[1][i] + 4 * c[2][i] - c[3][i]) * t * t +
+                        (3 * c[1][i] - c[0][i] - 3 * c[2][i] + c[3][i]) * t * t * t);
+}
+
+static enum orl_result spread_frames(const struct orl_log *log, const struct orl_path *keys,
+                                     size_t frames, struct orl_path *path)
+{
+    enum orl_result result = allocate(log, frames, path);
+    for (size_t i = 0; result == ORL_OK && i < frames; i++) {
+        double at = frames > 1 ? (double)i / (double)(frames - 1) * (double)(keys->count - 1) : 0;
+        size_t segment = (size_t)at;
+        if (segment + 1 >= keys->count)
+            segment = keys->count - 2;
+        const struct orl_view *a = &keys->views[segment];
+        struct orl_view *view = &path->views[i];
+        double centre[3], t = at - (double)segment;
+        *view = orl_view_interpolate(a, a + 1, t);
+        view->camera = orl_camera_reframed(&view->camera, keys->views[0].camera.width,
+                                           keys->views[0].camera.height);
+        spline_centre(keys, segment, t, centre);
+        struct orl_pose *pose = &view->cam_from_world;
+        for (int row = 0; row < 3; row++)
+            pose->t[row] = -(pose->r[row][0] * centre[0] + pose->r[row][1] * centre[1] +
+                             pose->r[row][2] * centre[2]);
+    }
+    return result;
+}
+
+enum orl_result orl_path_through_photos(const struct orl_log *log, const struct orl_scene *scene,
+                                        size_t frames, struct orl_path *path)
+{
+    struct orl_path keys;
+    memset(path, 0, sizeof *path);
+    if (scene->photo_count < 2 || frames < 2)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "a walk needs two photographs and two frames");
+    enum orl_result result = allocate(log, scene->photo_count, &keys);
+    if (result != ORL_OK)
+        return result;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        keys.views[i] = scene->photos[i].view;
+    result = spread_frames(log, &keys, frames, path);
+    orl_path_finish(&keys);
+    return result;
+}
+
+// --- Oriel keyframes ---
+
+static bool read_key(const struct orl_scene *scene, const json_t *key, struct orl_view *view)
+{
+    double rows[3][4], eye[3], target[3], up[3] = {0, -1, 0};
+    const json_t *fov = json_object_get(key, "fov_y_deg");
+    const char *photo = json_string_value(json_object_get(key, "photo"));
+    const json_t *matrix = json_object_get(key, "cam_from_world");
+    if (photo) {
+        int index = orl_scene_find_photo(scene, photo);
+        if (index < 0)
+            return false;
+        *view = scene->photos[index].view;
+    } else if (matrix) {
+        if (!read_rows(matrix, 3, 4, &rows[0][0]))
+            return false;
+        for (int i = 0; i < 3; i++) {
+            memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
+            view->cam_from_world.t[i] = rows[i][3];
+        }
+        if (!is_rotation(view->cam_from_world.r))
+            return false;
+    } else {
+        const json_t *up_json = json_object_get(key, "up");
+        if (!read_numbers(json_object_get(key, "position"), eye, 3) ||
+            !read_numbers(json_object_get(key, "target"), target, 3) ||
+            (up_json && !read_numbers(up_json, up, 3)))
+            return false;
+        view->cam_from_world = orl_pose_look_at(eye, target, up);
+    }
+    if (fov) {
+        double degrees = json_number_value(fov);
+        if (!(degrees > 0.1 && degrees < 170))
+            return false;
+        set_fov_y(&view->camera, degrees * pi / 180);
+    }
+    return true;
+}
+
+static enum orl_result read_keyframes(const struct orl_log *log, const struct orl_scene *scene,
+                                      const char *file, const json_t *root, struct orl_path *path)
+{
+    const json_t *keys = json_object_get(root, "keyframes");
+    const json_t *frames = json_object_get(root, "frames");
+    struct orl_path read = {0};
+    enum orl_result result = allocate(log, json_array_size(keys), &read);
+    for (size_t i = 0; result == ORL_OK && i < read.count; i++) {
+        read.views[i].camera = scene->photos[0].view.camera;
+        if (!read_key(scene, json_array_get(keys, i), &read.views[i]))
+            result = orl_fail(log, ORL_ERR_FORMAT, "%s: keyframe %zu is not usable", file, i);
+    }
+    if (result == ORL_OK && frames) {
+        json_int_t count = json_integer_value(frames);
+        if (count < 2 || count > PATH_VIEWS_MAX || read.count < 2)
+            result = orl_fail(log, ORL_ERR_FORMAT,
+                              "%s: \"frames\" must be from 2 to %d, between two keyframes", file,
+                              PATH_VIEWS_MAX);
+        else
+            result = spread_frames(log, &read, (size_t)count, path);
+    } else if (result == ORL_OK) {
+        *path = read;
+        read = (struct orl_path){0};
+    }
+    orl_path_finish(&read);
+    return result;
+}
+
+// --- other programs' formats ---
+
+// nerfstudio: camera_to_world row-major, OpenGL axes (y up, z backwards), fov vertical.
+static bool read_nerfstudio_view(const json_t *entry, int width, int height, struct orl_view *view)
+{
+    double m[16], axes[3][3], centre[3];
+    double fov = json_number_value(json_object_get(entry, "fov"));
+    if (!read_numbers(json_object_get(entry, "camera_to_world"), m, 16) ||
+        !(fov > 0.1 && fov < 170))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        axes[i][0] = m[4 * i];
+        axes[i][1] = -m[4 * i + 1];
+        axes[i][2] = -m[4 * i + 2];
+        centre[i] = m[4 * i + 3];
+    }
+    view->camera = (struct orl_camera){.width = width, .height = height,
+                                       .cx = 0.5 * width, .cy = 0.5 * height};
+    set_fov_y(&view->camera, fov * pi / 180);
+    return pose_from_world_axes(axes, centre, &view->cam_from_world);
+}
+
+// Inria: position is the centre, the columns of rotation are the camera's axes.
+static bool read_inria_view(const json_t *entry, struct orl_view *view)
+{
+    double axes[3][3], centre[3];
+    int width = (int)json_integer_value(json_object_get(entry, "width"));
+    int height = (int)json_integer_value(json_object_get(entry, "height"));
+    view->camera = (struct orl_camera){
+        .width = width, .height = height, .cx = 0.5 * width, .cy = 0.5 * height,
+        .fx = json_number_value(json_object_get(entry, "fx")),
+        .fy = json_number_value(json_object_get(entry, "fy"))};
+    return read_rows(json_object_get(entry, "rotation"), 3, 3, &axes[0][0]) &&
+           read_numbers(json_object_get(entry, "position"), centre, 3) &&
+           orl_camera_valid(&view->camera) &&
+           pose_from_world_axes(axes, centre, &view->cam_from_world);
+}
+
+static enum orl_result read_json(const struct orl_log *log, const struct orl_scene *scene,
+                                 const char *file, const json_t *root, struct orl_path *path)
+{
+    if (json_is_array(json_object_get(root, "keyframes")))
+        return read_keyframes(log, scene, file, root, path);
+    const json_t *nerfstudio = json_object_get(root, "camera_path");
+    const json_t *entries = json_is_array(root) ? root : nerfstudio;
+    if (!json_is_array(entries))
+        return orl_fail(log, ORL_ERR_FORMAT,
+                        "%s: neither keyframes, nor nerfstudio's camera_path, nor Inria's cameras",
+                        file);
+    int width = (int)json_integer_value(json_object_get(root, "render_width"));
+    int height = (int)json_integer_value(json_object_get(root, "render_height"));
+    if (nerfstudio && (width < 1 || height < 1 || width > 16384 || height > 16384))
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: render_width and render_height are not usable",
+                        file);
+    enum orl_result result = allocate(log, json_array_size(entries), path);
+    for (size_t i = 0; result == ORL_OK && i < path->count; i++) {
+        const json_t *entry = json_array_get(entries, i);
+        bool ok = nerfstudio ? read_nerfstudio_view(entry, width, height, &path->views[i])
+                             : read_inria_view(entry, &path->views[i]);
+        if (!ok)
+            result = orl_fail(log, ORL_ERR_FORMAT, "%s: camera %zu is not usable", file, i);
+    }
+    return result;
+}
+
+// One line of cameras.txt: ID MODEL W H PARAMS; pinhole models only.
+static bool find_text_camera(const char *text, unsigned id, struct orl_camera *camera)
+{
+    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
+        line += *line == '\n';
+        unsigned line_id;
+        char model[32];
+        int width, height;
+        double p[4];
+        int got = sscanf(line, "%u %31s %d %d %lf %lf %lf %lf", &line_id, model, &width, &height,
+                         &p[0], &p[1], &p[2], &p[3]);
+        if (got >= 7 && line_id == id) {
+            bool simple = strcmp(model, "SIMPLE_PINHOLE") == 0;
+            if (!simple && (strcmp(model, "PINHOLE") != 0 || got != 8))
+                return false;
+            *camera = (struct orl_camera){.width = width, .height = height, .fx = p[0],
+                                          .fy = simple ? p[0] : p[1], .cx = simple ? p[1] : p[2],
+                                          .cy = simple ? p[2] : p[3]};
+            return orl_camera_valid(camera);
+        }
+    }
+    return false;
+}
+
+static enum orl_result read_colmap_text(const struct orl_log *log, const struct orl_scene *scene,
+                                        const char *file, const char *text, const char *cameras,
+                                        struct orl_path *path)
+{
+    size_t lines = 1;
+    for (const char *c = text; *c; c++)
+        lines += *c == '\n';
+    enum orl_result result = allocate(log, lines, path);
+    if (result != ORL_OK)
+        return result;
+    path->count = 0;
+    bool is_pose = true; // lines come in pairs: pose, then observations
+    for (const char *line = text; line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL) {
+        if (*line == '#' || (is_pose && (*line == '\n' || !*line)))
+            continue;
+        if (is_pose) {
+            double q[4], t[3];
+            unsigned id, camera_id;
+            struct orl_view *view = &path->views[path->count];
+            view->camera = scene->photos[0].view.camera;
+            if (sscanf(line, "%u %lf %lf %lf %lf %lf %lf %lf %u", &id, &q[0], &q[1], &q[2], &q[3],
+                       &t[0], &t[1], &t[2], &camera_id) != 9 ||
+                !orl_pose_from_quat(q, t, &view->cam_from_world) ||
+                (cameras && !find_text_camera(cameras, camera_id, &view->camera)))
+                return orl_fail(log, ORL_ERR_FORMAT, "%s: image %zu, at byte %zu, is not usable",
+                                file, path->count, (size_t)(line - text));
+            path->count++;
+        }
+        is_pose = !is_pose;
+    }
+    return path->count ? ORL_OK : orl_fail(log, ORL_ERR_FORMAT, "%s: no camera in it", file);
+}
+
+static enum orl_result read_beside(const struct orl_log *log, const char *file, uint8_t **cameras)
+{
+    size_t size;
+    *cameras = NULL;
+    char *path = orl_format(log, "%.*scameras.txt", (int)(orl_path_name(file) - file), file);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (path && orl_path_is_file(path))
+        result = orl_file_read(log, path, PATH_FILE_MAX, cameras, &size);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene *scene,
+                              const char *file, struct orl_path *path)
+{
+    uint8_t *text = NULL, *cameras = NULL;
+    size_t size;
+    json_t *root = NULL;
+    memset(path, 0, sizeof *path);
+    if (scene->photo_count < 1)
+        return orl_fail(log, ORL_ERR_DATA, "%s: the scene has no photographs", scene->dir);
+    enum orl_result result = orl_file_read(log, file, PATH_FILE_MAX, &text, &size);
+    if (result != ORL_OK)
+        return result;
+    const char *extension = strrchr(file, '.');
+    if (extension && strcmp(extension, ".txt") == 0) {
+        result = read_beside(log, file, &cameras);
+        if (result == ORL_OK)
+            result = read_colmap_text(log, scene, file, (const char *)text,
+                                      (const char *)cameras, path);
+    } else {
+        json_error_t error;
+        root = json_loadb((const char *)text, size, 0, &error);
+        result = root ? read_json(log, scene, file, root, path)
+                      : orl_fail(log, ORL_ERR_FORMAT, "%s: byte %d: %s", file, error.position,
+                                 error.text);
+    }
+    if (result != ORL_OK)
+        orl_path_finish(path);
+    json_decref(root);
+    free(cameras);
+    free(text);
+    return result;
+}
