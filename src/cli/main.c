@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 
 static const struct command commands[] = {
+    {"render", "render new views", cmd_render},
     {0},
 };
 

@@ -1,0 +1,32 @@
+#include "io/video.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/process.h"
+
+enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_progress *progress,
+                                 const char *frames_dir, double fps, const char *path)
+{
+    struct orl_atomic_file file = {0};
+    char rate[32];
+    snprintf(rate, sizeof rate, "%g", fps);
+    char *pattern = orl_path_join(log, frames_dir, "%05d.png");
+    enum orl_result result = pattern ? orl_atomic_begin(log, path, &file) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        // Even sizes and 4:2:0, since most players take nothing else.
+        const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y",
+                                    "-framerate", rate, "-i", pattern,
+                                    "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+                                    "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p",
+                                    "-movflags", "+faststart", file.temp, NULL};
+        result = orl_process_run(log, &(struct orl_process_params){.argv = argv,
+                                                                   .progress = progress}, NULL);
+    }
+    if (result == ORL_OK)
+        result = orl_atomic_commit(log, &file);
+    orl_atomic_abort(&file);
+    free(pattern);
+    return result;
+}
