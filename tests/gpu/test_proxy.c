@@ -1,0 +1,258 @@
+// Splat, pull and push on scenes of a few points, against answers found by hand.
+#include <math.h>
+#include <string.h>
+
+#include "gpu_test.h"
+#include "render/internal.h"
+
+static struct orl_gpu *gpu;
+
+enum { SIDE = 40 };
+
+// Looks along +z from the origin; pixel (x, y) sees the ray ((x + 0.5 - 20) / 40, ..., 1).
+static struct orl_view front_view(void)
+{
+    return (struct orl_view){.camera = {.width = SIDE, .height = SIDE, .fx = 40, .fy = 40,
+                                        .cx = 20, .cy = 20},
+                             .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+}
+
+struct point {
+    float x, y, z, radius;
+    float normal[3];
+    uint8_t color[3];
+};
+
+struct drawn {
+    float depth[SIDE * SIDE], normal[SIDE * SIDE][4];
+    uint32_t bits[SIDE * SIDE], index[SIDE * SIDE];
+};
+
+static void draw(const struct point *list, size_t count, const struct orl_view *view,
+                 struct drawn *out)
+{
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, count), ORL_OK);
+    for (size_t i = 0; i < count; i++) {
+        memcpy(points.position[i], &list[i].x, sizeof points.position[i]);
+        memcpy(points.normal[i], list[i].normal, sizeof points.normal[i]);
+        memcpy(points.color[i], list[i].color, sizeof points.color[i]);
+        points.radius[i] = list[i].radius;
+    }
+    struct proxy proxy;
+    struct proxy_target target = {0};
+    assert_int_equal(proxy_init(gpu, &points, &proxy), ORL_OK);
+    assert_int_equal(proxy_target_resize(gpu, &target, SIDE, SIDE), ORL_OK);
+    proxy_draw(gpu, &proxy, view, 1, &target);
+    orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof out->depth, out->depth);
+    orl_tex_read(target.normal, 0, GL_RGBA, GL_FLOAT, sizeof out->normal, out->normal);
+    orl_buf_read(target.depth_bits, 0, sizeof out->bits, out->bits);
+    orl_buf_read(target.point_index, 0, sizeof out->index, out->index);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+    proxy_target_finish(gpu, &target);
+    proxy_finish(gpu, &proxy);
+    orl_points_finish(&points);
+}
+
+static int at(int x, int y)
+{
+    return y * SIDE + x;
+}
+
+// World position that projects to pixel coordinates (u, v) at depth z.
+static struct point seen_at(double u, double v, double z, double radius)
+{
+    return (struct point){.x = (float)((u - 20) / 40 * z), .y = (float)((v - 20) / 40 * z),
+                          .z = (float)z, .radius = (float)radius, .normal = {0, 0, -1}};
+}
+
+static void one_point_lands_in_its_pixel(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    struct point p = seen_at(12.5, 30.5, 2, 0.001);
+    static struct drawn d;
+    draw(&p, 1, &view, &d);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        bool hit = i == at(12, 30);
+        assert_int_equal(d.index[i], hit ? 0 : UINT32_MAX);
+        assert_float_equal(d.depth[i], hit ? 2 : 0, 1e-5);
+    }
+    float z;
+    memcpy(&z, &d.bits[at(12, 30)], sizeof z);
+    assert_float_equal(z, 2, 1e-6);
+    assert_float_equal(d.normal[at(12, 30)][2], -1, 1e-2);
+}
+
+static void behind_and_outside_are_not_drawn(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    struct point p[] = {seen_at(12.5, 30.5, -2, 0.1), seen_at(-0.5, 10, 2, 0.1),
+                        seen_at(10, 40.01, 2, 0.1), seen_at(1e30, 10, 2, 0.1),
+                        {.x = NAN, .y = 0, .z = 1, .radius = 1}};
+    static struct drawn d;
+    draw(p, ORL_COUNT(p), &view, &d);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        assert_int_equal(d.index[i], UINT32_MAX);
+}
+
+static void nearest_wins_and_ties_go_to_the_lowest_index(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    struct point p[] = {seen_at(5.5, 5.5, 4, 0.001), seen_at(5.5, 5.5, 3, 0.001),
+                        seen_at(9.5, 5.5, 2, 0.001), seen_at(9.5, 5.5, 2, 0.001),
+                        seen_at(5.5, 5.5, 5, 0.001)};
+    static struct drawn d;
+    draw(p, ORL_COUNT(p), &view, &d);
+    assert_int_equal(d.index[at(5, 5)], 1);
+    assert_int_equal(d.index[at(9, 5)], 2);
+    assert_float_equal(d.depth[at(5, 5)], 3, 1e-5);
+}
+
+static void the_camera_pose_is_cam_from_world(void **state)
+{
+    (void)state;
+    // The camera at x = 10 looking along -x: world -x is its z, world z is its x.
+    const double eye[3] = {10, 0, 0}, target[3] = {0, 0, 0}, up[3] = {0, -1, 0};
+    struct orl_view view = front_view();
+    view.cam_from_world = orl_pose_look_at(eye, target, up);
+    struct point p = {.x = 6, .y = 0, .z = 0, .radius = 0.01f, .normal = {1, 0, 0}};
+    static struct drawn d;
+    draw(&p, 1, &view, &d);
+    assert_float_equal(d.depth[at(20, 20)], 4, 1e-4);
+    assert_float_equal(d.normal[at(20, 20)][2], -1, 1e-2);
+}
+
+static void a_disc_fills_its_projection(void **state)
+{
+    (void)state;
+    // Radius 0.25 at depth 2 projects to 5 pixels.
+    struct orl_view view = front_view();
+    struct point p = seen_at(20.5, 20.5, 2, 0.25);
+    static struct drawn d;
+    draw(&p, 1, &view, &d);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            double distance = hypot(x - 20.0, y - 20.0);
+            if (distance > 5.2)
+                assert_float_equal(d.depth[at(x, y)], 0, 0);
+            // Push reaches what the four coarser neighbours see: not all of the rim.
+            if (distance < 2.5)
+                assert_float_equal(d.depth[at(x, y)], 2, 1e-4);
+        }
+}
+
+static void a_slanted_disc_is_narrow_and_keeps_its_plane(void **state)
+{
+    (void)state;
+    // Normal turned 60 degrees about y: half as wide, depth falls along x.
+    struct orl_view view = front_view();
+    struct point p = seen_at(20.5, 20.5, 2, 0.3);
+    p.normal[0] = (float)-sin(1.0471975512);
+    p.normal[2] = (float)-cos(1.0471975512);
+    static struct drawn d;
+    draw(&p, 1, &view, &d);
+    int wide = 0, high = 0;
+    for (int i = 0; i < SIDE; i++) {
+        wide += d.depth[at(i, 20)] > 0;
+        high += d.depth[at(20, i)] > 0;
+    }
+    assert_true(high > wide);
+    // Plane through (0.025, 0.025, 2): z = 2 - tan(60) (x - 0.025), met by the ray of x = 21.
+    double ray = (21.5 - 20) / 40, slope = tan(1.0471975512);
+    double z = (2 + slope * 0.025) / (1 + slope * ray);
+    assert_true(d.depth[at(21, 20)] > 0);
+    assert_float_equal(d.depth[at(21, 20)], z, 0.01);
+}
+
+// A plane of discs with every other point missing comes back closed and at its depth.
+static void holes_between_splats_are_pushed_shut(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    static struct point p[100];
+    size_t count = 0;
+    for (int y = 0; y < 10; y++)
+        for (int x = 0; x < 10; x++)
+            p[count++] = seen_at(8.5 + 3 * x, 8.5 + 3 * y, 2, 0.15);
+    static struct drawn d;
+    draw(p, count, &view, &d);
+    for (int y = 9; y < 35; y++)
+        for (int x = 9; x < 35; x++)
+            assert_float_equal(d.depth[at(x, y)], 2, 1e-3);
+    assert_float_equal(d.depth[at(2, 2)], 0, 0);
+}
+
+// A far wall of points shows through a near plane's gaps: the push must hide it there,
+// and keep it where the near plane is not.
+static void occluded_points_are_replaced(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    static struct point p[2000];
+    size_t count = 0;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            p[count++] = seen_at(x + 0.5, y + 0.5, 10, 0.3);
+    for (int y = 0; y < 10; y++)
+        for (int x = 0; x < 5; x++)
+            p[count++] = seen_at(4.5 + 2 * x, 8.5 + 2 * y, 2, 0.12);
+    static struct drawn d;
+    draw(p, count, &view, &d);
+    for (int y = 9; y < 26; y++)
+        for (int x = 5; x < 12; x++)
+            assert_float_equal(d.depth[at(x, y)], 2, 1e-3);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 20; x < SIDE; x++)
+            assert_float_equal(d.depth[at(x, y)], 10, 1e-2);
+}
+
+static void odd_sizes_lose_no_pixel(void **state)
+{
+    (void)state;
+    struct orl_points points;
+    enum { W = 37, H = 23 };
+    assert_int_equal(orl_points_init(NULL, &points, W * H), ORL_OK);
+    for (int i = 0; i < W * H; i++) {
+        points.position[i][0] = (float)((i % W + 0.5 - 18.5) / 30);
+        points.position[i][1] = (float)((i / W + 0.5 - 11.5) / 30);
+        points.position[i][2] = 1;
+        points.radius[i] = 0.05f;
+    }
+    struct orl_view view = {.camera = {.width = W, .height = H, .fx = 30, .fy = 30, .cx = 18.5,
+                                       .cy = 11.5},
+                            .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+    struct proxy proxy;
+    struct proxy_target target = {0};
+    float depth[W * H];
+    assert_int_equal(proxy_init(gpu, &points, &proxy), ORL_OK);
+    assert_int_equal(proxy_target_resize(gpu, &target, W, H), ORL_OK);
+    proxy_draw(gpu, &proxy, &view, 1, &target);
+    orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    for (int i = 0; i < W * H; i++)
+        assert_float_equal(depth[i], 1, 1e-4);
+    proxy_target_finish(gpu, &target);
+    proxy_finish(gpu, &proxy);
+    orl_points_finish(&points);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_point_lands_in_its_pixel),
+        cmocka_unit_test(behind_and_outside_are_not_drawn),
+        cmocka_unit_test(nearest_wins_and_ties_go_to_the_lowest_index),
+        cmocka_unit_test(the_camera_pose_is_cam_from_world),
+        cmocka_unit_test(a_disc_fills_its_projection),
+        cmocka_unit_test(a_slanted_disc_is_narrow_and_keeps_its_plane),
+        cmocka_unit_test(holes_between_splats_are_pushed_shut),
+        cmocka_unit_test(occluded_points_are_replaced),
+        cmocka_unit_test(odd_sizes_lose_no_pixel),
+    };
+    int failed = cmocka_run_group_tests_name("proxy", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
