@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Oriel and runs all of its tests.
+#   ./test.sh            everything (what CI runs)
+#   ./test.sh --quick    the plain build and its tests only
+set -u
+cd "$(dirname "$0")" || exit 1
+. .ci/deps.sh
+
+quick=
+[ "${1:-}" = --quick ] && quick=1
+start=$SECONDS
+# Rough minutes on two cores without a GPU, for the time left: "name minutes".
+steps=("dependencies 2" "build 1" "tests 9")
+[ "$quick" ] || steps+=("clang 1" "sanitizers 6")
+failed=()
+passed=0 failures=0 skipped=0
+
+minutes_left() {
+    local left=0 seen= step
+    for step in "${steps[@]}"; do
+        [ "${step% *}" = "$1" ] && seen=1
+        [ "$seen" ] && left=$((left + ${step#* }))
+    done
+    echo "$left"
+}
+
+step() {
+    local minutes
+    minutes=$(minutes_left "$1")
+    echo "== [$((SECONDS - start)) s] $2 (about $minutes min left)"
+}
+
+# Runs ctest in a build folder and adds its counts to the totals.
+run_tests() {
+    local dir=$1 log=$1/ctest.log line
+    shift
+    ctest --test-dir "$dir" --output-on-failure "$@" | tee "$log"
+    [ "${PIPESTATUS[0]}" -eq 0 ] || failed+=("tests in $dir")
+    line=$(grep -E '^[0-9]+% tests passed' "$log")
+    local bad total away
+    bad=$(sed -E 's/.*passed, ([0-9]+) tests? failed.*/\1/' <<<"$line")
+    total=$(sed -E 's/.*out of ([0-9]+).*/\1/' <<<"$line")
+    away=$(grep -cE '\*\*\*Skipped' "$log")
+    passed=$((passed + ${total:-0} - ${bad:-0} - away))
+    failures=$((failures + ${bad:-0}))
+    skipped=$((skipped + away))
+}
+
+finish() {
+    for name in "${failed[@]}"; do
+        echo "FAILED: $name"
+    done
+    echo "== took $((SECONDS - start)) s"
+    echo "$passed passed, $failures failed, $skipped skipped"
+    [ ${#failed[@]} -eq 0 ] && [ "$failures" -eq 0 ] && [ "$passed" -gt 0 ]
+    exit
+}
+
+step dependencies "checking dependencies"
+extra=(libcmocka-dev)
+[ "$quick" ] || extra+=(clang)
+install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }
+
+step build "building with gcc"
+build_oriel build || { failed+=("gcc build"); finish; }
+
+step tests "running the tests"
+run_tests build
+
+if [ -z "$quick" ]; then
+    step clang "building with clang"
+    CC=clang CXX=clang++ build_oriel build-clang -DORL_TESTS=OFF || failed+=("clang build")
+
+    step sanitizers "building and testing with AddressSanitizer and UBSan"
+    # Leaks of Mesa and EGL's driver loading are not ours to fix: leak detection
+    # stays on for the unit tests, which use no GL.
+    if build_oriel build-sanitize -DORL_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug; then
+        UBSAN_OPTIONS=print_stacktrace=1 run_tests build-sanitize -L unit
+        ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
+            run_tests build-sanitize -L gpu
+    else
+        failed+=("sanitizer build")
+    fi
+fi
+finish
