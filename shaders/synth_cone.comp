@@ -19,6 +19,6 @@ void main()
     // Half the tile's diagonal plus half a pixel on each side, at unit depth.
     float cone = 6.4 / min(camera.x, camera.y);
     vec3 ray = ray_through(vec2(tile * 8 + 4));
-    float t = trace(eye.xyz, ray, NEAR_T, cone);
+    float t = free_way(eye.xyz, ray, NEAR_T, cone);
     imageStore(start_image, tile, vec4(t));
 }

@@ -5,6 +5,7 @@
 
 static const struct command commands[] = {
     {"render", "render new views", cmd_render},
+    {"synth", "photographs of a synthetic monument with ground truth", cmd_synth},
     {0},
 };
 

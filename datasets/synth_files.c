@@ -1,0 +1,331 @@
+// A synthetic set as files: photographs, and beside them what is true of them.
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "datasets/synth.h"
+#include "io/exr.h"
+#include "io/picture.h"
+#include "scene/colmap.h"
+
+enum { JPEG_QUALITY = 97 };
+
+// At 0 EV the camera is set to 1/250 s, f/8, ISO 100; an exposure of n EV takes 2^n as long.
+static const double BASE_EXPOSURE_S = 1.0 / 250, APERTURE = 8, ISO = 100;
+
+struct job {
+    const struct orl_log *log;
+    const struct orl_synth_params *params;
+    const struct orl_view *views; // params->count
+    char *photos, *truth;         // folders being filled, owned
+};
+
+static double exposure_of(const struct orl_synth_params *params, int index)
+{
+    return params->exposure_count ? params->exposures_ev[index % params->exposure_count] : 0;
+}
+
+// "<dir>/<folder>/<NNNN><ending>", released with free(); NULL, logged.
+static char *view_path(const struct job *job, const char *dir, const char *folder, int index,
+                       const char *ending)
+{
+    return orl_format(job->log, "%s%s%s/%04d%s", dir, *folder ? "/" : "", folder, index + 1,
+                      ending);
+}
+
+// --- photographs ---
+
+static enum orl_result write_photo(const struct job *job, int index,
+                                   const struct orl_image *radiance)
+{
+    double ev = exposure_of(job->params, index);
+    struct orl_image photo = {0};
+    struct orl_exif exif = {.make = "Oriel", .model = "synthetic pinhole",
+                            .exposure_s = BASE_EXPOSURE_S * exp2(ev), .aperture = APERTURE,
+                            .iso = ISO, .bias_ev = ev, .focal_mm = ORL_SYNTH_FOCAL_35MM,
+                            .focal_35mm = ORL_SYNTH_FOCAL_35MM, .orientation = 1};
+    char *path = view_path(job, job->photos, "", index, ".jpg");
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_synth_expose(job->log, radiance, ev, job->params->noise,
+                                  job->params->seed + (uint32_t)index * 7919u, &photo);
+    if (result == ORL_OK)
+        result = orl_jpeg_write(job->log, path, &photo, JPEG_QUALITY, &exif);
+    orl_image_finish(&photo);
+    free(path);
+    return result;
+}
+
+// --- truth of one view ---
+
+static enum orl_result write_layers(const struct job *job, int index, const char *folder,
+                                    const struct orl_image *image, const char *const *names,
+                                    bool half)
+{
+    struct orl_exr_params exr = {.width = image->width, .height = image->height,
+                                 .channel_count = image->channels, .view = &job->views[index],
+                                 .srgb_primaries = strcmp(folder, "radiance") == 0};
+    for (int c = 0; c < image->channels; c++) {
+        struct orl_exr_channel *channel = &exr.channels[c];
+        snprintf(channel->name, sizeof channel->name, "%s", names[c]);
+        channel->half = half;
+        channel->data = image->f32 + c;
+        channel->stride = (size_t)image->channels;
+    }
+    char *path = view_path(job, job->truth, folder, index, ".exr");
+    enum orl_result result = path ? orl_exr_write(job->log, path, &exr) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static enum orl_result write_map(const struct job *job, int index, const char *folder,
+                                 const struct orl_image *image)
+{
+    char *path = view_path(job, job->truth, folder, index, ".jpg.geometric.bin");
+    enum orl_result result = path ? orl_colmap_map_write(job->log, path, image) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static enum orl_result write_truth(const struct job *job, int index,
+                                   const struct orl_synth_frame *frame)
+{
+    static const char *const colour[] = {"R", "G", "B"};
+    static const char *const depth[] = {"depth.Z"};
+    static const char *const normal[] = {"normal.X", "normal.Y", "normal.Z"};
+    enum orl_result result = write_layers(job, index, "radiance", &frame->radiance, colour, true);
+    if (result == ORL_OK)
+        result = write_layers(job, index, "depth", &frame->depth, depth, false);
+    if (result == ORL_OK)
+        result = write_layers(job, index, "normal", &frame->normal, normal, true);
+    if (result == ORL_OK)
+        result = write_map(job, index, "stereo/depth_maps", &frame->depth);
+    if (result == ORL_OK)
+        result = write_map(job, index, "stereo/normal_maps", &frame->normal);
+    return result;
+}
+
+// --- cameras ---
+
+static enum orl_result write_colmap_cameras(const struct job *job)
+{
+    const struct orl_camera *c = &job->views[0].camera;
+    char *path = orl_path_join(job->log, job->truth, "sparse/cameras.txt");
+    char *text = orl_format(job->log, "1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n", c->width,
+                            c->height, c->fx, c->fy, c->cx, c->cy);
+    enum orl_result result = path && text
+                                 ? orl_file_write(job->log, path, text, strlen(text))
+                                 : ORL_ERR_MEMORY;
+    free(text);
+    free(path);
+    return result;
+}
+
+static enum orl_result write_colmap_images(const struct job *job)
+{
+    enum { LINE_MAX_BYTES = 256 };
+    size_t room = (size_t)job->params->count * LINE_MAX_BYTES, length = 0;
+    char *path = orl_path_join(job->log, job->truth, "sparse/images.txt");
+    char *points_path = orl_path_join(job->log, job->truth, "sparse/points3D.txt");
+    char *text = orl_array(job->log, room, 1);
+    enum orl_result result = path && points_path && text ? ORL_OK : ORL_ERR_MEMORY;
+    for (int i = 0; result == ORL_OK && i < job->params->count; i++) {
+        double q[4];
+        const double *t = job->views[i].cam_from_world.t;
+        orl_pose_to_quat(&job->views[i].cam_from_world, q);
+        // The second line would list sparse points; there are none.
+        length += (size_t)snprintf(text + length, room - length,
+                                   "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %04d.jpg\n\n",
+                                   i + 1, q[0], q[1], q[2], q[3], t[0], t[1], t[2], i + 1);
+    }
+    if (result == ORL_OK)
+        result = orl_file_write(job->log, path, text, length);
+    if (result == ORL_OK)
+        result = orl_file_write(job->log, points_path, "", 0);
+    free(text);
+    free(points_path);
+    free(path);
+    return result;
+}
+
+// Takes over `root`. NULL values inside mean that memory ran out.
+static enum orl_result write_json(const struct job *job, const char *name, json_t *root)
+{
+    char *path = orl_path_join(job->log, job->truth, name);
+    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
+    enum orl_result result = ORL_ERR_MEMORY;
+    if (path && text)
+        result = orl_file_write(job->log, path, text, strlen(text));
+    else
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: out of memory", name);
+    free(text);
+    free(path);
+    json_decref(root);
+    return result;
+}
+
+static json_t *vector_json(const double v[3])
+{
+    return json_pack("[fff]", v[0], v[1], v[2]);
+}
+
+// As Inria's 3D Gaussian splatting: rotation is world_from_cam, row by row.
+static enum orl_result write_inria_cameras(const struct job *job)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < job->params->count; i++) {
+        const struct orl_view *view = &job->views[i];
+        const double (*r)[3] = view->cam_from_world.r;
+        char name[16];
+        double centre[3];
+        snprintf(name, sizeof name, "%04d", i + 1);
+        orl_pose_centre(&view->cam_from_world, centre);
+        json_t *rows = json_array();
+        for (int k = 0; k < 3; k++)
+            json_array_append_new(rows, vector_json((double[]){r[0][k], r[1][k], r[2][k]}));
+        json_array_append_new(
+            list, json_pack("{s:i, s:s, s:i, s:i, s:o, s:o, s:f, s:f}", "id", i, "img_name", name,
+                            "width", view->camera.width, "height", view->camera.height,
+                            "position", vector_json(centre), "rotation", rows, "fy",
+                            view->camera.fy, "fx", view->camera.fx));
+    }
+    return write_json(job, "cameras.json", list);
+}
+
+static enum orl_result write_summary(const struct job *job)
+{
+    const struct orl_synth_params *p = job->params;
+    json_t *photos = json_array();
+    for (int i = 0; i < p->count; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%04d.jpg", i + 1);
+        double ev = exposure_of(p, i);
+        json_array_append_new(photos, json_pack("{s:s, s:f, s:f}", "photo", name, "exposure_ev",
+                                                ev, "exposure_s", BASE_EXPOSURE_S * exp2(ev)));
+    }
+    return write_json(job, "synth.json",
+                      json_pack("{s:s, s:[ii], s:i, s:I, s:f, s:s, s:o}", "name", p->name, "size",
+                                p->width, p->height, "count", p->count, "seed",
+                                (json_int_t)p->seed, "noise", p->noise, "oriel", ORL_VERSION,
+                                "photographs", photos));
+}
+
+static enum orl_result write_cameras(const struct job *job)
+{
+    enum orl_result result = write_colmap_cameras(job);
+    if (result == ORL_OK)
+        result = write_colmap_images(job);
+    if (result == ORL_OK)
+        result = write_inria_cameras(job);
+    if (result == ORL_OK)
+        result = write_summary(job);
+    return result;
+}
+
+// --- folders ---
+
+static enum orl_result check_free(const struct orl_log *log, const char *path)
+{
+    if (orl_path_is_file(path))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", path);
+    if (!orl_path_is_dir(path))
+        return ORL_OK;
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(log, path, &names);
+    if (result == ORL_OK && names.count)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: this folder is not empty", path);
+    orl_names_finish(&names);
+    return result;
+}
+
+static enum orl_result make_folders(const struct job *job)
+{
+    static const char *const folders[] = {"sparse", "depth", "normal", "radiance",
+                                          "stereo/depth_maps", "stereo/normal_maps"};
+    enum orl_result result = orl_dir_remove(job->log, job->photos);
+    if (result == ORL_OK)
+        result = orl_dir_remove(job->log, job->truth);
+    if (result == ORL_OK)
+        result = orl_dir_make(job->log, job->photos);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
+        char *path = orl_path_join(job->log, job->truth, folders[i]);
+        result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    return result;
+}
+
+static enum orl_result move_folder(const struct orl_log *log, const char *from, const char *to)
+{
+    if (rename(from, to) == 0)
+        return ORL_OK;
+    return orl_fail(log, ORL_ERR_IO, "%s: %s", to, strerror(errno));
+}
+
+static enum orl_result draw_all(struct orl_gpu *gpu, const struct orl_progress *progress,
+                                const struct job *job)
+{
+    struct orl_synth *synth;
+    orl_progress_report(progress, "synth", 0, job->params->count, "compiling shaders");
+    enum orl_result result = orl_synth_create(gpu, job->params, &synth);
+    for (int i = 0; result == ORL_OK && i < job->params->count; i++) {
+        struct orl_synth_frame frame;
+        result = orl_synth_draw(synth, progress, &job->views[i], &frame);
+        if (result == ORL_OK)
+            result = write_truth(job, i, &frame);
+        if (result == ORL_OK)
+            result = write_photo(job, i, &frame.radiance);
+        orl_synth_frame_finish(&frame);
+        orl_progress_report(progress, "synth", i + 1, job->params->count, NULL);
+    }
+    orl_synth_destroy(&synth);
+    return result;
+}
+
+enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *progress,
+                              const struct orl_synth_params *params, const char *photos,
+                              const char *truth)
+{
+    struct job job = {.log = orl_gpu_log(gpu), .params = params};
+    struct orl_view *views = NULL;
+    enum orl_result result = orl_synth_check(job.log, params);
+    if (result == ORL_OK)
+        result = check_free(job.log, photos);
+    if (result == ORL_OK)
+        result = check_free(job.log, truth);
+    if (result != ORL_OK)
+        return result;
+    views = orl_array(job.log, (size_t)params->count, sizeof *views);
+    job.photos = orl_format(job.log, "%s.part", photos);
+    job.truth = orl_format(job.log, "%s.part", truth);
+    if (!views || !job.photos || !job.truth) {
+        result = ORL_ERR_MEMORY;
+        goto end;
+    }
+    orl_synth_views(params, views);
+    job.views = views;
+    result = make_folders(&job);
+    if (result == ORL_OK)
+        result = write_cameras(&job);
+    if (result == ORL_OK)
+        result = draw_all(gpu, progress, &job);
+    if (result == ORL_OK)
+        result = move_folder(job.log, job.truth, truth);
+    if (result == ORL_OK)
+        result = move_folder(job.log, job.photos, photos);
+end:
+    if (result != ORL_OK && job.photos && job.truth &&
+        (orl_dir_remove(job.log, job.photos) != ORL_OK ||
+         orl_dir_remove(job.log, job.truth) != ORL_OK))
+        orl_logf(job.log, ORL_LOG_WARNING, "%s and %s are left over", job.photos, job.truth);
+    free(job.photos);
+    free(job.truth);
+    free(views);
+    return result;
+}

@@ -1,0 +1,232 @@
+// Draws one view of a synthetic monument.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "datasets/synth.h"
+
+enum {
+    TILE = 8,        // work group side, and pixels of a tile of synth_cone.comp
+    BAND_PIXELS = 65536, // one dispatch: short enough for a desktop's GPU watchdog
+};
+
+// Matches shaders/include/synth_view.glsl.
+struct frame_params {
+    float right[4], down[4], forward[4], eye[4];
+    float camera[4];
+    int32_t size[4];
+    uint32_t seed[4];
+};
+_Static_assert(sizeof(struct frame_params) == 112, "std140");
+
+struct orl_synth {
+    struct orl_gpu *gpu;
+    int width, height;
+    uint32_t seed;
+    struct orl_prog *cone, *frame;
+    struct orl_tex *start, *radiance, *truth;
+};
+
+static enum orl_result create_target(struct orl_gpu *gpu, const char *tag, int width, int height,
+                                     GLenum format, struct orl_tex **out)
+{
+    struct orl_tex_params params = {.width = width, .height = height, .format = format,
+                                    .tag = tag};
+    return orl_tex_create(gpu, &params, out);
+}
+
+enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_params *params,
+                                 struct orl_synth **out)
+{
+    *out = NULL;
+    const struct orl_log *log = orl_gpu_log(gpu);
+    enum orl_result result = orl_synth_check(log, params);
+    if (result != ORL_OK)
+        return result;
+    struct orl_synth *synth = orl_array(log, 1, sizeof *synth);
+    if (!synth)
+        return ORL_ERR_MEMORY;
+    *synth = (struct orl_synth){.gpu = gpu, .width = params->width, .height = params->height,
+                                .seed = params->seed};
+    int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
+    const size_t block = sizeof(struct frame_params);
+    result = orl_prog_create(gpu, "synth_cone.comp", NULL, block, &synth->cone);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "synth_frame.comp", NULL, block, &synth->frame);
+    if (result == ORL_OK)
+        result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
+    if (result == ORL_OK)
+        result = create_target(gpu, "synth radiance", params->width, params->height, GL_RGBA32F,
+                               &synth->radiance);
+    if (result == ORL_OK)
+        result = create_target(gpu, "synth truth", params->width, params->height, GL_RGBA32F,
+                               &synth->truth);
+    if (result == ORL_OK)
+        *out = synth;
+    else
+        orl_synth_destroy(&synth);
+    return result;
+}
+
+void orl_synth_destroy(struct orl_synth **handle)
+{
+    struct orl_synth *synth = *handle;
+    if (!synth)
+        return;
+    orl_tex_destroy(synth->gpu, &synth->truth);
+    orl_tex_destroy(synth->gpu, &synth->radiance);
+    orl_tex_destroy(synth->gpu, &synth->start);
+    orl_prog_destroy(synth->gpu, &synth->frame);
+    orl_prog_destroy(synth->gpu, &synth->cone);
+    free(synth);
+    *handle = NULL;
+}
+
+static struct frame_params params_of(const struct orl_synth *synth, const struct orl_view *view)
+{
+    struct frame_params params = {
+        .camera = {(float)view->camera.fx, (float)view->camera.fy, (float)view->camera.cx,
+                   (float)view->camera.cy},
+        .size = {synth->width, synth->height, 0, synth->height},
+        .seed = {synth->seed * 0x9e3779b9u},
+    };
+    double eye[3];
+    orl_pose_centre(&view->cam_from_world, eye);
+    for (int i = 0; i < 3; i++) {
+        params.right[i] = (float)view->cam_from_world.r[0][i];
+        params.down[i] = (float)view->cam_from_world.r[1][i];
+        params.forward[i] = (float)view->cam_from_world.r[2][i];
+        params.eye[i] = (float)eye[i];
+    }
+    return params;
+}
+
+static enum orl_result dispatch_bands(struct orl_synth *synth,
+                                      const struct orl_progress *progress,
+                                      struct frame_params *params)
+{
+    int band = BAND_PIXELS / synth->width / TILE * TILE;
+    if (band < TILE)
+        band = TILE;
+    for (int row = 0; row < synth->height; row += band) {
+        if (orl_progress_cancelled(progress))
+            return ORL_ERR_CANCELLED;
+        int rows = synth->height - row < band ? synth->height - row : band;
+        params->size[2] = row;
+        params->size[3] = row + rows;
+        orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
+            .prog = synth->frame, .params = params,
+            .images = {{synth->start, 0, GL_READ_ONLY}, {synth->radiance, 0, GL_WRITE_ONLY},
+                       {synth->truth, 0, GL_WRITE_ONLY}},
+            .groups = {orl_groups((size_t)synth->width, TILE), orl_groups((size_t)rows, TILE)},
+            .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
+        enum orl_result result = orl_gpu_finish(synth->gpu);
+        if (result != ORL_OK)
+            return result;
+    }
+    return ORL_OK;
+}
+
+static enum orl_result read_frame(const struct orl_synth *synth, struct orl_synth_frame *frame)
+{
+    const struct orl_log *log = orl_gpu_log(synth->gpu);
+    int w = synth->width, h = synth->height;
+    size_t pixels = (size_t)w * (size_t)h;
+    float *texels = orl_array(log, pixels, 4 * sizeof *texels);
+    enum orl_result result = texels ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->radiance, w, h, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->depth, w, h, 1, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->normal, w, h, 3, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        goto end;
+    orl_tex_read(synth->radiance, 0, GL_RGB, GL_FLOAT, orl_image_bytes(&frame->radiance),
+                 frame->radiance.f32);
+    orl_tex_read(synth->truth, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
+    for (size_t i = 0; i < pixels; i++) {
+        memcpy(frame->normal.f32 + 3 * i, texels + 4 * i, 3 * sizeof *texels);
+        frame->depth.f32[i] = texels[4 * i + 3];
+    }
+    result = orl_gpu_finish(synth->gpu);
+end:
+    free(texels);
+    return result;
+}
+
+enum orl_result orl_synth_draw(struct orl_synth *synth, const struct orl_progress *progress,
+                               const struct orl_view *view, struct orl_synth_frame *frame)
+{
+    memset(frame, 0, sizeof *frame);
+    ORL_REQUIRE(orl_gpu_log(synth->gpu), view->camera.width == synth->width &&
+                                             view->camera.height == synth->height &&
+                                             orl_camera_valid(&view->camera));
+    struct frame_params params = params_of(synth, view);
+    orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
+        .prog = synth->cone, .params = &params,
+        .images = {{synth->start, 0, GL_WRITE_ONLY}},
+        .groups = {orl_groups((size_t)synth->width, TILE * TILE),
+                   orl_groups((size_t)synth->height, TILE * TILE)},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
+    enum orl_result result = dispatch_bands(synth, progress, &params);
+    if (result == ORL_OK)
+        result = read_frame(synth, frame);
+    if (result != ORL_OK)
+        orl_synth_frame_finish(frame);
+    return result;
+}
+
+void orl_synth_frame_finish(struct orl_synth_frame *frame)
+{
+    orl_image_finish(&frame->radiance);
+    orl_image_finish(&frame->depth);
+    orl_image_finish(&frame->normal);
+}
+
+static uint32_t next_word(uint32_t *state)
+{
+    // PCG-RXS-M-XS (O'Neill 2014).
+    *state = *state * 747796405u + 2891336453u;
+    uint32_t word = ((*state >> ((*state >> 28) + 4)) ^ *state) * 277803737u;
+    return (word >> 22) ^ word;
+}
+
+// Roughly normal: the sum of four uniforms, variance 1.
+static double next_normal(uint32_t *state)
+{
+    double sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += next_word(state) * 0x1p-32 - 0.5;
+    return sum * sqrt(3.0);
+}
+
+static uint8_t encode_srgb(double v)
+{
+    v = v <= 0 ? 0 : v >= 1 ? 1 : v;
+    v = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055;
+    return (uint8_t)(255 * v + 0.5);
+}
+
+enum orl_result orl_synth_expose(const struct orl_log *log, const struct orl_image *radiance,
+                                 double exposure_ev, double noise, uint32_t key,
+                                 struct orl_image *photo)
+{
+    memset(photo, 0, sizeof *photo);
+    ORL_REQUIRE(log, radiance->type == ORL_PIXEL_F32 && radiance->channels == 3);
+    enum orl_result result = orl_image_init(log, photo, radiance->width, radiance->height, 3,
+                                            ORL_PIXEL_U8);
+    if (result != ORL_OK)
+        return result;
+    double scale = exp2(exposure_ev);
+    uint32_t state = key * 0x9e3779b9u;
+    size_t count = 3 * (size_t)radiance->width * (size_t)radiance->height;
+    for (size_t i = 0; i < count; i++) {
+        double v = scale * radiance->f32[i];
+        if (noise > 0) // photons: variance grows with light; and a floor from reading out
+            v += noise * sqrt(fmin(v, 1) + 0.0004) * next_normal(&state);
+        photo->u8[i] = encode_srgb(v);
+    }
+    return ORL_OK;
+}
