@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 
 static const struct command commands[] = {
+    {"eval", "compare renderings with held-out photographs", cmd_eval},
     {"render", "render new views", cmd_render},
     {"synth", "photographs of a synthetic monument with ground truth", cmd_synth},
     {0},

@@ -1,0 +1,189 @@
+// oriel eval: held-out photographs against renderings.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "core/memory.h"
+#include "eval/eval.h"
+
+struct options {
+    const char *method, *json, *images;
+    struct orl_names settings;
+    int max_vram_mib;
+};
+
+struct job {
+    const struct orl_log *log;
+    const struct orl_progress *progress;
+    const struct options *options;
+    bool verbose;
+    struct orl_scene *scene;
+    struct orl_gpu *gpu;
+    struct orl_renderer *renderer;
+    struct orl_eval *evals; // one per method
+    size_t count;
+};
+
+// --- tables on stdout ---
+
+static void print_figures(const struct orl_eval_view *view)
+{
+    const struct orl_metrics *m = &view->metrics;
+    printf(" %7.2f %7.2f %7.2f  %.4f  %6.1f %6.1f  %.4f %9.1f\n", m->psnr_db, m->psnr_cc_db,
+           m->psnr_covered_db, m->ssim, 100 * m->coverage, 100 * m->completeness, m->ncc_error,
+           view->render_ms);
+}
+
+static void print_table(const struct orl_eval *eval)
+{
+    printf("%s, %s\n", eval->method, eval->device);
+    printf("%-24s %11s %7s %7s %7s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR", "fitted",
+           "covered", "SSIM", "cover%", "full%", "1-NCC", "ms");
+    for (size_t i = 0; i < eval->view_count; i++) {
+        const struct orl_eval_view *view = &eval->views[i];
+        char size[32];
+        snprintf(size, sizeof size, "%dx%d", view->width, view->height);
+        printf("%-24s %11s", eval->scene->photos[view->photo].name, size);
+        print_figures(view);
+    }
+    printf("%-24s %11s", "mean", "");
+    print_figures(&eval->mean);
+}
+
+static void print_passes(const struct orl_eval *eval)
+{
+    printf("%-24s %9s\n", "pass", "ms");
+    for (size_t i = 0; i < eval->pass_count; i++)
+        printf("%-24s %9.2f\n", eval->passes[i].name, eval->passes[i].ms);
+}
+
+// --- the job ---
+
+static enum orl_result apply_settings(const struct job *job, struct orl_render_params *render)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < job->options->settings.count; i++)
+        result = orl_render_params_set(job->log, render, job->options->settings.items[i]);
+    return result;
+}
+
+static enum orl_result evaluate(struct job *job, const struct orl_method *method)
+{
+    struct orl_render_params render = method->params;
+    enum orl_result result = apply_settings(job, &render);
+    if (result != ORL_OK)
+        return result;
+    const struct orl_eval_params params = {.method = method->name, .render = &render,
+                                           .image_dir = job->options->images,
+                                           .progress = job->progress};
+    struct orl_eval *eval = &job->evals[job->count];
+    result = orl_eval_run(job->gpu, job->renderer, job->scene, &params, eval);
+    if (result != ORL_OK)
+        return result;
+    job->count++;
+    if (job->options->json && strcmp(job->options->json, "-") == 0)
+        return ORL_OK;
+    if (job->count > 1)
+        printf("\n");
+    print_table(eval);
+    if (job->verbose)
+        print_passes(eval);
+    fflush(stdout);
+    return ORL_OK;
+}
+
+static enum orl_result write_json(const struct job *job, bool array)
+{
+    const char *path = job->options->json;
+    char *text = orl_eval_to_json(job->log, job->evals, job->count, array);
+    if (!text)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    if (strcmp(path, "-") == 0)
+        result = puts(text) < 0 || fflush(stdout) != 0
+                     ? orl_fail(job->log, ORL_ERR_IO, "standard output: cannot write")
+                     : ORL_OK;
+    else
+        result = orl_file_write(job->log, path, text, strlen(text));
+    free(text);
+    return result;
+}
+
+static enum orl_result run(struct job *job, const char *scene_dir,
+                           const struct arg_common *common)
+{
+    bool all = strcmp(job->options->method, "all") == 0;
+    const struct orl_method *first =
+        all ? orl_methods : orl_method_find(job->log, job->options->method);
+    size_t methods = 1;
+    if (!first)
+        return ORL_ERR_ARGUMENT;
+    while (all && first[methods].name)
+        methods++;
+    job->evals = orl_array(job->log, methods, sizeof *job->evals);
+    if (!job->evals)
+        return ORL_ERR_MEMORY;
+    struct orl_render_params tried = first->params; // wrong settings are found before the work
+    enum orl_result result = apply_settings(job, &tried);
+    if (result == ORL_OK)
+        result = orl_scene_open(job->log, scene_dir, &job->scene);
+    if (result == ORL_OK)
+        result = orl_eval_check(job->log, job->scene);
+    if (result == ORL_OK)
+        result = orl_gpu_create(job->log,
+                                &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                         .debug = common->verbose},
+                                &job->gpu);
+    struct orl_renderer_params limits = {
+        .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
+    if (result == ORL_OK)
+        result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
+    for (size_t i = 0; i < methods && result == ORL_OK; i++)
+        result = evaluate(job, &first[i]);
+    if (result == ORL_OK && job->options->json)
+        result = write_json(job, all);
+    return result;
+}
+
+static void finish(struct job *job)
+{
+    for (size_t i = 0; i < job->count; i++)
+        orl_eval_finish(&job->evals[i]);
+    free(job->evals);
+    orl_renderer_destroy(&job->renderer);
+    orl_gpu_destroy(&job->gpu);
+    orl_scene_destroy(&job->scene);
+}
+
+int cmd_eval(int argc, char **argv)
+{
+    struct options o = {.method = orl_methods[0].name};
+    const struct arg_option table[] = {
+        {"method", ARG_STRING, &o.method, "NAME", "a method, or all; default: the first", 0, 0},
+        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
+        {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
+        {"images", ARG_STRING, &o.images, "DIR", "write photographs, renderings, differences",
+         0, 0},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
+        {0},
+    };
+    const struct arg_command command = {
+        "eval", "SCENE [--method NAME|all] [--json FILE] [--images DIR]",
+        "Renders the photographs that were held out and says how close the renderings come.",
+        table, 1, 1};
+    struct arg_common common = {0};
+    struct terminal terminal;
+    const char *scene_dir;
+    size_t count;
+    int status;
+    if (command_begin(&command, argc, argv, &common, &terminal, &scene_dir, &count, &status)) {
+        struct job job = {.log = &terminal.log, .progress = &terminal.progress, .options = &o,
+                          .verbose = common.verbose};
+        status = command_status(run(&job, scene_dir, &common));
+        finish(&job);
+        terminal_finish(&terminal);
+    }
+    orl_names_finish(&o.settings);
+    return status;
+}

@@ -1,0 +1,61 @@
+// The held-out protocol: photographs that were kept aside, rendered from the others
+// and compared. docs/conventions.md defines every figure.
+#ifndef ORL_EVAL_EVAL_H
+#define ORL_EVAL_EVAL_H
+
+#include "core/progress.h"
+#include "eval/metrics.h"
+#include "render/render.h"
+
+struct orl_eval_view {
+    size_t photo; // index in the scene
+    int width, height;
+    struct orl_metrics metrics;
+    double render_ms;
+};
+
+struct orl_eval_pass {
+    const char *name;
+    double ms; // per draw, mean over all timed draws
+};
+
+enum { ORL_EVAL_PASSES_MAX = 32 };
+
+struct orl_eval {
+    const struct orl_scene *scene; // not owned
+    const char *method;            // not owned
+    char device[128];
+    struct orl_eval_view *views; // owned
+    size_t view_count;
+    struct orl_eval_view mean; // arithmetic mean of each figure
+    struct orl_eval_pass passes[ORL_EVAL_PASSES_MAX];
+    size_t pass_count;
+};
+
+struct orl_eval_params {
+    const char *method; // name for reports
+    const struct orl_render_params *render;
+    // Folder (made if need be) for NAME.photo.png, NAME.<method>.png and
+    // NAME.<method>.diff.png: photograph, rendering and four times their difference
+    // beside each other. NULL: none.
+    const char *image_dir;
+    const struct orl_progress *progress;
+};
+
+// ORL_ERR_DATA, with advice, when the scene holds no photograph out.
+enum orl_result orl_eval_check(const struct orl_log *log,
+                               const struct orl_scene *scene) ORL_CHECK_RESULT;
+// Renders every held-out photograph's view, at the photograph's own size, and compares.
+// A renderer with default orl_renderer_params uses no held-out photograph.
+// Fails as orl_eval_check does.
+enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                             const struct orl_scene *scene, const struct orl_eval_params *params,
+                             struct orl_eval *eval) ORL_CHECK_RESULT;
+void orl_eval_finish(struct orl_eval *eval);
+
+// The JSON of docs/formats.md, released with free(): one object, or with `array` an
+// array of `count` of them.
+char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
+                       bool array);
+
+#endif

@@ -1,0 +1,82 @@
+// The evaluation's report. Field names are fixed; others may be added.
+#include <jansson.h>
+
+#include "eval/eval.h"
+
+// Takes over `value`, also on failure: when either is missing or memory ran out.
+static bool set(json_t *object, const char *key, json_t *value)
+{
+    return json_object_set_new(object, key, value) == 0;
+}
+
+static bool set_figures(json_t *object, const struct orl_eval_view *view)
+{
+    const struct orl_metrics *m = &view->metrics;
+    return set(object, "psnr_db", json_real(m->psnr_db)) &&
+           set(object, "psnr_cc_db", json_real(m->psnr_cc_db)) &&
+           set(object, "psnr_covered_db", json_real(m->psnr_covered_db)) &&
+           set(object, "ssim", json_real(m->ssim)) &&
+           set(object, "coverage", json_real(m->coverage)) &&
+           set(object, "completeness", json_real(m->completeness)) &&
+           set(object, "ncc_error", json_real(m->ncc_error)) &&
+           set(object, "render_ms", json_real(view->render_ms));
+}
+
+static json_t *size_json(const struct orl_eval_view *view)
+{
+    return json_pack("[ii]", view->width, view->height);
+}
+
+static bool add_views(json_t *views, const struct orl_eval *eval)
+{
+    for (size_t i = 0; views && i < eval->view_count; i++) {
+        const struct orl_eval_view *view = &eval->views[i];
+        json_t *object = json_object();
+        bool ok = set(object, "photo", json_string(eval->scene->photos[view->photo].name)) &&
+                  set(object, "size", size_json(view)) && set_figures(object, view);
+        if (json_array_append_new(views, object) != 0 || !ok)
+            return false;
+    }
+    return views != NULL;
+}
+
+static bool set_passes(json_t *object, const struct orl_eval *eval)
+{
+    json_t *passes = json_object();
+    bool ok = true;
+    for (size_t i = 0; i < eval->pass_count; i++)
+        ok = set(passes, eval->passes[i].name, json_real(eval->passes[i].ms)) && ok;
+    return set(object, "passes_ms", passes) && ok;
+}
+
+static bool add_eval(json_t *array, const struct orl_eval *eval)
+{
+    json_t *object = json_object(), *views = json_array(), *mean = json_object();
+    bool ok = set(object, "scene", json_string(eval->scene->dir)) &&
+              set(object, "method", json_string(eval->method)) &&
+              set(object, "device", json_string(eval->device)) &&
+              set(object, "size", size_json(&eval->views[0])) && add_views(views, eval) &&
+              set_figures(mean, &eval->mean);
+    ok = set(object, "views", views) && ok;
+    ok = set(object, "mean", mean) && ok;
+    ok = set_passes(object, eval) && ok;
+    return json_array_append_new(array, object) == 0 && ok;
+}
+
+char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
+                       bool array)
+{
+    json_t *all = json_array();
+    bool ok = all != NULL;
+    for (size_t i = 0; i < count && ok; i++)
+        ok = add_eval(all, &evals[i]);
+    char *text = NULL;
+    if (ok)
+        text = json_dumps(array ? all : json_array_get(all, 0),
+                          JSON_INDENT(1) | JSON_REAL_PRECISION(8));
+    if (!text)
+        orl_logf(log, ORL_LOG_ERROR, "the report cannot be made: out of memory or a name that is "
+                                     "not UTF-8");
+    json_decref(all);
+    return text;
+}
