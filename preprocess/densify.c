@@ -1,0 +1,400 @@
+// Densify: every photograph by its own looks, then again with its sources' depths.
+#include "preprocess/densify.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "io/picture.h"
+#include "preprocess/densify_internal.h"
+
+enum {
+    COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this
+    EXTRA_LEVELS = 3,    // for sources that show the scene finer
+    SPECKLE_LEAST = 12,  // pixels
+};
+
+struct densifier {
+    const struct orl_log *log;
+    struct orl_gpu *gpu;
+    const struct orl_densify_params *params;
+    const struct orl_progress *progress;
+    char *images_dir, *depth_dir, *normal_dir, *sparse_dir; // owned
+    struct orl_colmap_model model;
+    struct densify_photos photos;
+    struct densify_plan *plans;
+    struct densify_device *device;
+    double done, total;
+};
+
+static enum orl_result check_params(const struct orl_log *log, const struct orl_densify_params *p)
+{
+    const struct {
+        const char *name;
+        int value, low, high;
+    } table[] = {
+        {"sources", p->sources, 1, ORL_DENSIFY_SOURCES_MAX},
+        {"iterations", p->iterations, 1, 16},
+        {"geometric_passes", p->geometric_passes, 0, 8},
+        {"window_radius", p->window_radius, 1, 15},
+        {"window_step", p->window_step, 1, 4},
+    };
+    for (size_t i = 0; i < ORL_COUNT(table); i++)
+        if (table[i].value < table[i].low || table[i].value > table[i].high)
+            return orl_fail(log, ORL_ERR_ARGUMENT, "densify: %s is %d, not within [%d, %d]",
+                            table[i].name, table[i].value, table[i].low, table[i].high);
+    return ORL_OK;
+}
+
+// --- files ---
+
+static char *map_path(const struct densifier *d, const char *dir, size_t photo, bool geometric)
+{
+    return orl_format(d->log, "%s/%s.%s.bin", dir, densify_photo_name(&d->photos, photo),
+                      geometric ? "geometric" : "photometric");
+}
+
+// Names may have folders.
+static enum orl_result make_folder_of(const struct densifier *d, const char *path)
+{
+    char *folder = orl_strdup(d->log, path);
+    if (!folder)
+        return ORL_ERR_MEMORY;
+    *strrchr(folder, '/') = '\0';
+    enum orl_result result = orl_dir_make(d->log, folder);
+    free(folder);
+    return result;
+}
+
+static enum orl_result write_map(const struct densifier *d, const char *dir, size_t photo,
+                                 bool geometric, const struct orl_image *map)
+{
+    char *path = map_path(d, dir, photo, geometric);
+    enum orl_result result = path ? make_folder_of(d, path) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_colmap_map_write(d->log, path, map);
+    free(path);
+    return result;
+}
+
+static enum orl_result read_map(const struct densifier *d, const char *dir, size_t photo,
+                                int channels, struct orl_image *map)
+{
+    char *path = map_path(d, dir, photo, false);
+    enum orl_result result = path ? orl_colmap_map_read(d->log, path, map) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && map->channels != channels) {
+        result = orl_fail(d->log, ORL_ERR_FORMAT, "%s: %d channels where %d are needed", path,
+                          map->channels, channels);
+        orl_image_finish(map);
+    }
+    free(path);
+    return result;
+}
+
+// The depth map is written last, so that a photograph with one has both.
+static enum orl_result write_maps(const struct densifier *d, size_t photo, bool geometric,
+                                  const struct densify_maps *maps)
+{
+    enum orl_result result = write_map(d, d->normal_dir, photo, geometric, &maps->normal);
+    if (result == ORL_OK)
+        result = write_map(d, d->depth_dir, photo, geometric, &maps->depth);
+    return result;
+}
+
+static enum orl_result has_maps(const struct densifier *d, size_t photo, bool geometric, bool *has)
+{
+    char *depth = map_path(d, d->depth_dir, photo, geometric);
+    char *normal = map_path(d, d->normal_dir, photo, geometric);
+    enum orl_result result = depth && normal ? ORL_OK : ORL_ERR_MEMORY;
+    *has = result == ORL_OK && orl_path_is_file(depth) && orl_path_is_file(normal);
+    free(depth);
+    free(normal);
+    return result;
+}
+
+static enum orl_result read_pyramid(const struct densifier *d, size_t photo, int levels,
+                                    struct densify_pyramid *pyramid)
+{
+    char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, photo));
+    enum orl_result result =
+        path ? densify_pyramid_read(d->log, path, &d->photos.views[photo].camera, levels, pyramid)
+             : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static enum orl_result read_mask(const struct densifier *d, struct densify_job *job)
+{
+    const struct orl_image *picture = &job->reference.levels[0];
+    if (!d->params->masks_dir)
+        return ORL_OK;
+    char *path = orl_format(d->log, "%s/%s.png", d->params->masks_dir, job->name);
+    if (!path)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    if (orl_path_is_file(path)) {
+        result = orl_picture_read(d->log, path, 1, &job->mask);
+        if (result == ORL_OK &&
+            (job->mask.width != picture->width || job->mask.height != picture->height))
+            result = orl_fail(d->log, ORL_ERR_DATA, "%s: %dx%d, but its photograph is %dx%d", path,
+                              job->mask.width, job->mask.height, picture->width, picture->height);
+    } else {
+        orl_logf(d->log, ORL_LOG_WARNING, "%s: no mask; the whole photograph is used", path);
+    }
+    free(path);
+    return result;
+}
+
+// --- one photograph ---
+
+// FNV-1a, so that a photograph's result does not depend on which others take part.
+static uint32_t name_seed(uint32_t seed, const char *name)
+{
+    uint32_t hash = 2166136261u ^ seed;
+    for (; *name; name++)
+        hash = (hash ^ (uint8_t)*name) * 16777619u;
+    return hash;
+}
+
+// Inverse depths of the photograph's sparse points at the coarsest level, spread to the
+// pixels nearest to them.
+static enum orl_result make_seeds(const struct densifier *d, size_t photo, struct densify_job *job)
+{
+    const struct orl_image *luma = &job->reference.levels[job->reference.count - 1];
+    const struct orl_colmap_image *image = &d->model.images[d->photos.images[photo]];
+    struct orl_view view = {.camera = densify_level_camera(&job->reference.camera,
+                                                           job->reference.count - 1),
+                            .cam_from_world = job->view.cam_from_world};
+    enum orl_result result = orl_image_init(d->log, &job->seeds, luma->width, luma->height, 1,
+                                            ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    size_t pixels = (size_t)luma->width * (size_t)luma->height, filled = 0;
+    size_t width = (size_t)luma->width, height = (size_t)luma->height;
+    float *seeds = job->seeds.f32;
+    size_t *queue = orl_array(d->log, pixels, sizeof *queue);
+    if (!queue)
+        return ORL_ERR_MEMORY;
+    for (size_t k = 0; k < image->point_count; k++) {
+        double pixel[2], depth;
+        if (!orl_view_project(&view, d->model.points[image->points[k]].position, pixel, &depth) ||
+            !(pixel[0] >= 0.0 && pixel[1] >= 0.0 && pixel[0] < (double)width &&
+              pixel[1] < (double)height))
+            continue;
+        size_t at = (size_t)pixel[1] * width + (size_t)pixel[0];
+        if (!(seeds[at] > 0.0f))
+            queue[filled++] = at;
+        seeds[at] = fmaxf(seeds[at], (float)(1.0 / depth));
+    }
+    for (size_t i = 0; i < filled; i++) {
+        size_t at = queue[i], x = at % width, y = at / width;
+        size_t near[4] = {at - 1, at + 1, at - width, at + width};
+        bool there[4] = {x > 0, x + 1 < width, y > 0, y + 1 < height};
+        for (int k = 0; k < 4; k++)
+            if (there[k] && !(seeds[near[k]] > 0.0f)) {
+                seeds[near[k]] = seeds[at];
+                queue[filled++] = near[k];
+            }
+    }
+    free(queue);
+    return ORL_OK;
+}
+
+static void job_finish(struct densify_job *job)
+{
+    densify_pyramid_finish(&job->reference);
+    orl_image_finish(&job->mask);
+    orl_image_finish(&job->seeds);
+    for (int k = 0; k < ORL_DENSIFY_SOURCES_MAX; k++) {
+        densify_pyramid_finish(&job->sources[k]);
+        orl_image_finish(&job->source_depths[k]);
+    }
+}
+
+static int level_count(int width, int height)
+{
+    int side = width < height ? width : height, levels = 1;
+    while (levels < DENSIFY_LEVELS_MAX - EXTRA_LEVELS && side >> levels >= COARSEST_SIDE)
+        levels++;
+    return levels;
+}
+
+static enum orl_result job_open(const struct densifier *d, size_t photo, bool geometric,
+                                struct densify_job *job)
+{
+    const struct densify_plan *plan = &d->plans[photo];
+    *job = (struct densify_job){
+        .name = densify_photo_name(&d->photos, photo),
+        .seed = name_seed(d->params->seed, densify_photo_name(&d->photos, photo)),
+        .view = d->photos.views[photo],
+        .plan = plan,
+        .progress = d->progress,
+        .done = d->done,
+        .total = d->total,
+    };
+    enum orl_result result = read_pyramid(d, photo, 1, &job->reference);
+    if (result != ORL_OK)
+        return result;
+    int levels = geometric ? 1 : level_count(job->reference.levels[0].width,
+                                             job->reference.levels[0].height);
+    densify_pyramid_finish(&job->reference);
+    result = read_pyramid(d, photo, levels, &job->reference);
+    for (int k = 0; k < plan->count && result == ORL_OK; k++) {
+        size_t source = plan->sources[k].photo;
+        job->source_views[k] = d->photos.views[source];
+        result = read_pyramid(d, source, levels + EXTRA_LEVELS, &job->sources[k]);
+        if (result == ORL_OK && geometric)
+            result = read_map(d, d->depth_dir, source, 1, &job->source_depths[k]);
+    }
+    if (result == ORL_OK)
+        result = read_mask(d, job);
+    if (result == ORL_OK && !geometric)
+        result = make_seeds(d, photo, job);
+    return result;
+}
+
+// Maps without any depth, for a photograph that nothing can be matched with.
+static enum orl_result write_empty(const struct densifier *d, size_t photo, bool geometric)
+{
+    struct densify_maps maps = {0};
+    int width, height;
+    char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, photo));
+    enum orl_result result = path ? orl_picture_size(d->log, path, &width, &height)
+                                  : ORL_ERR_MEMORY;
+    free(path);
+    if (result == ORL_OK)
+        result = orl_image_init(d->log, &maps.depth, width, height, 1, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(d->log, &maps.normal, width, height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = write_maps(d, photo, geometric, &maps);
+    densify_maps_finish(&maps);
+    return result;
+}
+
+static enum orl_result process(struct densifier *d, size_t photo, bool geometric)
+{
+    struct densify_maps start = {0}, maps = {0};
+    struct densify_job job = {0};
+    bool final = geometric || d->params->geometric_passes == 0;
+    enum orl_result result = job_open(d, photo, geometric, &job);
+    if (result != ORL_OK)
+        goto end;
+    if (geometric) {
+        result = read_map(d, d->depth_dir, photo, 1, &start.depth);
+        if (result == ORL_OK)
+            result = read_map(d, d->normal_dir, photo, 3, &start.normal);
+        const struct orl_image *picture = &job.reference.levels[0];
+        if (result == ORL_OK &&
+            (start.depth.width != picture->width || start.depth.height != picture->height ||
+             start.normal.width != picture->width || start.normal.height != picture->height))
+            result = orl_fail(d->log, ORL_ERR_DATA,
+                              "%s: its photometric maps are of another size; remove them to have "
+                              "them made again", job.name);
+        job.start = &start;
+        if (result == ORL_OK)
+            result = densify_geometric(d->device, &job, &maps);
+    } else {
+        result = densify_photometric(d->device, &job, final, &maps);
+    }
+    size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
+    if (result == ORL_OK && final)
+        result = densify_remove_speckles(d->log, &maps, SPECKLE_LEAST + pixels / 16384, 0.01f);
+    if (result == ORL_OK)
+        result = write_maps(d, photo, geometric, &maps);
+end:
+    densify_maps_finish(&start);
+    densify_maps_finish(&maps);
+    job_finish(&job);
+    return result;
+}
+
+static enum orl_result process_pass(struct densifier *d, bool geometric)
+{
+    for (size_t i = 0; i < d->photos.count; i++) {
+        const char *name = densify_photo_name(&d->photos, i);
+        bool has;
+        enum orl_result result = has_maps(d, i, geometric, &has);
+        if (result != ORL_OK)
+            return result;
+        if (orl_progress_cancelled(d->progress))
+            return ORL_ERR_CANCELLED;
+        orl_progress_report(d->progress, "densify", d->done, d->total, name);
+        if (!has && !d->plans[i].count) {
+            if (!geometric)
+                orl_logf(d->log, ORL_LOG_WARNING,
+                         "%s: too little in common with the other photographs; no depth", name);
+            result = write_empty(d, i, geometric);
+        } else if (!has) {
+            result = process(d, i, geometric);
+        }
+        if (result != ORL_OK)
+            return result;
+        d->done += 1.0;
+        orl_progress_report(d->progress, "densify", d->done, d->total, name);
+    }
+    return ORL_OK;
+}
+
+static enum orl_result check_plans(const struct densifier *d)
+{
+    for (size_t i = 0; i < d->photos.count; i++)
+        if (d->plans[i].count)
+            return ORL_OK;
+    return orl_fail(d->log, ORL_ERR_DATA,
+                    "none of the %zu photographs shares enough with another from a different "
+                    "place: take more photographs, walking sideways between them so that "
+                    "neighbours overlap by two thirds or more", d->photos.count);
+}
+
+static enum orl_result open_workspace(struct densifier *d, const char *workspace,
+                                      const struct orl_names *names)
+{
+    d->images_dir = orl_path_join(d->log, workspace, "images");
+    d->sparse_dir = orl_path_join(d->log, workspace, "sparse");
+    d->depth_dir = orl_path_join(d->log, workspace, "stereo/depth_maps");
+    d->normal_dir = orl_path_join(d->log, workspace, "stereo/normal_maps");
+    if (!d->images_dir || !d->sparse_dir || !d->depth_dir || !d->normal_dir)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = orl_colmap_read(d->log, d->sparse_dir, &d->model);
+    if (result == ORL_OK)
+        result = densify_photos_init(d->log, &d->model, names, &d->photos);
+    if (result == ORL_OK)
+        result = densify_plans_make(d->log, &d->photos, d->params->sources, &d->plans);
+    if (result == ORL_OK)
+        result = check_plans(d);
+    if (result == ORL_OK)
+        result = orl_dir_make(d->log, d->depth_dir);
+    if (result == ORL_OK)
+        result = orl_dir_make(d->log, d->normal_dir);
+    return result;
+}
+
+enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
+                            const struct orl_names *photos,
+                            const struct orl_densify_params *params,
+                            const struct orl_progress *progress)
+{
+    struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = params,
+                          .progress = progress};
+    enum orl_result result = check_params(d.log, params);
+    if (result == ORL_OK)
+        result = open_workspace(&d, workspace, photos);
+    if (result == ORL_OK)
+        result = densify_device_create(gpu, params, &d.device);
+    d.total = (double)d.photos.count * (params->geometric_passes > 0 ? 2.0 : 1.0);
+    if (result == ORL_OK)
+        result = process_pass(&d, false);
+    if (result == ORL_OK && params->geometric_passes > 0)
+        result = process_pass(&d, true);
+    densify_device_destroy(&d.device);
+    free(d.plans);
+    densify_photos_finish(&d.photos);
+    orl_colmap_finish(&d.model);
+    free(d.images_dir);
+    free(d.sparse_dir);
+    free(d.depth_dir);
+    free(d.normal_dir);
+    return result;
+}

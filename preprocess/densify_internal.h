@@ -1,0 +1,102 @@
+// Private to the densifier: choice of sources, one photograph's maps, clean-up.
+#ifndef ORL_PREPROCESS_DENSIFY_INTERNAL_H
+#define ORL_PREPROCESS_DENSIFY_INTERNAL_H
+
+#include "include/densify_block.h"
+#include "preprocess/densify.h"
+#include "scene/colmap.h"
+
+struct densify_source {
+    size_t photo; // index into densify_photos
+    double score; // sum over shared sparse points of how good their angle is
+    double prior; // weight among the sources, (0, 1]
+    int finer;    // levels by which it shows the scene finer than the reference, [0, 3]
+};
+
+// One photograph as reference.
+struct densify_plan {
+    struct densify_source sources[ORL_DENSIFY_SOURCES_MAX]; // best first
+    int count;
+    double w_min, w_max; // range of inverse depth
+};
+
+// The photographs taking part: those asked for that the model has.
+struct densify_photos {
+    const struct orl_colmap_model *model; // not owned
+    size_t count;
+    size_t *images;       // indices into model->images; owned
+    struct orl_view *views; // owned
+};
+
+enum orl_result densify_photos_init(const struct orl_log *log,
+                                    const struct orl_colmap_model *model,
+                                    const struct orl_names *names, struct densify_photos *photos);
+void densify_photos_finish(struct densify_photos *photos);
+static inline const char *densify_photo_name(const struct densify_photos *photos, size_t photo)
+{
+    return photos->model->images[photos->images[photo]].name;
+}
+// Plans for all photographs, released with free(). Photographs without sources have
+// count 0.
+enum orl_result densify_plans_make(const struct orl_log *log, const struct densify_photos *photos,
+                                   int sources, struct densify_plan **plans);
+
+// Rows of matrix (x, y, 1, w) -> to's homogeneous pixels, for a pixel of `from` with
+// inverse depth w.
+void densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4]);
+
+// A photograph's luma at every level, halved by 2x2 boxes; an odd last row or column
+// is left out, so that a coarse pixel k covers exactly the pixels 2k and 2k + 1.
+enum { DENSIFY_LEVELS_MAX = 12 };
+struct densify_pyramid {
+    struct orl_image levels[DENSIFY_LEVELS_MAX];
+    int count;
+    struct orl_camera camera; // of level 0
+};
+enum orl_result densify_pyramid_read(const struct orl_log *log, const char *path,
+                                     const struct orl_camera *camera, int levels,
+                                     struct densify_pyramid *pyramid);
+void densify_pyramid_finish(struct densify_pyramid *pyramid);
+struct orl_camera densify_level_camera(const struct orl_camera *camera, int level);
+
+// --- one photograph on the device ---
+
+struct densify_device;
+enum orl_result densify_device_create(struct orl_gpu *gpu, const struct orl_densify_params *params,
+                                      struct densify_device **out);
+void densify_device_destroy(struct densify_device **device);
+
+struct densify_maps {
+    struct orl_image depth, normal; // one and three channels
+};
+void densify_maps_finish(struct densify_maps *maps);
+
+struct densify_job {
+    const char *name;
+    uint32_t seed; // of this photograph
+    struct orl_view view;
+    const struct densify_plan *plan;
+    struct orl_view source_views[ORL_DENSIFY_SOURCES_MAX];
+    struct densify_pyramid reference;
+    struct densify_pyramid sources[ORL_DENSIFY_SOURCES_MAX];
+    struct orl_image mask;                                  // level 0; no data: none
+    struct orl_image seeds;                                 // coarsest level: 1/z or 0
+    const struct densify_maps *start;                       // geometric pass: own maps
+    struct orl_image source_depths[ORL_DENSIFY_SOURCES_MAX]; // geometric pass
+    const struct orl_progress *progress;
+    double done, total; // for the progress report; this job counts 1
+};
+// From coarse to fine. final: keep only what matches well.
+enum orl_result densify_photometric(struct densify_device *device, const struct densify_job *job,
+                                    bool final, struct densify_maps *maps);
+// Refines job->start at full size, with the sources' depths; keeps only what matches
+// well and agrees with a source.
+enum orl_result densify_geometric(struct densify_device *device, const struct densify_job *job,
+                                  struct densify_maps *maps);
+
+// Removes connected pieces of less than `least` pixels; neighbours are connected when
+// their depths differ by less than `tolerance` (relative).
+enum orl_result densify_remove_speckles(const struct orl_log *log, struct densify_maps *maps,
+                                        size_t least, float tolerance);
+
+#endif

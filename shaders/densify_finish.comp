@@ -1,0 +1,52 @@
+// Planes to depth and normal maps. FILTER keeps what several photographs agree on.
+#include "include/densify.glsl"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(rgba32f, binding = 0) readonly uniform image2D planes;
+layout(r32f, binding = 1) readonly uniform image2D costs;
+layout(rgba32ui, binding = 2) readonly uniform uimage2D view_costs;
+layout(rgba32f, binding = 3) writeonly uniform image2D maps; // normal, depth
+
+#ifdef GEOMETRIC
+// Sources whose own depth is that of this plane, and which look alike.
+int agreeing_views(vec3 plane, vec2 pixel, uvec4 views)
+{
+    int count = 0;
+    for (int view = 0; view < SOURCES; view++) {
+        vec4 q = vec4(pixel, 1.0, plane.x);
+        float depth = dot(forward[3 * view + 2], q);
+        if (!(extent[view].z > 0.0) || !(depth > 0.0))
+            continue;
+        vec2 texel = vec2(dot(forward[3 * view], q), dot(forward[3 * view + 1], q)) / depth;
+        vec2 inside = texel - float(PADDING) + 0.5;
+        if (any(lessThan(inside, vec2(0.0))) || any(greaterThan(inside, extent[view].xy)))
+            continue;
+        if (geometric_cost(view, texel, pixel) < tune.z * limit.y &&
+            cost_unpack(get_byte(views, view)) < limit.z)
+            count++;
+    }
+    return count;
+}
+#endif
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, area.z);
+    if (at.x >= area.x || at.y >= area.w)
+        return;
+    vec2 pixel = pixel_centre(at);
+    vec3 plane = imageLoad(planes, at).xyz;
+    vec4 map = vec4(0.0);
+    float cost = imageLoad(costs, at).r;
+    bool keep = texelFetch(reference, at, 0).g > 0.0 && plane.x > 0.0;
+#ifdef FILTER
+    keep = keep && cost < limit.x;
+#ifdef GEOMETRIC
+    int count = agreeing_views(plane, pixel, imageLoad(view_costs, at));
+    keep = keep && (count >= 2 || (count == 1 && cost < limit.w));
+#endif
+#endif
+    if (keep)
+        map = vec4(-normalize(plane_normal(plane, pixel)), 1.0 / plane.x);
+    imageStore(maps, at, map);
+}
