@@ -19,6 +19,7 @@ struct exr_writer {
     exr_context_t context;
     exr_encode_pipeline_t pipe;
     bool pipe_ready;
+    exr_result_t (*compress)(exr_encode_pipeline_t *); // the library's
     float *rows; // one chunk's samples, channel after channel
 };
 
@@ -154,6 +155,32 @@ static void gather(const struct orl_exr_params *params, const struct orl_exr_cha
     }
 }
 
+// OpenEXRCore before 3.2 leaves a chunk compressed when that takes exactly as many
+// bytes as the samples themselves, which every reader takes to mean: not compressed.
+static exr_result_t compress(exr_encode_pipeline_t *pipe)
+{
+    const struct exr_writer *writer = pipe->encoding_user_data;
+    exr_result_t code = writer->compress(pipe);
+    if (code == EXR_ERR_SUCCESS && pipe->compressed_bytes >= pipe->packed_bytes &&
+        pipe->compressed_alloc_size >= pipe->packed_bytes) {
+        memcpy(pipe->compressed_buffer, pipe->packed_buffer, pipe->packed_bytes);
+        pipe->compressed_bytes = pipe->packed_bytes;
+    }
+    return code;
+}
+
+static exr_result_t choose_routines(struct exr_writer *writer)
+{
+    exr_encode_pipeline_t *pipe = &writer->pipe;
+    exr_result_t code = exr_encoding_choose_default_routines(writer->context, 0, pipe);
+    if (code == EXR_ERR_SUCCESS && pipe->compress_fn) {
+        writer->compress = pipe->compress_fn;
+        pipe->compress_fn = compress;
+        pipe->encoding_user_data = writer;
+    }
+    return code;
+}
+
 static exr_result_t write_chunk(struct exr_writer *writer, int y)
 {
     exr_chunk_info_t chunk;
@@ -182,7 +209,7 @@ static exr_result_t write_chunk(struct exr_writer *writer, int y)
         to->encode_from_ptr = (const uint8_t *)rows;
     }
     if (first)
-        code = exr_encoding_choose_default_routines(writer->context, 0, pipe);
+        code = choose_routines(writer);
     return code == EXR_ERR_SUCCESS ? exr_encoding_run(writer->context, 0, pipe) : code;
 }
 
