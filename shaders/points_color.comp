@@ -16,8 +16,9 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= area.x || at.y >= area.y)
         return;
-    // The push stage overwrites the interval of a splat that it finds occluded.
-    float front = imageLoad(surfel_a, at).x;
-    if (front > 0.0 && floatBitsToUint(front) == depth_bits[at.y * area.x + at.x])
-        imageStore(accumulated, at, vec4(srgb_decode(imageLoad(splat_color, at).rgb), 1.0));
+    // The push stage brings pixels forward where it finds their splat occluded.
+    vec4 color = imageLoad(splat_color, at);
+    float nearest = uintBitsToFloat(depth_bits[at.y * area.x + at.x]);
+    if (color.a > 0.0 && imageLoad(surfel_a, at).x >= nearest)
+        imageStore(accumulated, at, vec4(srgb_decode(color.rgb), 1.0));
 }

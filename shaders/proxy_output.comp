@@ -21,9 +21,8 @@ void main()
     if (a.w > 0.0) {
         surfel s = surfel_unpack(a, imageLoad(surfel_b, at));
         vec2 centre = vec2(at) + 0.5;
-        depth = surfel_depth_at(s, centre + s.displacement, centre, camera);
-        if (depth <= 0.0) // the pixel of a point smaller than a pixel
-            depth = s.depth;
+        bool inside;
+        depth = surfel_depth_at(s, centre + s.displacement, centre, camera, inside);
         normal = s.normal;
     }
     imageStore(depth_out, at, vec4(depth));

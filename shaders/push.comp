@@ -36,8 +36,15 @@ void main()
             continue;
         found[i] = surfel_unpack(a, imageLoad(coarse_b, from));
         vec2 disc_centre = level_centre(from, level.z + 1) + found[i].displacement;
-        depths[i] = surfel_depth_at(found[i], disc_centre, centre, camera);
+        bool inside;
+        depths[i] = surfel_depth_at(found[i], disc_centre, centre, camera, inside);
         found[i].displacement = disc_centre - centre;
+        // A disc smaller than a pixel on screen still closes empty pixels around its
+        // centre, as EWA's low-pass filter does: otherwise slanted surfaces are full of
+        // pinholes. It hides nothing there.
+        bool closes = own.w <= 0.0 && length(disc_centre - centre) <= SURFEL_MIN_RADIUS_PX;
+        if (!inside && !closes)
+            depths[i] = 0.0;
         if (depths[i] > 0.0 && found[i].near < front) {
             front = found[i].near;
             front_far = found[i].far;

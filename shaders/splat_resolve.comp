@@ -11,6 +11,9 @@ layout(std430, binding = 2) readonly buffer pixel_point {
 layout(std430, binding = 3) readonly buffer point_attributes {
     uvec2 attributes[]; // octahedral normal (2x16 snorm), colour (8-bit sRGB)
 };
+layout(std430, binding = 4) readonly buffer pixel_layer {
+    uvec2 layer[];
+};
 layout(rgba32f, binding = 0) writeonly uniform image2D surfel_a;
 layout(rgba32f, binding = 1) writeonly uniform image2D surfel_b;
 layout(rgba8, binding = 2) writeonly uniform image2D splat_color;
@@ -28,6 +31,12 @@ void main()
     vec3 p = splat_camera_position(positions[point].xyz);
     vec2 pixel;
     splat_pixel(p, pixel);
+
+    uvec2 mean = layer[at.y * size.x + at.x];
+    if (mean.x > 0u) {
+        float steps = (float(mean.y) / float(mean.x) + 0.5) / SPLAT_LAYER_STEPS;
+        p *= 1.0 + (mean.x > 1u ? steps * options.y : 0.0);
+    }
 
     surfel s;
     s.radius = positions[point].w * options.x;

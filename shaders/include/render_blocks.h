@@ -11,7 +11,7 @@ ORL_BLOCK(splat_block)
     VEC4S(rotation, 3); // rows of cam_from_world's rotation
     VEC4(eye);          // camera centre, world; w: nearest depth drawn
     VEC4(focal);        // fx fy cx cy, pixels
-    VEC4(options);      // x: radius scale
+    VEC4(options);      // x: radius scale, y: front layer's thickness, fraction of depth
     IVEC4(size);        // width, height, points in this chunk, index of its first point
 };
 #endif

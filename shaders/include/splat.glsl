@@ -2,6 +2,9 @@
 #define BLOCK_SPLAT
 #include "include/render_blocks.h"
 
+// Resolution of the front layer's depth; 2^32 / this many points fit one pixel's sum.
+const float SPLAT_LAYER_STEPS = 1024.0;
+
 layout(std430, binding = 0) readonly buffer point_positions {
     vec4 positions[]; // world xyz, radius
 };

@@ -2,6 +2,8 @@
 // surfel_a: nearest and farthest depth of the interval, depth of the centre, radius;
 // radius 0: empty. surfel_b: normal (octahedron, camera frame), displacement of the
 // projected centre from this pixel's centre, in level 0 pixels.
+const float SURFEL_MIN_RADIUS_PX = 1.5;
+
 struct surfel {
     float near, far, depth, radius;
     vec3 normal;
@@ -29,10 +31,11 @@ vec2 level_centre(ivec2 pixel, int level)
     return (vec2(pixel) + 0.5) * float(1 << level);
 }
 
-// Depth at which the ray through `target` (level 0 pixels) meets the disc whose
-// centre projects to `centre`, 0 outside the disc. The projected disc is Marroquim's
-// ellipse; meeting the ray with it is exact under perspective.
-float surfel_depth_at(surfel s, vec2 centre, vec2 target, vec4 camera)
+// Depth at which the ray through `target` (level 0 pixels) meets the plane of the disc
+// whose centre projects to `centre`, within the disc's depth range; 0: behind the eye.
+// `inside`: the ray meets the disc itself. The projected disc is Marroquim's ellipse;
+// meeting it with the ray is exact under perspective.
+float surfel_depth_at(surfel s, vec2 centre, vec2 target, vec4 camera, out bool inside)
 {
     vec3 centre_ray = vec3((centre - camera.zw) / camera.xy, 1.0);
     vec3 ray = vec3((target - camera.zw) / camera.xy, 1.0);
@@ -43,5 +46,6 @@ float surfel_depth_at(surfel s, vec2 centre, vec2 target, vec4 camera)
     float depth = edge_on ? s.depth : plane / along;
     depth = clamp(depth, s.depth - s.radius, s.depth + s.radius);
     vec3 offset = ray * depth - centre_ray * s.depth;
-    return dot(offset, offset) <= s.radius * s.radius && depth > 0.0 ? depth : 0.0;
+    inside = dot(offset, offset) <= s.radius * s.radius;
+    return max(depth, 0.0);
 }

@@ -27,6 +27,7 @@ struct proxy {
 struct proxy_target {
     int width, height, levels;
     struct orl_buf *depth_bits, *point_index;      // one word per pixel
+    struct orl_buf *layer;                         // two: splat_index.comp
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX];  // shaders/include/surfel.glsl
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
     struct orl_tex *splat_color;                   // sRGB; alpha 1 where a splat is
@@ -42,8 +43,12 @@ enum orl_result proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *ta
 void proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
 // Bytes of a target of this size.
 size_t proxy_target_bytes(int width, int height);
+// How the proxy is made, from the method's parameters.
+struct proxy_options {
+    float splat_scale, front_layer;
+};
 void proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                float splat_scale, struct proxy_target *target);
+                const struct proxy_options *options, struct proxy_target *target);
 
 // Work groups that cover width x height pixels.
 void pixel_groups(int width, int height, unsigned groups[3]);
@@ -54,7 +59,7 @@ struct photo_slot {
     bool usable;
     struct orl_tex *color;   // NULL: not resident
     struct orl_tex *depth;   // z of the splatted proxy, NULL: not made yet
-    float depth_splat_scale; // that `depth` was made with
+    struct proxy_options depth_options; // that `depth` was made with
     unsigned last_use;
 };
 
@@ -70,11 +75,11 @@ struct photos {
 enum orl_result photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
                             size_t budget_bytes, struct photos *photos);
 void photos_finish(struct orl_gpu *gpu, struct photos *photos);
-// Makes colour resident, and depth of that splat scale when asked for; evicts others
-// when the budget demands it.
+// Makes colour resident, and depth (depth_options not NULL); evicts others when the
+// budget demands it.
 enum orl_result photos_require(struct orl_gpu *gpu, struct photos *photos,
-                               const struct proxy *proxy, size_t photo, bool with_depth,
-                               float splat_scale);
+                               const struct proxy *proxy, size_t photo,
+                               const struct proxy_options *depth_options);
 
 // --- filling (fill.c) ---
 

@@ -8,7 +8,7 @@
 
 #define PHOTO_DEFAULTS                                                                     \
     .color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,  \
-    .depth_tolerance = 0.01f, .splat_scale = 1.0f, .distance_floor = 0.1f,                 \
+    .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f, .distance_floor = 0.1f,                 \
     .border_px = 16.0f
 
 const struct orl_method orl_methods[] = {
@@ -16,7 +16,7 @@ const struct orl_method orl_methods[] = {
      {PHOTO_DEFAULTS}},
     {"points", "the splats' own colour: the baseline", "-",
      {.color = ORL_COLOR_POINTS, .visibility = ORL_VISIBILITY_NONE, .fill = ORL_FILL_COLOR,
-      .depth_tolerance = 0.01f, .splat_scale = 1.0f, .distance_floor = 0.1f,
+      .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f, .distance_floor = 0.1f,
       .border_px = 16.0f}},
     {0},
 };
@@ -38,6 +38,8 @@ const struct orl_render_option orl_render_options[] = {
      "how far depths may differ on the same surface"},
     {"splat_scale", FIELD(splat_scale), NULL, 0.01, 16, "",
      "multiplies splat radii; larger closes more holes and fattens edges"},
+    {"front_layer", FIELD(front_layer), NULL, 0, 0.1, "fraction of depth",
+     "splats this close behind the nearest one are averaged with it; 0: the nearest alone"},
     {"distance_floor", FIELD(distance_floor), NULL, 1e-4, 1, "fraction of viewing distance",
      "keeps Airieau's distance difference from zero"},
     {"border_px", FIELD(border_px), NULL, 0, 1024, "pixels of the photograph",

@@ -152,7 +152,7 @@ end:
 
 static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
                                   const struct proxy *proxy, size_t index,
-                                  struct photo_slot *slot, float splat_scale)
+                                  struct photo_slot *slot, const struct proxy_options *options)
 {
     struct orl_view view = photos->scene->photos[index].view;
     view.camera = orl_camera_resized(&view.camera, divided(view.camera.width, photos->divide),
@@ -169,17 +169,22 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
             return result;
     }
     // The proxy draws into the target's depth; trade textures instead of copying.
-    proxy_draw(gpu, proxy, &view, splat_scale, &photos->target);
+    proxy_draw(gpu, proxy, &view, options, &photos->target);
     struct orl_tex *made = photos->target.depth;
     photos->target.depth = slot->depth;
     slot->depth = made;
-    slot->depth_splat_scale = splat_scale;
+    slot->depth_options = *options;
     return ORL_OK;
 }
 
+static bool same_options(const struct proxy_options *a, const struct proxy_options *b)
+{
+    return a->splat_scale == b->splat_scale && a->front_layer == b->front_layer;
+}
+
 enum orl_result photos_require(struct orl_gpu *gpu, struct photos *photos,
-                               const struct proxy *proxy, size_t photo, bool with_depth,
-                               float splat_scale)
+                               const struct proxy *proxy, size_t photo,
+                               const struct proxy_options *depth_options)
 {
     struct photo_slot *slot = &photos->slots[photo];
     slot->last_use = ++photos->clock;
@@ -188,7 +193,8 @@ enum orl_result photos_require(struct orl_gpu *gpu, struct photos *photos,
         make_room(gpu, photos, photo_bytes(&photos->scene->photos[photo], photos->divide));
         result = load_color(gpu, photos, photo, slot);
     }
-    if (result == ORL_OK && with_depth && (!slot->depth || slot->depth_splat_scale != splat_scale))
-        result = make_depth(gpu, photos, proxy, photo, slot, splat_scale);
+    if (result == ORL_OK && depth_options &&
+        (!slot->depth || !same_options(&slot->depth_options, depth_options)))
+        result = make_depth(gpu, photos, proxy, photo, slot, depth_options);
     return result;
 }

@@ -149,7 +149,7 @@ size_t proxy_target_bytes(int width, int height)
 {
     int levels = pyramid_levels(width, height);
     size_t pyramid = (size_t)padded(width, levels) * (size_t)padded(height, levels) * 32;
-    return pyramid + pyramid / 3 + (size_t)width * (size_t)height * (8 + 4 + 4 + 8);
+    return pyramid + pyramid / 3 + (size_t)width * (size_t)height * (16 + 4 + 4 + 8);
 }
 
 static enum orl_result make_pyramid(struct orl_gpu *gpu, struct proxy_target *t)
@@ -182,6 +182,8 @@ enum orl_result proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *ta
         result = orl_buf_create(gpu, "splat depth", words, NULL, &target->depth_bits);
     if (result == ORL_OK)
         result = orl_buf_create(gpu, "splat index", words, NULL, &target->point_index);
+    if (result == ORL_OK)
+        result = orl_buf_create(gpu, "splat layer", 2 * words, NULL, &target->layer);
     params.format = GL_RGBA8;
     params.tag = "splat colour";
     if (result == ORL_OK)
@@ -207,15 +209,17 @@ void proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target)
     }
     orl_buf_destroy(gpu, &target->depth_bits);
     orl_buf_destroy(gpu, &target->point_index);
+    orl_buf_destroy(gpu, &target->layer);
     orl_tex_destroy(gpu, &target->splat_color);
     orl_tex_destroy(gpu, &target->depth);
     orl_tex_destroy(gpu, &target->normal);
     memset(target, 0, sizeof *target);
 }
 
-static struct splat_block splat_params(const struct orl_view *view, float splat_scale)
+static struct splat_block splat_params(const struct orl_view *view,
+                                       const struct proxy_options *options)
 {
-    struct splat_block block = {.options = {splat_scale}};
+    struct splat_block block = {.options = {options->splat_scale, options->front_layer}};
     double eye[3];
     orl_pose_centre(&view->cam_from_world, eye);
     for (int i = 0; i < 3; i++) {
@@ -233,11 +237,12 @@ static struct splat_block splat_params(const struct orl_view *view, float splat_
 }
 
 static void splat(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                  float splat_scale, struct proxy_target *t)
+                  const struct proxy_options *options, struct proxy_target *t)
 {
-    struct splat_block block = splat_params(view, splat_scale);
+    struct splat_block block = splat_params(view, options);
     orl_buf_fill(t->depth_bits, UINT32_MAX);
     orl_buf_fill(t->point_index, UINT32_MAX);
+    orl_buf_fill(t->layer, 0);
     orl_tex_clear(t->surfel_a[0], 0);
     orl_tex_clear(t->splat_color, 0);
     struct orl_prog *const passes[] = {proxy->splat_depth, proxy->splat_index};
@@ -248,7 +253,7 @@ static void splat(struct orl_gpu *gpu, const struct proxy *proxy, const struct o
             block.size[3] = chunk->first;
             struct orl_dispatch d = {.prog = passes[pass], .params = &block,
                                      .bufs = {{.buf = chunk->positions}, {.buf = t->depth_bits},
-                                              {.buf = t->point_index}},
+                                              {.buf = t->point_index}, {.buf = t->layer}},
                                      .groups = {orl_groups((size_t)chunk->count, ORL_POINT_GROUP)},
                                      .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
             orl_gpu_dispatch(gpu, &d);
@@ -259,7 +264,8 @@ static void splat(struct orl_gpu *gpu, const struct proxy *proxy, const struct o
         block.size[3] = chunk->first;
         struct orl_dispatch d = {.prog = proxy->splat_resolve, .params = &block,
                                  .bufs = {{.buf = chunk->positions}, {.buf = NULL},
-                                          {.buf = t->point_index}, {.buf = chunk->attributes}},
+                                          {.buf = t->point_index}, {.buf = chunk->attributes},
+                                          {.buf = t->layer}},
                                  .images = {{t->surfel_a[0], 0, GL_WRITE_ONLY},
                                             {t->surfel_b[0], 0, GL_WRITE_ONLY},
                                             {t->splat_color, 0, GL_WRITE_ONLY}},
@@ -315,10 +321,10 @@ static void pull_push(struct orl_gpu *gpu, const struct proxy *proxy, const stru
 }
 
 void proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                float splat_scale, struct proxy_target *target)
+                const struct proxy_options *options, struct proxy_target *target)
 {
     orl_pass_begin(gpu, "splat");
-    splat(gpu, proxy, view, splat_scale, target);
+    splat(gpu, proxy, view, options, target);
     orl_pass_end(gpu);
     orl_pass_begin(gpu, "pull-push");
     pull_push(gpu, proxy, view, target);

@@ -19,6 +19,8 @@ struct orl_render_params {
     enum orl_fill fill;             // of pixels that no splat covers
     float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
     float splat_scale;              // multiplies splat radii, (0, 16]
+    float front_layer;              // splats this close behind the nearest one are averaged
+                                    // with it, fraction of depth, [0, 0.1]
     float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
     float border_px;                // photographs fade out over this width, [0, 1024] pixels
 };

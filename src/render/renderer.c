@@ -151,15 +151,22 @@ static void gather_photo(struct orl_renderer *r, const struct orl_view *view,
     orl_gpu_dispatch(r->gpu, &d);
 }
 
+static struct proxy_options proxy_options(const struct orl_render_params *params)
+{
+    return (struct proxy_options){.splat_scale = params->splat_scale,
+                                  .front_layer = params->front_layer};
+}
+
 static enum orl_result gather(struct orl_renderer *r, const struct orl_view *view,
                               const struct orl_render_params *params, const bool *skip)
 {
+    struct proxy_options options = proxy_options(params);
     bool test = params->visibility == ORL_VISIBILITY_HARD;
     for (size_t i = 0; i < r->scene->photo_count; i++) {
         if (!r->photos.slots[i].usable || (skip && skip[i]))
             continue;
-        enum orl_result result = photos_require(r->gpu, &r->photos, &r->proxy, i, test,
-                                                params->splat_scale);
+        enum orl_result result = photos_require(r->gpu, &r->photos, &r->proxy, i,
+                                                test ? &options : NULL);
         if (result != ORL_OK)
             return result;
         orl_pass_begin(r->gpu, "gather");
@@ -202,7 +209,8 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
 {
     struct orl_gpu *gpu = r->gpu;
     enum orl_result result = ORL_OK;
-    proxy_draw(gpu, &r->proxy, view, params->splat_scale, &r->target);
+    struct proxy_options options = proxy_options(params);
+    proxy_draw(gpu, &r->proxy, view, &options, &r->target);
     orl_tex_clear(r->accumulated, 0);
     if (params->color == ORL_COLOR_PHOTOS) {
         if (params->fill == ORL_FILL_DEPTH) {
