@@ -5,6 +5,8 @@
 
 static const struct command commands[] = {
     {"eval", "compare renderings with held-out photographs", cmd_eval},
+    {"info", "say what is in a scene", cmd_info},
+    {"prepare", "make a scene from photographs", cmd_prepare},
     {"render", "render new views", cmd_render},
     {"synth", "photographs of a synthetic monument with ground truth", cmd_synth},
     {0},

@@ -1,0 +1,23 @@
+// Expose: exposure of each photograph and the series it belongs to.
+#ifndef ORL_PREPROCESS_EXPOSE_H
+#define ORL_PREPROCESS_EXPOSE_H
+
+#include "core/log.h"
+
+struct orl_exposure {
+    bool known;  // in: ev is set
+    bool test;   // in: has no say in the median or the series
+    double ev;   // in: log2 of exposure; out: relative to the median, 0 if unknown
+    int series;  // out: from 0, darkest first
+};
+
+// Photographs whose exposures differ by less than this, step by step, are one
+// series: half of the third of a stop that cameras set.
+#define ORL_EXPOSURE_STEP_EV 0.17
+
+// Median and series come from known exposures of photographs that are not held out;
+// the others join the series nearest to them. Returns the number of series.
+enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
+                                    size_t count, int *series_count) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,116 @@
+// scene.json: what the stages found, in one place. Its being there makes the folder
+// a scene, so it is written last.
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "preprocess/job.h"
+#include "scene/manifest.h"
+
+static enum orl_result add_checksum(const struct orl_job *job, json_t *sums, const char *name)
+{
+    uint64_t hash = 0;
+    char *path = orl_job_path(job, "%s", name);
+    enum orl_result result = path ? orl_file_hash(job->log, path, &hash) : ORL_ERR_MEMORY;
+    char text[32];
+    snprintf(text, sizeof text, "xxh3:%016" PRIx64, hash);
+    if (result == ORL_OK)
+        json_object_set_new(sums, name, json_string(text));
+    free(path);
+    return result;
+}
+
+static json_t *stage_value(const json_t *done, const char *stage, const char *key)
+{
+    return json_object_get(json_object_get(done, stage), key);
+}
+
+// The records of the stages without what has a place of its own.
+static json_t *copy_stages(const json_t *done)
+{
+    static const char *const elsewhere[] = {"photographs", "left_out", "skipped"};
+    json_t *stages = json_deep_copy(done);
+    const char *name;
+    json_t *record;
+    json_object_foreach(stages, name, record)
+        for (size_t i = 0; i < ORL_COUNT(elsewhere); i++)
+            json_object_del(record, elsewhere[i]);
+    return stages;
+}
+
+static int compare_photos(const void *a, const void *b)
+{
+    const json_t *x = *(json_t *const *)a, *y = *(json_t *const *)b;
+    return strcmp(json_string_value(json_object_get(x, "name")),
+                  json_string_value(json_object_get(y, "name")));
+}
+
+// Sorted by name, like everything else that lists photographs.
+static json_t *sort_photos(json_t *photos)
+{
+    size_t count = json_array_size(photos);
+    json_t **items = calloc(count + 1, sizeof *items);
+    json_t *sorted = json_array();
+    for (size_t i = 0; items && i < count; i++)
+        items[i] = json_array_get(photos, i);
+    if (items)
+        qsort(items, count, sizeof *items, compare_photos);
+    for (size_t i = 0; items && i < count; i++)
+        json_array_append(sorted, items[i]);
+    free(items);
+    return sorted;
+}
+
+static json_t *counts(const struct orl_job *job, const json_t *done, const json_t *photos)
+{
+    size_t test = 0;
+    for (size_t i = 0; i < json_array_size(photos); i++) {
+        const char *split =
+            json_string_value(json_object_get(json_array_get(photos, i), "split"));
+        test += split && strcmp(split, "test") == 0;
+    }
+    json_int_t registered = (json_int_t)json_array_size(photos);
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:O*, s:O*}", "given",
+                     (json_int_t)job->given, "skipped", (json_int_t)json_array_size(job->skipped),
+                     "used", (json_int_t)job->source_count, "registered", registered, "train",
+                     registered - (json_int_t)test, "test", (json_int_t)test, "left_out",
+                     (json_int_t)job->source_count - registered, "sparse_points",
+                     stage_value(done, "calibrate", "sparse_points"), "points",
+                     stage_value(done, "radii", "points"));
+}
+
+static json_t *left_out(const struct orl_job *job, const json_t *done)
+{
+    json_t *list = json_deep_copy(job->skipped);
+    const json_t *unplaced = stage_value(done, "calibrate", "left_out");
+    for (size_t i = 0; i < json_array_size(unplaced); i++)
+        json_array_append_new(list, json_pack("{s:O, s:s}", "name", json_array_get(unplaced, i),
+                                              "why", "cannot be placed"));
+    return list;
+}
+
+enum orl_result orl_stage_manifest(struct orl_job *job)
+{
+    static const char *const files[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
+                                        "sparse/points3D.bin"};
+    const json_t *done = json_object_get(job->stages, "done");
+    json_t *sums = json_object();
+    json_t *photos = sort_photos(stage_value(done, "expose", "photographs"));
+    char *path = orl_job_path(job, "scene.json");
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
+        result = add_checksum(job, sums, files[i]);
+    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "format",
+                             "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
+                             "oriel " ORL_VERSION, "settings", orl_job_settings(job), "counts",
+                             counts(job, done, photos), "photographs", photos, "left_out",
+                             left_out(job, done), "stages", copy_stages(done), "checksums", sums);
+    if (result == ORL_OK && !root)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    if (result == ORL_OK)
+        result = orl_json_write(job->log, path, root);
+    json_decref(root);
+    free(path);
+    return result;
+}

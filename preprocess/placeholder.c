@@ -1,1 +1,0 @@
-typedef int orl_placeholder;

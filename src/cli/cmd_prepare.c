@@ -1,0 +1,115 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/summary.h"
+#include "preprocess/prepare.h"
+
+enum { INPUTS_MAX = 4096 };
+
+struct options {
+    const char *out, *quality, *sharing, *matching, *densifier, *masks;
+    int test_every, max_size, seed;
+    struct orl_names test_list;
+    bool resume;
+};
+
+// Index of `text` in the list; -1, logged with what is allowed, when it is not there.
+static int choose(const struct orl_log *log, const char *option, const char *text,
+                  const char *const *names, size_t count)
+{
+    char all[256] = "";
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(names[i], text) == 0)
+            return (int)i;
+        size_t used = strlen(all);
+        snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", names[i]);
+    }
+    orl_logf(log, ORL_LOG_ERROR, "--%s %s: must be one of %s", option, text, all);
+    return -1;
+}
+
+static bool choose_all(const struct orl_log *log, const struct options *o,
+                       struct orl_prepare_params *params)
+{
+    static const char *const qualities[] = {"draft", "standard", "high"};
+    static const char *const sharings[] = {"auto", "single", "each"};
+    static const char *const matchings[] = {"auto", "exhaustive", "sequential"};
+    static const char *const densifiers[] = {"auto", "gl", "colmap"};
+    int quality = choose(log, "quality", o->quality, qualities, 3);
+    int sharing = choose(log, "camera-sharing", o->sharing, sharings, 3);
+    int matching = choose(log, "matching", o->matching, matchings, 3);
+    int densifier = choose(log, "densifier", o->densifier, densifiers, 3);
+    if (quality < 0 || sharing < 0 || matching < 0 || densifier < 0)
+        return false;
+    params->quality = (enum orl_quality)quality;
+    params->sharing = (enum orl_camera_sharing)sharing;
+    params->matching = (enum orl_matching)matching;
+    params->densifier = (enum orl_densifier)densifier;
+    return true;
+}
+
+static enum orl_result prepare(const struct terminal *terminal, const struct options *o,
+                               const struct arg_common *common, const char *const *inputs,
+                               size_t input_count)
+{
+    struct orl_prepare_params params = {
+        .inputs = inputs, .input_count = input_count, .out = o->out, .test_every = o->test_every,
+        .test_list = &o->test_list, .max_size = o->max_size, .masks_dir = o->masks,
+        .resume = o->resume, .seed = (uint32_t)o->seed, .shader_dir = common->shader_dir};
+    if (!o->out)
+        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT, "prepare: --out SCENE is missing");
+    if (o->test_every && o->test_list.count)
+        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
+                        "prepare: --test-every and --test-list exclude each other");
+    if (!choose_all(&terminal->log, o, &params))
+        return ORL_ERR_ARGUMENT;
+    return orl_prepare(&terminal->log, &params, &terminal->progress);
+}
+
+int cmd_prepare(int argc, char **argv)
+{
+    struct options o = {.quality = "standard", .sharing = "auto", .matching = "auto",
+                        .densifier = "auto", .seed = 1};
+    const struct arg_option options[] = {
+        {"out", ARG_STRING, &o.out, "SCENE", "the scene folder to make", 0, 0},
+        {"test-every", ARG_INT, &o.test_every, "N", "hold out every N-th photograph by name",
+         2, 100000},
+        {"test-list", ARG_LIST, &o.test_list, "A,B,..", "hold out these photographs", 0, 0},
+        {"max-size", ARG_INT, &o.max_size, "PX",
+         "larger side of photographs in the scene (by quality: 800, 1600, 3200)", 64, 16384},
+        {"quality", ARG_STRING, &o.quality, "NAME", "draft, standard or high", 0, 0},
+        {"masks", ARG_STRING, &o.masks, "DIR", "NAME.png or NAME.EXT.png; black is ignored",
+         0, 0},
+        {"camera-sharing", ARG_STRING, &o.sharing, "HOW",
+         "auto (by size and EXIF), single or each", 0, 0},
+        {"matching", ARG_STRING, &o.matching, "HOW",
+         "auto, exhaustive, or sequential (photographs in order of name)", 0, 0},
+        {"densifier", ARG_STRING, &o.densifier, "NAME",
+         "auto, gl (built in) or colmap (needs CUDA)", 0, 0},
+        {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},
+        {"seed", ARG_INT, &o.seed, "N", "of random choices", 0, 2147483647},
+        {0},
+    };
+    const struct arg_command command = {
+        .name = "prepare", .usage = "PHOTOS... --out SCENE [options]",
+        .summary = "Makes a scene from photographs (files and folders of them). Needs COLMAP; "
+                   "ORIEL_COLMAP\nnames its program when it is not on PATH.",
+        .options = options, .positionals_min = 1, .positionals_max = INPUTS_MAX};
+    const char *inputs[INPUTS_MAX];
+    struct arg_common common = {0};
+    struct terminal terminal;
+    size_t input_count;
+    int status;
+    if (command_begin(&command, argc, argv, &common, &terminal, inputs, &input_count, &status)) {
+        enum orl_result result = prepare(&terminal, &o, &common, inputs, input_count);
+        terminal_finish(&terminal);
+        if (result == ORL_OK)
+            result = summary_print(&terminal.log, o.out);
+        else if (result == ORL_ERR_CANCELLED)
+            orl_logf(&terminal.log, ORL_LOG_WARNING, "interrupted; go on with --resume");
+        status = command_status(result);
+    }
+    orl_names_finish(&o.test_list);
+    return status;
+}

@@ -1,0 +1,74 @@
+#include "cli/summary.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "scene/manifest.h"
+
+static long long count(const json_t *counts, const char *key)
+{
+    return (long long)json_integer_value(json_object_get(counts, key));
+}
+
+static double number(const json_t *record, const char *key)
+{
+    return json_number_value(json_object_get(record, key));
+}
+
+static void print_counts(const json_t *root)
+{
+    const json_t *counts = json_object_get(root, "counts");
+    printf("photographs  %lld given, %lld used, %lld registered (%lld train, %lld held out)\n",
+           count(counts, "given"), count(counts, "used"), count(counts, "registered"),
+           count(counts, "train"), count(counts, "test"));
+    printf("points       %lld\n", count(counts, "points"));
+}
+
+static void print_stages(const json_t *stages)
+{
+    double wall = 0, cpu = 0, peak = 0;
+    const char *name;
+    const json_t *record;
+    json_object_foreach((json_t *)(uintptr_t)stages, name, record) {
+        double own = number(record, "peak_rss_mib"), child = number(record, "child_peak_rss_mib");
+        const char *tool = json_string_value(json_object_get(record, "tool"));
+        double stage_peak = fmax(own, child);
+        printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  %s\n", name, number(record, "wall_s"),
+               number(record, "cpu_s"), stage_peak, tool ? tool : "");
+        wall += number(record, "wall_s");
+        cpu += number(record, "cpu_s");
+        peak = fmax(peak, stage_peak);
+    }
+    printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  at most\n", "all", wall, cpu, peak);
+}
+
+static void print_left_out(const json_t *list)
+{
+    size_t i;
+    const json_t *entry;
+    json_array_foreach((json_t *)(uintptr_t)list, i, entry) {
+        const char *name = json_string_value(json_object_get(entry, "name"));
+        const char *why = json_string_value(json_object_get(entry, "why"));
+        printf("left out     %s: %s\n", name ? name : "?", why ? why : "?");
+    }
+}
+
+enum orl_result summary_print(const struct orl_log *log, const char *dir)
+{
+    json_t *root = NULL;
+    char *path = orl_path_join(log, dir, "scene.json");
+    enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        printf("scene        %s\n", dir);
+        print_counts(root);
+        print_left_out(json_object_get(root, "left_out"));
+        print_stages(json_object_get(root, "stages"));
+    }
+    json_decref(root);
+    free(path);
+    return result;
+}

@@ -1,0 +1,11 @@
+// What a scene's manifest says, for people.
+#ifndef ORL_CLI_SUMMARY_H
+#define ORL_CLI_SUMMARY_H
+
+#include "core/log.h"
+
+// Prints counts, stages with time and memory, and what was left out of
+// DIR/scene.json to stdout.
+enum orl_result summary_print(const struct orl_log *log, const char *dir) ORL_CHECK_RESULT;
+
+#endif
