@@ -325,6 +325,7 @@ static void random_damage_never_crashes(void **state)
         memcpy(copy, data, size);
         for (uint32_t n = 1 + noise(&seed) % 4; n; n--) // half of them in the header
             copy[noise(&seed) % (round % 2 ? size : 400)] ^= (uint8_t)(1u << noise(&seed) % 8);
+        remove(file);
         FILE *out = fopen(file, "wb"); // without the flush to disk
         assert_non_null(out);
         assert_int_equal(fwrite(copy, 1, size, out), size);
