@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -54,6 +55,8 @@ static void take_output(struct output *out, const struct orl_process_params *par
 static void exec_child(const struct orl_process_params *params, int output_fd)
 {
     setpgid(0, 0); // so that cancellation reaches the program's own children
+    // A killed Oriel must not leave a program behind that still writes its files.
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(output_fd, STDOUT_FILENO);
     dup2(output_fd, STDERR_FILENO);
     int null_fd = open("/dev/null", O_RDONLY);
