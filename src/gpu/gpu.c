@@ -149,7 +149,7 @@ void orl_gpu_destroy(struct orl_gpu **handle)
         orl_logf(gpu->log, ORL_LOG_ERROR, "%zu buffers, %zu textures, %zu programs still alive",
                  gpu->live_bufs, gpu->live_texs, gpu->live_progs);
     if (gpu->current) {
-        gpu_free_queries(gpu);
+        orl_gpu_free_queries(gpu);
         eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(gpu->display, gpu->context);
         eglTerminate(gpu->display);
@@ -174,7 +174,7 @@ size_t orl_gpu_bytes(const struct orl_gpu *gpu)
     return gpu->live_bytes;
 }
 
-bool gpu_check_errors(struct orl_gpu *gpu, const char *where)
+bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where)
 {
     bool clean = true;
     for (GLenum error; (error = glGetError()) != GL_NO_ERROR; clean = false) {
@@ -189,7 +189,7 @@ bool gpu_check_errors(struct orl_gpu *gpu, const char *where)
 enum orl_result orl_gpu_finish(struct orl_gpu *gpu)
 {
     glFinish();
-    gpu_check_errors(gpu, "finish");
+    orl_gpu_check_errors(gpu, "finish");
     bool failed = gpu->failed;
     gpu->failed = false;
     return failed ? ORL_ERR_GPU : ORL_OK;

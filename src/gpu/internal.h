@@ -40,12 +40,12 @@ struct shader_source {
     const char *files[32];
     size_t file_count;
 };
-enum orl_result shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
+enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
                                    struct shader_source *source);
-void shader_source_finish(struct shader_source *source);
+void orl_shader_source_finish(struct shader_source *source);
 
 // Logs every pending GL error as made by `where`; true if there were none.
-bool gpu_check_errors(struct orl_gpu *gpu, const char *where);
-void gpu_free_queries(struct orl_gpu *gpu);
+bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);
+void orl_gpu_free_queries(struct orl_gpu *gpu);
 
 #endif

@@ -50,7 +50,7 @@ enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const cha
 {
     *out = NULL;
     struct shader_source source;
-    enum orl_result result = shader_source_load(gpu, file, defines, &source);
+    enum orl_result result = orl_shader_source_load(gpu, file, defines, &source);
     if (result != ORL_OK)
         return result;
     double start = orl_time_s();
@@ -72,7 +72,7 @@ enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const cha
         glNamedBufferStorage(prog->params_buf, (GLsizeiptr)params_size, NULL,
                              GL_DYNAMIC_STORAGE_BIT);
     }
-    if (!gpu_check_errors(gpu, file)) {
+    if (!orl_gpu_check_errors(gpu, file)) {
         result = ORL_ERR_GPU;
         goto end;
     }
@@ -82,7 +82,7 @@ enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const cha
     prog = NULL;
 end:
     orl_prog_destroy(gpu, &prog);
-    shader_source_finish(&source);
+    orl_shader_source_finish(&source);
     return result;
 }
 

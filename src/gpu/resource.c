@@ -18,7 +18,7 @@ enum orl_result orl_buf_create(struct orl_gpu *gpu, const char *tag, size_t size
     glObjectLabel(GL_BUFFER, buf->id, -1, tag);
     gpu->live_bufs++;
     gpu->live_bytes += buf->size;
-    if (!gpu_check_errors(gpu, tag)) {
+    if (!orl_gpu_check_errors(gpu, tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no buffer of %zu bytes on the device", tag, size);
         orl_buf_destroy(gpu, &buf);
         return ORL_ERR_GPU;
@@ -123,7 +123,7 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     glObjectLabel(GL_TEXTURE, tex->id, -1, p->tag);
     gpu->live_texs++;
     gpu->live_bytes += tex->bytes;
-    if (!gpu_check_errors(gpu, p->tag)) {
+    if (!orl_gpu_check_errors(gpu, p->tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device", p->tag,
                  p->width, p->height, tex->bytes);
         orl_tex_destroy(gpu, &tex);

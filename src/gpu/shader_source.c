@@ -89,7 +89,7 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
     return result;
 }
 
-enum orl_result shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
+enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
                                    struct shader_source *source)
 {
     static const char head[] = "#version 450 core\n";
@@ -107,11 +107,11 @@ enum orl_result shader_source_load(struct orl_gpu *gpu, const char *file, const 
     if (result == ORL_OK)
         result = expand(gpu, source, file, 0);
     if (result != ORL_OK)
-        shader_source_finish(source);
+        orl_shader_source_finish(source);
     return result;
 }
 
-void shader_source_finish(struct shader_source *source)
+void orl_shader_source_finish(struct shader_source *source)
 {
     free(source->text);
     memset(source, 0, sizeof *source);

@@ -80,7 +80,7 @@ size_t orl_gpu_take_times(struct orl_gpu *gpu, struct orl_pass_time *times, size
     return count;
 }
 
-void gpu_free_queries(struct orl_gpu *gpu)
+void orl_gpu_free_queries(struct orl_gpu *gpu)
 {
     for (size_t i = 0; i < ORL_QUERIES_MAX; i++) {
         glDeleteQueries(1, &gpu->queries[i].begin);
