@@ -23,6 +23,30 @@ bool photo_sees(vec2 uv, float z, bool guessed)
     return any(lessThanEqual(abs(seen - z), vec4(tolerance))) || all(equal(seen, vec4(0.0)));
 }
 
+// Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005): bilinear sampling would
+// blur every photograph by the phase that it happens to be met at.
+vec3 bicubic(vec2 pixel, float mip)
+{
+    float lod = floor(mip + 0.5);
+    vec2 size_at = max(floor(photo_size.xy / exp2(lod)), vec2(1.0));
+    vec2 at = pixel / photo_size.xy * size_at - 0.5;
+    vec2 base = floor(at), f = at - base;
+    vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
+    vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
+    vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
+    vec2 w3 = f * f * (-0.5 + 0.5 * f);
+    vec2 w12 = w1 + w2;
+    vec2 p0 = (base - 0.5) / size_at, p3 = (base + 2.5) / size_at;
+    vec2 p12 = (base + 0.5 + w2 / w12) / size_at;
+    vec3 sum = textureLod(photo, vec2(p12.x, p0.y), lod).rgb * (w12.x * w0.y) +
+               textureLod(photo, vec2(p0.x, p12.y), lod).rgb * (w0.x * w12.y) +
+               textureLod(photo, p12, lod).rgb * (w12.x * w12.y) +
+               textureLod(photo, vec2(p3.x, p12.y), lod).rgb * (w3.x * w12.y) +
+               textureLod(photo, vec2(p12.x, p3.y), lod).rgb * (w12.x * w3.y);
+    float total = w12.x * w0.y + w0.x * w12.y + w12.x * w12.y + w3.x * w12.y + w12.x * w3.y;
+    return max(sum / total, 0.0); // the four corners, left out, weigh next to nothing
+}
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -62,6 +86,7 @@ void main()
         return;
     float magnification = photo_focal.x * depth / (q.z * view_focal.x);
     float mip = clamp(log2(magnification), 0.0, photo_size.z);
-    vec3 color = textureLod(photo, uv, mip).rgb * gain.rgb;
+    vec3 color = options.w > 0.5 ? bicubic(pixel, mip) : textureLod(photo, uv, mip).rgb;
+    color *= gain.rgb;
     imageStore(accumulated, at, imageLoad(accumulated, at) + vec4(color * weight, weight));
 }

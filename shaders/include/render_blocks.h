@@ -35,8 +35,9 @@ ORL_BLOCK(gather_block)
     VEC4(photo_focal);         // fx fy cx cy, pixels of level 0
     VEC4(photo_size);          // width, height, largest mip level, border feather in pixels
     VEC4(gain);                // rgb gain on linear colour
-    VEC4(options);             // x: depth tolerance, y: distance floor, z: 1 = test visibility
-    IVEC4(size);               // width and height of the view, z: 1 = fill pixels too
+    VEC4(options);             // x: depth tolerance, y: distance floor,
+                               // z: 1 = test visibility, w: 1 = bicubic
+    IVEC4(size);               // width and height of the view
 };
 #endif
 

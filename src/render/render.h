@@ -12,11 +12,14 @@ enum orl_visibility { ORL_VISIBILITY_NONE, ORL_VISIBILITY_HARD, ORL_VISIBILITY_C
 enum orl_fill { ORL_FILL_NONE, ORL_FILL_COLOR, ORL_FILL_DEPTH, ORL_FILL_COUNT };
 enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COUNT };
 
+enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC, ORL_SAMPLING_COUNT };
+
 // Every key of --set; the table in options.c gives range, unit, cost and help.
 struct orl_render_params {
     enum orl_color_source color;    // points: the splats' own colour; photos: blended photographs
     enum orl_visibility visibility; // of surface points in photographs
     enum orl_fill fill;             // of pixels that no splat covers
+    enum orl_sampling sampling;     // of photographs
     float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
     float splat_scale;              // multiplies splat radii, (0, 16]
     float front_layer;              // splats this close behind the nearest one are averaged

@@ -136,7 +136,8 @@ static void gather_photo(struct orl_renderer *r, const struct orl_view *view,
         .photo_size = {(float)size->width, (float)size->height, (float)(size->levels - 1),
                        params->border_px / (float)r->photos.divide},
         .gain = {photo->gain[0], photo->gain[1], photo->gain[2]},
-        .options = {params->depth_tolerance, params->distance_floor, test ? 1.0f : 0.0f},
+        .options = {params->depth_tolerance, params->distance_floor, test ? 1.0f : 0.0f,
+                    params->sampling == ORL_SAMPLING_BICUBIC ? 1.0f : 0.0f},
         .size = {view->camera.width, view->camera.height},
     };
     relative_pose(&photo->view.cam_from_world, &view->cam_from_world, &block);
