@@ -41,7 +41,7 @@ struct shader_source {
     size_t file_count;
 };
 enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
-                                   struct shader_source *source);
+                                       struct shader_source *source);
 void orl_shader_source_finish(struct shader_source *source);
 
 // Logs every pending GL error as made by `where`; true if there were none.

@@ -98,8 +98,8 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     if (params->width < 1 || params->height < 1 || params->width > gpu->caps.max_texture_size ||
         params->height > gpu->caps.max_texture_size ||
         params->layers > gpu->caps.max_texture_layers)
-        return orl_fail(gpu->log, ORL_ERR_GPU, "%s: this device has no textures of %dx%d, %d layers",
-                        params->tag, params->width, params->height, params->layers);
+        return orl_fail(gpu->log, ORL_ERR_GPU, "%s: this device has no textures of %dx%d, "
+                        "%d layers", params->tag, params->width, params->height, params->layers);
     struct orl_tex *tex = orl_array(gpu->log, 1, sizeof *tex);
     if (!tex)
         return ORL_ERR_MEMORY;
@@ -124,8 +124,8 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     gpu->live_texs++;
     gpu->live_bytes += tex->bytes;
     if (!orl_gpu_check_errors(gpu, p->tag)) {
-        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device", p->tag,
-                 p->width, p->height, tex->bytes);
+        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device",
+                 p->tag, p->width, p->height, tex->bytes);
         orl_tex_destroy(gpu, &tex);
         return ORL_ERR_GPU;
     }

@@ -90,7 +90,7 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
 }
 
 enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
-                                   struct shader_source *source)
+                                       struct shader_source *source)
 {
     static const char head[] = "#version 450 core\n";
     memset(source, 0, sizeof *source);
