@@ -1,0 +1,151 @@
+// Radii and normals against brute force and known surfaces.
+#include <math.h>
+#include <string.h>
+
+#include "scene/radii.h"
+#include "test.h"
+
+static double random_unit(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (*state >> 8) / 16777216.0;
+}
+
+static double distance(const float a[3], const float b[3])
+{
+    double d2 = 0;
+    for (int k = 0; k < 3; k++)
+        d2 += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
+    return sqrt(d2);
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void agrees_with_brute_force(void **state)
+{
+    (void)state;
+    enum { COUNT = 400, K = 6 };
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, COUNT), ORL_OK);
+    uint32_t seed = 7;
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < 3; k++)
+            points.position[i][k] = (float)random_unit(&seed);
+    const struct orl_radii_params params = {.neighbours = K, .overlap = 1.5f};
+    assert_int_equal(orl_points_set_radii(NULL, NULL, &params, NULL, 0, &points), ORL_OK);
+    for (int i = 0; i < COUNT; i++) {
+        double all[COUNT];
+        for (int j = 0; j < COUNT; j++)
+            all[j] = distance(points.position[i], points.position[j]);
+        qsort(all, COUNT, sizeof *all, compare); // the point itself is all[0]
+        assert_float_equal(points.radius[i], 1.5 * all[K], 1e-5);
+    }
+    orl_points_finish(&points);
+}
+
+// A tilted plane: each missing normal is its own, towards the nearest viewer; one
+// that is there stays.
+static void fits_normals(void **state)
+{
+    (void)state;
+    enum { SIDE = 20 };
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, SIDE * SIDE), ORL_OK);
+    const double n[3] = {0.6, 0, -0.8};
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        double u = i % SIDE, v = (double)(i / SIDE);
+        points.position[i][0] = (float)(0.8 * u + 100);
+        points.position[i][1] = (float)v;
+        points.position[i][2] = (float)(0.6 * u);
+    }
+    points.normal[5][1] = 1;
+    const double viewers[2][3] = {{108 + 30 * n[0], 10, 6 + 30 * n[2]},
+                                  {108 - 900 * n[0], 10, 6 - 900 * n[2]}};
+    const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
+    assert_int_equal(orl_points_set_radii(NULL, NULL, &params, viewers, 2, &points), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        if (i == 5)
+            continue;
+        double cosine = 0;
+        for (int k = 0; k < 3; k++)
+            cosine += n[k] * (double)points.normal[i][k];
+        assert_float_equal(cosine, 1, 1e-5);
+    }
+    assert_float_equal(points.normal[5][1], 1, 0);
+    // Inside the grid of unit spacing the sixth neighbour is a diagonal one.
+    assert_float_equal(points.radius[SIDE * 10 + 10], sqrt(2), 1e-4);
+    orl_points_finish(&points);
+}
+
+static void gives_coinciding_points_the_median(void **state)
+{
+    (void)state;
+    enum { PILE = 10, LINE = 21 };
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, PILE + LINE), ORL_OK);
+    for (int i = 0; i < LINE; i++)
+        points.position[PILE + i][0] = 1000 + (float)i;
+    const struct orl_radii_params params = {.neighbours = 2, .overlap = 1};
+    assert_int_equal(orl_points_set_radii(NULL, NULL, &params, NULL, 0, &points), ORL_OK);
+    for (int i = 0; i < PILE; i++)
+        assert_float_equal(points.radius[i], 1, 0);
+    orl_points_finish(&points);
+}
+
+static void takes_few_points(void **state)
+{
+    (void)state;
+    const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
+    const double viewer[1][3] = {{0, 0, -10}};
+    for (size_t count = 0; count < 4; count++) {
+        struct orl_points points;
+        assert_int_equal(orl_points_init(NULL, &points, count), ORL_OK);
+        for (size_t i = 0; i < count; i++)
+            points.position[i][0] = 3 * (float)i;
+        assert_int_equal(orl_points_set_radii(NULL, NULL, &params, viewer, 1, &points), ORL_OK);
+        for (size_t i = 0; i < count; i++) {
+            assert_true(points.radius[i] > 0 && isfinite(points.radius[i]));
+            double length = 0;
+            for (int k = 0; k < 3; k++)
+                length += (double)points.normal[i][k] * (double)points.normal[i][k];
+            assert_float_equal(length, 1, 1e-5);
+        }
+        if (count == 2) // the only neighbour counts when there are not six
+            assert_float_equal(points.radius[0], 3, 1e-6);
+        orl_points_finish(&points);
+    }
+}
+
+static bool always(void *priv)
+{
+    (void)priv;
+    return true;
+}
+
+static void stops_when_cancelled(void **state)
+{
+    (void)state;
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, 10), ORL_OK);
+    const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
+    const struct orl_progress progress = {.cancelled = always};
+    assert_int_equal(orl_points_set_radii(NULL, &progress, &params, NULL, 0, &points),
+                     ORL_ERR_CANCELLED);
+    orl_points_finish(&points);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(agrees_with_brute_force),
+        cmocka_unit_test(fits_normals),
+        cmocka_unit_test(gives_coinciding_points_the_median),
+        cmocka_unit_test(takes_few_points),
+        cmocka_unit_test(stops_when_cancelled),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
