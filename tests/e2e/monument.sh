@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# The whole road on a small synthetic monument: photographs, scene, held-out comparison,
+# a new view; twice the same file.
+set -eu
+oriel=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Prints the number that a jansson-written file has for "key", in its "mean".
+mean() {
+    sed -n '/"mean"/,$p' "$1" | sed -nE "s/.*\"$2\": *([-0-9.e]+).*/\1/p" | head -n 1
+}
+at_least() {
+    awk -v value="$2" -v floor="$3" 'BEGIN { exit !(value >= floor) }' || {
+        echo "$1 is $2, should be at least $3" >&2
+        exit 1
+    }
+    echo "$1 $2 (at least $3)"
+}
+
+cd "$work"
+"$oriel" synth monument --out photos --size 384x256 --count 12
+"$oriel" prepare photos --out scene --test-list 0004.jpg,0009.jpg
+"$oriel" info scene --json >info.json
+grep -q '"name": *"0012.jpg"' info.json
+
+"$oriel" eval scene --method airieau --json airieau.json --images pictures
+"$oriel" eval scene --method points --json points.json
+for key in scene method device size psnr_db psnr_cc_db psnr_covered_db ssim coverage \
+    completeness ncc_error render_ms; do
+    grep -q "\"$key\"" airieau.json || { echo "eval's JSON lacks $key" >&2; exit 1; }
+done
+at_least "airieau psnr_db" "$(mean airieau.json psnr_db)" 16
+at_least "airieau coverage" "$(mean airieau.json coverage)" 0.5
+at_least "airieau above points, dB on covered pixels" \
+    "$(awk -v a="$(mean airieau.json psnr_covered_db)" -v p="$(mean points.json psnr_covered_db)" \
+        'BEGIN { print a - p }')" 1
+
+"$oriel" render scene --at 0004.jpg --out a.exr --layers depth,normal,coverage
+"$oriel" render scene --at 0004.jpg --out b.exr --layers depth,normal,coverage
+cmp a.exr b.exr
+"$oriel" render scene --at 0004.jpg --out a.png --layers depth,normal,coverage
+[ -s a.depth.png ] && [ -s a.normal.png ] && [ -s a.coverage.png ]
+cat >walk.json <<'END'
+{"keyframes": [{"photo": "0003.jpg"}, {"photo": "0005.jpg"}, {"photo": "0006.jpg"}], "frames": 4}
+END
+"$oriel" render scene --path walk.json --out frames --size 160x120
+[ "$(ls frames | wc -l)" -eq 4 ]
+if command -v ffmpeg >/dev/null; then
+    "$oriel" render scene --path walk.json --out walk.mp4 --size 161x121
+    [ -s walk.mp4 ] && [ ! -e walk.mp4.frames ]
+fi
