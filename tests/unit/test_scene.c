@@ -1,0 +1,250 @@
+// Opening scenes: whole, plain, unfinished, damaged.
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "scene/scene.h"
+#include "test.h"
+
+struct said {
+    char text[4096];
+};
+
+static void listen(void *priv, enum orl_log_level level, const char *message)
+{
+    (void)level;
+    struct said *said = priv;
+    size_t used = strlen(said->text);
+    snprintf(said->text + used, sizeof said->text - used, "%s\n", message);
+}
+
+static struct orl_log log_to(struct said *said)
+{
+    said->text[0] = '\0';
+    return (struct orl_log){.level = ORL_LOG_DEBUG, .print = listen, .priv = said};
+}
+
+static void save(const char *dir, const char *name, const char *text)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    char *slash = strrchr(path, '/');
+    *slash = '\0';
+    assert_int_equal(orl_dir_make(NULL, path), ORL_OK);
+    *slash = '/';
+    assert_int_equal(orl_file_write(NULL, path, text, strlen(text)), ORL_OK);
+}
+
+static void drop(const char *dir, const char *name)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    assert_int_equal(unlink(path), 0);
+}
+
+static const char images[] = "1 1 0 0 0 0 0 0 1 a.jpg\n1 1 1 2 2 2\n"
+                             "2 1 0 0 0 0 0 2 1 b.jpg\n1 1 1\n"
+                             "3 1 0 0 0 0 0 4 1 c.jpg\n\n";
+static const char cloud[] =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n%s"
+    "end_header\n";
+
+// A plain workspace: three photographs at z = 0, -2, -4, sparse points at z = 3 and 8.
+static char *plain(void)
+{
+    char *dir = test_dir_make(), text[1024];
+    save(dir, "sparse/cameras.txt", "1 PINHOLE 64 48 50 51 32 24\n");
+    save(dir, "sparse/images.txt", images);
+    save(dir, "sparse/points3D.txt", "1 0 0 3 9 9 9 0.1\n2 0 0 8 9 9 9 0.1\n");
+    snprintf(text, sizeof text, cloud, "");
+    strcat(text, "0 0 3 1 2 3\n1 0 3 1 2 3\n0 1 3 1 2 3\n1 1 3 1 2 3\n");
+    save(dir, "fused.ply", text);
+    for (const char *name = "abc"; *name; name++) {
+        snprintf(text, sizeof text, "images/%c.jpg", *name);
+        save(dir, text, "not looked at here");
+    }
+    return dir;
+}
+
+static const char manifest[] =
+    "{\"version\": 1, \"photographs\": [\n"
+    "{\"name\": \"a.jpg\", \"split\": \"train\", \"exposure_ev\": -1.5, \"series\": 0},\n"
+    "{\"name\": \"c.jpg\", \"split\": \"train\", \"exposure_ev\": null, \"gain\": [1, 2, 0.5]},\n"
+    "{\"name\": \"b.jpg\", \"split\": \"test\", \"exposure_ev\": 0.5, \"series\": 1}]}\n";
+
+// As prepare leaves it.
+static char *whole(void)
+{
+    char *dir = plain(), text[1024];
+    snprintf(text, sizeof text, cloud, "property float radius\n");
+    strcat(text, "0 0 3 1 2 3 0.5\n1 0 3 1 2 3 0\n0 1 3 1 2 3 0.25\n1 1 3 1 2 3 -4\n");
+    save(dir, "points.ply", text);
+    save(dir, "scene.json", manifest);
+    drop(dir, "fused.ply");
+    return dir;
+}
+
+static void opens_a_plain_workspace(void **state)
+{
+    (void)state;
+    char *dir = plain();
+    struct orl_scene *scene;
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_int_equal(scene->photo_count, 3);
+    assert_string_equal(scene->photos[1].name, "b.jpg");
+    assert_float_equal(scene->photos[1].view.camera.fy, 51, 0);
+    assert_float_equal(scene->photos[1].view.cam_from_world.t[2], 2, 0);
+    assert_false(scene->photos[1].test);
+    assert_float_equal(scene->photos[1].gain[1], 1, 0);
+    // Distances seen: a to 3 and 8, b to 5.
+    assert_float_equal(scene->photo_distance, 5, 1e-9);
+    assert_int_equal(scene->points.count, 4);
+    assert_float_equal(scene->points.radius[0], sqrt(2), 1e-6); // farthest of three
+    assert_float_equal(scene->points.normal[0][2], -1, 1e-6);   // towards the photographs
+    assert_int_equal(orl_scene_find_photo(scene, "c.jpg"), 2);
+    assert_int_equal(orl_scene_find_photo(scene, "c"), 2);
+    assert_int_equal(orl_scene_find_photo(scene, "d"), -1);
+    assert_int_equal(orl_scene_find_photo(scene, ""), -1);
+    char *path = orl_scene_photo_path(NULL, scene, 0), expected[4096];
+    snprintf(expected, sizeof expected, "%s/images/a.jpg", dir);
+    assert_string_equal(path, expected);
+    free(path);
+    orl_scene_destroy(&scene);
+    assert_null(scene);
+    test_dir_remove(dir);
+}
+
+static void opens_a_prepared_scene(void **state)
+{
+    (void)state;
+    char *dir = whole();
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_scene *scene;
+    assert_int_equal(orl_scene_open(&log, dir, &scene), ORL_OK);
+    assert_true(scene->photos[1].test);
+    assert_false(scene->photos[0].test);
+    assert_true(scene->photos[0].has_exposure);
+    assert_float_equal(scene->photos[0].exposure_ev, -1.5, 0);
+    assert_false(scene->photos[2].has_exposure);
+    assert_float_equal(scene->photos[2].gain[1], 2, 0);
+    assert_float_equal(scene->photos[2].gain[2], 0.5, 0);
+    assert_int_equal(scene->photos[1].series, 1);
+    assert_int_equal(scene->points.count, 2); // those with a radius
+    assert_float_equal(scene->points.radius[1], 0.25, 0);
+    assert_non_null(strstr(said.text, "2 of 4 points have no radius"));
+    orl_scene_destroy(&scene);
+    test_dir_remove(dir);
+}
+
+static void refuses_an_unfinished_scene(void **state)
+{
+    (void)state;
+    char *dir = whole();
+    drop(dir, "scene.json");
+    save(dir, "fused.ply", "old");
+    save(dir, ".oriel/stages.json",
+         "{\"plan\": [\"collect\", \"calibrate\", \"fuse\"], \"done\": {\"collect\": {}}}");
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_scene *scene;
+    assert_int_equal(orl_scene_open(&log, dir, &scene), ORL_ERR_DATA);
+    assert_null(scene);
+    assert_non_null(strstr(said.text, "missing: calibrate"));
+    assert_non_null(strstr(said.text, "--resume"));
+    test_dir_remove(dir);
+}
+
+static void refuses_damage(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *text, *why; // text NULL: the file is removed
+        enum orl_result result;
+    } cases[] = {
+        {"scene.json", "{\"version\": 1,\n \"photographs\": [}", "line 2 (byte 33): ",
+         ORL_ERR_FORMAT},
+        {"scene.json", "", "byte 0", ORL_ERR_FORMAT},
+        {"scene.json", "[1]", "not a JSON object", ORL_ERR_FORMAT},
+        {"scene.json", "{}", "no \"version\"", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 99}", "version 99 is newer", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": []}", "lists 0, but the sparse model has 3",
+         ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"x\"}, 1, 2]}",
+         "photograph a.jpg: \"split\"", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"z.jpg\"}, 1, 2]}",
+         "z.jpg: not in the sparse model", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"train\","
+         " \"gain\": [1, 0, 1]}, 1, 2]}", "\"gain\"", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"train\","
+         " \"exposure_ev\": 1e9}, 1, 2]}", "\"exposure_ev\"", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"train\"},"
+         " {\"name\": \"a.jpg\", \"split\": \"train\"}, 2]}", "listed twice", ORL_ERR_FORMAT},
+        {"points.ply", NULL, "points.ply is missing", ORL_ERR_NOT_FOUND},
+        {"points.ply", "ply\nformat", "points.ply: byte 4", ORL_ERR_FORMAT},
+        {"images/b.jpg", NULL, "images/b.jpg: this photograph is missing", ORL_ERR_NOT_FOUND},
+        {"sparse/cameras.txt", "1 SIMPLE_RADIAL 64 48 50 32 24 0.1\n", "not undistorted",
+         ORL_ERR_DATA},
+        {"sparse/cameras.txt", NULL, "no COLMAP model", ORL_ERR_NOT_FOUND},
+        {"sparse/images.txt", "", "no photographs", ORL_ERR_DATA},
+    };
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        char *dir = whole();
+        if (cases[i].text)
+            save(dir, cases[i].file, cases[i].text);
+        else
+            drop(dir, cases[i].file);
+        struct said said;
+        struct orl_log log = log_to(&said);
+        struct orl_scene *scene;
+        enum orl_result result = orl_scene_open(&log, dir, &scene);
+        if (result != cases[i].result || !strstr(said.text, cases[i].why))
+            fail_msg("case %zu: %s: \"%s\" does not say \"%s\"", i, orl_result_name(result),
+                     said.text, cases[i].why);
+        assert_null(scene);
+        test_dir_remove(dir);
+    }
+}
+
+static void refuses_what_is_no_scene(void **state)
+{
+    (void)state;
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_scene *scene;
+    assert_int_equal(orl_scene_open(&log, "/nowhere/at/all", &scene), ORL_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.text, "/nowhere/at/all"));
+    char *dir = test_dir_make();
+    assert_int_equal(orl_scene_open(&log, dir, &scene), ORL_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.text, "not a scene"));
+    test_dir_remove(dir);
+}
+
+static void warns_of_other_points(void **state)
+{
+    (void)state;
+    char *dir = whole(), text[4096];
+    snprintf(text, sizeof text, "{\"checksums\": {\"points.ply\": \"xxh3:0\"}, %s", manifest + 1);
+    save(dir, "scene.json", text);
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_scene *scene;
+    assert_int_equal(orl_scene_open(&log, dir, &scene), ORL_OK);
+    assert_non_null(strstr(said.text, "changed since the scene was prepared"));
+    orl_scene_destroy(&scene);
+    test_dir_remove(dir);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(opens_a_plain_workspace),
+        cmocka_unit_test(opens_a_prepared_scene),
+        cmocka_unit_test(refuses_an_unfinished_scene),
+        cmocka_unit_test(refuses_damage),
+        cmocka_unit_test(refuses_what_is_no_scene),
+        cmocka_unit_test(warns_of_other_points),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
