@@ -1,0 +1,250 @@
+#include "test.h"
+
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/file.h"
+
+static char *dir;
+
+static int set_up(void **state)
+{
+    (void)state;
+    dir = test_dir_make();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    test_dir_remove(dir);
+    return 0;
+}
+
+static char *in_dir(const char *name)
+{
+    char *path = orl_path_join(NULL, dir, name);
+    assert_non_null(path);
+    return path;
+}
+
+static void expect_text(const char *path, const char *want)
+{
+    uint8_t *data;
+    size_t size;
+    assert_int_equal(orl_file_read(NULL, path, 1 << 20, &data, &size), ORL_OK);
+    assert_int_equal(size, strlen(want));
+    assert_string_equal((char *)data, want); // the zero byte after the end
+    free(data);
+}
+
+static size_t count_entries(void)
+{
+    struct orl_names names;
+    assert_int_equal(orl_dir_list(NULL, dir, &names), ORL_OK);
+    size_t count = names.count;
+    orl_names_finish(&names);
+    return count;
+}
+
+static void paths(void **state)
+{
+    (void)state;
+    const char *const want[][3] = {{"a", "b", "a/b"}, {"a/", "b", "a/b"}, {"/", "b", "/b"}};
+    for (size_t i = 0; i < ORL_COUNT(want); i++) {
+        char *path = orl_path_join(NULL, want[i][0], want[i][1]);
+        assert_string_equal(path, want[i][2]);
+        free(path);
+    }
+    assert_string_equal(orl_path_name("a/b/c.png"), "c.png");
+    assert_string_equal(orl_path_name("c.png"), "c.png");
+    assert_string_equal(orl_path_name("a/"), "");
+    assert_true(orl_path_is_dir(dir));
+    assert_false(orl_path_is_file(dir));
+    assert_false(orl_path_is_file("/nowhere/at/all"));
+}
+
+static void write_and_read(void **state)
+{
+    (void)state;
+    char *path = in_dir("text");
+    assert_int_equal(orl_file_write(NULL, path, "hello", 5), ORL_OK);
+    expect_text(path, "hello");
+    assert_int_equal(orl_file_write(NULL, path, "", 0), ORL_OK); // replaces
+    expect_text(path, "");
+    assert_int_equal(count_entries(), 1);
+    assert_int_equal(unlink(path), 0);
+    free(path);
+}
+
+static void reading_refuses(void **state)
+{
+    (void)state;
+    char *path = in_dir("ten");
+    uint8_t *data = (uint8_t *)path;
+    size_t size = 99;
+    assert_int_equal(orl_file_write(NULL, path, "0123456789", 10), ORL_OK);
+    assert_int_equal(orl_file_read(NULL, path, 9, &data, &size), ORL_ERR_FORMAT);
+    assert_null(data);
+    assert_int_equal(size, 0);
+    assert_int_equal(orl_file_read(NULL, path, 10, &data, &size), ORL_OK);
+    free(data);
+    assert_int_equal(orl_file_read(NULL, "/nowhere/at/all", 10, &data, &size),
+                     ORL_ERR_NOT_FOUND);
+    assert_int_equal(orl_file_read(NULL, dir, 10, &data, &size), ORL_ERR_IO);
+    assert_int_equal(unlink(path), 0);
+    free(path);
+}
+
+// What was there before stays until the new file is whole.
+static void atomic_files(void **state)
+{
+    (void)state;
+    char *path = in_dir("kept.png");
+    struct orl_atomic_file file;
+    assert_int_equal(orl_file_write(NULL, path, "old", 3), ORL_OK);
+    assert_int_equal(orl_atomic_begin(NULL, path, &file), ORL_OK);
+    assert_string_equal(strrchr(file.temp, '.'), ".png"); // writers may go by extension
+    FILE *out = fopen(file.temp, "wb");
+    assert_non_null(out);
+    assert_true(fputs("half", out) >= 0);
+    assert_int_equal(fclose(out), 0);
+    expect_text(path, "old");
+    orl_atomic_abort(&file);
+    assert_null(file.temp);
+    expect_text(path, "old");
+    assert_int_equal(count_entries(), 1);
+
+    assert_int_equal(orl_atomic_begin(NULL, path, &file), ORL_OK);
+    out = fopen(file.temp, "wb");
+    assert_true(fputs("new", out) >= 0);
+    assert_int_equal(fclose(out), 0);
+    assert_int_equal(orl_atomic_commit(NULL, &file), ORL_OK);
+    orl_atomic_abort(&file); // after commit: nothing
+    expect_text(path, "new");
+    assert_int_equal(count_entries(), 1);
+    assert_int_equal(unlink(path), 0);
+    free(path);
+}
+
+static void failed_writes_leave_nothing(void **state)
+{
+    (void)state;
+    struct orl_atomic_file file;
+    char *missing = in_dir("no/such/folder"), *folder = in_dir("folder"), *path = in_dir("x");
+    assert_int_equal(orl_file_write(NULL, missing, "x", 1), ORL_ERR_IO);
+    assert_int_equal(count_entries(), 0);
+    assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
+    assert_int_equal(orl_file_write(NULL, folder, "x", 1), ORL_ERR_IO); // a folder is in the way
+    assert_int_equal(count_entries(), 1);
+    assert_int_equal(orl_atomic_begin(NULL, path, &file), ORL_OK);
+    assert_int_equal(orl_atomic_commit(NULL, &file), ORL_ERR_IO); // nothing was written
+    assert_false(orl_path_is_file(path));
+    assert_int_equal(orl_dir_remove(NULL, folder), ORL_OK);
+    free(missing);
+    free(folder);
+    free(path);
+}
+
+static void a_full_disk_is_an_error(void **state)
+{
+    (void)state;
+    if (access("/dev/full", W_OK) != 0)
+        skip();
+    // /dev holds no temporary files for us, so through a link from the temporary name.
+    char *path = in_dir("full");
+    struct orl_atomic_file file;
+    assert_int_equal(orl_atomic_begin(NULL, path, &file), ORL_OK);
+    assert_int_equal(symlink("/dev/full", file.temp), 0);
+    assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_ERR_IO);
+    assert_false(orl_path_is_file(path));
+    orl_atomic_abort(&file);
+    assert_int_equal(count_entries(), 0);
+    free(path);
+}
+
+static void folders(void **state)
+{
+    (void)state;
+    char *deep = in_dir("a/b/c"), *top = in_dir("a"), *file = in_dir("a/file"), *link = in_dir("a/l");
+    char *outside = in_dir("outside");
+    assert_int_equal(orl_dir_make(NULL, deep), ORL_OK);
+    assert_int_equal(orl_dir_make(NULL, deep), ORL_OK);
+    assert_true(orl_path_is_dir(deep));
+    assert_int_equal(orl_file_write(NULL, file, "x", 1), ORL_OK);
+    assert_int_equal(orl_dir_make(NULL, file), ORL_ERR_IO);
+    assert_int_equal(orl_dir_make(NULL, outside), ORL_OK);
+    char *precious = orl_path_join(NULL, outside, "precious");
+    assert_int_equal(orl_file_write(NULL, precious, "x", 1), ORL_OK);
+    assert_int_equal(symlink(outside, link), 0);
+    assert_int_equal(orl_dir_remove(NULL, top), ORL_OK);
+    assert_false(orl_path_is_dir(top));
+    assert_true(orl_path_is_file(precious)); // links are removed, not followed
+    assert_int_equal(orl_dir_remove(NULL, top), ORL_OK);
+    assert_int_equal(orl_dir_remove(NULL, outside), ORL_OK);
+    free(deep);
+    free(top);
+    free(file);
+    free(link);
+    free(outside);
+    free(precious);
+}
+
+static void listing(void **state)
+{
+    (void)state;
+    const char *const names[] = {"b", "a10", "a2", "B", ".hidden"};
+    const char *const sorted[] = {".hidden", "B", "a10", "a2", "b"};
+    for (size_t i = 0; i < ORL_COUNT(names); i++) {
+        char *path = in_dir(names[i]);
+        assert_int_equal(orl_file_write(NULL, path, "", 0), ORL_OK);
+        free(path);
+    }
+    struct orl_names list;
+    assert_int_equal(orl_dir_list(NULL, dir, &list), ORL_OK);
+    assert_int_equal(list.count, ORL_COUNT(sorted));
+    for (size_t i = 0; i < ORL_COUNT(sorted); i++) {
+        assert_string_equal(list.items[i], sorted[i]);
+        char *path = in_dir(sorted[i]);
+        assert_int_equal(unlink(path), 0);
+        free(path);
+    }
+    assert_true(orl_names_contain(&list, "a2"));
+    assert_false(orl_names_contain(&list, "a"));
+    orl_names_finish(&list);
+    assert_int_equal(orl_dir_list(NULL, "/nowhere/at/all", &list), ORL_ERR_NOT_FOUND);
+}
+
+static void hashes(void **state)
+{
+    (void)state;
+    char *path = in_dir("hashed");
+    uint64_t empty, one, again;
+    assert_int_equal(orl_file_write(NULL, path, "", 0), ORL_OK);
+    assert_int_equal(orl_file_hash(NULL, path, &empty), ORL_OK);
+    assert_true(empty == 0x2d06800538d394c2ULL); // XXH3's own value of nothing
+    assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_OK);
+    assert_int_equal(orl_file_hash(NULL, path, &one), ORL_OK);
+    assert_int_equal(orl_file_hash(NULL, path, &again), ORL_OK);
+    assert_true(one == again && one != empty);
+    assert_int_equal(orl_file_hash(NULL, "/nowhere", &one), ORL_ERR_NOT_FOUND);
+    assert_int_equal(unlink(path), 0);
+    free(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(paths),
+        cmocka_unit_test(write_and_read),
+        cmocka_unit_test(reading_refuses),
+        cmocka_unit_test(atomic_files),
+        cmocka_unit_test(failed_writes_leave_nothing),
+        cmocka_unit_test(a_full_disk_is_an_error),
+        cmocka_unit_test(folders),
+        cmocka_unit_test(listing),
+        cmocka_unit_test(hashes),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
