@@ -4,7 +4,7 @@
 
 #include "render/internal.h"
 
-enum orl_result fill_init(struct orl_gpu *gpu, struct fill *fill)
+enum orl_result orl_fill_init(struct orl_gpu *gpu, struct fill *fill)
 {
     memset(fill, 0, sizeof *fill);
     const struct {
@@ -22,7 +22,7 @@ enum orl_result fill_init(struct orl_gpu *gpu, struct fill *fill)
         result = orl_prog_create(gpu, programs[i].file, programs[i].defines,
                                  sizeof(struct image_block), programs[i].prog);
     if (result != ORL_OK)
-        fill_finish(gpu, fill);
+        orl_fill_finish(gpu, fill);
     return result;
 }
 
@@ -33,7 +33,7 @@ static void free_levels(struct orl_gpu *gpu, struct fill *fill)
     fill->width = fill->height = fill->levels = 0;
 }
 
-void fill_finish(struct orl_gpu *gpu, struct fill *fill)
+void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill)
 {
     free_levels(gpu, fill);
     orl_prog_destroy(gpu, &fill->seed_depth);
@@ -43,7 +43,7 @@ void fill_finish(struct orl_gpu *gpu, struct fill *fill)
     orl_prog_destroy(gpu, &fill->apply_depth);
 }
 
-enum orl_result fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height)
+enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height)
 {
     if (fill->width == width && fill->height == height)
         return ORL_OK;
@@ -77,7 +77,7 @@ static void run(struct orl_gpu *gpu, struct orl_prog *prog, const struct orl_tex
                              .images = {{first, 0, first_access}, {second, 0, second_access}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
-    pixel_groups(covered->params.width, covered->params.height, d.groups);
+    orl_pixel_groups(covered->params.width, covered->params.height, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }
 
@@ -91,14 +91,14 @@ static void spread(struct orl_gpu *gpu, struct fill *fill)
             fill->level[i]);
 }
 
-void fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth)
+void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth)
 {
     run(gpu, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY, depth);
     spread(gpu, fill);
     run(gpu, fill->apply_depth, fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
 }
 
-void fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
+void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
 {
     run(gpu, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
         accumulated);

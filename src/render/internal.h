@@ -34,24 +34,24 @@ struct proxy_target {
     struct orl_tex *depth, *normal;                // z, 0: none; camera frame
 };
 
-enum orl_result proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
-                           struct proxy *proxy);
-void proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
+enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
+                               struct proxy *proxy);
+void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
 // Does nothing when the target has this size already.
-enum orl_result proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *target, int width,
-                                    int height);
-void proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
+enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *target, int width,
+                                        int height);
+void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
 // Bytes of a target of this size.
-size_t proxy_target_bytes(int width, int height);
+size_t orl_proxy_target_bytes(int width, int height);
 // How the proxy is made, from the method's parameters.
 struct proxy_options {
     float splat_scale, front_layer;
 };
-void proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                const struct proxy_options *options, struct proxy_target *target);
+void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
+                    const struct proxy_options *options, struct proxy_target *target);
 
 // Work groups that cover width x height pixels.
-void pixel_groups(int width, int height, unsigned groups[3]);
+void orl_pixel_groups(int width, int height, unsigned groups[3]);
 
 // --- photographs on the device (photos.c) ---
 
@@ -72,14 +72,14 @@ struct photos {
     struct proxy_target target; // for depth maps
 };
 
-enum orl_result photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
-                            size_t budget_bytes, struct photos *photos);
-void photos_finish(struct orl_gpu *gpu, struct photos *photos);
+enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
+                                size_t budget_bytes, struct photos *photos);
+void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
 // Makes colour resident, and depth (depth_options not NULL); evicts others when the
 // budget demands it.
-enum orl_result photos_require(struct orl_gpu *gpu, struct photos *photos,
-                               const struct proxy *proxy, size_t photo,
-                               const struct proxy_options *depth_options);
+enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
+                                   const struct proxy *proxy, size_t photo,
+                                   const struct proxy_options *depth_options);
 
 // --- filling (fill.c) ---
 
@@ -89,13 +89,13 @@ struct fill {
     struct orl_tex *level[PYRAMID_LEVELS_MAX + 8]; // value * weight, weight
 };
 
-enum orl_result fill_init(struct orl_gpu *gpu, struct fill *fill);
-enum orl_result fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
-void fill_finish(struct orl_gpu *gpu, struct fill *fill);
+enum orl_result orl_fill_init(struct orl_gpu *gpu, struct fill *fill);
+enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
+void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
 // Guesses background depth, as negative values, where `depth` is 0.
-void fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth);
+void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth);
 // Spreads `accumulated` (colour * weight, weight) over fill->level[0].
-void fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
+void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
 
 struct orl_renderer {
     struct orl_gpu *gpu;

@@ -50,8 +50,8 @@ static void plan(const struct orl_log *log, struct photos *photos)
                  largest ? photos->budget_bytes / largest : 0, count);
 }
 
-enum orl_result photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
-                            size_t budget_bytes, struct photos *photos)
+enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
+                                size_t budget_bytes, struct photos *photos)
 {
     memset(photos, 0, sizeof *photos);
     photos->scene = scene;
@@ -72,12 +72,12 @@ static void evict(struct orl_gpu *gpu, struct photo_slot *slot)
     orl_tex_destroy(gpu, &slot->depth);
 }
 
-void photos_finish(struct orl_gpu *gpu, struct photos *photos)
+void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
 {
     for (size_t i = 0; photos->slots && i < photos->scene->photo_count; i++)
         evict(gpu, &photos->slots[i]);
     free(photos->slots);
-    proxy_target_finish(gpu, &photos->target);
+    orl_proxy_target_finish(gpu, &photos->target);
     memset(photos, 0, sizeof *photos);
 }
 
@@ -157,8 +157,8 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
     struct orl_view view = photos->scene->photos[index].view;
     view.camera = orl_camera_resized(&view.camera, divided(view.camera.width, photos->divide),
                                      divided(view.camera.height, photos->divide));
-    enum orl_result result = proxy_target_resize(gpu, &photos->target, view.camera.width,
-                                                 view.camera.height);
+    enum orl_result result = orl_proxy_target_resize(gpu, &photos->target, view.camera.width,
+                                                     view.camera.height);
     if (result != ORL_OK)
         return result;
     if (!slot->depth) {
@@ -169,7 +169,7 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
             return result;
     }
     // The proxy draws into the target's depth; trade textures instead of copying.
-    proxy_draw(gpu, proxy, &view, options, &photos->target);
+    orl_proxy_draw(gpu, proxy, &view, options, &photos->target);
     struct orl_tex *made = photos->target.depth;
     photos->target.depth = slot->depth;
     slot->depth = made;
@@ -182,9 +182,9 @@ static bool same_options(const struct proxy_options *a, const struct proxy_optio
     return a->splat_scale == b->splat_scale && a->front_layer == b->front_layer;
 }
 
-enum orl_result photos_require(struct orl_gpu *gpu, struct photos *photos,
-                               const struct proxy *proxy, size_t photo,
-                               const struct proxy_options *depth_options)
+enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
+                                   const struct proxy *proxy, size_t photo,
+                                   const struct proxy_options *depth_options)
 {
     struct photo_slot *slot = &photos->slots[photo];
     slot->last_use = ++photos->clock;

@@ -10,7 +10,7 @@
 // within the 65535 work groups that one dispatch may have.
 enum { CHUNK_POINTS = 4 << 20 };
 
-void pixel_groups(int width, int height, unsigned groups[3])
+void orl_pixel_groups(int width, int height, unsigned groups[3])
 {
     groups[0] = orl_groups((size_t)width, ORL_PIXEL_GROUP_X);
     groups[1] = orl_groups((size_t)height, ORL_PIXEL_GROUP_Y);
@@ -85,8 +85,8 @@ static enum orl_result upload_points(struct orl_gpu *gpu, const struct orl_point
     return result;
 }
 
-enum orl_result proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
-                           struct proxy *proxy)
+enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
+                               struct proxy *proxy)
 {
     memset(proxy, 0, sizeof *proxy);
     const struct {
@@ -108,11 +108,11 @@ enum orl_result proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
     if (result == ORL_OK)
         result = upload_points(gpu, points, proxy);
     if (result != ORL_OK)
-        proxy_finish(gpu, proxy);
+        orl_proxy_finish(gpu, proxy);
     return result;
 }
 
-void proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
+void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
 {
     for (size_t i = 0; i < proxy->chunk_count; i++) {
         orl_buf_destroy(gpu, &proxy->chunks[i].positions);
@@ -145,7 +145,7 @@ static int padded(int side, int levels)
     return (side + unit - 1) / unit * unit;
 }
 
-size_t proxy_target_bytes(int width, int height)
+size_t orl_proxy_target_bytes(int width, int height)
 {
     int levels = pyramid_levels(width, height);
     size_t pyramid = (size_t)padded(width, levels) * (size_t)padded(height, levels) * 32;
@@ -166,12 +166,12 @@ static enum orl_result make_pyramid(struct orl_gpu *gpu, struct proxy_target *t)
     return result;
 }
 
-enum orl_result proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *target, int width,
-                                    int height)
+enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *target, int width,
+                                        int height)
 {
     if (target->width == width && target->height == height)
         return ORL_OK;
-    proxy_target_finish(gpu, target);
+    orl_proxy_target_finish(gpu, target);
     target->width = width;
     target->height = height;
     target->levels = pyramid_levels(width, height);
@@ -197,11 +197,11 @@ enum orl_result proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *ta
     if (result == ORL_OK)
         result = orl_tex_create(gpu, &params, &target->normal);
     if (result != ORL_OK)
-        proxy_target_finish(gpu, target);
+        orl_proxy_target_finish(gpu, target);
     return result;
 }
 
-void proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target)
+void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target)
 {
     for (int i = 0; i < PYRAMID_LEVELS_MAX; i++) {
         orl_tex_destroy(gpu, &target->surfel_a[i]);
@@ -270,7 +270,7 @@ static void splat(struct orl_gpu *gpu, const struct proxy *proxy, const struct o
                                             {t->surfel_b[0], 0, GL_WRITE_ONLY},
                                             {t->splat_color, 0, GL_WRITE_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-        pixel_groups(t->width, t->height, d.groups);
+        orl_pixel_groups(t->width, t->height, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }
 }
@@ -293,7 +293,7 @@ static void pyramid_step(struct orl_gpu *gpu, struct orl_prog *prog, struct pyra
                                         {t->surfel_a[coarse], 0, coarse_access},
                                         {t->surfel_b[coarse], 0, coarse_access}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    pixel_groups(out->params.width, out->params.height, d.groups);
+    orl_pixel_groups(out->params.width, out->params.height, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }
 
@@ -316,12 +316,12 @@ static void pull_push(struct orl_gpu *gpu, const struct proxy *proxy, const stru
                                         {t->normal, 0, GL_WRITE_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
-    pixel_groups(t->width, t->height, d.groups);
+    orl_pixel_groups(t->width, t->height, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }
 
-void proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                const struct proxy_options *options, struct proxy_target *target)
+void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
+                    const struct proxy_options *options, struct proxy_target *target)
 {
     orl_pass_begin(gpu, "splat");
     splat(gpu, proxy, view, options, target);

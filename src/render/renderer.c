@@ -15,7 +15,7 @@ static size_t fixed_bytes(const struct orl_scene *scene)
         width = c->width > width ? c->width : width;
         height = c->height > height ? c->height : height;
     }
-    return scene->points.count * 24 + 2 * proxy_target_bytes(width, height) +
+    return scene->points.count * 24 + 2 * orl_proxy_target_bytes(width, height) +
            (size_t)width * (size_t)height * (16 + 24);
 }
 
@@ -40,11 +40,11 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
                  "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
                  "photographs", params->max_vram_bytes >> 20, fixed >> 20, budget >> 20);
     }
-    enum orl_result result = proxy_init(gpu, &scene->points, &r->proxy);
+    enum orl_result result = orl_proxy_init(gpu, &scene->points, &r->proxy);
     if (result == ORL_OK)
-        result = photos_init(gpu, scene, params->use, budget, &r->photos);
+        result = orl_photos_init(gpu, scene, params->use, budget, &r->photos);
     if (result == ORL_OK)
-        result = fill_init(gpu, &r->fill);
+        result = orl_fill_init(gpu, &r->fill);
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "gather.comp", NULL, sizeof(struct gather_block),
                                  &r->gather);
@@ -67,13 +67,13 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     struct orl_renderer *r = *renderer;
     if (!r)
         return;
-    proxy_finish(r->gpu, &r->proxy);
-    photos_finish(r->gpu, &r->photos);
-    fill_finish(r->gpu, &r->fill);
+    orl_proxy_finish(r->gpu, &r->proxy);
+    orl_photos_finish(r->gpu, &r->photos);
+    orl_fill_finish(r->gpu, &r->fill);
     orl_prog_destroy(r->gpu, &r->gather);
     orl_prog_destroy(r->gpu, &r->points_color);
     orl_prog_destroy(r->gpu, &r->compose);
-    proxy_target_finish(r->gpu, &r->target);
+    orl_proxy_target_finish(r->gpu, &r->target);
     orl_tex_destroy(r->gpu, &r->accumulated);
     free(r);
     *renderer = NULL;
@@ -81,9 +81,9 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
 
 static enum orl_result resize(struct orl_renderer *r, int width, int height)
 {
-    enum orl_result result = proxy_target_resize(r->gpu, &r->target, width, height);
+    enum orl_result result = orl_proxy_target_resize(r->gpu, &r->target, width, height);
     if (result == ORL_OK)
-        result = fill_resize(r->gpu, &r->fill, width, height);
+        result = orl_fill_resize(r->gpu, &r->fill, width, height);
     const struct orl_tex *old = r->accumulated;
     if (result != ORL_OK || (old && old->params.width == width && old->params.height == height))
         return result;
@@ -148,7 +148,7 @@ static void gather_photo(struct orl_renderer *r, const struct orl_view *view,
                              .images = {{r->target.depth, 0, GL_READ_ONLY},
                                         {r->accumulated, 0, GL_READ_WRITE}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    pixel_groups(view->camera.width, view->camera.height, d.groups);
+    orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
     orl_gpu_dispatch(r->gpu, &d);
 }
 
@@ -166,8 +166,8 @@ static enum orl_result gather(struct orl_renderer *r, const struct orl_view *vie
     for (size_t i = 0; i < r->scene->photo_count; i++) {
         if (!r->photos.slots[i].usable || (skip && skip[i]))
             continue;
-        enum orl_result result = photos_require(r->gpu, &r->photos, &r->proxy, i,
-                                                test ? &options : NULL);
+        enum orl_result result = orl_photos_require(r->gpu, &r->photos, &r->proxy, i,
+                                                    test ? &options : NULL);
         if (result != ORL_OK)
             return result;
         orl_pass_begin(r->gpu, "gather");
@@ -186,7 +186,7 @@ static void color_from_points(struct orl_renderer *r)
                                         {r->target.splat_color, 0, GL_READ_ONLY},
                                         {r->accumulated, 0, GL_WRITE_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    pixel_groups(r->target.width, r->target.height, d.groups);
+    orl_pixel_groups(r->target.width, r->target.height, d.groups);
     orl_gpu_dispatch(r->gpu, &d);
 }
 
@@ -201,7 +201,7 @@ static void compose(struct orl_renderer *r, const struct orl_render_params *para
                                         {r->target.depth, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
-    pixel_groups(r->target.width, r->target.height, d.groups);
+    orl_pixel_groups(r->target.width, r->target.height, d.groups);
     orl_gpu_dispatch(r->gpu, &d);
 }
 
@@ -211,12 +211,12 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
     struct orl_gpu *gpu = r->gpu;
     enum orl_result result = ORL_OK;
     struct proxy_options options = proxy_options(params);
-    proxy_draw(gpu, &r->proxy, view, &options, &r->target);
+    orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
     orl_tex_clear(r->accumulated, 0);
     if (params->color == ORL_COLOR_PHOTOS) {
         if (params->fill == ORL_FILL_DEPTH) {
             orl_pass_begin(gpu, "fill");
-            fill_depth(gpu, &r->fill, r->target.depth);
+            orl_fill_depth(gpu, &r->fill, r->target.depth);
             orl_pass_end(gpu);
         }
         result = gather(r, view, params, skip);
@@ -229,7 +229,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
         return result;
     orl_pass_begin(gpu, "fill");
     if (params->fill != ORL_FILL_NONE)
-        fill_color(gpu, &r->fill, r->accumulated);
+        orl_fill_color(gpu, &r->fill, r->accumulated);
     compose(r, params);
     orl_pass_end(gpu);
     return ORL_OK;

@@ -41,16 +41,16 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     }
     struct proxy proxy;
     struct proxy_target target = {0};
-    assert_int_equal(proxy_init(gpu, &points, &proxy), ORL_OK);
-    assert_int_equal(proxy_target_resize(gpu, &target, SIDE, SIDE), ORL_OK);
-    proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, &target);
+    assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_target_resize(gpu, &target, SIDE, SIDE), ORL_OK);
+    orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, &target);
     orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof out->depth, out->depth);
     orl_tex_read(target.normal, 0, GL_RGBA, GL_FLOAT, sizeof out->normal, out->normal);
     orl_buf_read(target.depth_bits, 0, sizeof out->bits, out->bits);
     orl_buf_read(target.point_index, 0, sizeof out->index, out->index);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
-    proxy_target_finish(gpu, &target);
-    proxy_finish(gpu, &proxy);
+    orl_proxy_target_finish(gpu, &target);
+    orl_proxy_finish(gpu, &proxy);
     orl_points_finish(&points);
 }
 
@@ -227,14 +227,14 @@ static void odd_sizes_lose_no_pixel(void **state)
     struct proxy proxy;
     struct proxy_target target = {0};
     float depth[W * H];
-    assert_int_equal(proxy_init(gpu, &points, &proxy), ORL_OK);
-    assert_int_equal(proxy_target_resize(gpu, &target, W, H), ORL_OK);
-    proxy_draw(gpu, &proxy, &view, &(struct proxy_options){.splat_scale = 1}, &target);
+    assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_target_resize(gpu, &target, W, H), ORL_OK);
+    orl_proxy_draw(gpu, &proxy, &view, &(struct proxy_options){.splat_scale = 1}, &target);
     orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < W * H; i++)
         assert_float_equal(depth[i], 1, 1e-4);
-    proxy_target_finish(gpu, &target);
-    proxy_finish(gpu, &proxy);
+    orl_proxy_target_finish(gpu, &target);
+    orl_proxy_finish(gpu, &proxy);
     orl_points_finish(&points);
 }
 
