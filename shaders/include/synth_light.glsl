@@ -4,8 +4,8 @@ const vec3 SUN_DIRECTION = vec3(-0.5407, 0.5946, 0.5951);
 const vec3 SUN = vec3(1.45, 1.22, 0.92);
 const vec3 SKY_LIGHT = vec3(0.26, 0.34, 0.46);
 const vec3 GROUND_LIGHT = vec3(0.22, 0.18, 0.13);
-const int SHADOW_STEPS = 40;
-const float SHADOW_REACH = 16.0;
+const int SHADOW_STEPS = 36;
+const float SHADOW_REACH = 16.0, MONUMENT_TOP = 9.3, TOWN_TOP = 20.0;
 const float SUN_SHARPNESS = 28.0; // 1 / width of the half-shadow per metre
 
 vec3 sky(vec3 direction)
@@ -29,10 +29,13 @@ float sunlight(vec3 p, vec3 n)
         return 0.0;
     float light = 1.0, t = 0.03;
     vec3 origin = p + 0.015 * n;
-    for (int i = 0; i < SHADOW_STEPS && t < SHADOW_REACH && light > 0.0; i++) {
+    // Before the trees nothing stands higher than the monument.
+    float top = p.z > -6.3 ? MONUMENT_TOP : TOWN_TOP;
+    float end = min(SHADOW_REACH, (top - origin.y) / SUN_DIRECTION.y);
+    for (int i = 0; i < SHADOW_STEPS && t < end && light > 0.0; i++) {
         float d = solids(origin + SUN_DIRECTION * t);
         light = min(light, 0.5 + 0.5 * SUN_SHARPNESS * d / t);
-        t += clamp(d, 0.02, 1.5);
+        t += max(d, 0.02 + 0.01 * t);
     }
     light = clamp(light, 0.0, 1.0);
     return light * light * (3.0 - 2.0 * light);
@@ -52,13 +55,19 @@ float openness(vec3 p, vec3 n)
     return clamp(1.0 - 0.42 * closed, 0.05, 1.0);
 }
 
-vec3 radiance(vec3 p, vec3 n, Material m)
+// What reaches a point: x: share of the sun, y: of the sky.
+vec2 light_at(vec3 p, vec3 n)
+{
+    return vec2(sunlight(p, n), openness(p, n));
+}
+
+vec3 radiance(vec3 n, Material m, vec2 light)
 {
     vec3 bent = normalize(n + m.bump - n * dot(n, m.bump));
-    float sun = max(dot(bent, SUN_DIRECTION), 0.0) * sunlight(p, n);
-    float open = openness(p, n);
-    vec3 light = SUN * sun + SKY_LIGHT * open * (0.55 + 0.45 * bent.y) +
-                 GROUND_LIGHT * (0.3 + 0.7 * open) * (0.5 - 0.5 * bent.y) +
-                 0.04 * SUN * (1.0 - open) * open;
-    return m.albedo * light;
+    float open = light.y;
+    vec3 sum = SUN * max(dot(bent, SUN_DIRECTION), 0.0) * light.x +
+               SKY_LIGHT * open * (0.55 + 0.45 * bent.y) +
+               GROUND_LIGHT * (0.3 + 0.7 * open) * (0.5 - 0.5 * bent.y) +
+               0.04 * SUN * (1.0 - open) * open;
+    return m.albedo * sum;
 }

@@ -51,7 +51,7 @@ Material stone(vec3 p, vec3 n, Stone s, float footprint, float age)
     Material m;
     vec3 chance = spread(s.id);
     vec3 base = mix(vec3(0.60, 0.49, 0.35), vec3(0.50, 0.45, 0.38), chance.x);
-    base *= 0.72 + 0.5 * chance.y;
+    base *= 0.66 + 0.6 * chance.y;
     base = mix(base, vec3(0.62, 0.43, 0.27), 0.35 * smoothstep(0.7, 1.0, chance.z));
     // Each stone is cut from another place of the quarry.
     vec3 q = p + 9.0 * (chance - 0.5);
@@ -59,13 +59,13 @@ Material stone(vec3 p, vec3 n, Stone s, float footprint, float age)
     vec4 grain = octaves(p, 31.0, 4, 0.75, footprint);
     float tone = 0.20 * clouds.w + 0.17 * grain.w;
     m.albedo = base * exp(tone) * (1.0 + 0.07 * clouds.w * vec3(1.0, 0.1, -1.0));
-    m.bump = -0.018 * grain.xyz - 0.03 * clouds.xyz;
+    m.bump = -0.045 * grain.xyz - 0.05 * clouds.xyz;
     // Veins and cracks: where a noise crosses zero.
     float vein = abs(noise(q * 3.1) + 0.5 * noise(q * 8.7) + 0.2 * noise(q * 23.0));
-    m.albedo *= 1.0 - 0.55 * fall(0.0, 0.055, vein) * visible(12.0, footprint);
+    m.albedo *= 1.0 - 0.4 * fall(0.0, 0.045, vein) * visible(12.0, footprint);
     // Travertine pits, longer than high.
     float pit = noise(p * vec3(17.0, 38.0, 17.0)) + 0.4 * noise(p * 71.0);
-    m.albedo *= 1.0 - 0.6 * smoothstep(0.45, 0.75, pit) * visible(17.0, footprint);
+    m.albedo *= 1.0 - 0.55 * smoothstep(0.66, 0.95, pit) * visible(17.0, footprint);
     // Joints are recessed and dirty; the upper edge of a stone catches light.
     float line = 0.007 + 0.5 * footprint;
     float joint = fall(0.0, line, s.joint) * min(1.0, 0.010 / line);
@@ -73,7 +73,7 @@ Material stone(vec3 p, vec3 n, Stone s, float footprint, float age)
     // Soot and rain: streaks below ledges, black crust under what sticks out.
     float streak = noise(vec3(p.x * 5.0, p.y * 0.55, p.z * 5.0)) +
                    0.6 * noise(vec3(p.x * 13.0, p.y * 1.2, p.z * 13.0));
-    float dirt = smoothstep(-0.1, 1.0, streak + age) * clamp(1.0 - abs(n.y), 0.0, 1.0);
+    float dirt = smoothstep(0.0, 1.1, streak + age) * clamp(1.0 - abs(n.y), 0.0, 1.0);
     m.albedo = mix(m.albedo, m.albedo * vec3(0.36, 0.35, 0.34), 0.75 * dirt);
     m.albedo *= n.y < -0.5 ? 0.7 : 1.0;
     // Lichen, pale grey and ochre, mostly where rain stays.

@@ -130,17 +130,9 @@ float attic(vec3 q, vec3 c)
     return d;
 }
 
-float monument(vec3 p)
+// Walls with passage and niches.
+float body(vec3 q, vec3 b, float outline)
 {
-    vec3 q = vec3(abs(p.x), p.yz);
-    float bound = box(q - vec3(0.0, 4.7, -0.8), vec3(5.5, 4.75, 2.85), 0.0);
-    if (bound > 0.6)
-        return bound;
-    // Columns fold onto one another by symmetry within each bay.
-    vec3 c = vec3(abs(q.x - BAY_X) - COLUMN_OFFSET, q.y, q.z - COLUMN_Z);
-    vec3 b = q - vec3(BAY_X, 0.0, 0.0);
-
-    float outline = arch_outline(q.xy, ARCH_SPRING);
     float d = box(q - vec3(0.0, 3.35, -1.1), vec3(4.3, 2.85, 1.1), 0.015);
     vec3 dome = b - vec3(0.0, 2.5, 0.0);
     float niche = max(length(vec3(dome.x, max(dome.y, 0.0), dome.z)) - 0.57, 1.35 - b.y);
@@ -153,12 +145,15 @@ float monument(vec3 p)
     d = min(d, 0.9 * box(q - vec3(0.0, 4.85, 0.0),
                          vec3(0.2 + 0.25 * (q.y - 4.85), 0.4, 0.17), 0.015));
     d = max(d, ARCH_RADIUS - outline);
-    // Small openings of light: dado, string course, frames.
+    // String course and dado of the side bays.
     d = min(d, box(b - vec3(0.0, 3.34, 0.0), vec3(1.4, 0.07, 0.08), 0.02));
-    d = min(d, box(b - vec3(0.0, 0.8, 0.0), vec3(1.4, 0.26, 0.08), 0.02));
+    return min(d, box(b - vec3(0.0, 0.8, 0.0), vec3(1.4, 0.26, 0.08), 0.02));
+}
 
-    // Entablature, breaking forward over each column.
-    d = min(d, box(q - vec3(0.0, 5.28, -1.1), vec3(4.36, 0.09, 1.16), 0.01));
+// Architrave, dentils and cornice, breaking forward over each column.
+float entablature(vec3 q, vec3 c)
+{
+    float d = box(q - vec3(0.0, 5.28, -1.1), vec3(4.36, 0.09, 1.16), 0.01);
     d = min(d, box(q - vec3(0.0, 5.46, -1.1), vec3(4.4, 0.09, 1.2), 0.01));
     d = min(d, box(c - vec3(0.0, 5.55, -0.2), vec3(0.36, 0.36, 0.52), 0.012));
     d = min(d, box(c - vec3(0.0, 5.46, -0.2), vec3(0.4, 0.09, 0.56), 0.012));
@@ -171,13 +166,34 @@ float monument(vec3 p)
     d = min(d, box(q - vec3(0.0, 6.03, -1.1), vec3(4.6, 0.07, 1.4), 0.02));
     d = min(d, box(q - vec3(0.0, 6.15, -1.1), vec3(4.72, 0.06, 1.52), 0.03));
     d = min(d, box(c - vec3(0.0, 6.03, -0.1), vec3(0.5, 0.07, 0.62), 0.02));
-    d = min(d, box(c - vec3(0.0, 6.15, -0.1), vec3(0.6, 0.06, 0.72), 0.03));
+    return min(d, box(c - vec3(0.0, 6.15, -0.1), vec3(0.6, 0.06, 0.72), 0.03));
+}
 
-    d = min(d, column(c));
-    d = min(d, attic(q, c));
-    d = min(d, figure((c - vec3(0.0, 6.27, -0.12)) / 1.02) * 1.02);
-    d = min(d, side_bay(b));
-    d = min(d, steps(q));
+float monument(vec3 p)
+{
+    vec3 q = vec3(abs(p.x), p.yz);
+    float bound = box(q - vec3(0.0, 4.7, -0.8), vec3(5.5, 4.75, 2.85), 0.0);
+    if (bound > 0.6)
+        return bound;
+    // Columns fold onto one another by symmetry within each bay.
+    vec3 c = vec3(abs(q.x - BAY_X) - COLUMN_OFFSET, q.y, q.z - COLUMN_Z);
+    vec3 b = q - vec3(BAY_X, 0.0, 0.0);
+    float d = body(q, b, arch_outline(q.xy, ARCH_SPRING));
+    // Each part only where its bounds are nearer than what is known.
+    if (q.y - 0.56 < d)
+        d = min(d, steps(q));
+    if (box(c - vec3(0.0, 2.85, 0.0), vec3(0.52, 2.4, 0.52), 0.0) < d)
+        d = min(d, column(c));
+    if (box(b - vec3(0.0, 2.95, -0.05), vec3(0.75, 1.8, 0.55), 0.0) < d)
+        d = min(d, side_bay(b));
+    if (abs(q.y - 5.7) - 0.55 < d)
+        d = min(d, entablature(q, c));
+    if (6.2 - q.y < d) {
+        d = min(d, attic(q, c));
+        vec3 f = c - vec3(0.0, 6.27, -0.12);
+        if (box(f - vec3(0.0, 0.8, 0.0), vec3(0.38, 0.85, 0.32), 0.0) < d)
+            d = min(d, figure(f / 1.02) * 1.02);
+    }
     // Weather has eaten the edges: a few millimetres, different on every stone.
     if (d < 0.05)
         d += 0.006 * noise(p * 5.0) + 0.003 * noise(p * 17.0);

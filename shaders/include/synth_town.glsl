@@ -19,7 +19,7 @@ const House houses[HOUSE_COUNT] = House[](
 const int TREE_COUNT = 5;
 const vec4 trees[TREE_COUNT] = vec4[]( // x, z, height, girth
     vec4(-6.6, -7.5, 7.2, 0.85), vec4(-15.6, -8.0, 8.4, 1.0), vec4(13.6, -9.0, 8.8, 1.05),
-    vec4(6.9, -8.6, 6.4, 0.8), vec4(15.3, -11.5, 7.0, 0.9));
+    vec4(10.4, -9.6, 6.4, 0.8), vec4(15.3, -11.5, 7.0, 0.9));
 
 const float WINDOW_X = 2.1, WINDOW_Y = 2.7; // spacing
 
@@ -137,7 +137,13 @@ const int PART_MONUMENT = 0, PART_FRAGMENTS = 1, PART_TOWN = 2, PART_TREES = 3, 
 // Everything but the ground, which rays meet by formula.
 float solids(vec3 p)
 {
-    return min(min(monument(p), fragments(p)), min(town(p), forest(p)));
+    float d = min(monument(p), fragments(p));
+    // No tree stands before z = -6.3, no house within the square.
+    if (p.z + 6.3 < d)
+        d = min(d, forest(p));
+    if (min(16.5 - abs(p.x), p.z + 10.5) < d)
+        d = min(d, town(p));
+    return d;
 }
 
 int part_at(vec3 p)
