@@ -76,6 +76,8 @@ static void GLAPIENTRY on_debug(GLenum source, GLenum type, GLuint id, GLenum se
 {
     struct orl_gpu *gpu = (struct orl_gpu *)(uintptr_t)priv;
     (void)source, (void)id, (void)length;
+    if (type == GL_DEBUG_TYPE_PUSH_GROUP || type == GL_DEBUG_TYPE_POP_GROUP)
+        return; // our own pass names, for frame debuggers
     bool bad = type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH;
     if (bad)
         gpu->failed = true;
