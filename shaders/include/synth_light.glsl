@@ -1,9 +1,9 @@
 // Late afternoon: a warm sun, a blue sky and light thrown back by the ground.
-// Radiance where white facing the sun is about 1.5.
+// Radiance where white facing the sun is about 2.
 const vec3 SUN_DIRECTION = vec3(-0.5407, 0.5946, 0.5951);
-const vec3 SUN = vec3(1.45, 1.22, 0.92);
-const vec3 SKY_LIGHT = vec3(0.26, 0.34, 0.46);
-const vec3 GROUND_LIGHT = vec3(0.22, 0.18, 0.13);
+const vec3 SUN = vec3(2.05, 1.70, 1.26);
+const vec3 SKY_LIGHT = vec3(0.20, 0.26, 0.36);
+const vec3 GROUND_LIGHT = vec3(0.20, 0.16, 0.12);
 const int SHADOW_STEPS = 36;
 const float SHADOW_REACH = 16.0, MONUMENT_TOP = 9.3, TOWN_TOP = 20.0;
 const float SUN_SHARPNESS = 28.0; // 1 / width of the half-shadow per metre
