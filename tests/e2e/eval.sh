@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# oriel eval on a workspace made by hand: figures, files, and what it refuses.
+set -u
+oriel=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+
+fail() {
+    echo "FAILED: $*" >&2
+    cat stdout.txt stderr.txt >&2
+    failed=1
+}
+
+# runs STATUS command...
+runs() {
+    local status=$1 got
+    shift
+    "$@" >stdout.txt 2>stderr.txt
+    got=$?
+    [ $got -eq "$status" ] || fail "$got instead of $status: $*"
+}
+
+"$oriel" synth monument --out photos --size 96x64 --count 3 --quiet || exit 1
+mkdir -p ws
+cp -r photos ws/images
+cp -r photos-truth/sparse ws/sparse
+{
+    printf 'ply\nformat ascii 1.0\nelement vertex 2500\n'
+    for p in x y z nx ny nz; do echo "property float $p"; done
+    for p in red green blue; do echo "property uchar $p"; done
+    echo end_header
+    for ((i = 0; i < 2500; i++)); do
+        echo "$((i % 50 - 25)).5 $((i / 50 - 25)).5 0 0 0 1 $((i % 256)) 90 120"
+    done
+} >ws/fused.ply
+
+runs 2 "$oriel" eval ws
+grep -q -- '--test-every' stderr.txt || fail "no advice when nothing is held out"
+
+mapfile -t names < <(cd photos && ls)
+{
+    echo '{"version": 1, "photographs": ['
+    echo " {\"name\": \"${names[0]}\", \"split\": \"train\"},"
+    echo " {\"name\": \"${names[1]}\", \"split\": \"test\"},"
+    echo " {\"name\": \"${names[2]}\", \"split\": \"train\"}]}"
+} >ws/scene.json
+cp ws/fused.ply ws/points.ply
+
+runs 0 "$oriel" eval ws --json out.json --images pictures --quiet
+grep -q "${names[1]}.*96x64" stdout.txt || fail "no row for the held-out photograph"
+grep -q "${names[0]}" stdout.txt && fail "a row for a photograph that is not held out"
+grep -q '^mean' stdout.txt || fail "no mean"
+[ -s stderr.txt ] && fail "--quiet is not quiet"
+head -c1 out.json | grep -q '{' || fail "the JSON of one method is no object"
+for field in scene method device size views mean photo psnr_db psnr_cc_db psnr_covered_db ssim \
+    coverage completeness ncc_error render_ms; do
+    grep -q "\"$field\"" out.json || fail "no field $field"
+done
+[ "$(ls pictures | wc -l)" -eq 3 ] || fail "not three pictures: $(ls pictures)"
+
+runs 0 "$oriel" eval ws --method all --json - --quiet
+head -c1 stdout.txt | grep -q '\[' || fail "the JSON of all methods is no array"
+tail -n1 stdout.txt | grep -q '\]' || fail "something after the JSON"
+grep -q '"points"' stdout.txt || fail "not all methods"
+
+runs 2 "$oriel" eval ws --method nonsense
+grep -q 'airieau' stderr.txt || fail "does not list the methods"
+runs 2 "$oriel" eval ws --set nonsense=1
+runs 2 "$oriel" eval nowhere
+runs 2 "$oriel" eval
+runs 0 "$oriel" eval --help
+
+# A held-out photograph that is damaged: no figures, no report.
+head -c 700 "ws/images/${names[1]}" >cut && mv cut "ws/images/${names[1]}"
+rm -f out.json
+runs 2 "$oriel" eval ws --json out.json
+grep -q "${names[1]}" stderr.txt || fail "does not name the damaged photograph"
+[ -e out.json ] && fail "a report in spite of the failure"
+exit $failed
