@@ -7,7 +7,8 @@
 
 void *orl_array(const struct orl_log *log, size_t count, size_t size)
 {
-    void *array = calloc(count ? count : 1, size);
+    bool fits = !size || count <= SIZE_MAX / size;
+    void *array = fits ? calloc(count ? count : 1, size) : NULL;
     if (!array)
         orl_logf(log, ORL_LOG_ERROR, "no memory for %zu elements of %zu bytes", count, size);
     return array;
