@@ -53,7 +53,7 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              struct orl_eval *eval) ORL_CHECK_RESULT;
 void orl_eval_finish(struct orl_eval *eval);
 
-// The JSON of docs/formats.md, released with free(): one object, or with `array` an
+// The JSON of docs/conventions.md, released with free(): one object, or with `array` an
 // array of `count` of them.
 char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
                        bool array);
