@@ -12,7 +12,7 @@
 enum {
     COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this
     EXTRA_LEVELS = 3,    // for sources that show the scene finer
-    SPECKLE_LEAST = 12,  // pixels
+    SPECKLE_SHARE = 2000, // pieces of less than one in so many pixels are dropped
 };
 
 struct densifier {
@@ -300,7 +300,8 @@ static enum orl_result process(struct densifier *d, size_t photo, bool geometric
     }
     size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
     if (result == ORL_OK && final)
-        result = densify_remove_speckles(d->log, &maps, SPECKLE_LEAST + pixels / 16384, 0.01f);
+        result = densify_remove_speckles(d->log, &job.reference.camera, &maps,
+                                         pixels / SPECKLE_SHARE, 0.01f);
     if (result == ORL_OK)
         result = write_maps(d, photo, geometric, &maps);
 end:

@@ -344,10 +344,10 @@ static void set_block(const struct densify_device *device, const struct densify_
     block->area[1] = c->height;
     block->tune[2] = 0.2f; // Xu and Tao 2019, 3.3
     block->tune[3] = 3.0f;
-    block->limit[0] = 0.6f;
+    block->limit[0] = 1.0f;
     block->limit[1] = 1.5f;
-    block->limit[2] = 0.6f;
-    block->limit[3] = 0.25f;
+    block->limit[2] = 0.9f;
+    block->limit[3] = 0.35f;
     block->run[0] = (int)job->seed;
 }
 

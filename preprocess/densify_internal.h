@@ -94,9 +94,9 @@ enum orl_result densify_photometric(struct densify_device *device, const struct 
 enum orl_result densify_geometric(struct densify_device *device, const struct densify_job *job,
                                   struct densify_maps *maps);
 
-// Removes connected pieces of less than `least` pixels; neighbours are connected when
-// their depths differ by less than `tolerance` (relative).
-enum orl_result densify_remove_speckles(const struct orl_log *log, struct densify_maps *maps,
-                                        size_t least, float tolerance);
+// Removes connected pieces of less than `least` pixels; neighbours are connected when one
+// is off the other's plane by less than `tolerance` of its depth.
+enum orl_result densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
+                                        struct densify_maps *maps, size_t least, float tolerance);
 
 #endif

@@ -74,53 +74,71 @@ void densify_maps_finish(struct densify_maps *maps)
 
 // --- speckles ---
 
+enum { REACH = 2 }; // pixels from one to the next of a piece, so that pinholes do not cut it
+
 struct flood {
-    const float *depth;
+    const struct densify_maps *maps;
+    const struct orl_camera *camera;
     uint8_t *seen;
     size_t *queue;
-    int width, height;
     float tolerance;
 };
 
-static bool connected(float a, float b, float tolerance)
+// Off the pixel's plane by less than `tolerance` of its depth. Depths alone would not do:
+// on ground seen at a flat angle they differ by several percent from row to row.
+static bool connected(const struct flood *flood, size_t from, size_t to)
 {
-    return b > 0.0f && fabsf(a - b) < tolerance * fminf(a, b);
+    const struct orl_camera *c = flood->camera;
+    const float *depth = flood->maps->depth.f32, *n = &flood->maps->normal.f32[3 * from];
+    size_t width = (size_t)flood->maps->depth.width;
+    float off = 0.0f, point[2][3];
+    for (int k = 0; k < 2; k++) {
+        size_t at = k ? to : from;
+        float z = depth[at];
+        point[k][0] = z * (float)(((double)(at % width) + 0.5 - c->cx) / c->fx);
+        point[k][1] = z * (float)(((double)(at / width) + 0.5 - c->cy) / c->fy);
+        point[k][2] = z;
+    }
+    for (int i = 0; i < 3; i++)
+        off += n[i] * (point[1][i] - point[0][i]);
+    return depth[to] > 0.0f && fabsf(off) < flood->tolerance * depth[from];
 }
 
 // Queues the piece that holds `start`; returns its size.
 static size_t flood_from(struct flood *flood, size_t start)
 {
-    size_t count = 0, width = (size_t)flood->width;
+    int width = flood->maps->depth.width, height = flood->maps->depth.height;
+    size_t count = 0;
     flood->queue[count++] = start;
     flood->seen[start] = 1;
     for (size_t i = 0; i < count; i++) {
-        size_t at = flood->queue[i], x = at % width, y = at / width;
-        size_t near[4] = {at - 1, at + 1, at - width, at + width};
-        bool there[4] = {x > 0, x + 1 < width, y > 0, y + 1 < (size_t)flood->height};
-        for (int k = 0; k < 4; k++) {
-            if (!there[k] || flood->seen[near[k]] ||
-                !connected(flood->depth[at], flood->depth[near[k]], flood->tolerance))
-                continue;
-            flood->seen[near[k]] = 1;
-            flood->queue[count++] = near[k];
-        }
+        size_t at = flood->queue[i];
+        int x = (int)(at % (size_t)width), y = (int)(at / (size_t)width);
+        int left = x > REACH ? x - REACH : 0, top = y > REACH ? y - REACH : 0;
+        for (int v = top; v <= y + REACH && v < height; v++)
+            for (int u = left; u <= x + REACH && u < width; u++) {
+                size_t near = (size_t)v * (size_t)width + (size_t)u;
+                if (flood->seen[near] || !connected(flood, at, near))
+                    continue;
+                flood->seen[near] = 1;
+                flood->queue[count++] = near;
+            }
     }
     return count;
 }
 
-enum orl_result densify_remove_speckles(const struct orl_log *log, struct densify_maps *maps,
-                                        size_t least, float tolerance)
+enum orl_result densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
+                                        struct densify_maps *maps, size_t least, float tolerance)
 {
     size_t count = (size_t)maps->depth.width * (size_t)maps->depth.height;
-    struct flood flood = {.depth = maps->depth.f32, .width = maps->depth.width,
-                          .height = maps->depth.height, .tolerance = tolerance};
+    struct flood flood = {.maps = maps, .camera = camera, .tolerance = tolerance};
     enum orl_result result = ORL_ERR_MEMORY;
     flood.seen = orl_array(log, count, sizeof *flood.seen);
     flood.queue = orl_array(log, count, sizeof *flood.queue);
     if (!flood.seen || !flood.queue)
         goto end;
     for (size_t start = 0; start < count; start++) {
-        if (flood.seen[start] || !(flood.depth[start] > 0.0f))
+        if (flood.seen[start] || !(maps->depth.f32[start] > 0.0f))
             continue;
         size_t piece = flood_from(&flood, start);
         for (size_t i = 0; piece < least && i < piece; i++) {

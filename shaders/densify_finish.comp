@@ -7,6 +7,8 @@ layout(r32f, binding = 1) readonly uniform image2D costs;
 layout(rgba32ui, binding = 2) readonly uniform uimage2D view_costs;
 layout(rgba32f, binding = 3) writeonly uniform image2D maps; // normal, depth
 
+const int SMOOTH_RADIUS = 2;
+
 #ifdef GEOMETRIC
 // Sources whose own depth is that of this plane, and which look alike.
 int agreeing_views(vec3 plane, vec2 pixel, uvec4 views)
@@ -29,6 +31,29 @@ int agreeing_views(vec3 plane, vec2 pixel, uvec4 views)
 }
 #endif
 
+#ifdef FILTER
+// Averages planes that pass through the same place: matching leaves each with noise of a
+// fraction of a pixel in depth and several degrees in its normal.
+vec3 smoothed_plane(ivec2 at, vec3 plane)
+{
+    vec3 sum = plane;
+    float total = 1.0;
+    for (int j = -SMOOTH_RADIUS; j <= SMOOTH_RADIUS; j++)
+        for (int i = -SMOOTH_RADIUS; i <= SMOOTH_RADIUS; i++) {
+            ivec2 q = at + ivec2(i, j);
+            if (q == at || any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, area.xy)))
+                continue;
+            vec3 other = imageLoad(planes, q).xyz;
+            other.x -= dot(other.yz, vec2(i, j));
+            float apart = (other.x - plane.x) / range.z;
+            float weight = max(1.0 - 4.0 * apart * apart, 0.0);
+            sum += weight * other;
+            total += weight;
+        }
+    return sum / total;
+}
+#endif
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, area.z);
@@ -45,6 +70,10 @@ void main()
     int count = agreeing_views(plane, pixel, imageLoad(view_costs, at));
     keep = keep && (count >= 2 || (count == 1 && cost < limit.w));
 #endif
+#endif
+#ifdef FILTER
+    if (keep)
+        plane = smoothed_plane(at, plane);
 #endif
     if (keep)
         map = vec4(-normalize(plane_normal(plane, pixel)), 1.0 / plane.x);

@@ -10,8 +10,8 @@ layout(rgba32ui, binding = 2) uniform uimage2D view_costs;
 
 // --- candidates: the best pixel of each of eight regions, best first ---
 
-uint region_offset; // (x + 32) | (y + 32) << 8
-float region_cost;
+uint region_offset = 0u; // (x + 32) | (y + 32) << 8
+float region_cost = 0.0;
 
 void region_try(ivec2 at, ivec2 offset)
 {
@@ -82,20 +82,28 @@ struct selection {
     uvec4 weights;  // a byte each
 };
 
+// A neighbour outside the picture is replaced by the pixel itself.
+ivec2 inside_or_self(ivec2 at, ivec2 offset)
+{
+    ivec2 q = at + offset;
+    bool inside = all(greaterThanEqual(q, ivec2(0))) && all(lessThan(q, area.xy));
+    return inside ? q : at;
+}
+
 selection select_views(ivec2 at)
 {
     float score[SOURCES];
     for (int view = 0; view < SOURCES; view++)
         score[view] = 0.0;
-    for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++) {
-            ivec2 q = clamp(at + ivec2(i, j), ivec2(0), area.xy - 1);
-            uvec4 codes = imageLoad(view_costs, q);
-            for (int view = 0; view < SOURCES; view++) {
-                float good = max(1.0 - 1.2 * cost_unpack(get_byte(codes, view)), 0.0);
-                score[view] += good * good;
-            }
+    // Itself and pixels of the other colour; those of its own are being written.
+    for (int i = 0; i < 9; i++) {
+        ivec2 offset = i == 0 ? ivec2(0) : (i < 5 ? 1 : 3) * DIRECTIONS[(i - 1) & 3];
+        uvec4 codes = imageLoad(view_costs, inside_or_self(at, offset));
+        for (int view = 0; view < SOURCES; view++) {
+            float good = max(1.0 - 1.2 * cost_unpack(get_byte(codes, view)), 0.0);
+            score[view] += good * good;
         }
+    }
     for (int view = 0; view < SOURCES; view++)
         score[view] = (score[view] + 0.02) * extent[view].z;
     selection chosen = selection(0u, uvec4(0u));
@@ -124,13 +132,13 @@ selection select_views(ivec2 at)
 // Slopes from the inverse depths around, which are the other colour's.
 vec3 fitted_plane(ivec2 at, vec3 plane)
 {
-    ivec2 low = max(at - 1, ivec2(0)), high = min(at + 1, area.xy - 1);
+    ivec2 low = max(at - 1, ivec2(0)), high = min(at + 1, area.xy - 1); // or itself at the edge
     float left = imageLoad(planes, ivec2(low.x, at.y)).x;
     float right = imageLoad(planes, ivec2(high.x, at.y)).x;
     float up = imageLoad(planes, ivec2(at.x, low.y)).x;
     float down = imageLoad(planes, ivec2(at.x, high.y)).x;
-    return vec3(plane.x, (right - left) / float(high.x - low.x),
-                (down - up) / float(high.y - low.y));
+    return vec3(plane.x, (right - left) / float(max(high.x - low.x, 1)),
+                (down - up) / float(max(high.y - low.y, 1)));
 }
 
 vec3 varied_plane(ivec2 at, vec2 pixel, vec3 plane, int kind)

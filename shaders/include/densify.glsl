@@ -7,7 +7,7 @@ const float COST_MAX = 2.0; // of 1 - NCC
 const int SIDE = 2 * RADIUS / STEP + 1;
 const int FIRST = -((SIDE - 1) * STEP) / 2;
 // Variance of sensor noise and rounding in 8-bit values: flat patches match nothing.
-const float NOISE_VARIANCE = 2.0;
+const float NOISE_VARIANCE = 0.5;
 // Bilateral weights: distance in window radii and difference in 8-bit values.
 const float SIGMA_COLOR = 30.0;
 
