@@ -12,11 +12,11 @@ static enum orl_result add_checksum(const struct orl_job *job, json_t *sums, con
 {
     uint64_t hash = 0;
     char *path = orl_job_path(job, "%s", name);
-    enum orl_result result = path ? orl_file_hash(job->log, path, &hash) : ORL_ERR_MEMORY;
-    char text[32];
-    snprintf(text, sizeof text, "xxh3:%016" PRIx64, hash);
+    if (!path)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = orl_file_hash(job->log, path, &hash);
     if (result == ORL_OK)
-        json_object_set_new(sums, name, json_string(text));
+        json_object_set_new(sums, name, json_sprintf("xxh3:%016" PRIx64, hash));
     free(path);
     return result;
 }
@@ -100,7 +100,8 @@ enum orl_result orl_stage_manifest(struct orl_job *job)
     char *path = orl_job_path(job, "scene.json");
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
-        result = add_checksum(job, sums, files[i]);
+        if (orl_job_has(job, files[i])) // a sparse model may be text
+            result = add_checksum(job, sums, files[i]);
     json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "format",
                              "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                              "oriel " ORL_VERSION, "settings", orl_job_settings(job), "counts",

@@ -215,3 +215,45 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
     search_close(&s);
     return result;
 }
+
+// Pixels per scene unit at the point in the photograph that draws it largest; 0 when
+// it is in no photograph's frame.
+static double finest_scale(const struct orl_view *views, size_t view_count, const float p[3])
+{
+    const double world[3] = {(double)p[0], (double)p[1], (double)p[2]};
+    double finest = 0;
+    for (size_t i = 0; i < view_count; i++) {
+        const struct orl_camera *camera = &views[i].camera;
+        double pixel[2], depth;
+        if (orl_view_project(&views[i], world, pixel, &depth) && pixel[0] >= 0 && pixel[1] >= 0 &&
+            pixel[0] < camera->width && pixel[1] < camera->height)
+            finest = fmax(finest, camera->fx / depth);
+    }
+    return finest;
+}
+
+enum orl_result orl_points_limit_radii(const struct orl_log *log,
+                                       const struct orl_radii_limits *limits,
+                                       const struct orl_view *views, size_t view_count,
+                                       struct orl_points *points)
+{
+    ORL_REQUIRE(log, limits->largest_px > 0 && limits->isolated_px >= limits->largest_px);
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        double scale = finest_scale(views, view_count, points->position[i]);
+        double size_px = scale * (double)points->radius[i];
+        if (size_px > (double)limits->isolated_px)
+            continue;
+        if (size_px > (double)limits->largest_px)
+            points->radius[i] = (float)((double)limits->largest_px / scale);
+        memmove(points->position[kept], points->position[i], sizeof *points->position);
+        memmove(points->normal[kept], points->normal[i], sizeof *points->normal);
+        memmove(points->color[kept], points->color[i], sizeof *points->color);
+        points->radius[kept++] = points->radius[i];
+    }
+    if (kept < points->count)
+        orl_logf(log, ORL_LOG_INFO, "%zu of %zu points stand alone: dropped",
+                 points->count - kept, points->count);
+    points->count = kept;
+    return ORL_OK;
+}

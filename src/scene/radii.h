@@ -3,6 +3,7 @@
 #define ORL_SCENE_RADII_H
 
 #include "core/progress.h"
+#include "scene/camera.h"
 #include "scene/points.h"
 
 struct orl_radii_params {
@@ -21,5 +22,21 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
                                      const struct orl_radii_params *params,
                                      const double (*viewers)[3], size_t viewer_count,
                                      struct orl_points *points) ORL_CHECK_RESULT;
+
+struct orl_radii_limits {
+    float largest_px;  // radii are cut to this size in the photograph that sees most detail
+    float isolated_px; // points with larger radii stand alone: dropped
+};
+#define ORL_RADII_LIMITS_DEFAULTS .largest_px = 9.0f, .isolated_px = 16.0f
+
+// Cuts radii that a fused cloud's sampling does not account for. Stereo gives some
+// points in mid-air; with the distance to their neighbours as radius a single one may
+// hide a whole picture. A disc's size in pixels is taken in the photograph, of those
+// whose frame holds the point, that would draw it largest. Points in no frame are
+// kept as they are.
+enum orl_result orl_points_limit_radii(const struct orl_log *log,
+                                       const struct orl_radii_limits *limits,
+                                       const struct orl_view *views, size_t view_count,
+                                       struct orl_points *points) ORL_CHECK_RESULT;
 
 #endif

@@ -145,16 +145,24 @@ static void drop_flat_points(const struct orl_log *log, struct orl_scene *scene)
 static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene *scene)
 {
     double (*viewers)[3] = orl_array(log, scene->photo_count, sizeof *viewers);
-    if (!viewers)
-        return ORL_ERR_MEMORY;
+    struct orl_view *views = orl_array(log, scene->photo_count, sizeof *views);
+    enum orl_result result = viewers && views ? ORL_OK : ORL_ERR_MEMORY;
     size_t count = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        if (!scene->photos[i].test)
-            orl_pose_centre(&scene->photos[i].view.cam_from_world, viewers[count++]);
-    enum orl_result result = orl_points_set_radii(
-        log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
-        (const double (*)[3])viewers, count, &scene->points);
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (scene->photos[i].test)
+            continue;
+        views[count] = scene->photos[i].view;
+        orl_pose_centre(&scene->photos[i].view.cam_from_world, viewers[count++]);
+    }
+    if (result == ORL_OK)
+        result = orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
+                                      (const double (*)[3])viewers, count, &scene->points);
+    if (result == ORL_OK)
+        result = orl_points_limit_radii(
+            log, &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS}, views, count,
+            &scene->points);
     free(viewers);
+    free(views);
     return result;
 }
 

@@ -120,6 +120,35 @@ static void takes_few_points(void **state)
     }
 }
 
+static void limits_radii_by_pixels(void **state)
+{
+    (void)state;
+    // Seen from 1 and 4 units away with a focal length of 100: a radius of 0.1 is ten
+    // pixels in the nearer photograph.
+    struct orl_view views[2] = {{{64, 64, 100, 100, 32, 32}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                                              {0, 0, 4}}},
+                                {{64, 64, 100, 100, 32, 32}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                                              {0, 0, 1}}}};
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, 5), ORL_OK);
+    const float radii[5] = {0.05f, 0.1f, 0.3f, 0.07f, 500};
+    for (int i = 0; i < 5; i++) {
+        points.radius[i] = radii[i];
+        points.color[i][0] = (uint8_t)(10 + i);
+    }
+    points.position[4][0] = 1000; // in no photograph's frame
+    const struct orl_radii_limits limits = {.largest_px = 6, .isolated_px = 20};
+    assert_int_equal(orl_points_limit_radii(NULL, &limits, views, 2, &points), ORL_OK);
+    assert_int_equal(points.count, 4);
+    const float expected[4] = {0.05f, 0.06f, 0.06f, 500};
+    const uint8_t colors[4] = {10, 11, 13, 14};
+    for (int i = 0; i < 4; i++) {
+        assert_float_equal(points.radius[i], expected[i], 1e-6);
+        assert_int_equal(points.color[i][0], colors[i]);
+    }
+    orl_points_finish(&points);
+}
+
 static bool always(void *priv)
 {
     (void)priv;
@@ -145,6 +174,7 @@ int main(void)
         cmocka_unit_test(fits_normals),
         cmocka_unit_test(gives_coinciding_points_the_median),
         cmocka_unit_test(takes_few_points),
+        cmocka_unit_test(limits_radii_by_pixels),
         cmocka_unit_test(stops_when_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
