@@ -46,19 +46,25 @@ static const char images[] = "1 1 0 0 0 0 0 0 1 a.jpg\n1 1 1 2 2 2\n"
                              "2 1 0 0 0 0 0 2 1 b.jpg\n1 1 1\n"
                              "3 1 0 0 0 0 0 4 1 c.jpg\n\n";
 static const char cloud[] =
-    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "ply\nformat ascii 1.0\nelement vertex %d\nproperty float x\nproperty float y\n"
     "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n%s"
     "end_header\n";
 
 // A plain workspace: three photographs at z = 0, -2, -4, sparse points at z = 3 and 8.
 static char *plain(void)
 {
-    char *dir = test_dir_make(), text[1024];
+    char *dir = test_dir_make(), text[2048];
     save(dir, "sparse/cameras.txt", "1 PINHOLE 64 48 50 51 32 24\n");
     save(dir, "sparse/images.txt", images);
     save(dir, "sparse/points3D.txt", "1 0 0 3 9 9 9 0.1\n2 0 0 8 9 9 9 0.1\n");
-    snprintf(text, sizeof text, cloud, "");
-    strcat(text, "0 0 3 1 2 3\n1 0 3 1 2 3\n0 1 3 1 2 3\n1 1 3 1 2 3\n");
+    // A grid of 5 x 5 points, a tenth apart, and one in mid-air.
+    snprintf(text, sizeof text, cloud, 26, "");
+    for (int i = 0; i < 25; i++) {
+        size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "%g %g 3 1 2 3\n", 0.1 * (i % 5 - 2),
+                 0.1 * (i / 5 - 2));
+    }
+    strcat(text, "0 0 1 1 2 3\n");
     save(dir, "fused.ply", text);
     for (const char *name = "abc"; *name; name++) {
         snprintf(text, sizeof text, "images/%c.jpg", *name);
@@ -77,7 +83,7 @@ static const char manifest[] =
 static char *whole(void)
 {
     char *dir = plain(), text[1024];
-    snprintf(text, sizeof text, cloud, "property float radius\n");
+    snprintf(text, sizeof text, cloud, 4, "property float radius\n");
     strcat(text, "0 0 3 1 2 3 0.5\n1 0 3 1 2 3 0\n0 1 3 1 2 3 0.25\n1 1 3 1 2 3 -4\n");
     save(dir, "points.ply", text);
     save(dir, "scene.json", manifest);
@@ -99,8 +105,8 @@ static void opens_a_plain_workspace(void **state)
     assert_float_equal(scene->photos[1].gain[1], 1, 0);
     // Distances seen: a to 3 and 8, b to 5.
     assert_float_equal(scene->photo_distance, 5, 1e-9);
-    assert_int_equal(scene->points.count, 4);
-    assert_float_equal(scene->points.radius[0], sqrt(2), 1e-6); // farthest of three
+    assert_int_equal(scene->points.count, 25); // without the one in mid-air
+    assert_float_equal(scene->points.radius[12], sqrt(0.02), 1e-6); // the sixth neighbour
     assert_float_equal(scene->points.normal[0][2], -1, 1e-6);   // towards the photographs
     assert_int_equal(orl_scene_find_photo(scene, "c.jpg"), 2);
     assert_int_equal(orl_scene_find_photo(scene, "c"), 2);
