@@ -17,8 +17,8 @@ static char *dir;
 static int set_up(void **state)
 {
     (void)state;
+    gpu = gpu_test_device(); // may end the program
     dir = test_dir_make();
-    gpu = gpu_test_device();
     tiny_scene_make(dir, &scene);
     assert_int_equal(orl_renderer_create(gpu, &scene, NULL, &renderer), ORL_OK);
     return 0;

@@ -52,6 +52,23 @@ static void everything_comes_back(void **state)
     assert_int_equal(back.orientation, 8);
 }
 
+// Geometry needs pixels as stored: a photograph on its side stays so.
+static void orientation_does_not_turn_pixels(void **state)
+{
+    (void)state;
+    const struct orl_exif exif = {.orientation = 6};
+    struct orl_image image;
+    int width, height;
+    assert_int_equal(through_file(&exif).orientation, 6);
+    assert_int_equal(orl_picture_size(NULL, file, &width, &height), ORL_OK);
+    assert_int_equal(width, 16);
+    assert_int_equal(height, 8);
+    assert_int_equal(orl_picture_read(NULL, file, 3, &image), ORL_OK);
+    assert_int_equal(image.width, 16);
+    assert_int_equal(image.height, 8);
+    orl_image_finish(&image);
+}
+
 static void extreme_values_survive(void **state)
 {
     (void)state;
@@ -155,6 +172,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_comes_back),
+        cmocka_unit_test(orientation_does_not_turn_pixels),
         cmocka_unit_test(extreme_values_survive),
         cmocka_unit_test(silence_reads_as_zeroes),
         cmocka_unit_test(exposure),
