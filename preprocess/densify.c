@@ -118,7 +118,7 @@ static enum orl_result read_pyramid(const struct densifier *d, size_t photo, int
 {
     char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, photo));
     enum orl_result result =
-        path ? densify_pyramid_read(d->log, path, &d->photos.views[photo].camera, levels, pyramid)
+        path ? orl_densify_pyramid_read(d->log, path, &d->photos.views[photo].camera, levels, pyramid)
              : ORL_ERR_MEMORY;
     free(path);
     return result;
@@ -163,8 +163,8 @@ static enum orl_result make_seeds(const struct densifier *d, size_t photo, struc
 {
     const struct orl_image *luma = &job->reference.levels[job->reference.count - 1];
     const struct orl_colmap_image *image = &d->model.images[d->photos.images[photo]];
-    struct orl_view view = {.camera = densify_level_camera(&job->reference.camera,
-                                                           job->reference.count - 1),
+    struct orl_view view = {.camera = orl_densify_level_camera(&job->reference.camera,
+                                                               job->reference.count - 1),
                             .cam_from_world = job->view.cam_from_world};
     enum orl_result result = orl_image_init(d->log, &job->seeds, luma->width, luma->height, 1,
                                             ORL_PIXEL_F32);
@@ -203,11 +203,11 @@ static enum orl_result make_seeds(const struct densifier *d, size_t photo, struc
 
 static void job_finish(struct densify_job *job)
 {
-    densify_pyramid_finish(&job->reference);
+    orl_densify_pyramid_finish(&job->reference);
     orl_image_finish(&job->mask);
     orl_image_finish(&job->seeds);
     for (int k = 0; k < ORL_DENSIFY_SOURCES_MAX; k++) {
-        densify_pyramid_finish(&job->sources[k]);
+        orl_densify_pyramid_finish(&job->sources[k]);
         orl_image_finish(&job->source_depths[k]);
     }
 }
@@ -238,7 +238,7 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, bool ge
         return result;
     int levels = geometric ? 1 : level_count(job->reference.levels[0].width,
                                              job->reference.levels[0].height);
-    densify_pyramid_finish(&job->reference);
+    orl_densify_pyramid_finish(&job->reference);
     result = read_pyramid(d, photo, levels, &job->reference);
     for (int k = 0; k < plan->count && result == ORL_OK; k++) {
         size_t source = plan->sources[k].photo;
@@ -269,7 +269,7 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo, bool
         result = orl_image_init(d->log, &maps.normal, width, height, 3, ORL_PIXEL_F32);
     if (result == ORL_OK)
         result = write_maps(d, photo, geometric, &maps);
-    densify_maps_finish(&maps);
+    orl_densify_maps_finish(&maps);
     return result;
 }
 
@@ -294,19 +294,19 @@ static enum orl_result process(struct densifier *d, size_t photo, bool geometric
                               "them made again", job.name);
         job.start = &start;
         if (result == ORL_OK)
-            result = densify_geometric(d->device, &job, &maps);
+            result = orl_densify_geometric(d->device, &job, &maps);
     } else {
-        result = densify_photometric(d->device, &job, final, &maps);
+        result = orl_densify_photometric(d->device, &job, final, &maps);
     }
     size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
     if (result == ORL_OK && final)
-        result = densify_remove_speckles(d->log, &job.reference.camera, &maps,
-                                         pixels / SPECKLE_SHARE, 0.01f);
+        result = orl_densify_remove_speckles(d->log, &job.reference.camera, &maps,
+                                             pixels / SPECKLE_SHARE, 0.01f);
     if (result == ORL_OK)
         result = write_maps(d, photo, geometric, &maps);
 end:
-    densify_maps_finish(&start);
-    densify_maps_finish(&maps);
+    orl_densify_maps_finish(&start);
+    orl_densify_maps_finish(&maps);
     job_finish(&job);
     return result;
 }
@@ -360,9 +360,9 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
         return ORL_ERR_MEMORY;
     enum orl_result result = orl_colmap_read(d->log, d->sparse_dir, &d->model);
     if (result == ORL_OK)
-        result = densify_photos_init(d->log, &d->model, names, &d->photos);
+        result = orl_densify_photos_init(d->log, &d->model, names, &d->photos);
     if (result == ORL_OK)
-        result = densify_plans_make(d->log, &d->photos, d->params->sources, &d->plans);
+        result = orl_densify_plans_make(d->log, &d->photos, d->params->sources, &d->plans);
     if (result == ORL_OK)
         result = check_plans(d);
     if (result == ORL_OK)
@@ -383,15 +383,15 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
     if (result == ORL_OK)
         result = open_workspace(&d, workspace, photos);
     if (result == ORL_OK)
-        result = densify_device_create(gpu, params, &d.device);
+        result = orl_densify_device_create(gpu, params, &d.device);
     d.total = (double)d.photos.count * (params->geometric_passes > 0 ? 2.0 : 1.0);
     if (result == ORL_OK)
         result = process_pass(&d, false);
     if (result == ORL_OK && params->geometric_passes > 0)
         result = process_pass(&d, true);
-    densify_device_destroy(&d.device);
+    orl_densify_device_destroy(&d.device);
     free(d.plans);
-    densify_photos_finish(&d.photos);
+    orl_densify_photos_finish(&d.photos);
     orl_colmap_finish(&d.model);
     free(d.images_dir);
     free(d.sparse_dir);

@@ -65,8 +65,8 @@ static void level_finish(struct orl_gpu *gpu, struct level *level)
     orl_tex_destroy(gpu, &level->extra);
 }
 
-enum orl_result densify_device_create(struct orl_gpu *gpu, const struct orl_densify_params *params,
-                                      struct densify_device **out)
+enum orl_result orl_densify_device_create(struct orl_gpu *gpu, const struct orl_densify_params *params,
+                                          struct densify_device **out)
 {
     struct densify_device *device = orl_array(orl_gpu_log(gpu), 1, sizeof *device);
     *out = device;
@@ -79,7 +79,7 @@ enum orl_result densify_device_create(struct orl_gpu *gpu, const struct orl_dens
     return ORL_OK;
 }
 
-void densify_device_destroy(struct densify_device **handle)
+void orl_densify_device_destroy(struct densify_device **handle)
 {
     struct densify_device *device = *handle;
     if (!device)
@@ -318,13 +318,13 @@ static void set_block(const struct densify_device *device, const struct densify_
 {
     struct densify_block *block = &level->block;
     struct orl_view ref = job->view;
-    ref.camera = densify_level_camera(&job->reference.camera, level->number);
+    ref.camera = orl_densify_level_camera(&job->reference.camera, level->number);
     for (int k = 0; k < job->plan->count; k++) {
         int shrunk = source_level(job, k, level->number);
         struct orl_view source = job->source_views[k];
         source.camera = job->sources[k].camera;
-        densify_transfer(&ref, &source, &block->backward[3 * k]);
-        source.camera = densify_level_camera(&source.camera, shrunk);
+        orl_densify_transfer(&ref, &source, &block->backward[3 * k]);
+        source.camera = orl_densify_level_camera(&source.camera, shrunk);
         block->extent[k][0] = (float)source.camera.width;
         block->extent[k][1] = (float)source.camera.height;
         block->extent[k][2] = (float)job->plan->sources[k].prior;
@@ -332,7 +332,7 @@ static void set_block(const struct densify_device *device, const struct densify_
         // Texel centres at whole numbers, behind the padding.
         source.camera.cx += device->padding - 0.5;
         source.camera.cy += device->padding - 0.5;
-        densify_transfer(&source, &ref, &block->forward[3 * k]);
+        orl_densify_transfer(&source, &ref, &block->forward[3 * k]);
     }
     const struct orl_camera *c = &ref.camera;
     memcpy(block->camera, (float[]){(float)c->fx, (float)c->fy, (float)c->cx, (float)c->cy},
@@ -420,7 +420,7 @@ static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
 end:
     free(pixels);
     if (result != ORL_OK)
-        densify_maps_finish(maps);
+        orl_densify_maps_finish(maps);
     return result;
 }
 
@@ -499,8 +499,8 @@ static enum orl_result sweeps_finer(struct densify_device *device, const struct 
     return result;
 }
 
-enum orl_result densify_photometric(struct densify_device *device, const struct densify_job *job,
-                                    bool final, struct densify_maps *maps)
+enum orl_result orl_densify_photometric(struct densify_device *device, const struct densify_job *job,
+                                        bool final, struct densify_maps *maps)
 {
     struct level level = {0}, coarser = {0};
     enum orl_result result = ORL_OK;
@@ -528,8 +528,8 @@ enum orl_result densify_photometric(struct densify_device *device, const struct 
     return result;
 }
 
-enum orl_result densify_geometric(struct densify_device *device, const struct densify_job *job,
-                                  struct densify_maps *maps)
+enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
+                                      struct densify_maps *maps)
 {
     struct level level = {.number = 0};
     int count = device->params.geometric_passes;

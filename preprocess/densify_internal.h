@@ -28,22 +28,22 @@ struct densify_photos {
     struct orl_view *views; // owned
 };
 
-enum orl_result densify_photos_init(const struct orl_log *log,
-                                    const struct orl_colmap_model *model,
-                                    const struct orl_names *names, struct densify_photos *photos);
-void densify_photos_finish(struct densify_photos *photos);
+enum orl_result orl_densify_photos_init(const struct orl_log *log,
+                                        const struct orl_colmap_model *model,
+                                        const struct orl_names *names, struct densify_photos *photos);
+void orl_densify_photos_finish(struct densify_photos *photos);
 static inline const char *densify_photo_name(const struct densify_photos *photos, size_t photo)
 {
     return photos->model->images[photos->images[photo]].name;
 }
 // Plans for all photographs, released with free(). Photographs without sources have
 // count 0.
-enum orl_result densify_plans_make(const struct orl_log *log, const struct densify_photos *photos,
-                                   int sources, struct densify_plan **plans);
+enum orl_result orl_densify_plans_make(const struct orl_log *log, const struct densify_photos *photos,
+                                       int sources, struct densify_plan **plans);
 
 // Rows of matrix (x, y, 1, w) -> to's homogeneous pixels, for a pixel of `from` with
 // inverse depth w.
-void densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4]);
+void orl_densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4]);
 
 // A photograph's luma at every level, halved by 2x2 boxes; an odd last row or column
 // is left out, so that a coarse pixel k covers exactly the pixels 2k and 2k + 1.
@@ -53,23 +53,23 @@ struct densify_pyramid {
     int count;
     struct orl_camera camera; // of level 0
 };
-enum orl_result densify_pyramid_read(const struct orl_log *log, const char *path,
-                                     const struct orl_camera *camera, int levels,
-                                     struct densify_pyramid *pyramid);
-void densify_pyramid_finish(struct densify_pyramid *pyramid);
-struct orl_camera densify_level_camera(const struct orl_camera *camera, int level);
+enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *path,
+                                         const struct orl_camera *camera, int levels,
+                                         struct densify_pyramid *pyramid);
+void orl_densify_pyramid_finish(struct densify_pyramid *pyramid);
+struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int level);
 
 // --- one photograph on the device ---
 
 struct densify_device;
-enum orl_result densify_device_create(struct orl_gpu *gpu, const struct orl_densify_params *params,
-                                      struct densify_device **out);
-void densify_device_destroy(struct densify_device **device);
+enum orl_result orl_densify_device_create(struct orl_gpu *gpu, const struct orl_densify_params *params,
+                                          struct densify_device **out);
+void orl_densify_device_destroy(struct densify_device **device);
 
 struct densify_maps {
     struct orl_image depth, normal; // one and three channels
 };
-void densify_maps_finish(struct densify_maps *maps);
+void orl_densify_maps_finish(struct densify_maps *maps);
 
 struct densify_job {
     const char *name;
@@ -87,16 +87,16 @@ struct densify_job {
     double done, total; // for the progress report; this job counts 1
 };
 // From coarse to fine. final: keep only what matches well.
-enum orl_result densify_photometric(struct densify_device *device, const struct densify_job *job,
-                                    bool final, struct densify_maps *maps);
+enum orl_result orl_densify_photometric(struct densify_device *device, const struct densify_job *job,
+                                        bool final, struct densify_maps *maps);
 // Refines job->start at full size, with the sources' depths; keeps only what matches
 // well and agrees with a source.
-enum orl_result densify_geometric(struct densify_device *device, const struct densify_job *job,
-                                  struct densify_maps *maps);
+enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
+                                      struct densify_maps *maps);
 
 // Removes connected pieces of less than `least` pixels; neighbours are connected when one
 // is off the other's plane by less than `tolerance` of its depth.
-enum orl_result densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
-                                        struct densify_maps *maps, size_t least, float tolerance);
+enum orl_result orl_densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
+                                            struct densify_maps *maps, size_t least, float tolerance);
 
 #endif

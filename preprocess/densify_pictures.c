@@ -24,9 +24,9 @@ static enum orl_result halve(const struct orl_log *log, const struct orl_image *
     return ORL_OK;
 }
 
-enum orl_result densify_pyramid_read(const struct orl_log *log, const char *path,
-                                     const struct orl_camera *camera, int levels,
-                                     struct densify_pyramid *pyramid)
+enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *path,
+                                         const struct orl_camera *camera, int levels,
+                                         struct densify_pyramid *pyramid)
 {
     memset(pyramid, 0, sizeof *pyramid);
     enum orl_result result = orl_picture_read(log, path, 1, &pyramid->levels[0]);
@@ -40,7 +40,7 @@ enum orl_result densify_pyramid_read(const struct orl_log *log, const char *path
            pyramid->levels[pyramid->count - 1].height >= 4) {
         result = halve(log, &pyramid->levels[pyramid->count - 1], &pyramid->levels[pyramid->count]);
         if (result != ORL_OK) {
-            densify_pyramid_finish(pyramid);
+            orl_densify_pyramid_finish(pyramid);
             return result;
         }
         pyramid->count++;
@@ -48,14 +48,14 @@ enum orl_result densify_pyramid_read(const struct orl_log *log, const char *path
     return ORL_OK;
 }
 
-void densify_pyramid_finish(struct densify_pyramid *pyramid)
+void orl_densify_pyramid_finish(struct densify_pyramid *pyramid)
 {
     for (int i = 0; i < pyramid->count; i++)
         orl_image_finish(&pyramid->levels[i]);
     memset(pyramid, 0, sizeof *pyramid);
 }
 
-struct orl_camera densify_level_camera(const struct orl_camera *camera, int level)
+struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int level)
 {
     double scale = 1.0 / (double)(1 << level);
     return (struct orl_camera){.width = camera->width >> level,
@@ -66,7 +66,7 @@ struct orl_camera densify_level_camera(const struct orl_camera *camera, int leve
                                .cy = camera->cy * scale};
 }
 
-void densify_maps_finish(struct densify_maps *maps)
+void orl_densify_maps_finish(struct densify_maps *maps)
 {
     orl_image_finish(&maps->depth);
     orl_image_finish(&maps->normal);
@@ -127,8 +127,8 @@ static size_t flood_from(struct flood *flood, size_t start)
     return count;
 }
 
-enum orl_result densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
-                                        struct densify_maps *maps, size_t least, float tolerance)
+enum orl_result orl_densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
+                                            struct densify_maps *maps, size_t least, float tolerance)
 {
     size_t count = (size_t)maps->depth.width * (size_t)maps->depth.height;
     struct flood flood = {.maps = maps, .camera = camera, .tolerance = tolerance};

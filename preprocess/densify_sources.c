@@ -9,9 +9,9 @@
 // Fewer shared points than this may be chance matches.
 enum { SHARED_MIN = 3 };
 
-enum orl_result densify_photos_init(const struct orl_log *log,
-                                    const struct orl_colmap_model *model,
-                                    const struct orl_names *names, struct densify_photos *photos)
+enum orl_result orl_densify_photos_init(const struct orl_log *log,
+                                        const struct orl_colmap_model *model,
+                                        const struct orl_names *names, struct densify_photos *photos)
 {
     enum orl_result result = ORL_ERR_MEMORY;
     *photos = (struct densify_photos){.model = model};
@@ -48,11 +48,11 @@ enum orl_result densify_photos_init(const struct orl_log *log,
     }
     return ORL_OK;
 fail:
-    densify_photos_finish(photos);
+    orl_densify_photos_finish(photos);
     return result;
 }
 
-void densify_photos_finish(struct densify_photos *photos)
+void orl_densify_photos_finish(struct densify_photos *photos)
 {
     free(photos->images);
     free(photos->views);
@@ -221,8 +221,8 @@ static void make_plan(const struct densify_photos *photos, size_t ref, int sourc
         choose_sources(scratch->tallies, photos->count, sources, plan);
 }
 
-enum orl_result densify_plans_make(const struct orl_log *log, const struct densify_photos *photos,
-                                   int sources, struct densify_plan **plans)
+enum orl_result orl_densify_plans_make(const struct orl_log *log, const struct densify_photos *photos,
+                                       int sources, struct densify_plan **plans)
 {
     struct plan_scratch scratch = {0};
     enum orl_result result = ORL_ERR_MEMORY;
@@ -257,7 +257,7 @@ end:
 }
 
 // x_to ~ K_to (R K_from^-1 (x, y, 1) + t w), since a point is its ray divided by w.
-void densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4])
+void orl_densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4])
 {
     double r[3][3], t[3];
     const struct orl_pose *a = &to->cam_from_world, *b = &from->cam_from_world;
