@@ -10,10 +10,11 @@ layout(rgba32f, binding = 3) writeonly uniform image2D maps; // normal, depth
 const int SMOOTH_RADIUS = 2;
 
 #ifdef GEOMETRIC
-// Sources whose own depth is that of this plane, and which look alike.
-int agreeing_views(vec3 plane, vec2 pixel, uvec4 views)
+// x: sources whose own depth is that of this plane, and which look alike; y: sources
+// that see through the place to something clearly farther.
+ivec2 count_opinions(vec3 plane, vec2 pixel, uvec4 views)
 {
-    int count = 0;
+    ivec2 count = ivec2(0);
     for (int view = 0; view < SOURCES; view++) {
         vec4 q = vec4(pixel, 1.0, plane.x);
         float depth = dot(forward[3 * view + 2], q);
@@ -23,9 +24,15 @@ int agreeing_views(vec3 plane, vec2 pixel, uvec4 views)
         vec2 inside = texel - float(PADDING) + 0.5;
         if (any(lessThan(inside, vec2(0.0))) || any(greaterThan(inside, extent[view].xy)))
             continue;
-        if (geometric_cost(view, texel, pixel) < tune.z * limit.y &&
-            cost_unpack(get_byte(views, view)) < limit.z)
-            count++;
+        float seen = source_inverse_depth(view, texel);
+        if (!(seen > 0.0))
+            continue;
+        if (geometric_cost(view, texel, pixel) < tune.z * limit.y) {
+            if (cost_unpack(get_byte(views, view)) < limit.z)
+                count.x++;
+        } else if (seen * depth < 0.95 * plane.x) {
+            count.y++;
+        }
     }
     return count;
 }
@@ -67,8 +74,9 @@ void main()
 #ifdef FILTER
     keep = keep && cost < limit.x;
 #ifdef GEOMETRIC
-    int count = agreeing_views(plane, pixel, imageLoad(view_costs, at));
-    keep = keep && (count >= 2 || (count == 1 && cost < limit.w));
+    ivec2 count = count_opinions(plane, pixel, imageLoad(view_costs, at));
+    keep = keep && (count.x >= 2 ? count.y <= count.x
+                                 : count.x == 1 && count.y == 0 && cost < limit.w);
 #endif
 #endif
 #ifdef FILTER

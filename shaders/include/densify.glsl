@@ -155,14 +155,20 @@ void load_patch(ivec2 at)
 // --- the cost of a plane in one source ---
 
 #ifdef GEOMETRIC
+float source_inverse_depth(int view, vec2 texel)
+{
+    ivec2 limits = textureSize(source_depths, 0).xy - 1;
+    ivec2 at = ivec2((texel + 0.5 - float(PADDING)) * extent[view].w);
+    return texelFetch(source_depths, ivec3(clamp(at, ivec2(0), limits), view), 0).r;
+}
+
 // How far the pixel lands from itself after going to the source and back with the
 // source's own depth (Schoenberger 2016, 4.2), weighted. Where the source has none,
 // half of the worst.
 float geometric_cost(int view, vec2 texel, vec2 pixel)
 {
-    ivec2 limits = textureSize(source_depths, 0).xy - 1;
     vec2 p = (texel + 0.5 - float(PADDING)) * extent[view].w;
-    float w = texelFetch(source_depths, ivec3(clamp(ivec2(p), ivec2(0), limits), view), 0).r;
+    float w = source_inverse_depth(view, texel);
     if (!(w > 0.0))
         return 0.5 * tune.z * tune.w;
     vec4 q = vec4(p, 1.0, w);
