@@ -118,7 +118,8 @@ static enum orl_result read_pyramid(const struct densifier *d, size_t photo, int
 {
     char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, photo));
     enum orl_result result =
-        path ? orl_densify_pyramid_read(d->log, path, &d->photos.views[photo].camera, levels, pyramid)
+        path ? orl_densify_pyramid_read(d->log, path, &d->photos.views[photo].camera, levels,
+                                        pyramid)
              : ORL_ERR_MEMORY;
     free(path);
     return result;

@@ -65,7 +65,8 @@ static void level_finish(struct orl_gpu *gpu, struct level *level)
     orl_tex_destroy(gpu, &level->extra);
 }
 
-enum orl_result orl_densify_device_create(struct orl_gpu *gpu, const struct orl_densify_params *params,
+enum orl_result orl_densify_device_create(struct orl_gpu *gpu,
+                                          const struct orl_densify_params *params,
                                           struct densify_device **out)
 {
     struct densify_device *device = orl_array(orl_gpu_log(gpu), 1, sizeof *device);
@@ -499,8 +500,9 @@ static enum orl_result sweeps_finer(struct densify_device *device, const struct 
     return result;
 }
 
-enum orl_result orl_densify_photometric(struct densify_device *device, const struct densify_job *job,
-                                        bool final, struct densify_maps *maps)
+enum orl_result orl_densify_photometric(struct densify_device *device,
+                                        const struct densify_job *job, bool final,
+                                        struct densify_maps *maps)
 {
     struct level level = {0}, coarser = {0};
     enum orl_result result = ORL_OK;

@@ -30,7 +30,8 @@ struct densify_photos {
 
 enum orl_result orl_densify_photos_init(const struct orl_log *log,
                                         const struct orl_colmap_model *model,
-                                        const struct orl_names *names, struct densify_photos *photos);
+                                        const struct orl_names *names,
+                                        struct densify_photos *photos);
 void orl_densify_photos_finish(struct densify_photos *photos);
 static inline const char *densify_photo_name(const struct densify_photos *photos, size_t photo)
 {
@@ -38,8 +39,9 @@ static inline const char *densify_photo_name(const struct densify_photos *photos
 }
 // Plans for all photographs, released with free(). Photographs without sources have
 // count 0.
-enum orl_result orl_densify_plans_make(const struct orl_log *log, const struct densify_photos *photos,
-                                       int sources, struct densify_plan **plans);
+enum orl_result orl_densify_plans_make(const struct orl_log *log,
+                                       const struct densify_photos *photos, int sources,
+                                       struct densify_plan **plans);
 
 // Rows of matrix (x, y, 1, w) -> to's homogeneous pixels, for a pixel of `from` with
 // inverse depth w.
@@ -62,7 +64,8 @@ struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int 
 // --- one photograph on the device ---
 
 struct densify_device;
-enum orl_result orl_densify_device_create(struct orl_gpu *gpu, const struct orl_densify_params *params,
+enum orl_result orl_densify_device_create(struct orl_gpu *gpu,
+                                          const struct orl_densify_params *params,
                                           struct densify_device **out);
 void orl_densify_device_destroy(struct densify_device **device);
 
@@ -87,8 +90,9 @@ struct densify_job {
     double done, total; // for the progress report; this job counts 1
 };
 // From coarse to fine. final: keep only what matches well.
-enum orl_result orl_densify_photometric(struct densify_device *device, const struct densify_job *job,
-                                        bool final, struct densify_maps *maps);
+enum orl_result orl_densify_photometric(struct densify_device *device,
+                                        const struct densify_job *job, bool final,
+                                        struct densify_maps *maps);
 // Refines job->start at full size, with the sources' depths; keeps only what matches
 // well and agrees with a source.
 enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
@@ -96,7 +100,9 @@ enum orl_result orl_densify_geometric(struct densify_device *device, const struc
 
 // Removes connected pieces of less than `least` pixels; neighbours are connected when one
 // is off the other's plane by less than `tolerance` of its depth.
-enum orl_result orl_densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
-                                            struct densify_maps *maps, size_t least, float tolerance);
+enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
+                                            const struct orl_camera *camera,
+                                            struct densify_maps *maps, size_t least,
+                                            float tolerance);
 
 #endif

@@ -127,8 +127,10 @@ static size_t flood_from(struct flood *flood, size_t start)
     return count;
 }
 
-enum orl_result orl_densify_remove_speckles(const struct orl_log *log, const struct orl_camera *camera,
-                                            struct densify_maps *maps, size_t least, float tolerance)
+enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
+                                            const struct orl_camera *camera,
+                                            struct densify_maps *maps, size_t least,
+                                            float tolerance)
 {
     size_t count = (size_t)maps->depth.width * (size_t)maps->depth.height;
     struct flood flood = {.maps = maps, .camera = camera, .tolerance = tolerance};

@@ -11,7 +11,8 @@ enum { SHARED_MIN = 3 };
 
 enum orl_result orl_densify_photos_init(const struct orl_log *log,
                                         const struct orl_colmap_model *model,
-                                        const struct orl_names *names, struct densify_photos *photos)
+                                        const struct orl_names *names,
+                                        struct densify_photos *photos)
 {
     enum orl_result result = ORL_ERR_MEMORY;
     *photos = (struct densify_photos){.model = model};
@@ -221,8 +222,9 @@ static void make_plan(const struct densify_photos *photos, size_t ref, int sourc
         choose_sources(scratch->tallies, photos->count, sources, plan);
 }
 
-enum orl_result orl_densify_plans_make(const struct orl_log *log, const struct densify_photos *photos,
-                                       int sources, struct densify_plan **plans)
+enum orl_result orl_densify_plans_make(const struct orl_log *log,
+                                       const struct densify_photos *photos, int sources,
+                                       struct densify_plan **plans)
 {
     struct plan_scratch scratch = {0};
     enum orl_result result = ORL_ERR_MEMORY;

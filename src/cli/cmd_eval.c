@@ -38,8 +38,8 @@ static void print_figures(const struct orl_eval_view *view)
 static void print_table(const struct orl_eval *eval)
 {
     printf("%s, %s\n", eval->method, eval->device);
-    printf("%-24s %11s %7s %7s %7s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR", "fitted",
-           "covered", "SSIM", "cover%", "full%", "1-NCC", "ms");
+    printf("%-24s %11s %7s %7s %7s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR",
+           "fitted", "covered", "SSIM", "cover%", "full%", "1-NCC", "ms");
     for (size_t i = 0; i < eval->view_count; i++) {
         const struct orl_eval_view *view = &eval->views[i];
         char size[32];

@@ -20,7 +20,8 @@ static void paint(const struct hit *hit, uint8_t rgb[3])
     bool wall = hit->point[2] > box_back_z + 0.2;
     double stripes = sin(5 * p[0] + 2 * p[1] + 3 * p[2]), spots = sin(6 * p[0]) * sin(7 * p[1]);
     double base[3] = {wall ? 150 : 90, wall ? 130 : 120, wall ? 90 : 170};
-    double value[3] = {base[0] + 50 * stripes, base[1] + 40 * spots, base[2] + 30 * stripes * spots};
+    double value[3] = {base[0] + 50 * stripes, base[1] + 40 * spots,
+                       base[2] + 30 * stripes * spots};
     double shade = 0.7 + 0.3 * fabs(hit->normal[2]);
     for (int c = 0; c < 3; c++)
         rgb[c] = (uint8_t)lround(shade * value[c]);

@@ -167,8 +167,8 @@ static void a_full_disk_is_an_error(void **state)
 static void folders(void **state)
 {
     (void)state;
-    char *deep = in_dir("a/b/c"), *top = in_dir("a"), *file = in_dir("a/file"), *link = in_dir("a/l");
-    char *outside = in_dir("outside");
+    char *deep = in_dir("a/b/c"), *top = in_dir("a"), *file = in_dir("a/file");
+    char *link = in_dir("a/l"), *outside = in_dir("outside");
     assert_int_equal(orl_dir_make(NULL, deep), ORL_OK);
     assert_int_equal(orl_dir_make(NULL, deep), ORL_OK);
     assert_true(orl_path_is_dir(deep));

@@ -125,7 +125,8 @@ static void layers_and_channel_choice(void **state)
     (void)state;
     struct orl_image color = picture(40, 20, 3), depth = picture(40, 20, 1), back;
     struct orl_exr_params params = rgb_params(&color, false);
-    params.channels[3] = (struct orl_exr_channel){.name = "depth.Z", .data = depth.f32, .stride = 1};
+    params.channels[3] =
+        (struct orl_exr_channel){.name = "depth.Z", .data = depth.f32, .stride = 1};
     params.channel_count = 4;
     assert_int_equal(orl_exr_write(NULL, file, &params), ORL_OK);
     static const char *const two[] = {"depth.Z", "G"}, *const missing[] = {"G", "normal.X"};
