@@ -38,8 +38,9 @@ static void everything_comes_back(void **state)
 {
     (void)state;
     const struct orl_exif exif = {.make = "A Maker", .model = "Model 5 \"x\"",
-                                  .exposure_s = 1 / 800., .aperture = 6.3, .iso = 400, .bias_ev = -2 / 3.,
-                                  .focal_mm = 50.5, .focal_35mm = 75, .orientation = 8};
+                                  .exposure_s = 1 / 800., .aperture = 6.3, .iso = 400,
+                                  .bias_ev = -2 / 3., .focal_mm = 50.5, .focal_35mm = 75,
+                                  .orientation = 8};
     struct orl_exif back = through_file(&exif);
     assert_string_equal(back.make, exif.make);
     assert_string_equal(back.model, exif.model);
