@@ -67,8 +67,8 @@ static double next_random(uint64_t *state)
 
 void orl_synth_views(const struct orl_synth_params *p, struct orl_view *views)
 {
-    static const double arc_rad = 0.87;                       // to either side
-    static const double distances_m[] = {11.5, 13.2, 9.6, 14.2, 10.6, 12.4};
+    static const double pi = 3.14159265358979323846;
+    static const double arc_rad = 0.87; // to either side
     uint64_t state = p->seed;
     double side = p->width > p->height ? p->width : p->height;
     double focal = ORL_SYNTH_FOCAL_35MM / 35.0 * side;
@@ -77,12 +77,13 @@ void orl_synth_views(const struct orl_synth_params *p, struct orl_view *views)
         for (size_t j = 0; j < ORL_COUNT(jitter); j++)
             jitter[j] = next_random(&state);
         double step = 2 * arc_rad / (p->count - 1);
-        double angle = -arc_rad + step * i + 0.3 * step * jitter[0];
-        double distance = distances_m[i % (int)ORL_COUNT(distances_m)] + 0.4 * jitter[1];
-        const double eye[3] = {distance * sin(angle), 1.65 + 0.3 * jitter[2],
+        double angle = -arc_rad + step * i + 0.2 * step * jitter[0];
+        // Comes near twice and goes back twice on the way round.
+        double distance = 12 - 2.2 * sin(4 * pi * i / (p->count - 1)) + 0.3 * jitter[1];
+        const double eye[3] = {distance * sin(angle), 1.65 + 0.15 * jitter[2],
                                distance * cos(angle) - 0.6};
-        const double target[3] = {0.5 * jitter[3] + 0.12 * eye[0], 3.55 + 0.35 * jitter[4], -0.8};
-        const double up[3] = {0.035 * jitter[5], 1, 0.02 * jitter[6]};
+        const double target[3] = {0.3 * jitter[3] + 0.12 * eye[0], 3.6 + 0.25 * jitter[4], -0.8};
+        const double up[3] = {0.02 * jitter[5], 1, 0.01 * jitter[6]};
         views[i] = (struct orl_view){
             .camera = {.width = p->width, .height = p->height, .fx = focal, .fy = focal,
                        .cx = 0.5 * p->width, .cy = 0.5 * p->height},

@@ -1,0 +1,121 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Oriel, makes a scene from photographs and leaves
+# one page about it: demo/index.html.
+#   ./demo.sh            photographs of a synthetic monument
+#   ./demo.sh PHOTOS     a folder of your own
+set -u
+cd "$(dirname "$0")" || exit 1
+invoked="./demo.sh${1:+ PHOTOS}"
+given=${1:+$(cd "$OLDPWD" && realpath -- "$1")}
+if [ $# -gt 1 ] || { [ $# -eq 1 ] && [ ! -d "$given" ]; }; then
+    echo "usage: ./demo.sh [PHOTOS]    (PHOTOS: a folder of photographs)" >&2
+    exit 2
+fi
+. .ci/deps.sh
+. datasets/demo/page.sh
+
+demo=$PWD/demo
+scene=$demo/scene
+build=$PWD/build-demo
+oriel=$build/oriel
+start=$SECONDS
+current= current_start=0 step_json=
+# Steps with the seconds they take on two cores without a GPU, for the time left.
+names=(dependencies build photographs scene comparison walk page)
+expected=(60 70 40 300 15 45 10)
+spent=0 planned_spent=0
+
+fail() {
+    echo "demo.sh: $1 failed; what it said is above" >&2
+    exit 1
+}
+
+# Says that a step begins and how long the rest will take, judged by how long the
+# steps before it took.
+begin() {
+    local i left=0 seen=
+    finish_step
+    current=$1
+    current_start=$SECONDS
+    for i in "${!names[@]}"; do
+        [ "${names[i]}" = "$1" ] && seen=1
+        [ "$seen" ] && left=$((left + expected[i]))
+    done
+    [ "$planned_spent" -gt 60 ] && left=$((left * (spent + 60) / (planned_spent + 60)))
+    echo "== [$((SECONDS - start)) s] $2 (about $(((left + 30) / 60)) min left)"
+}
+
+finish_step() {
+    local took=$((SECONDS - current_start)) i
+    [ "$current" ] || return 0
+    # Installing and building may find all done, and say nothing about this machine's speed.
+    for i in "${!names[@]}"; do
+        [ "$i" -gt 1 ] && [ "${names[i]}" = "$current" ] &&
+            spent=$((spent + took)) planned_spent=$((planned_spent + expected[i]))
+    done
+    step_json="$step_json${step_json:+, }{\"name\": \"$current\", \"seconds\": $took}"
+    current=
+}
+
+take_photographs() {
+    if [ "$given" ]; then
+        photos=$given title="Your photographs, to walk through"
+        return 0
+    fi
+    photos=$demo/photos title="A monument, to walk through"
+    "$oriel" synth monument --out "$photos" --size 480x320 --count 24
+}
+
+make_scene() {
+    export QT_QPA_PLATFORM=offscreen
+    "$oriel" prepare "$photos" --out "$scene" --quality draft --test-every 8
+}
+
+compare() {
+    "$oriel" eval "$scene" --method all --json "$demo/eval.json" --images "$demo/eval" &&
+        grep -q '"views"' "$demo/eval.json"
+}
+
+# The method shown: our own, or before there is one the first.
+choose_method() {
+    local methods
+    methods=$(sed -nE 's/.*"method": *"([^"]*)".*/\1/p' "$demo/eval.json")
+    grep -qx oriel <<<"$methods" && echo oriel || grep -vx points <<<"$methods" | head -n 1
+}
+
+take_walk() {
+    local middle
+    middle=$(find "$scene/images" -type f -printf '%f\n' | sort | sed -n "$((photo_count / 2))p")
+    "$oriel" render "$scene" --path photos --frames 150 --fps 25 --method "$method" \
+        --out "$demo/walk.mp4" &&
+        "$oriel" render "$scene" --at "$middle" --method "$method" --layers depth \
+            --out "$demo/view.png"
+}
+
+begin dependencies "looking for what Oriel needs"
+install_dependencies || fail "installing what is missing"
+begin build "building Oriel"
+build_oriel "$build" -DCMAKE_BUILD_TYPE=Release -DORL_TESTS=OFF || fail "the build"
+version=$("$oriel" version | cut -d' ' -f2)
+
+if [ -d "$demo" ]; then
+    [ -f "$demo/.made-by-oriel" ] || { echo "demo.sh: $demo is in the way" >&2; exit 2; }
+    rm -rf "$demo"
+fi
+mkdir -p "$demo" && touch "$demo/.made-by-oriel"
+
+begin photographs "taking photographs${given:+ from $given}"
+take_photographs || fail "finding photographs"
+begin scene "making a scene: cameras, then depth, then points"
+make_scene || fail "making the scene"
+photo_count=$(find "$scene/images" -type f | wc -l)
+begin comparison "comparing with the photographs kept aside"
+compare || fail "the comparison"
+method=$(choose_method)
+begin walk "rendering a walk"
+take_walk || fail "the walk"
+begin page "writing the page"
+minutes=$(((SECONDS - start + 30) / 60))
+finish_step
+write_page || fail "writing the page"
+echo "== done in $((SECONDS - start)) s: open $demo/index.html"
