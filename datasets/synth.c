@@ -79,10 +79,10 @@ void orl_synth_views(const struct orl_synth_params *p, struct orl_view *views)
         double step = 2 * arc_rad / (p->count - 1);
         double angle = -arc_rad + step * i + 0.2 * step * jitter[0];
         // Comes near twice and goes back twice on the way round.
-        double distance = 12 - 2.2 * sin(4 * pi * i / (p->count - 1)) + 0.3 * jitter[1];
+        double distance = 12.8 - 1.9 * sin(4 * pi * i / (p->count - 1)) + 0.3 * jitter[1];
         const double eye[3] = {distance * sin(angle), 1.65 + 0.15 * jitter[2],
                                distance * cos(angle) - 0.6};
-        const double target[3] = {0.3 * jitter[3] + 0.12 * eye[0], 3.6 + 0.25 * jitter[4], -0.8};
+        const double target[3] = {0.3 * jitter[3] + 0.12 * eye[0], 3.8 + 0.25 * jitter[4], -0.8};
         const double up[3] = {0.02 * jitter[5], 1, 0.01 * jitter[6]};
         views[i] = (struct orl_view){
             .camera = {.width = p->width, .height = p->height, .fx = focal, .fy = focal,
