@@ -32,16 +32,27 @@ function fillAccuracy(evals, main) {
             .classList.toggle('main', one.method === main);
 }
 
+const STAGE_NAMES = {
+    collect: 'read photographs', calibrate: 'find where each was taken from',
+    undistort: 'straighten photographs', densify: 'depth of each photograph',
+    fuse: 'join depths to points', radii: 'size of points', expose: 'exposures',
+};
+
 function fillStages(stages, steps) {
     const table = document.getElementById('stages');
+    const some = (value, digits, unit) => value > 0 ? fixed(value, digits) + unit : '';
     addRow(table, ['step', 'time', 'processor time', 'memory at most'], true);
-    for (const [name, stage] of Object.entries(stages)) {
-        const peak = Math.max(stage.peak_rss_mib || 0, stage.child_peak_rss_mib || 0);
-        addRow(table, [name, fixed(stage.wall_s, 1) + ' s', fixed(stage.cpu_s, 1) + ' s',
-                       fixed(peak, 0) + ' MiB']);
+    for (const step of steps) {
+        if (step.name !== 'scene') {
+            addRow(table, [step.name, fixed(step.seconds, 0) + ' s', '', '']);
+            continue;
+        }
+        for (const [name, stage] of Object.entries(stages)) {
+            const peak = Math.max(stage.peak_rss_mib || 0, stage.child_peak_rss_mib || 0);
+            addRow(table, [`scene: ${STAGE_NAMES[name] || name}`, fixed(stage.wall_s, 1) + ' s',
+                           some(stage.cpu_s, 1, ' s'), some(peak, 0, ' MiB')]);
+        }
     }
-    for (const step of steps)
-        addRow(table, [step.name, fixed(step.seconds, 0) + ' s', '', '']);
 }
 
 // The figures of one photograph under its pictures, whose files leave the folders
@@ -78,6 +89,7 @@ fillCaptions(evals);
 fact('fact-psnr', fixed(best.mean.psnr_db, 1) + ' dB');
 fact('fact-ms', fixed(best.mean.render_ms, 0) + ' ms');
 fact('fact-points', ((scene.counts && scene.counts.points) || 0).toLocaleString('en'));
-fact('device', best.device);
+const software = /llvmpipe|softpipe|swrast/i.test(best.device);
+fact('device', best.device + (software ? ' (software: no graphics card was used)' : ''));
 for (const input of document.querySelectorAll('.compare input'))
     input.addEventListener('input', slide);

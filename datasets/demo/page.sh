@@ -1,4 +1,6 @@
-# Sourced by demo.sh: writes the demo's page, with everything in it.
+# shellcheck shell=bash disable=SC2154
+# Sourced by demo.sh: writes the demo's page, with everything in it. Its variables are
+# those of demo.sh: demo scene title photo_count step_json minutes version invoked method.
 
 # data_uri MIME FILE
 data_uri() {
@@ -40,11 +42,11 @@ $(cat "$here/style.css")
 <main>
 <h1>$title</h1>
 <p class="lead">Oriel turned $photo_count photographs of one place into something you can walk
-through. $held_out of them were kept aside and used for comparison only.</p>
+through. $test_count of them were kept aside and used for comparison only.</p>
 <div class="facts">
 <div><b>$photo_count</b>photographs</div>
 <div><b id="fact-points"></b>points</div>
-<div><b id="fact-psnr"></b>closeness to what a camera saw (PSNR)</div>
+<div><b id="fact-psnr"></b>close to what a camera saw (PSNR)</div>
 <div><b id="fact-ms"></b>to render a picture</div>
 <div><b>$minutes min</b>from photographs to this page</div>
 </div>
@@ -112,7 +114,7 @@ HTML
 page_figures() {
     cat <<HTML
 <h2>Figures</h2>
-<p>Means over the $held_out photographs kept aside, over whole pictures, holes included. PSNR: how
+<p>Means over the $test_count photographs kept aside, over whole pictures, holes included. PSNR: how
 far colours are off; more is better, and above 25 dB differences are hard to see at a glance. SSIM:
 how alike structures are, at most 1. Covered: share of the picture where Oriel found a surface.</p>
 <table id="accuracy"></table>
@@ -140,20 +142,19 @@ page_tail() {
     printf '</script>\n</html>\n'
 }
 
-# Uses of demo.sh: demo scene title photo_count step_json minutes version invoked method.
 write_page() {
-    local here stems=() thumbnails=() held_out file
+    local here stems=() thumbnails=() test_count file
     here=$(dirname "${BASH_SOURCE[0]}")
     for file in "$demo"/eval/*.photo.png; do
         file=${file##*/}
         stems+=("${file%.photo.png}")
     done
-    held_out=${#stems[@]}
+    test_count=${#stems[@]}
     mapfile -t thumbnails < <(find "$scene/images" -type f | sort | head -n 96)
     {
         page_head
         page_walk
-        page_slider "${stems[$((held_out / 2))]}"
+        page_slider "${stems[$((test_count / 2))]}"
         page_comparisons
         page_depth
         page_figures
