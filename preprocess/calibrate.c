@@ -343,28 +343,37 @@ static enum orl_result try_costly(struct calibration *c)
     return enough(c) ? ORL_OK : map(c, true, NULL);
 }
 
+// The poses of the model found are good: photographs with fewer matches may join it.
+static enum orl_result join_more(struct calibration *c)
+{
+    if (c->registered < 3 || all(c))
+        return ORL_OK;
+    say(c, "letting photographs with fewer matches join");
+    char *from = orl_strdup(c->job->log, c->best);
+    enum orl_result result = from ? map(c, true, from) : ORL_ERR_MEMORY;
+    free(from);
+    return result;
+}
+
 static enum orl_result try_hard(struct calibration *c, bool sequential)
 {
-    enum orl_result result = ORL_OK;
-    if (!enough(c) && sequential) {
+    enum orl_result result = join_more(c);
+    if (result == ORL_OK && !enough(c) && sequential) {
         say(c, "matching all pairs");
         result = match(c, false, false);
         if (result == ORL_OK)
             result = map(c, false, NULL);
     }
-    if (result == ORL_OK && !enough(c)) {
-        say(c, "trying narrower baselines and fewer inliers");
+    // Where most are missing another pair may be the better start.
+    if (result == ORL_OK && 5 * c->registered < 4 * c->job->source_count) {
+        say(c, "starting from narrower baselines and fewer inliers");
         result = map(c, true, NULL);
     }
-    if (result == ORL_OK && !enough(c) && c->job->source_count <= COSTLY_MAX)
+    if (result == ORL_OK && !enough(c) && c->job->source_count <= COSTLY_MAX) {
         result = try_costly(c);
-    if (result != ORL_OK || all(c) || c->registered < 3)
-        return result;
-    // The poses of the model found are good: photographs with fewer matches may join it.
-    say(c, "letting photographs with fewer matches join");
-    char *from = orl_strdup(c->job->log, c->best);
-    result = from ? map(c, true, from) : ORL_ERR_MEMORY;
-    free(from);
+        if (result == ORL_OK)
+            result = join_more(c);
+    }
     return result;
 }
 

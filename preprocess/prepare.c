@@ -108,13 +108,13 @@ struct stage {
 
 static const struct stage stages[ORL_STAGE_COUNT] = {
     [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, NULL},
-    [ORL_STAGE_CALIBRATE] = {"calibrate", 1, ORL_STAGE_COLLECT, calibrate_settings,
+    [ORL_STAGE_CALIBRATE] = {"calibrate", 2, ORL_STAGE_COLLECT, calibrate_settings,
                              orl_stage_calibrate, ".oriel/calibrate/model"},
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
                              orl_stage_undistort, "images"},
     [ORL_STAGE_DENSIFY] = {"densify", 1, ORL_STAGE_UNDISTORT, densify_settings,
                            orl_stage_densify, NULL},
-    [ORL_STAGE_FUSE] = {"fuse", 2, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
+    [ORL_STAGE_FUSE] = {"fuse", 3, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
                         ".oriel/fused.ply"},
     [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii, "points.ply"},
     [ORL_STAGE_EXPOSE] = {"expose", 1, ORL_STAGE_UNDISTORT, expose_settings, orl_stage_expose,

@@ -280,6 +280,8 @@ static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_p
     orl_colmap_arg(args, "--output_path", "%s", out);
     orl_colmap_arg(args, "--input_type", "geometric");
     orl_colmap_arg(args, "--StereoFusion.min_num_pixels", "%d", min_pixels);
+    // With several threads the points depend on which is faster; fusion is quick enough.
+    orl_colmap_arg(args, "--StereoFusion.num_threads", "1");
     if (job->params->masks_dir) {
         char *masks = orl_job_path(job, ".oriel/masks");
         if (!masks)

@@ -74,8 +74,8 @@ static enum orl_result check_output(const struct orl_job *job, json_t *record)
     }
     if (result == ORL_OK && model.image_count < test + 2)
         result = orl_fail(job->log, ORL_ERR_DATA,
-                          "only %zu photographs that are not held out could be placed; two are "
-                          "needed", model.image_count - test);
+                          "of the photographs that are not held out only %zu could be placed; "
+                          "two are needed", model.image_count - test);
     if (result == ORL_OK)
         json_object_set_new(record, "largest", json_pack("[i, i]", width, height));
     else

@@ -1,0 +1,62 @@
+#!/bin/bash
+# What oriel prepare says of input that it cannot use. No COLMAP is needed.
+. "$2/tests/e2e/prepare_lib"
+export ORIEL_COLMAP=$source/tests/e2e/colmap_double
+
+run 2 prepare "$work/nowhere" --out "$work/s"
+says "$work/nowhere: no such folder or file"
+[ -e "$work/s" ] && fail "a scene folder was left behind"
+
+mkdir "$work/empty"
+run 2 prepare "$work/empty" --out "$work/s"
+says "$work/empty: no photograph here"
+[ -e "$work/s" ] && fail "a scene folder was left behind"
+
+photos "$work/one" a.png
+run 2 prepare "$work/one" --out "$work/s"
+says "$work/one: 1 usable photograph of 1; at least three are needed"
+
+photos "$work/deep/inner" a.png b.png c.png
+run 2 prepare "$work/deep" --out "$work/s"
+says "name its subfolders instead"
+
+# Not writable: below a regular file, which stops root too.
+photos "$work/p" a.png b.png c.png d.png e.png
+echo x >"$work/file"
+run 1 prepare "$work/p" --out "$work/file/s"
+says "$work/file"
+
+# Somebody else's folder stays as it is.
+mkdir "$work/other"
+echo precious >"$work/other/thing"
+run 2 prepare "$work/p" --out "$work/other"
+says "not made by oriel prepare"
+run 2 prepare "$work/p" --out "$work/other" --resume
+[ "$(ls -A "$work/other")" = thing ] || fail "somebody else's folder was changed"
+
+run 2 prepare "$work/p" --out "$work/s" --quality best
+says "must be one of draft, standard, high"
+run 2 prepare "$work/p" --out "$work/s" --test-every 2 --test-list a
+says "exclude each other"
+run 2 prepare "$work/p" --out "$work/s" --test-list a,zebra
+says "--test-list zebra: no usable photograph of this name"
+run 2 prepare "$work/p" --out "$work/s" --test-list a,b,c,d
+says "at least two must remain"
+run 2 prepare "$work/p" --out "$work/s" --masks "$work/empty"
+says "no mask for any photograph"
+run 2 prepare "$work/p"
+says "--out SCENE is missing"
+
+# Damaged ones among good ones are named, skipped and counted; the job goes on.
+head -c 100 "$work/p/a.png" >"$work/p/cut.png"
+echo text >"$work/p/text.jpg"
+: >"$work/p/nothing.jpg"
+run 0 prepare "$work/p" --out "$work/s" --test-list e
+for name in cut.png text.jpg nothing.jpg; do
+    says "$work/p/$name: "
+done
+prints "8 given, 5 used, 5 registered (4 train, 1 held out)"
+run 0 info "$work/s"
+prints "left out     $work/p/cut.png"
+
+finish

@@ -1,0 +1,39 @@
+#!/bin/bash
+# Photographs that cannot be placed, and a full disk. With a stand-in for COLMAP.
+. "$2/tests/e2e/prepare_lib"
+export ORIEL_COLMAP=$source/tests/e2e/colmap_double
+photos "$work/p" 0.png 1.png 2.png 3.png 4.png
+
+# No overlap: an error with advice, and what was done is kept.
+DOUBLE_NO_MODEL=1 run 2 prepare "$work/p" --out "$work/none"
+says "only 0 of 5 photographs could be placed"
+says "overlap"
+[ -s "$work/none/.oriel/calibrate.tmp/database.db" ] || fail "the features were not kept"
+run 2 info "$work/none"
+says "missing: calibrate"
+
+# One cannot be placed: named, and the job goes on with the others.
+DOUBLE_ALONE=3.png run 0 prepare "$work/p" --out "$work/s" --test-list 0
+says "3.png: cannot be placed, left out"
+prints "5 used, 4 registered (3 train, 1 held out)"
+run 0 info "$work/s"
+prints "left out     3.png: cannot be placed"
+
+# All but one of those that remain are held out.
+DOUBLE_ALONE=3.png run 2 prepare "$work/p" --out "$work/few" --test-list 0,1,2
+says "of the photographs that are not held out only 1 could be placed"
+
+# A full disk, played by a limit on the size of files that no cloud fits into.
+(
+    trap '' XFSZ
+    ulimit -f 2
+    "$oriel" prepare "$work/p" --out "$work/full" >"$work/out" 2>"$work/err"
+    [ $? = 1 ]
+) || fail "a full disk is not an error of status 1"
+says "$work/full"
+run 2 info "$work/full"
+says "has not finished this scene"
+run 0 prepare "$work/p" --out "$work/full" --resume
+run 0 info "$work/full"
+
+finish

@@ -1,0 +1,113 @@
+#!/bin/bash
+# COLMAP missing, failing, and Oriel killed at every stage: what is done stays, a scene
+# that is not whole does not open, and --resume completes it. With a stand-in for COLMAP.
+. "$2/tests/e2e/prepare_lib"
+double=$source/tests/e2e/colmap_double
+photos "$work/p" 0.png 1.png 2.png 3.png 4.png
+scene=$work/s
+all="feature_extractor exhaustive_matcher mapper image_undistorter patch_match_stereo"
+all="$all stereo_fusion"
+
+prepare() {
+    local expected=$1
+    shift
+    run "$expected" prepare "$work/p" --out "$scene" --test-list 1,3.png "$@"
+}
+
+# Without COLMAP: one clear sentence, and the photographs' check is kept.
+ORIEL_COLMAP=$work/no-such-program prepare 1
+says "$work/no-such-program: this program is not installed"
+says "COLMAP is needed"
+export ORIEL_COLMAP=$double
+prepare 2
+says "--resume"
+
+# Each command fails once, then the job goes on from there.
+export DOUBLE_TRACE=$work/trace
+for command in $all; do
+    : >"$work/trace"
+    DOUBLE_FAIL=$command prepare 1 --resume
+    says "$command failed (exit status 3)"
+    says "ERROR: the double was told to fail"
+    says "$scene/logs/colmap.log"
+    run 2 info "$scene"
+    says "has not finished this scene"
+    [ "$(tail -n 1 "$work/trace")" = "$command" ] || fail "work was done after $command failed"
+done
+grep -q "told to fail" "$scene/logs/colmap.log" || fail "the log lacks COLMAP's words"
+: >"$work/trace"
+prepare 0 --resume
+[ "$(grep -v help "$work/trace")" = stereo_fusion ] || fail "work that was done was done again"
+run 0 info "$scene"
+prints "5 registered (3 train, 2 held out)"
+
+# A whole scene: nothing is left to do, and without --resume it is not touched.
+sum=$(md5sum <"$scene/points.ply")
+: >"$work/trace"
+prepare 0 --resume
+[ -s "$work/trace" ] && fail "a whole scene was worked on"
+prepare 2
+[ "$(md5sum <"$scene/points.ply")" = "$sum" ] || fail "a whole scene was changed"
+
+# Held-out photographs are neither fused nor stereo sources.
+[ "$(tr '\n' ' ' <"$scene/stereo/fusion.cfg")" = "0.png 2.png 4.png " ] ||
+    fail "fusion.cfg lists other than the training photographs"
+grep -q '1\.png\|3\.png' "$scene/stereo/patch-match.cfg" && fail "a held-out photograph is a source"
+[ "$(wc -l <"$scene/stereo/patch-match.cfg")" = 6 ] || fail "patch-match.cfg lacks photographs"
+
+# Other held-out photographs: calibration stays, stereo does not.
+: >"$work/trace"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+[ "$(grep -v help "$work/trace" | tr '\n' ' ')" = "patch_match_stereo stereo_fusion " ] ||
+    fail "other hold-outs redo $(tr '\n' ' ' <"$work/trace")"
+prints "4 train, 1 held out"
+# Depth maps may be deleted once they are fused.
+rm -r "$scene/stereo"
+: >"$work/trace"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+[ -s "$work/trace" ] && fail "deleted depth maps were made again"
+# A lost result is made again.
+rm "$scene/points.ply"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+[ -f "$scene/points.ply" ] || fail "points.ply was not made again"
+# A changed photograph changes all.
+printf '\0' >>"$work/p/2.png"
+: >"$work/trace"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+says "have changed"
+[ "$(grep -cv help "$work/trace")" = 6 ] || fail "a changed photograph was not noticed"
+
+# Killed in the middle of each command.
+rm -r "$scene"
+for command in $all; do
+    : >"$work/trace"
+    DOUBLE_KILL=$command "$oriel" prepare "$work/p" --out "$scene" --test-list 1 --resume \
+        >"$work/out" 2>"$work/err"
+    status=$?
+    [ $status = 137 ] || fail "killed in $command: status $status"
+    grep -qx "$command" "$work/trace" || fail "$command was not reached"
+    run 2 info "$scene"
+    says "has not finished this scene (missing: "
+done
+sleep 2.2
+grep -q "still here" "$work/trace" && fail "COLMAP outlived a killed Oriel"
+run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume
+run 0 info "$scene"
+prints "4 train, 1 held out"
+find "$scene" -name '*tmp*' | grep . && fail "temporary files are left"
+
+# A killed re-run must not leave the old scene open to be taken for the new one.
+DOUBLE_KILL=stereo_fusion "$oriel" prepare "$work/p" --out "$scene" --test-list 2 --resume \
+    >/dev/null 2>&1
+run 2 info "$scene"
+says "missing: fuse"
+
+# Two at once.
+(
+    flock 9
+    run 2 prepare "$work/p" --out "$scene" --resume
+    says "another oriel prepare is at work here"
+    [ $failures = 0 ]
+) 9>>"$scene/.oriel/lock" || failures=$((failures + 1))
+
+finish
