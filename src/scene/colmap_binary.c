@@ -89,7 +89,7 @@ static enum orl_result read_camera(struct reader *r, struct orl_colmap_camera *c
 
 static enum orl_result read_cameras(struct reader *r, struct orl_colmap_model *model)
 {
-    uint64_t count;
+    uint64_t count = 0;
     enum orl_result result = take_count(r, CAMERA_MIN, "cameras", &count);
     if (result != ORL_OK)
         return result;
@@ -103,7 +103,7 @@ static enum orl_result read_cameras(struct reader *r, struct orl_colmap_model *m
 
 static enum orl_result read_point(struct reader *r, struct orl_colmap_point *point)
 {
-    uint64_t track;
+    uint64_t track = 0;
     enum orl_result result;
     if ((result = take(r, &point->id, 8, "a point")) != ORL_OK ||
         (result = take(r, point->position, 24, "a point")) != ORL_OK ||
@@ -118,7 +118,7 @@ static enum orl_result read_point(struct reader *r, struct orl_colmap_point *poi
 
 static enum orl_result read_points(struct reader *r, struct orl_colmap_model *model)
 {
-    uint64_t count;
+    uint64_t count = 0;
     enum orl_result result = take_count(r, POINT_MIN, "points", &count);
     if (result != ORL_OK)
         return result;
@@ -149,7 +149,7 @@ static enum orl_result read_name(struct reader *r, char **name)
 static enum orl_result read_observations(struct reader *r, const struct orl_colmap_model *model,
                                          struct orl_colmap_image *image)
 {
-    uint64_t count;
+    uint64_t count = 0;
     enum orl_result result = take_count(r, POINT2D_SIZE, "observations", &count);
     if (result != ORL_OK)
         return result;
@@ -188,7 +188,7 @@ static enum orl_result read_image(struct reader *r, const struct orl_colmap_mode
 
 static enum orl_result read_images(struct reader *r, struct orl_colmap_model *model)
 {
-    uint64_t count;
+    uint64_t count = 0;
     enum orl_result result = take_count(r, IMAGE_MIN, "pictures", &count);
     if (result != ORL_OK)
         return result;
