@@ -337,7 +337,8 @@ static enum orl_result try_costly(struct calibration *c)
 {
     enum orl_result result;
     say(c, "trying affine-shape features and guided matching");
-    if ((result = set_mark(c, false)) != ORL_OK || (result = restart_database(c)) != ORL_OK || (result = extract_all(c, true)) != ORL_OK ||
+    if ((result = set_mark(c, false)) != ORL_OK || (result = restart_database(c)) != ORL_OK ||
+        (result = extract_all(c, true)) != ORL_OK ||
         (result = match(c, false, true)) != ORL_OK || (result = map(c, false, NULL)) != ORL_OK)
         return result;
     return enough(c) ? ORL_OK : map(c, true, NULL);

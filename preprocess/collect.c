@@ -226,8 +226,8 @@ static enum orl_result inspect_all(struct orl_job *job)
             // Decoders name the file first; it is named already.
             size_t length = strlen(source->path);
             bool named = strncmp(reason.text, source->path, length) == 0;
-            skip(job, source->path, named ? reason.text + length + strspn(reason.text + length, ": ")
-                                          : reason.text);
+            const char *why = reason.text + (named ? length : 0);
+            skip(job, source->path, why + strspn(why, ": "));
             finish_source(source);
             continue;
         }

@@ -121,8 +121,9 @@ static enum orl_result check_model(const struct orl_log *log, const char *dir,
     for (size_t i = 0; i < model->image_count; i++) {
         const struct orl_colmap_image *image = &model->images[i];
         if (!orl_colmap_camera_by_id(model, image->camera_id))
-            return orl_fail(log, ORL_ERR_FORMAT, "%s: picture %s uses camera %u, which is not there",
-                            dir, image->name, image->camera_id);
+            return orl_fail(log, ORL_ERR_FORMAT,
+                            "%s: picture %s uses camera %u, which is not there", dir, image->name,
+                            image->camera_id);
         if (i && strcmp(image->name, image[-1].name) == 0)
             return orl_fail(log, ORL_ERR_FORMAT, "%s: picture %s is listed twice", dir,
                             image->name);

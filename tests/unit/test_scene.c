@@ -175,17 +175,23 @@ static void refuses_damage(void **state)
         {"scene.json", "[1]", "not a JSON object", ORL_ERR_FORMAT},
         {"scene.json", "{}", "no \"version\"", ORL_ERR_FORMAT},
         {"scene.json", "{\"version\": 99}", "version 99 is newer", ORL_ERR_FORMAT},
-        {"scene.json", "{\"version\": 1, \"photographs\": []}", "lists 0, but the sparse model has 3",
+        {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[]}", "lists 0, but the sparse model has 3",
          ORL_ERR_FORMAT},
-        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"x\"}, 1, 2]}",
+        {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[{\"name\": \"a.jpg\", \"split\": \"x\"}, 1, 2]}",
          "photograph a.jpg: \"split\"", ORL_ERR_FORMAT},
-        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"z.jpg\"}, 1, 2]}",
+        {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[{\"name\": \"z.jpg\"}, 1, 2]}",
          "z.jpg: not in the sparse model", ORL_ERR_FORMAT},
-        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"train\","
+        {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[{\"name\": \"a.jpg\", \"split\": \"train\","
          " \"gain\": [1, 0, 1]}, 1, 2]}", "\"gain\"", ORL_ERR_FORMAT},
-        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"train\","
+        {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[{\"name\": \"a.jpg\", \"split\": \"train\","
          " \"exposure_ev\": 1e9}, 1, 2]}", "\"exposure_ev\"", ORL_ERR_FORMAT},
-        {"scene.json", "{\"version\": 1, \"photographs\": [{\"name\": \"a.jpg\", \"split\": \"train\"},"
+        {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[{\"name\": \"a.jpg\", \"split\": \"train\"},"
          " {\"name\": \"a.jpg\", \"split\": \"train\"}, 2]}", "listed twice", ORL_ERR_FORMAT},
         {"points.ply", NULL, "points.ply is missing", ORL_ERR_NOT_FOUND},
         {"points.ply", "ply\nformat", "points.ply: byte 4", ORL_ERR_FORMAT},
