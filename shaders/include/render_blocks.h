@@ -25,19 +25,27 @@ ORL_BLOCK(pyramid_block)
 };
 #endif
 
-// One photograph blended into the frame.
+// A photograph as the gather passes see it; an array of these is a storage buffer.
+#define ORL_PHOTO_VEC4S 8
+#if defined(__STDC_VERSION__)
+struct photo_data {
+    VEC4S(from_view, 3); // rows: rotation | translation, photograph's camera from the view's
+    VEC4(eye);           // photograph's centre in the view's camera frame; w: slot
+    VEC4(focal);         // fx fy cx cy of the resident photograph, pixels
+    VEC4(size);          // width, height of the resident photograph; of its depth map
+    VEC4(slot_size);     // width, height of a slot; of a depth slot
+    VEC4(gain);          // rgb gain on linear colour; w: largest mip level
+};
+#endif
+
+// Photographs blended into the frame.
 #if defined(__STDC_VERSION__) || defined(BLOCK_GATHER)
 ORL_BLOCK(gather_block)
 {
-    VEC4S(photo_from_view, 3); // rows: rotation | translation
-    VEC4(photo_eye);           // photograph's centre in the view's camera frame
-    VEC4(view_focal);          // fx fy cx cy
-    VEC4(photo_focal);         // fx fy cx cy, pixels of level 0
-    VEC4(photo_size);          // width, height, largest mip level, border feather in pixels
-    VEC4(gain);                // rgb gain on linear colour
-    VEC4(options);             // x: depth tolerance, y: distance floor,
-                               // z: 1 = test visibility, w: 1 = bicubic
-    IVEC4(size);               // width and height of the view
+    VEC4(view_focal); // fx fy cx cy
+    VEC4(options);    // x: depth tolerance, y: distance floor, z: border feather, pixels
+    IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic
+    IVEC4(area);      // width and height of the view, z: photographs, w: tiles per row
 };
 #endif
 

@@ -84,12 +84,13 @@ void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int width, in
 // Waits for the device. `size` is the room in `pixels`, in bytes.
 void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
                   void *pixels);
+// Copies the top left width x height part of a level of `from` to level 0 of a layer of `to`.
+void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,
+                        struct orl_tex *to, int layer);
 // Every channel of every layer of one level becomes 0.
 void orl_tex_clear(struct orl_tex *tex, int level);
-// A texture whose level 0 is level `first` of `from`, with the levels after it.
-enum orl_result orl_tex_copy_levels(struct orl_gpu *gpu, const struct orl_tex *from, int first,
-                                    struct orl_tex **out) ORL_CHECK_RESULT;
-void orl_tex_make_mipmaps(struct orl_tex *tex);
+// Fills the coarser levels of one layer (0 without layers) from its level 0.
+void orl_tex_make_mipmaps(struct orl_tex *tex, int layer);
 
 // --- programs and dispatch ---
 

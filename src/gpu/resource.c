@@ -179,28 +179,28 @@ void orl_tex_clear(struct orl_tex *tex, int level)
                     integer ? GL_UNSIGNED_INT : GL_FLOAT, NULL);
 }
 
-enum orl_result orl_tex_copy_levels(struct orl_gpu *gpu, const struct orl_tex *from, int first,
-                                    struct orl_tex **out)
+void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,
+                        struct orl_tex *to, int layer)
 {
-    struct orl_tex_params params = from->params;
-    if (first >= params.levels)
-        first = params.levels - 1;
-    params.levels -= first;
-    params.width = level_side(params.width, first);
-    params.height = level_side(params.height, first);
-    enum orl_result result = orl_tex_create(gpu, &params, out);
-    if (result != ORL_OK)
-        return result;
-    GLenum target = params.layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
-    for (int i = 0; i < params.levels; i++)
-        glCopyImageSubData(from->id, target, first + i, 0, 0, 0, (*out)->id, target, i, 0, 0, 0,
-                           level_side(params.width, i), level_side(params.height, i),
-                           params.layers ? params.layers : 1);
-    return ORL_OK;
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
+    glCopyImageSubData(from->id, GL_TEXTURE_2D, level, 0, 0, 0, to->id,
+                       to->params.layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, 0, 0, 0, layer,
+                       width, height, 1);
 }
 
-void orl_tex_make_mipmaps(struct orl_tex *tex)
+void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)
 {
-    if (tex->params.levels > 1)
+    if (tex->params.levels <= 1)
+        return;
+    if (!tex->params.layers) {
         glGenerateTextureMipmap(tex->id);
+        return;
+    }
+    // A view, since glGenerateTextureMipmap would redo every layer.
+    GLuint view;
+    glGenTextures(1, &view);
+    glTextureView(view, GL_TEXTURE_2D, tex->id, tex->params.format, 0,
+                  (GLuint)tex->params.levels, (GLuint)layer, 1);
+    glGenerateTextureMipmap(view);
+    glDeleteTextures(1, &view);
 }

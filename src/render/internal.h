@@ -55,19 +55,23 @@ void orl_pixel_groups(int width, int height, unsigned groups[3]);
 
 // --- photographs on the device (photos.c) ---
 
-struct photo_slot {
+// Where a photograph is kept. All photographs share two arrays: one layer is one slot, the
+// photograph in its top left corner.
+struct photo_state {
     bool usable;
-    struct orl_tex *color;   // NULL: not resident
-    struct orl_tex *depth;   // z of the splatted proxy, NULL: not made yet
-    struct proxy_options depth_options; // that `depth` was made with
+    int slot; // -1: not resident
+    bool has_depth;
+    struct proxy_options depth_options; // that its depth was made with
     unsigned last_use;
+    struct orl_camera color_camera, depth_camera; // as resident, in pixels of level 0
 };
 
 struct photos {
     const struct orl_scene *scene;
-    struct photo_slot *slots;
-    int divide;          // photographs are loaded at 1/divide of their size
-    size_t budget_bytes; // for colour and depth; 0: no limit
+    struct photo_state *states; // per photograph of the scene
+    struct orl_tex *color;      // sRGB, mipmapped
+    struct orl_tex *depth;      // z, 0: none
+    int slot_count, divide;     // photographs are loaded at 1/divide of their size
     unsigned clock;
     struct proxy_target target; // for depth maps
 };
@@ -75,8 +79,8 @@ struct photos {
 enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
                                 size_t budget_bytes, struct photos *photos);
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
-// Makes colour resident, and depth (depth_options not NULL); evicts others when the
-// budget demands it.
+// Makes colour resident, and depth (depth_options not NULL); evicts the least recently
+// used when all slots are taken.
 enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
                                    const struct proxy *proxy, size_t photo,
                                    const struct proxy_options *depth_options);
@@ -97,15 +101,34 @@ void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *dept
 // Spreads `accumulated` (colour * weight, weight) over fill->level[0].
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
 
+// --- blending (gather.c) ---
+
+struct gather {
+    struct orl_prog *all;
+    struct photo_data *list; // of the photographs of one dispatch
+    size_t *chosen;          // their indices in the scene
+    struct orl_buf *photos;  // struct photo_data
+};
+
+enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather);
+void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
+// Adds every usable photograph's weighted colour to r->accumulated.
+enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
+                           const struct orl_render_params *params, const bool *skip);
+
 struct orl_renderer {
     struct orl_gpu *gpu;
     const struct orl_scene *scene;
     struct proxy proxy;
     struct photos photos;
     struct fill fill;
-    struct orl_prog *gather, *points_color, *compose;
+    struct gather gather;
+    struct orl_prog *points_color, *compose;
     struct proxy_target target;
     struct orl_tex *accumulated; // colour * weight, weight; composed in place
 };
+
+// renderer.c
+struct proxy_options orl_proxy_options(const struct orl_render_params *params);
 
 #endif

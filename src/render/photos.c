@@ -6,7 +6,11 @@
 #include "io/picture.h"
 #include "render/internal.h"
 
-enum { DIVIDE_MAX = 4 };
+enum {
+    DIVIDE_MAX = 4,
+    DEPTH_SIDE_MAX = 1024,      // occlusion needs no more: depth is smooth between edges
+    ARRAY_BYTES_MAX = 1 << 30,  // of one texture array; llvmpipe refuses larger ones
+};
 
 static int divided(int side, int divide)
 {
@@ -14,108 +18,193 @@ static int divided(int side, int divide)
     return small > 1 ? small : 1;
 }
 
-// Colour with mipmaps, and depth.
-static size_t photo_bytes(const struct orl_photo *photo, int divide)
+static struct orl_camera camera_of(const struct orl_photo *photo, int divide)
 {
     const struct orl_camera *c = &photo->view.camera;
-    size_t pixels = (size_t)divided(c->width, divide) * (size_t)divided(c->height, divide);
-    return pixels * 4 + pixels * 4 / 3 + pixels * 4;
+    return orl_camera_resized(c, divided(c->width, divide), divided(c->height, divide));
 }
 
-static void plan(const struct orl_log *log, struct photos *photos)
+static struct orl_camera depth_camera_of(const struct orl_camera *color)
 {
-    size_t total = 0, largest = 0, count = 0;
-    for (;;) {
-        total = 0, largest = 0, count = 0;
-        for (size_t i = 0; i < photos->scene->photo_count; i++) {
-            if (!photos->slots[i].usable)
-                continue;
-            size_t bytes = photo_bytes(&photos->scene->photos[i], photos->divide);
-            total += bytes;
-            largest = bytes > largest ? bytes : largest;
-            count++;
-        }
-        if (!photos->budget_bytes || total <= photos->budget_bytes ||
-            photos->divide >= DIVIDE_MAX)
-            break;
-        photos->divide *= 2;
+    int side = color->width > color->height ? color->width : color->height, divide = 1;
+    while (side / divide > DEPTH_SIDE_MAX)
+        divide++;
+    return orl_camera_resized(color, divided(color->width, divide),
+                              divided(color->height, divide));
+}
+
+// Size of a slot: the largest usable photograph's, in each direction.
+struct slot_size {
+    int width, height, depth_width, depth_height;
+};
+
+static int larger(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static struct slot_size slot_size(const struct photos *photos, int divide)
+{
+    struct slot_size size = {1, 1, 1, 1};
+    for (size_t i = 0; i < photos->scene->photo_count; i++) {
+        if (!photos->states[i].usable)
+            continue;
+        struct orl_camera color = camera_of(&photos->scene->photos[i], divide);
+        struct orl_camera depth = depth_camera_of(&color);
+        size.width = larger(size.width, color.width);
+        size.height = larger(size.height, color.height);
+        size.depth_width = larger(size.depth_width, depth.width);
+        size.depth_height = larger(size.depth_height, depth.height);
     }
+    return size;
+}
+
+static size_t color_bytes(const struct slot_size *size)
+{
+    size_t pixels = (size_t)size->width * (size_t)size->height;
+    return pixels * 4 + pixels * 4 / 3;
+}
+
+static size_t slot_bytes(const struct slot_size *size)
+{
+    return color_bytes(size) + (size_t)size->depth_width * (size_t)size->depth_height * 4;
+}
+
+// Photographs smaller first, then fewer at once.
+static struct slot_size plan(const struct orl_log *log, size_t budget, int layers_max,
+                             struct photos *photos)
+{
+    int count = 0;
+    for (size_t i = 0; i < photos->scene->photo_count; i++)
+        count += photos->states[i].usable;
+    struct slot_size size = slot_size(photos, 1);
+    photos->divide = 1;
+    while (budget && photos->divide < DIVIDE_MAX && slot_bytes(&size) * (size_t)count > budget) {
+        photos->divide *= 2;
+        size = slot_size(photos, photos->divide);
+    }
+    size_t fits = budget ? budget / slot_bytes(&size) : (size_t)count;
+    size_t array_fits = ARRAY_BYTES_MAX / color_bytes(&size);
+    fits = fits < array_fits ? fits : array_fits;
+    fits = fits < (size_t)layers_max ? fits : (size_t)layers_max;
+    fits = fits < (size_t)count ? fits : (size_t)count;
+    photos->slot_count = fits > 1 ? (int)fits : 1;
     if (photos->divide > 1)
         orl_logf(log, ORL_LOG_WARNING,
                  "photographs do not fit in %zu MiB of device memory: using them at 1/%d size",
-                 photos->budget_bytes >> 20, photos->divide);
-    if (photos->budget_bytes && total > photos->budget_bytes)
+                 budget >> 20, photos->divide);
+    if (photos->slot_count < count)
         orl_logf(log, ORL_LOG_WARNING,
-                 "keeping about %zu of %zu photographs on the device at once; frames get slower",
-                 largest ? photos->budget_bytes / largest : 0, count);
-}
-
-enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
-                                size_t budget_bytes, struct photos *photos)
-{
-    memset(photos, 0, sizeof *photos);
-    photos->scene = scene;
-    photos->divide = 1;
-    photos->budget_bytes = budget_bytes;
-    photos->slots = orl_array(orl_gpu_log(gpu), scene->photo_count, sizeof *photos->slots);
-    if (!photos->slots)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        photos->slots[i].usable = use ? use[i] : !scene->photos[i].test;
-    plan(orl_gpu_log(gpu), photos);
-    return ORL_OK;
-}
-
-static void evict(struct orl_gpu *gpu, struct photo_slot *slot)
-{
-    orl_tex_destroy(gpu, &slot->color);
-    orl_tex_destroy(gpu, &slot->depth);
-}
-
-void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
-{
-    for (size_t i = 0; photos->slots && i < photos->scene->photo_count; i++)
-        evict(gpu, &photos->slots[i]);
-    free(photos->slots);
-    orl_proxy_target_finish(gpu, &photos->target);
-    memset(photos, 0, sizeof *photos);
-}
-
-// Evicts the least recently used photographs until `bytes` more fit.
-static void make_room(struct orl_gpu *gpu, struct photos *photos, size_t bytes)
-{
-    while (photos->budget_bytes) {
-        size_t resident = 0;
-        struct photo_slot *oldest = NULL;
-        for (size_t i = 0; i < photos->scene->photo_count; i++) {
-            struct photo_slot *slot = &photos->slots[i];
-            if (!slot->color)
-                continue;
-            resident += photo_bytes(&photos->scene->photos[i], photos->divide);
-            if (!oldest || slot->last_use < oldest->last_use)
-                oldest = slot;
-        }
-        if (!oldest || resident + bytes <= photos->budget_bytes)
-            return;
-        evict(gpu, oldest);
-    }
+                 "keeping %d of %d photographs on the device at once; frames get slower",
+                 photos->slot_count, count);
+    return size;
 }
 
 static int mip_levels(int width, int height)
 {
     int levels = 1;
-    for (int side = width > height ? width : height; side > 1; side /= 2)
+    for (int side = larger(width, height); side > 1; side /= 2)
         levels++;
     return levels;
 }
 
-static enum orl_result load_color(struct orl_gpu *gpu, const struct photos *photos, size_t index,
-                                  struct photo_slot *slot)
+enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
+                                size_t budget_bytes, struct photos *photos)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    memset(photos, 0, sizeof *photos);
+    photos->scene = scene;
+    photos->states = orl_array(log, scene->photo_count, sizeof *photos->states);
+    if (!photos->states)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        photos->states[i].usable = use ? use[i] : !scene->photos[i].test;
+        photos->states[i].slot = -1;
+    }
+    struct slot_size size =
+        plan(log, budget_bytes, orl_gpu_caps(gpu)->max_texture_layers, photos);
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        struct photo_state *state = &photos->states[i];
+        state->color_camera = camera_of(&scene->photos[i], photos->divide);
+        state->depth_camera = depth_camera_of(&state->color_camera);
+    }
+    struct orl_tex_params color = {.width = size.width, .height = size.height,
+                                   .layers = photos->slot_count,
+                                   .levels = mip_levels(size.width, size.height),
+                                   .format = GL_SRGB8_ALPHA8, .linear = true,
+                                   .tag = "photographs"};
+    struct orl_tex_params depth = {.width = size.depth_width, .height = size.depth_height,
+                                   .layers = photos->slot_count, .format = GL_R32F,
+                                   .tag = "photograph depth"};
+    enum orl_result result = orl_tex_create(gpu, &color, &photos->color);
+    if (result == ORL_OK)
+        result = orl_tex_create(gpu, &depth, &photos->depth);
+    if (result != ORL_OK)
+        orl_photos_finish(gpu, photos);
+    return result;
+}
+
+void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
+{
+    orl_tex_destroy(gpu, &photos->color);
+    orl_tex_destroy(gpu, &photos->depth);
+    free(photos->states);
+    orl_proxy_target_finish(gpu, &photos->target);
+    memset(photos, 0, sizeof *photos);
+}
+
+static struct photo_state *state_in_slot(struct photos *photos, int slot)
+{
+    for (size_t i = 0; i < photos->scene->photo_count; i++)
+        if (photos->states[i].slot == slot)
+            return &photos->states[i];
+    return NULL;
+}
+
+// A free slot, or that of the least recently used photograph, which loses it.
+static int take_slot(struct photos *photos)
+{
+    struct photo_state *oldest = NULL;
+    for (int slot = 0; slot < photos->slot_count; slot++) {
+        struct photo_state *state = state_in_slot(photos, slot);
+        if (!state)
+            return slot;
+        if (!oldest || state->last_use < oldest->last_use)
+            oldest = state;
+    }
+    int slot = oldest->slot;
+    oldest->slot = -1;
+    oldest->has_depth = false;
+    return slot;
+}
+
+// A smaller photograph is a mip level of the full one: box filtered in linear light.
+static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_image *image,
+                                      int divide, struct orl_tex *to, int slot)
+{
+    struct orl_tex *full = NULL;
+    struct orl_tex_params params = {.width = image->width, .height = image->height,
+                                    .levels = mip_levels(image->width, image->height),
+                                    .format = GL_SRGB8_ALPHA8, .tag = "photograph"};
+    enum orl_result result = orl_tex_create(gpu, &params, &full);
+    if (result != ORL_OK)
+        return result;
+    int level = 0;
+    while (1 << level < divide && level + 1 < params.levels)
+        level++;
+    orl_tex_write(full, 0, 0, GL_RGB, GL_UNSIGNED_BYTE, image->u8);
+    orl_tex_make_mipmaps(full, 0);
+    orl_tex_copy_layer(full, level, divided(image->width, divide),
+                       divided(image->height, divide), to, slot);
+    orl_tex_destroy(gpu, &full);
+    return ORL_OK;
+}
+
+static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, size_t index)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     const struct orl_camera *c = &photos->scene->photos[index].view.camera;
     struct orl_image image = {0};
-    struct orl_tex *full = NULL;
     char *path = orl_scene_photo_path(log, photos->scene, index);
     enum orl_result result =
         path ? orl_picture_read(log, path, 3, &image) : ORL_ERR_MEMORY;
@@ -124,27 +213,16 @@ static enum orl_result load_color(struct orl_gpu *gpu, const struct photos *phot
                           image.width, image.height, c->width, c->height);
     if (result != ORL_OK)
         goto end;
-    // A smaller photograph is a mip level of the full one: box filtered in linear light.
-    int level = 0;
-    while (1 << level < photos->divide)
-        level++;
-    struct orl_tex_params params = {.width = image.width, .height = image.height,
-                                    .levels = mip_levels(image.width, image.height),
-                                    .format = GL_SRGB8_ALPHA8, .linear = true,
-                                    .tag = "photograph"};
-    result = orl_tex_create(gpu, &params, &full);
-    if (result != ORL_OK)
-        goto end;
-    orl_tex_write(full, 0, 0, GL_RGB, GL_UNSIGNED_BYTE, image.u8);
-    orl_tex_make_mipmaps(full);
-    if (level == 0) {
-        slot->color = full;
-        full = NULL;
-        goto end;
-    }
-    result = orl_tex_copy_levels(gpu, full, level, &slot->color);
+    int slot = take_slot(photos);
+    if (photos->divide > 1)
+        result = upload_smaller(gpu, &image, photos->divide, photos->color, slot);
+    else
+        orl_tex_write_part(photos->color, 0, slot, image.width, image.height, GL_RGB,
+                           GL_UNSIGNED_BYTE, image.u8);
+    orl_tex_make_mipmaps(photos->color, slot);
+    if (result == ORL_OK)
+        photos->states[index].slot = slot;
 end:
-    orl_tex_destroy(gpu, &full);
     orl_image_finish(&image);
     free(path);
     return result;
@@ -152,28 +230,20 @@ end:
 
 static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
                                   const struct proxy *proxy, size_t index,
-                                  struct photo_slot *slot, const struct proxy_options *options)
+                                  const struct proxy_options *options)
 {
-    struct orl_view view = photos->scene->photos[index].view;
-    view.camera = orl_camera_resized(&view.camera, divided(view.camera.width, photos->divide),
-                                     divided(view.camera.height, photos->divide));
+    struct photo_state *state = &photos->states[index];
+    struct orl_view view = {.camera = state->depth_camera,
+                            .cam_from_world = photos->scene->photos[index].view.cam_from_world};
     enum orl_result result = orl_proxy_target_resize(gpu, &photos->target, view.camera.width,
                                                      view.camera.height);
     if (result != ORL_OK)
         return result;
-    if (!slot->depth) {
-        struct orl_tex_params params = photos->target.depth->params;
-        params.tag = "photograph depth";
-        result = orl_tex_create(gpu, &params, &slot->depth);
-        if (result != ORL_OK)
-            return result;
-    }
-    // The proxy draws into the target's depth; trade textures instead of copying.
     orl_proxy_draw(gpu, proxy, &view, options, &photos->target);
-    struct orl_tex *made = photos->target.depth;
-    photos->target.depth = slot->depth;
-    slot->depth = made;
-    slot->depth_options = *options;
+    orl_tex_copy_layer(photos->target.depth, 0, view.camera.width, view.camera.height,
+                       photos->depth, state->slot);
+    state->depth_options = *options;
+    state->has_depth = true;
     return ORL_OK;
 }
 
@@ -186,15 +256,13 @@ enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
                                    const struct proxy *proxy, size_t photo,
                                    const struct proxy_options *depth_options)
 {
-    struct photo_slot *slot = &photos->slots[photo];
-    slot->last_use = ++photos->clock;
+    struct photo_state *state = &photos->states[photo];
+    state->last_use = ++photos->clock;
     enum orl_result result = ORL_OK;
-    if (!slot->color) {
-        make_room(gpu, photos, photo_bytes(&photos->scene->photos[photo], photos->divide));
-        result = load_color(gpu, photos, photo, slot);
-    }
+    if (state->slot < 0)
+        result = load_color(gpu, photos, photo);
     if (result == ORL_OK && depth_options &&
-        (!slot->depth || !same_options(&slot->depth_options, depth_options)))
-        result = make_depth(gpu, photos, proxy, photo, slot, depth_options);
+        (!state->has_depth || !same_options(&state->depth_options, depth_options)))
+        result = make_depth(gpu, photos, proxy, photo, depth_options);
     return result;
 }

@@ -46,8 +46,7 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     if (result == ORL_OK)
         result = orl_fill_init(gpu, &r->fill);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "gather.comp", NULL, sizeof(struct gather_block),
-                                 &r->gather);
+        result = orl_gather_init(gpu, scene->photo_count, &r->gather);
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "points_color.comp", NULL, sizeof(struct image_block),
                                  &r->points_color);
@@ -70,7 +69,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_proxy_finish(r->gpu, &r->proxy);
     orl_photos_finish(r->gpu, &r->photos);
     orl_fill_finish(r->gpu, &r->fill);
-    orl_prog_destroy(r->gpu, &r->gather);
+    orl_gather_finish(r->gpu, &r->gather);
     orl_prog_destroy(r->gpu, &r->points_color);
     orl_prog_destroy(r->gpu, &r->compose);
     orl_proxy_target_finish(r->gpu, &r->target);
@@ -93,88 +92,10 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
     return orl_tex_create(r->gpu, &params, &r->accumulated);
 }
 
-// photo_from_view = photo_from_world * world_from_view, in doubles: both translations
-// may be large where their difference is small.
-static void relative_pose(const struct orl_pose *photo, const struct orl_pose *view,
-                          struct gather_block *block)
-{
-    double eye[3], offset[3], photo_eye[3], in_view[3];
-    orl_pose_centre(view, eye);
-    orl_pose_centre(photo, photo_eye);
-    orl_pose_apply(photo, eye, offset);
-    orl_pose_apply(view, photo_eye, in_view);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            double sum = 0;
-            for (int k = 0; k < 3; k++)
-                sum += photo->r[i][k] * view->r[j][k];
-            block->photo_from_view[i][j] = (float)sum;
-        }
-        block->photo_from_view[i][3] = (float)offset[i];
-        block->photo_eye[i] = (float)in_view[i];
-    }
-}
-
-static void set_focal(float out[4], const struct orl_camera *c)
-{
-    out[0] = (float)c->fx;
-    out[1] = (float)c->fy;
-    out[2] = (float)c->cx;
-    out[3] = (float)c->cy;
-}
-
-static void gather_photo(struct orl_renderer *r, const struct orl_view *view,
-                         const struct orl_render_params *params, size_t index)
-{
-    const struct orl_photo *photo = &r->scene->photos[index];
-    const struct photo_slot *slot = &r->photos.slots[index];
-    const struct orl_tex_params *size = &slot->color->params;
-    struct orl_camera camera =
-        orl_camera_resized(&photo->view.camera, size->width, size->height);
-    bool test = params->visibility == ORL_VISIBILITY_HARD;
-    struct gather_block block = {
-        .photo_size = {(float)size->width, (float)size->height, (float)(size->levels - 1),
-                       params->border_px / (float)r->photos.divide},
-        .gain = {photo->gain[0], photo->gain[1], photo->gain[2]},
-        .options = {params->depth_tolerance, params->distance_floor, test ? 1.0f : 0.0f,
-                    params->sampling == ORL_SAMPLING_BICUBIC ? 1.0f : 0.0f},
-        .size = {view->camera.width, view->camera.height},
-    };
-    relative_pose(&photo->view.cam_from_world, &view->cam_from_world, &block);
-    set_focal(block.view_focal, &view->camera);
-    set_focal(block.photo_focal, &camera);
-    struct orl_dispatch d = {.prog = r->gather, .params = &block,
-                             .textures = {slot->color, test ? slot->depth : slot->color},
-                             .images = {{r->target.depth, 0, GL_READ_ONLY},
-                                        {r->accumulated, 0, GL_READ_WRITE}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
-    orl_gpu_dispatch(r->gpu, &d);
-}
-
-static struct proxy_options proxy_options(const struct orl_render_params *params)
+struct proxy_options orl_proxy_options(const struct orl_render_params *params)
 {
     return (struct proxy_options){.splat_scale = params->splat_scale,
                                   .front_layer = params->front_layer};
-}
-
-static enum orl_result gather(struct orl_renderer *r, const struct orl_view *view,
-                              const struct orl_render_params *params, const bool *skip)
-{
-    struct proxy_options options = proxy_options(params);
-    bool test = params->visibility == ORL_VISIBILITY_HARD;
-    for (size_t i = 0; i < r->scene->photo_count; i++) {
-        if (!r->photos.slots[i].usable || (skip && skip[i]))
-            continue;
-        enum orl_result result = orl_photos_require(r->gpu, &r->photos, &r->proxy, i,
-                                                    test ? &options : NULL);
-        if (result != ORL_OK)
-            return result;
-        orl_pass_begin(r->gpu, "gather");
-        gather_photo(r, view, params, i);
-        orl_pass_end(r->gpu);
-    }
-    return ORL_OK;
 }
 
 static void color_from_points(struct orl_renderer *r)
@@ -210,7 +131,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
 {
     struct orl_gpu *gpu = r->gpu;
     enum orl_result result = ORL_OK;
-    struct proxy_options options = proxy_options(params);
+    struct proxy_options options = orl_proxy_options(params);
     orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
     orl_tex_clear(r->accumulated, 0);
     if (params->color == ORL_COLOR_PHOTOS) {
@@ -219,7 +140,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
             orl_fill_depth(gpu, &r->fill, r->target.depth);
             orl_pass_end(gpu);
         }
-        result = gather(r, view, params, skip);
+        result = orl_gather(r, view, params, skip);
     } else {
         orl_pass_begin(gpu, "gather");
         color_from_points(r);

@@ -1,0 +1,98 @@
+// Asking a photograph about a surface point, shared by the gather passes.
+#define BLOCK_GATHER
+#include "include/render_blocks.h"
+
+// As struct photo_data of render_blocks.h.
+struct photo_data {
+    vec4 from_view[3];
+    vec4 eye, focal, size, slot_size, gain;
+};
+layout(std430, binding = 0) readonly buffer photo_list {
+    photo_data photos[];
+};
+layout(binding = 0) uniform sampler2DArray photo_color; // sRGB, mipmapped: reads are linear light
+layout(binding = 1) uniform sampler2DArray photo_depth; // z, 0: none
+
+// Where a point of the view's camera frame lies in photograph `i`: pixel coordinates and z
+// in its frame. False behind it or outside.
+bool photo_project(int i, vec3 p, out vec2 pixel, out float z)
+{
+    vec4 ph = vec4(p, 1.0);
+    vec3 q = vec3(dot(photos[i].from_view[0], ph), dot(photos[i].from_view[1], ph),
+                  dot(photos[i].from_view[2], ph));
+    z = q.z;
+    pixel = vec2(-1.0);
+    if (!(q.z > 0.0))
+        return false;
+    pixel = photos[i].focal.xy * q.xy / q.z + photos[i].focal.zw;
+    vec2 border = min(pixel, photos[i].size.xy - pixel);
+    return min(border.x, border.y) > 0.5;
+}
+
+// Falls from 1 to 0 towards the photograph's border.
+float photo_border(int i, vec2 pixel)
+{
+    vec2 border = min(pixel, photos[i].size.xy - pixel) - 0.5;
+    return clamp(min(border.x, border.y) / max(options.z, 0.5), 0.0, 1.0);
+}
+
+// The photograph's own depth at the four texels around a pixel.
+vec4 photo_depths(int i, vec2 pixel)
+{
+    vec2 at = pixel / photos[i].size.xy * photos[i].size.zw;
+    // Stay within the photograph's part of its slot.
+    at = clamp(at, vec2(0.5), photos[i].size.zw - 0.5);
+    return textureGather(photo_depth, vec3(at / photos[i].slot_size.zw, photos[i].eye.w));
+}
+
+// Mip level at which the photograph has the view's resolution.
+float photo_mip(int i, float z, float view_depth)
+{
+    float magnification = photos[i].focal.x * view_depth / (z * view_focal.x);
+    return clamp(log2(magnification), 0.0, photos[i].gain.w);
+}
+
+vec3 photo_bilinear(int i, vec2 pixel, float mip)
+{
+    vec3 at = vec3(pixel / photos[i].slot_size.xy, photos[i].eye.w);
+    return textureLod(photo_color, at, mip).rgb * photos[i].gain.rgb;
+}
+
+// Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005): bilinear sampling would
+// blur every photograph by the phase that it happens to be met at.
+vec3 photo_bicubic(int i, vec2 pixel, float mip)
+{
+    float lod = floor(mip + 0.5), slot = photos[i].eye.w;
+    vec2 size_at = max(floor(photos[i].slot_size.xy / exp2(lod)), vec2(1.0));
+    vec2 at = pixel / photos[i].slot_size.xy * size_at - 0.5;
+    vec2 base = floor(at), f = at - base;
+    vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
+    vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
+    vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
+    vec2 w3 = f * f * (-0.5 + 0.5 * f);
+    vec2 w12 = w1 + w2;
+    vec2 p0 = (base - 0.5) / size_at, p3 = (base + 2.5) / size_at;
+    vec2 p12 = (base + 0.5 + w2 / w12) / size_at;
+    vec3 sum = textureLod(photo_color, vec3(p12.x, p0.y, slot), lod).rgb * (w12.x * w0.y) +
+               textureLod(photo_color, vec3(p0.x, p12.y, slot), lod).rgb * (w0.x * w12.y) +
+               textureLod(photo_color, vec3(p12, slot), lod).rgb * (w12.x * w12.y) +
+               textureLod(photo_color, vec3(p3.x, p12.y, slot), lod).rgb * (w3.x * w12.y) +
+               textureLod(photo_color, vec3(p12.x, p3.y, slot), lod).rgb * (w12.x * w3.y);
+    float total = w12.x * w0.y + w0.x * w12.y + w12.x * w12.y + w3.x * w12.y + w12.x * w3.y;
+    // The four corners, left out, weigh next to nothing.
+    return max(sum / total, 0.0) * photos[i].gain.rgb;
+}
+
+vec3 photo_sample(int i, vec2 pixel, float mip)
+{
+    return flags.y == 1 ? photo_bicubic(i, pixel, mip) : photo_bilinear(i, pixel, mip);
+}
+
+// Does none of these depths lie clearly in front of z? For points only known to be
+// behind everything else.
+bool photo_unhidden(vec4 seen, float z, float tolerance)
+{
+    return !any(bvec4(seen.x > 0.0 && seen.x < z - tolerance, seen.y > 0.0 && seen.y < z - tolerance,
+                      seen.z > 0.0 && seen.z < z - tolerance,
+                      seen.w > 0.0 && seen.w < z - tolerance));
+}

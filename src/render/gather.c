@@ -1,0 +1,138 @@
+// Colour from photographs.
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/internal.h"
+
+_Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
+
+enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    memset(gather, 0, sizeof *gather);
+    gather->list = orl_array(log, photo_count, sizeof *gather->list);
+    gather->chosen = orl_array(log, photo_count, sizeof *gather->chosen);
+    enum orl_result result = gather->list && gather->chosen ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_buf_create(gpu, "photographs of a frame",
+                                photo_count * sizeof *gather->list, NULL, &gather->photos);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "gather.comp", NULL, sizeof(struct gather_block),
+                                 &gather->all);
+    if (result != ORL_OK)
+        orl_gather_finish(gpu, gather);
+    return result;
+}
+
+void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
+{
+    orl_prog_destroy(gpu, &gather->all);
+    orl_buf_destroy(gpu, &gather->photos);
+    free(gather->list);
+    free(gather->chosen);
+    memset(gather, 0, sizeof *gather);
+}
+
+// photo_from_view = photo_from_world * world_from_view, in doubles: both translations
+// may be large where their difference is small.
+static void relative_pose(const struct orl_pose *photo, const struct orl_pose *view,
+                          struct photo_data *data)
+{
+    double eye[3], offset[3], photo_eye[3], in_view[3];
+    orl_pose_centre(view, eye);
+    orl_pose_centre(photo, photo_eye);
+    orl_pose_apply(photo, eye, offset);
+    orl_pose_apply(view, photo_eye, in_view);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++)
+                sum += photo->r[i][k] * view->r[j][k];
+            data->from_view[i][j] = (float)sum;
+        }
+        data->from_view[i][3] = (float)offset[i];
+        data->eye[i] = (float)in_view[i];
+    }
+}
+
+static void set_focal(float out[4], const struct orl_camera *c)
+{
+    out[0] = (float)c->fx;
+    out[1] = (float)c->fy;
+    out[2] = (float)c->cx;
+    out[3] = (float)c->cy;
+}
+
+static void describe_photo(const struct photos *photos, size_t index, const struct orl_view *view,
+                           struct photo_data *data)
+{
+    const struct orl_photo *photo = &photos->scene->photos[index];
+    const struct photo_state *state = &photos->states[index];
+    const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth->params;
+    relative_pose(&photo->view.cam_from_world, &view->cam_from_world, data);
+    data->eye[3] = (float)state->slot;
+    set_focal(data->focal, &state->color_camera);
+    data->size[0] = (float)state->color_camera.width;
+    data->size[1] = (float)state->color_camera.height;
+    data->size[2] = (float)state->depth_camera.width;
+    data->size[3] = (float)state->depth_camera.height;
+    data->slot_size[0] = (float)color->width;
+    data->slot_size[1] = (float)color->height;
+    data->slot_size[2] = (float)depth->width;
+    data->slot_size[3] = (float)depth->height;
+    memcpy(data->gain, photo->gain, sizeof photo->gain);
+    data->gain[3] = (float)(color->levels - 1);
+}
+
+static void gather_batch(struct orl_renderer *r, const struct orl_view *view,
+                         const struct orl_render_params *params, size_t count)
+{
+    struct gather *g = &r->gather;
+    for (size_t i = 0; i < count; i++)
+        describe_photo(&r->photos, g->chosen[i], view, &g->list[i]);
+    orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
+    struct gather_block block = {
+        .options = {params->depth_tolerance, params->distance_floor,
+                    params->border_px / (float)r->photos.divide},
+        .flags = {params->visibility == ORL_VISIBILITY_HARD,
+                  params->sampling == ORL_SAMPLING_BICUBIC},
+        .area = {view->camera.width, view->camera.height, (int)count},
+    };
+    set_focal(block.view_focal, &view->camera);
+    struct orl_dispatch d = {.prog = g->all, .params = &block,
+                             .bufs = {{.buf = g->photos}},
+                             .textures = {r->photos.color, r->photos.depth},
+                             .images = {{r->target.depth, 0, GL_READ_ONLY},
+                                        {r->accumulated, 0, GL_READ_WRITE}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+    orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
+    orl_pass_begin(r->gpu, "gather");
+    orl_gpu_dispatch(r->gpu, &d);
+    orl_pass_end(r->gpu);
+}
+
+enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
+                           const struct orl_render_params *params, const bool *skip)
+{
+    struct proxy_options options = orl_proxy_options(params);
+    bool test = params->visibility == ORL_VISIBILITY_HARD;
+    size_t count = 0;
+    for (size_t i = 0; i < r->scene->photo_count; i++) {
+        if (!r->photos.states[i].usable || (skip && skip[i]))
+            continue;
+        // As many at once as are resident together.
+        if (count == (size_t)r->photos.slot_count) {
+            gather_batch(r, view, params, count);
+            count = 0;
+        }
+        enum orl_result result = orl_photos_require(r->gpu, &r->photos, &r->proxy, i,
+                                                    test ? &options : NULL);
+        if (result != ORL_OK)
+            return result;
+        r->gather.chosen[count++] = i;
+    }
+    if (count)
+        gather_batch(r, view, params, count);
+    return ORL_OK;
+}
