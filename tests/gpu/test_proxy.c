@@ -76,7 +76,10 @@ static void one_point_lands_in_its_pixel(void **state)
     for (int i = 0; i < SIDE * SIDE; i++) {
         bool hit = i == at(12, 30);
         assert_int_equal(d.index[i], hit ? 0 : UINT32_MAX);
-        assert_float_equal(d.depth[i], hit ? 2 : 0, 1e-5);
+        // Push closes empty pixels up to 1.5 pixels around, and no others.
+        double distance = hypot(i % SIDE - 12, i / SIDE - 30);
+        if (hit || distance > 1.5)
+            assert_float_equal(d.depth[i], hit ? 2 : 0, 1e-5);
     }
     float z;
     memcpy(&z, &d.bits[at(12, 30)], sizeof z);
