@@ -297,7 +297,7 @@ static enum orl_result process(struct densifier *d, size_t photo, bool geometric
         if (result == ORL_OK)
             result = orl_densify_geometric(d->device, &job, &maps);
     } else {
-        result = orl_densify_photometric(d->device, &job, final, &maps);
+        result = orl_densify_photometric(d->device, &job, &maps);
     }
     size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
     if (result == ORL_OK && final)

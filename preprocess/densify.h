@@ -9,7 +9,8 @@
 
 struct orl_densify_params {
     int sources;          // source photographs per reference, [1, 16]; cost grows with it
-    int iterations;       // photometric red-black sweeps, [1, 16]
+    int iterations;       // photometric red-black sweeps, [1, 16]: two more at the coarsest of
+                          // the scales, half as many at each finer one
     int geometric_passes; // sweeps with geometric consistency, [0, 8]
     int window_radius;    // NCC patch radius in pixels, [1, 15]
     int window_step;      // patch sampling step in pixels, [1, 4]

@@ -10,9 +10,13 @@
 enum {
     BAND_PIXELS = 1 << 17, // of one dispatch: bounded, so that no watchdog ends it
     VIEWS_COARSE = 8,      // sources judged at the coarsest level
-    VIEWS_FINE = 4,        // and at the others
+    VIEWS_FINE = 3,        // and at the others
     RANDOM_TRIES = 6,
 };
+
+// Greatest costs of depth that is kept: without and with other photographs' depths that
+// confirm it.
+static const float COST_MATCHED = 0.7f, COST_AGREED = 1.0f;
 
 enum program {
     INIT_RANDOM,
@@ -20,7 +24,6 @@ enum program {
     INIT_MAPS,
     SWEEP,
     SWEEP_GEOMETRIC,
-    FINISH_ALL,
     FINISH_MATCHED,
     FINISH_AGREED,
     PROGRAM_COUNT
@@ -33,9 +36,8 @@ static const struct {
     [INIT_MAPS] = {"densify_init.comp", "FROM_MAPS\nGEOMETRIC"},
     [SWEEP] = {"densify_sweep.comp", ""},
     [SWEEP_GEOMETRIC] = {"densify_sweep.comp", "GEOMETRIC"},
-    [FINISH_ALL] = {"densify_finish.comp", ""},
-    [FINISH_MATCHED] = {"densify_finish.comp", "FILTER"},
-    [FINISH_AGREED] = {"densify_finish.comp", "FILTER\nGEOMETRIC"},
+    [FINISH_MATCHED] = {"densify_finish.comp", ""},
+    [FINISH_AGREED] = {"densify_finish.comp", "GEOMETRIC"},
 };
 
 struct densify_device {
@@ -345,7 +347,7 @@ static void set_block(const struct densify_device *device, const struct densify_
     block->area[1] = c->height;
     block->tune[2] = 0.2f; // Xu and Tao 2019, 3.3
     block->tune[3] = 3.0f;
-    block->limit[0] = 1.0f;
+    block->limit[0] = COST_AGREED;
     block->limit[1] = 1.5f;
     block->limit[2] = 0.9f;
     block->limit[3] = 0.35f;
@@ -501,7 +503,7 @@ static enum orl_result sweeps_finer(struct densify_device *device, const struct 
 }
 
 enum orl_result orl_densify_photometric(struct densify_device *device,
-                                        const struct densify_job *job, bool final,
+                                        const struct densify_job *job,
                                         struct densify_maps *maps)
 {
     struct level level = {0}, coarser = {0};
@@ -515,13 +517,14 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
         if (result != ORL_OK)
             break;
         level.block.run[1] = 1000 * number;
+        level.block.limit[0] = COST_MATCHED;
         if (number == count - 1)
             result = sweeps_coarsest(device, job, &level, end);
         else
             result = sweeps_finer(device, job, &level, coarser.planes, begin, end);
         level_finish(device->gpu, &coarser);
         if (result == ORL_OK && number == 0)
-            result = finish(device, job, &level, final ? FINISH_MATCHED : FINISH_ALL, maps);
+            result = finish(device, job, &level, FINISH_MATCHED, maps);
         coarser = level;
         level = (struct level){0};
     }

@@ -89,9 +89,9 @@ struct densify_job {
     const struct orl_progress *progress;
     double done, total; // for the progress report; this job counts 1
 };
-// From coarse to fine. final: keep only what matches well.
+// From coarse to fine; keeps only what matches.
 enum orl_result orl_densify_photometric(struct densify_device *device,
-                                        const struct densify_job *job, bool final,
+                                        const struct densify_job *job,
                                         struct densify_maps *maps);
 // Refines job->start at full size, with the sources' depths; keeps only what matches
 // well and agrees with a source.

@@ -1,4 +1,5 @@
-// Planes to depth and normal maps. FILTER keeps what several photographs agree on.
+// Planes to depth and normal maps, where they match; with GEOMETRIC, where the sources'
+// depths agree too.
 #include "include/densify.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -38,7 +39,6 @@ ivec2 count_opinions(vec3 plane, vec2 pixel, uvec4 views)
 }
 #endif
 
-#ifdef FILTER
 // Averages planes that pass through the same place: matching leaves each with noise of a
 // fraction of a pixel in depth and several degrees in its normal.
 vec3 smoothed_plane(ivec2 at, vec3 plane)
@@ -59,7 +59,6 @@ vec3 smoothed_plane(ivec2 at, vec3 plane)
         }
     return sum / total;
 }
-#endif
 
 void main()
 {
@@ -70,20 +69,14 @@ void main()
     vec3 plane = imageLoad(planes, at).xyz;
     vec4 map = vec4(0.0);
     float cost = imageLoad(costs, at).r;
-    bool keep = texelFetch(reference, at, 0).g > 0.0 && plane.x > 0.0;
-#ifdef FILTER
-    keep = keep && cost < limit.x;
+    bool keep = texelFetch(reference, at, 0).g > 0.0 && plane.x > 0.0 && cost < limit.x;
 #ifdef GEOMETRIC
     ivec2 count = count_opinions(plane, pixel, imageLoad(view_costs, at));
-    keep = keep && (count.x >= 2 ? count.y <= count.x
-                                 : count.x == 1 && count.y == 0 && cost < limit.w);
+    keep = keep && count.y <= count.x && (count.x >= 2 || (count.x == 1 && cost < limit.w));
 #endif
-#endif
-#ifdef FILTER
-    if (keep)
+    if (keep) {
         plane = smoothed_plane(at, plane);
-#endif
-    if (keep)
         map = vec4(-normalize(plane_normal(plane, pixel)), 1.0 / plane.x);
+    }
     imageStore(maps, at, map);
 }
