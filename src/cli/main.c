@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 
 static const struct command commands[] = {
+    {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},
     {"info", "say what is in a scene", cmd_info},
     {"prepare", "make a scene from photographs", cmd_prepare},

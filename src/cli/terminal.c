@@ -63,6 +63,9 @@ static void report(void *priv, const char *step, double done, double total, cons
     double now = orl_time_s();
     bool started = strcmp(step, t->step) != 0;
     bool ended = total > 0 && done >= total;
+    if (started && ended && strcmp(step, t->ended) == 0)
+        return; // said already
+    snprintf(t->ended, sizeof t->ended, "%s", ended ? step : "");
     if (started) {
         end_line(t);
         snprintf(t->step, sizeof t->step, "%s", step);

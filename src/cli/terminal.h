@@ -8,7 +8,8 @@
 struct terminal {
     bool quiet, tty;
     bool line_open;        // an unfinished \r line
-    char step[64];         // of the last report
+    char step[64];         // under way
+    char ended[64];        // whose end was reported last
     double step_start_s, last_print_s;
     struct orl_log log;    // ends an open line before it prints
     struct orl_progress progress;

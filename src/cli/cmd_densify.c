@@ -1,0 +1,91 @@
+// oriel densify: depth and normal maps for a COLMAP workspace, in place of
+// colmap patch_match_stereo.
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/commands.h"
+#include "preprocess/densify.h"
+#include "scene/colmap.h"
+
+struct options {
+    struct orl_names exclude;
+    struct orl_densify_params params;
+    int seed;
+};
+
+// Names of the workspace's photographs that are not excluded.
+static enum orl_result choose_photos(const struct orl_log *log, const char *workspace,
+                                     const struct orl_names *exclude, struct orl_names *photos)
+{
+    struct orl_colmap_model model;
+    char *dir = orl_path_join(log, workspace, "sparse");
+    enum orl_result result = dir ? orl_colmap_read(log, dir, &model) : ORL_ERR_MEMORY;
+    free(dir);
+    if (result != ORL_OK)
+        return result;
+    size_t excluded = 0;
+    for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
+        if (orl_names_contain(exclude, model.images[i].name))
+            excluded++;
+        else
+            result = orl_names_add(log, photos, model.images[i].name);
+    }
+    if (result == ORL_OK && excluded < exclude->count)
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "--exclude: %s has no photograph of some name",
+                          workspace);
+    orl_colmap_finish(&model);
+    return result;
+}
+
+static enum orl_result run(const struct options *o, const struct arg_common *common,
+                           const char *workspace, struct terminal *terminal)
+{
+    const struct orl_log *log = &terminal->log;
+    struct orl_names photos = {0};
+    struct orl_gpu *gpu = NULL;
+    enum orl_result result = choose_photos(log, workspace, &o->exclude, &photos);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
+    if (result == ORL_OK)
+        result = orl_densify(gpu, workspace, &photos, &o->params, &terminal->progress);
+    orl_gpu_destroy(&gpu);
+    orl_names_finish(&photos);
+    return result;
+}
+
+int cmd_densify(int argc, char **argv)
+{
+    struct options o = {.params = {ORL_DENSIFY_DEFAULTS}, .seed = 1};
+    const struct arg_option table[] = {
+        {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs to leave out altogether", 0, 0},
+        {"masks", ARG_STRING, &o.params.masks_dir, "DIR",
+         "DIR/NAME.png: no depth where it is 0", 0, 0},
+        {"sources", ARG_INT, &o.params.sources, "N", "source photographs each; default 8", 1, 16},
+        {"iterations", ARG_INT, &o.params.iterations, "N", "photometric sweeps; default 4", 1, 16},
+        {"geometric-passes", ARG_INT, &o.params.geometric_passes, "N",
+         "sweeps with geometric consistency; default 1", 0, 8},
+        {"window-radius", ARG_INT, &o.params.window_radius, "PX", "patch radius; default 5", 1, 15},
+        {"window-step", ARG_INT, &o.params.window_step, "PX", "patch sampling; default 2", 1, 4},
+        {"seed", ARG_INT, &o.seed, "N", "of the random hypotheses; default 1", 0, 1 << 30},
+        {0},
+    };
+    const struct arg_command command = {
+        "densify", "WORKSPACE [options]",
+        "Writes stereo/depth_maps and stereo/normal_maps of a COLMAP undistorted workspace, as\n"
+        "colmap patch_match_stereo does, without CUDA. Photographs that have their maps are\n"
+        "skipped, so that an interrupted run goes on. colmap stereo_fusion reads the result.",
+        table, 1, 1};
+    struct arg_common common = {0};
+    struct terminal terminal;
+    const char *workspace;
+    size_t count;
+    int status;
+    if (command_begin(&command, argc, argv, &common, &terminal, &workspace, &count, &status)) {
+        o.params.seed = (uint32_t)o.seed;
+        status = command_status(run(&o, &common, workspace, &terminal));
+        terminal_finish(&terminal);
+    }
+    orl_names_finish(&o.exclude);
+    return status;
+}
