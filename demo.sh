@@ -42,7 +42,9 @@ begin() {
         [ "$seen" ] && left=$((left + expected[i]))
     done
     [ "$planned_spent" -gt 60 ] && left=$((left * (spent + 60) / (planned_spent + 60)))
-    echo "== [$((SECONDS - start)) s] $2 (about $(((left + 30) / 60)) min left)"
+    left=$(((left + 30) / 60))
+    [ "$left" -gt 0 ] && left="about $left min" || left="less than a minute"
+    echo "== [$((SECONDS - start)) s] $2 ($left left)"
 }
 
 finish_step() {
@@ -122,6 +124,5 @@ begin walk "rendering a walk"
 take_walk || fail "the walk"
 begin page "writing the page"
 minutes=$(((SECONDS - start + 30) / 60))
-finish_step
 write_page || fail "writing the page"
 echo "== done in $((SECONDS - start)) s: open $demo/index.html"

@@ -48,7 +48,7 @@ through. $test_count of them were kept aside and used for comparison only.</p>
 <div><b id="fact-points"></b>points</div>
 <div><b id="fact-psnr"></b>close to what a camera saw (PSNR)</div>
 <div><b id="fact-ms"></b>to render a picture</div>
-<div><b>$minutes min</b>from photographs to this page</div>
+<div><b>$minutes min</b>for all of it, from the first command on</div>
 </div>
 HTML
 }
@@ -115,8 +115,8 @@ page_figures() {
     cat <<HTML
 <h2>Figures</h2>
 <p>Means over the $test_count photographs kept aside, over whole pictures, holes included. PSNR: how
-far colours are off; more is better, and above 25 dB differences are hard to see at a glance. SSIM:
-how alike structures are, at most 1. Covered: share of the picture where Oriel found a surface.</p>
+close colours are, in decibels; more is better, and 6 dB more halve the differences. SSIM: how alike
+structures are, at most 1. Covered: share of the picture where Oriel found a surface.</p>
 <table id="accuracy"></table>
 <h2>Time and memory</h2>
 <p>On <b id="device"></b>, $(nproc) processor cores.</p>
