@@ -48,7 +48,7 @@ through. $test_count of them were kept aside and used for comparison only.</p>
 <div><b id="fact-points"></b>points</div>
 <div><b id="fact-psnr"></b>close to what a camera saw (PSNR)</div>
 <div><b id="fact-ms"></b>to render a picture</div>
-<div><b>$minutes min</b>for all of it, from the first command on</div>
+<div><b>$minutes min</b>for all of it</div>
 </div>
 HTML
 }
