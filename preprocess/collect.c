@@ -63,23 +63,24 @@ static enum orl_result add_candidate(struct orl_job *job, const char *path)
 {
     const char *name = orl_path_name(path);
     job->given++;
-    const char *problem = name_problem(name);
+    char *real = realpath(path, NULL);
+    const char *problem = real ? name_problem(name) : strerror(errno);
+    enum orl_result result = ORL_OK;
     if (problem) {
         skip(job, path, problem);
-        return ORL_OK;
+        goto end;
     }
-    enum orl_result result = orl_grow(job->log, (void **)&job->sources, &job->source_capacity,
-                                      job->source_count + 1, sizeof *job->sources);
+    result = orl_grow(job->log, (void **)&job->sources, &job->source_capacity,
+                      job->source_count + 1, sizeof *job->sources);
     if (result != ORL_OK)
-        return result;
+        goto end;
     struct orl_source *source = &job->sources[job->source_count++];
-    memset(source, 0, sizeof *source);
-    source->name = orl_strdup(job->log, name);
-    source->path = realpath(path, NULL);
-    if (!source->path)
-        return orl_fail(job->log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
-                        strerror(errno));
-    return source->name ? ORL_OK : ORL_ERR_MEMORY;
+    *source = (struct orl_source){.name = orl_strdup(job->log, name), .path = real};
+    real = NULL;
+    result = source->name ? ORL_OK : ORL_ERR_MEMORY;
+end:
+    free(real);
+    return result;
 }
 
 static enum orl_result add_folder(struct orl_job *job, const char *dir)

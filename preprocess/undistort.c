@@ -76,6 +76,7 @@ static enum orl_result check_output(const struct orl_job *job, json_t *record)
         result = orl_fail(job->log, ORL_ERR_DATA,
                           "of the photographs that are not held out only %zu could be placed; "
                           "two are needed", model.image_count - test);
+    orl_progress_report(job->progress, "undistort", 1, 1, NULL);
     if (result == ORL_OK)
         json_object_set_new(record, "largest", json_pack("[i, i]", width, height));
     else
@@ -153,7 +154,6 @@ enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
         (result = orl_job_replace(job, WORK "/sparse", "sparse")) != ORL_OK ||
         (result = orl_job_replace(job, WORK "/images", "images")) != ORL_OK)
         return result;
-    orl_progress_report(job->progress, "undistort", 1, 1, NULL);
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(temporary); i++)
         result = orl_job_remove(job, temporary[i]);

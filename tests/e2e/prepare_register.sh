@@ -23,6 +23,16 @@ prints "left out     3.png: cannot be placed"
 DOUBLE_ALONE=3.png run 2 prepare "$work/p" --out "$work/few" --test-list 0,1,2
 says "of the photographs that are not held out only 1 could be placed"
 
+# Masks reach COLMAP under its names, and are undistorted as photographs are.
+photos "$work/m" 0.png 1.png.png
+run 0 prepare "$work/p" --out "$work/masked" --masks "$work/m"
+says "3 of 5 photographs have no mask"
+[ "$(ls "$work/masked/.oriel/masks" | tr '\n' ' ')" = "0.png.png 1.png.png " ] ||
+    fail "masks are $(ls "$work/masked/.oriel/masks")"
+for option in ImageReader StereoFusion; do
+    grep -q -e "--$option.mask_path" "$work/masked/logs/colmap.log" || fail "no mask for $option"
+done
+
 # A full disk, played by a limit on the size of files that no cloud fits into.
 (
     trap '' XFSZ

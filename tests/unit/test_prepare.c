@@ -2,6 +2,7 @@
 // taken, exposures, and what COLMAP's output says of progress.
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "preprocess/expose.h"
 #include "preprocess/job.h"
@@ -158,13 +159,15 @@ static void collects_what_can_be_used(void **state)
         snprintf(path, sizeof path, "%s/%s", w.photos, others[i]);
         assert_int_equal(orl_file_write(NULL, path, "hello", 5), ORL_OK);
     }
+    snprintf(path, sizeof path, "%s/dangling.jpg", w.photos);
+    assert_int_equal(symlink("/nowhere/at/all.jpg", path), 0);
     // Given a second time as a file, it counts once.
     snprintf(path, sizeof path, "%s/a.jpg", w.photos);
     w.inputs[1] = path;
     w.params.input_count = 2;
     w.params.test_every = 3;
     assert_int_equal(orl_stage_collect(&w.job), ORL_OK);
-    assert_int_equal(w.job.given, 9);
+    assert_int_equal(w.job.given, 10);
     assert_int_equal(w.job.source_count, 4);
     static const char *const used[] = {"a.jpg", "b.jpg", "c.JPG", "d.png"};
     for (size_t i = 0; i < 4; i++) {
@@ -175,8 +178,9 @@ static void collects_what_can_be_used(void **state)
         snprintf(link, sizeof link, "%s/.oriel/photos/%s", w.scene, used[i]);
         assert_true(orl_path_is_file(link));
     }
-    assert_int_equal(json_array_size(w.job.skipped), 5);
-    static const char *const skipped[] = {"cut.jpg", "cut.png", "text.jpg", "raw.dng", "x,y.jpg"};
+    assert_int_equal(json_array_size(w.job.skipped), 6);
+    static const char *const skipped[] = {"cut.jpg", "cut.png", "text.jpg", "raw.dng", "x,y.jpg",
+                                          "dangling.jpg"};
     for (size_t i = 0; i < ORL_COUNT(skipped); i++)
         assert_non_null(strstr(w.said.text, skipped[i]));
     assert_null(strstr(w.said.text, "notes.txt"));
