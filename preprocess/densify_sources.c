@@ -275,7 +275,9 @@ void orl_densify_transfer(const struct orl_view *to, const struct orl_view *from
             row[j] = i == 0   ? ct->fx * r[0][j] + ct->cx * r[2][j]
                      : i == 1 ? ct->fy * r[1][j] + ct->cy * r[2][j]
                               : r[2][j];
-        row[3] = i == 0 ? ct->fx * t[0] + ct->cx * t[2] : i == 1 ? ct->fy * t[1] + ct->cy * t[2] : t[2];
+        row[3] = i == 0   ? ct->fx * t[0] + ct->cx * t[2]
+                 : i == 1 ? ct->fy * t[1] + ct->cy * t[2]
+                          : t[2];
         rows[i][0] = (float)(row[0] / cf->fx);
         rows[i][1] = (float)(row[1] / cf->fy);
         rows[i][2] = (float)(row[2] - row[0] * cf->cx / cf->fx - row[1] * cf->cy / cf->fy);

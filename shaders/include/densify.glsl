@@ -197,7 +197,8 @@ float view_cost(int view, vec3 plane, vec2 pixel)
     along_x = (along_x - texel * (row2.x + row2.w * plane.y)) * inverse;
     along_y = (along_y - texel * (row2.y + row2.w * plane.z)) * inverse;
     // Inside the picture, its patch inside the padding, neither mirrored nor crushed.
-    vec2 inside = texel - float(PADDING) + 0.5, reach = float(RADIUS) * (abs(along_x) + abs(along_y));
+    vec2 inside = texel - float(PADDING) + 0.5;
+    vec2 reach = float(RADIUS) * (abs(along_x) + abs(along_y));
     float growth = along_x.x * along_y.y - along_x.y * along_y.x;
     if (!(inside.x >= 0.0 && inside.y >= 0.0 && inside.x <= size.x && inside.y <= size.y &&
           max(reach.x, reach.y) < float(PADDING - 2) && growth > 0.04))
