@@ -21,7 +21,7 @@ ORL_BLOCK(splat_block)
 ORL_BLOCK(pyramid_block)
 {
     VEC4(camera); // fx fy cx cy, pixels of level 0
-    IVEC4(level); // width, height and number of the written level; z: level number
+    IVEC4(level); // width, height and number of the written level, least support
 };
 #endif
 

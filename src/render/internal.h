@@ -45,7 +45,7 @@ void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
 size_t orl_proxy_target_bytes(int width, int height);
 // How the proxy is made, from the method's parameters.
 struct proxy_options {
-    float splat_scale, front_layer;
+    float splat_scale, front_layer, min_support;
 };
 void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
                     const struct proxy_options *options, struct proxy_target *target);

@@ -6,11 +6,11 @@
 
 #include "render/render.h"
 
-// distance_floor and front_layer: best of a few values when each training photograph of
+// distance_floor, front_layer and min_support: best of a few values when each training photograph of
 // fountain-P11 is rendered from the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
-    .distance_floor = 0.03f, .border_px = 16.0f
+    .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f
 
 const struct orl_method orl_methods[] = {
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
@@ -44,6 +44,8 @@ const struct orl_render_option orl_render_options[] = {
      "multiplies splat radii; larger closes more holes and fattens edges"},
     {"front_layer", FIELD(front_layer), NULL, 0, 0.1, "fraction of depth",
      "splats this close behind the nearest one are averaged with it; 0: the nearest alone"},
+    {"min_support", FIELD(min_support), NULL, 0, 25, "pixels of 5x5",
+     "with a surface at the same depth that a pixel needs, else it is a stray point"},
     {"distance_floor", FIELD(distance_floor), NULL, 1e-4, 1, "fraction of viewing distance",
      "keeps Airieau's distance difference from zero"},
     {"border_px", FIELD(border_px), NULL, 0, 1024, "pixels of the photograph",

@@ -298,7 +298,7 @@ static void pyramid_step(struct orl_gpu *gpu, struct orl_prog *prog, struct pyra
 }
 
 static void pull_push(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                      struct proxy_target *t)
+                      const struct proxy_options *options, struct proxy_target *t)
 {
     struct pyramid_block block = {.camera = {(float)view->camera.fx, (float)view->camera.fy,
                                              (float)view->camera.cx, (float)view->camera.cy}};
@@ -309,6 +309,7 @@ static void pull_push(struct orl_gpu *gpu, const struct proxy *proxy, const stru
     block.level[0] = t->width;
     block.level[1] = t->height;
     block.level[2] = 0;
+    block.level[3] = (int)options->min_support;
     struct orl_dispatch d = {.prog = proxy->output, .params = &block,
                              .images = {{t->surfel_a[0], 0, GL_READ_ONLY},
                                         {t->surfel_b[0], 0, GL_READ_ONLY},
@@ -327,6 +328,6 @@ void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct
     splat(gpu, proxy, view, options, target);
     orl_pass_end(gpu);
     orl_pass_begin(gpu, "pull-push");
-    pull_push(gpu, proxy, view, target);
+    pull_push(gpu, proxy, view, options, target);
     orl_pass_end(gpu);
 }

@@ -24,6 +24,8 @@ struct orl_render_params {
     float splat_scale;              // multiplies splat radii, (0, 16]
     float front_layer;              // splats this close behind the nearest one are averaged
                                     // with it, fraction of depth, [0, 0.1]
+    float min_support;              // pixels of the 5x5 around with a surface at this depth
+                                    // that a pixel needs to count as surface, [0, 25]
     float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
     float border_px;                // photographs fade out over this width, [0, 1024] pixels
 };

@@ -95,7 +95,8 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
 struct proxy_options orl_proxy_options(const struct orl_render_params *params)
 {
     return (struct proxy_options){.splat_scale = params->splat_scale,
-                                  .front_layer = params->front_layer};
+                                  .front_layer = params->front_layer,
+                                  .min_support = params->min_support};
 }
 
 static void color_from_points(struct orl_renderer *r)
