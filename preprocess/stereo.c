@@ -315,9 +315,8 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     if (result != ORL_OK || (result = orl_job_registered(job, &train, &test)) != ORL_OK ||
         (result = orl_job_fresh_dir(job, ".oriel/fuse.tmp")) != ORL_OK)
         goto end;
-    // Photographs that must agree on a point. Two lose nothing that three would keep out,
-    // once points that stand alone are dropped: held out, fountain-P11 and Herz-Jesus-P8
-    // gain 2.1 and 0.1 dB.
+    // Photographs that must agree on a point. Against three, two leave fewer holes and
+    // little noise, once points that stand alone are dropped (docs/pipeline.md).
     const int min_pixels = 2;
     result = fuse_args(job, out, min_pixels, &args, record);
     if (result == ORL_OK)
