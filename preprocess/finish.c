@@ -26,16 +26,19 @@ static json_t *stage_value(const json_t *done, const char *stage, const char *ke
     return json_object_get(json_object_get(done, stage), key);
 }
 
-// The records of the stages without what has a place of its own.
-static json_t *copy_stages(const json_t *done)
+// The records of the stages, in their order, without what has a place of its own.
+static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "left_out", "skipped"};
-    json_t *stages = json_deep_copy(done);
-    const char *name;
-    json_t *record;
-    json_object_foreach(stages, name, record)
-        for (size_t i = 0; i < ORL_COUNT(elsewhere); i++)
+    json_t *stages = json_object();
+    for (size_t k = 0; k < json_array_size(plan); k++) {
+        const char *name = json_string_value(json_array_get(plan, k));
+        json_t *record = name ? json_deep_copy(json_object_get(done, name)) : NULL;
+        for (size_t i = 0; record && i < ORL_COUNT(elsewhere); i++)
             json_object_del(record, elsewhere[i]);
+        if (record)
+            json_object_set_new(stages, name, record);
+    }
     return stages;
 }
 
@@ -94,6 +97,7 @@ enum orl_result orl_stage_manifest(struct orl_job *job)
 {
     static const char *const files[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
                                         "sparse/points3D.bin"};
+    const json_t *plan = json_object_get(job->stages, "plan");
     const json_t *done = json_object_get(job->stages, "done");
     json_t *sums = json_object();
     json_t *photos = sort_photos(stage_value(done, "expose", "photographs"));
@@ -106,7 +110,7 @@ enum orl_result orl_stage_manifest(struct orl_job *job)
                              "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                              "oriel " ORL_VERSION, "settings", orl_job_settings(job), "counts",
                              counts(job, done, photos), "photographs", photos, "left_out",
-                             left_out(job, done), "stages", copy_stages(done), "checksums", sums);
+                             left_out(job, done), "stages", copy_stages(plan, done), "checksums", sums);
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     if (result == ORL_OK)
