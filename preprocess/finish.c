@@ -110,7 +110,8 @@ enum orl_result orl_stage_manifest(struct orl_job *job)
                              "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                              "oriel " ORL_VERSION, "settings", orl_job_settings(job), "counts",
                              counts(job, done, photos), "photographs", photos, "left_out",
-                             left_out(job, done), "stages", copy_stages(plan, done), "checksums", sums);
+                             left_out(job, done), "stages", copy_stages(plan, done),
+                             "checksums", sums);
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     if (result == ORL_OK)
