@@ -1,6 +1,6 @@
 // Level 0 of the filling pyramid: what is known, times its weight.
-// SEED_DEPTH: inverse depth, weighted towards far surfaces, since what a hole shows
-// lies behind its rim. Otherwise: colour.
+// SEED_DEPTH: inverse depth, weighted so steeply towards far surfaces that a hole takes
+// the farther one of its rim, which it shows, and nothing between the two. Otherwise: colour.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
@@ -20,7 +20,8 @@ void main()
     vec4 value = imageLoad(known, at);
 #ifdef SEED_DEPTH
     float z = value.r;
-    vec4 seed = z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * (z * z * z * z) : vec4(0.0);
+    float weight = clamp(pow(z / scale.x, 14.0), 1e-15, 1e15); // sums stay floats
+    vec4 seed = z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
 #else
     vec4 seed = value.a > 0.0 ? value / value.a : vec4(0.0);
 #endif

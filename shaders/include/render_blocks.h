@@ -53,7 +53,8 @@ ORL_BLOCK(gather_block)
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)
 ORL_BLOCK(image_block)
 {
-    IVEC4(area); // width, height of the written level; z: level number; w: option
+    IVEC4(area); // width, height of the written level; z, w: the pass's own
+    VEC4(scale); // x: a typical depth of the scene
 };
 #endif
 

@@ -4,9 +4,10 @@
 
 #include "render/internal.h"
 
-enum orl_result orl_fill_init(struct orl_gpu *gpu, struct fill *fill)
+enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill)
 {
     memset(fill, 0, sizeof *fill);
+    fill->depth_scale = depth_scale;
     const struct {
         const char *file, *defines;
         struct orl_prog **prog;
@@ -68,11 +69,12 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return ORL_OK;
 }
 
-static void run(struct orl_gpu *gpu, struct orl_prog *prog, const struct orl_tex *first,
+static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *prog, const struct orl_tex *first,
                 GLenum first_access, const struct orl_tex *second, GLenum second_access,
                 const struct orl_tex *covered)
 {
-    struct image_block block = {.area = {covered->params.width, covered->params.height}};
+    struct image_block block = {.area = {covered->params.width, covered->params.height},
+                                .scale = {fill->depth_scale}};
     struct orl_dispatch d = {.prog = prog, .params = &block,
                              .images = {{first, 0, first_access}, {second, 0, second_access}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
@@ -84,23 +86,23 @@ static void run(struct orl_gpu *gpu, struct orl_prog *prog, const struct orl_tex
 static void spread(struct orl_gpu *gpu, struct fill *fill)
 {
     for (int i = 1; i < fill->levels; i++)
-        run(gpu, fill->pull, fill->level[i - 1], GL_READ_ONLY, fill->level[i], GL_WRITE_ONLY,
+        run(gpu, fill, fill->pull, fill->level[i - 1], GL_READ_ONLY, fill->level[i], GL_WRITE_ONLY,
             fill->level[i]);
     for (int i = fill->levels - 2; i >= 0; i--)
-        run(gpu, fill->push, fill->level[i], GL_READ_WRITE, fill->level[i + 1], GL_READ_ONLY,
+        run(gpu, fill, fill->push, fill->level[i], GL_READ_WRITE, fill->level[i + 1], GL_READ_ONLY,
             fill->level[i]);
 }
 
 void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth)
 {
-    run(gpu, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY, depth);
+    run(gpu, fill, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY, depth);
     spread(gpu, fill);
-    run(gpu, fill->apply_depth, fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
+    run(gpu, fill, fill->apply_depth, fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
 }
 
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
 {
-    run(gpu, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
+    run(gpu, fill, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
         accumulated);
     spread(gpu, fill);
 }

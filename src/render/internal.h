@@ -90,10 +90,11 @@ enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
 struct fill {
     struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
     int width, height, levels;
+    float depth_scale; // a typical depth of the scene
     struct orl_tex *level[PYRAMID_LEVELS_MAX + 8]; // value * weight, weight
 };
 
-enum orl_result orl_fill_init(struct orl_gpu *gpu, struct fill *fill);
+enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill);
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
 // Guesses background depth, as negative values, where `depth` is 0.
