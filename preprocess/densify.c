@@ -18,7 +18,8 @@ enum {
 struct densifier {
     const struct orl_log *log;
     struct orl_gpu *gpu;
-    const struct orl_densify_params *params;
+    struct orl_densify_params params; // sources: as many as fit
+    int shrink;                       // halvings of the photographs
     const struct orl_progress *progress;
     char *images_dir, *depth_dir, *normal_dir, *sparse_dir; // owned
     struct orl_colmap_model model;
@@ -128,9 +129,9 @@ static enum orl_result read_pyramid(const struct densifier *d, size_t photo, int
 static enum orl_result read_mask(const struct densifier *d, struct densify_job *job)
 {
     const struct orl_image *picture = &job->reference.levels[0];
-    if (!d->params->masks_dir)
+    if (!d->params.masks_dir)
         return ORL_OK;
-    char *path = orl_format(d->log, "%s/%s.png", d->params->masks_dir, job->name);
+    char *path = orl_format(d->log, "%s/%s.png", d->params.masks_dir, job->name);
     if (!path)
         return ORL_ERR_MEMORY;
     enum orl_result result = ORL_OK;
@@ -148,6 +149,9 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
 }
 
 // --- one photograph ---
+
+#define WRONG_SIZE "%s: its photometric maps are of another size; remove them to have them made " \
+                   "again"
 
 // FNV-1a, so that a photograph's result does not depend on which others take part.
 static uint32_t name_seed(uint32_t seed, const char *name)
@@ -221,15 +225,27 @@ static int level_count(int width, int height)
     return levels;
 }
 
+static enum orl_result read_source_depth(const struct densifier *d, size_t photo, int slot,
+                                         struct densify_job *job)
+{
+    const struct orl_image *picture = &job->sources[slot].levels[job->finest];
+    struct orl_image *depth = &job->source_depths[slot];
+    enum orl_result result = read_map(d, d->depth_dir, photo, 1, depth);
+    if (result == ORL_OK && (depth->width != picture->width || depth->height != picture->height))
+        result = orl_fail(d->log, ORL_ERR_DATA, WRONG_SIZE, densify_photo_name(&d->photos, photo));
+    return result;
+}
+
 static enum orl_result job_open(const struct densifier *d, size_t photo, bool geometric,
                                 struct densify_job *job)
 {
     const struct densify_plan *plan = &d->plans[photo];
     *job = (struct densify_job){
         .name = densify_photo_name(&d->photos, photo),
-        .seed = name_seed(d->params->seed, densify_photo_name(&d->photos, photo)),
+        .seed = name_seed(d->params.seed, densify_photo_name(&d->photos, photo)),
         .view = d->photos.views[photo],
         .plan = plan,
+        .finest = d->shrink,
         .progress = d->progress,
         .done = d->done,
         .total = d->total,
@@ -237,8 +253,9 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, bool ge
     enum orl_result result = read_pyramid(d, photo, 1, &job->reference);
     if (result != ORL_OK)
         return result;
-    int levels = geometric ? 1 : level_count(job->reference.levels[0].width,
-                                             job->reference.levels[0].height);
+    int levels = level_count(job->reference.levels[0].width, job->reference.levels[0].height);
+    if (geometric || levels <= d->shrink)
+        levels = d->shrink + 1;
     orl_densify_pyramid_finish(&job->reference);
     result = read_pyramid(d, photo, levels, &job->reference);
     for (int k = 0; k < plan->count && result == ORL_OK; k++) {
@@ -246,7 +263,7 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, bool ge
         job->source_views[k] = d->photos.views[source];
         result = read_pyramid(d, source, levels + EXTRA_LEVELS, &job->sources[k]);
         if (result == ORL_OK && geometric)
-            result = read_map(d, d->depth_dir, source, 1, &job->source_depths[k]);
+            result = read_source_depth(d, source, k, job);
     }
     if (result == ORL_OK)
         result = read_mask(d, job);
@@ -265,9 +282,11 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo, bool
                                   : ORL_ERR_MEMORY;
     free(path);
     if (result == ORL_OK)
-        result = orl_image_init(d->log, &maps.depth, width, height, 1, ORL_PIXEL_F32);
+        result = orl_image_init(d->log, &maps.depth, width >> d->shrink, height >> d->shrink, 1,
+                                ORL_PIXEL_F32);
     if (result == ORL_OK)
-        result = orl_image_init(d->log, &maps.normal, width, height, 3, ORL_PIXEL_F32);
+        result = orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
+                                ORL_PIXEL_F32);
     if (result == ORL_OK)
         result = write_maps(d, photo, geometric, &maps);
     orl_densify_maps_finish(&maps);
@@ -278,7 +297,7 @@ static enum orl_result process(struct densifier *d, size_t photo, bool geometric
 {
     struct densify_maps start = {0}, maps = {0};
     struct densify_job job = {0};
-    bool final = geometric || d->params->geometric_passes == 0;
+    bool final = geometric || d->params.geometric_passes == 0;
     enum orl_result result = job_open(d, photo, geometric, &job);
     if (result != ORL_OK)
         goto end;
@@ -286,13 +305,11 @@ static enum orl_result process(struct densifier *d, size_t photo, bool geometric
         result = read_map(d, d->depth_dir, photo, 1, &start.depth);
         if (result == ORL_OK)
             result = read_map(d, d->normal_dir, photo, 3, &start.normal);
-        const struct orl_image *picture = &job.reference.levels[0];
+        const struct orl_image *picture = &job.reference.levels[job.finest];
         if (result == ORL_OK &&
             (start.depth.width != picture->width || start.depth.height != picture->height ||
              start.normal.width != picture->width || start.normal.height != picture->height))
-            result = orl_fail(d->log, ORL_ERR_DATA,
-                              "%s: its photometric maps are of another size; remove them to have "
-                              "them made again", job.name);
+            result = orl_fail(d->log, ORL_ERR_DATA, WRONG_SIZE, job.name);
         job.start = &start;
         if (result == ORL_OK)
             result = orl_densify_geometric(d->device, &job, &maps);
@@ -300,9 +317,10 @@ static enum orl_result process(struct densifier *d, size_t photo, bool geometric
         result = orl_densify_photometric(d->device, &job, &maps);
     }
     size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
+    struct orl_camera camera = orl_densify_level_camera(&job.reference.camera, job.finest);
     if (result == ORL_OK && final)
-        result = orl_densify_remove_speckles(d->log, &job.reference.camera, &maps,
-                                             pixels / SPECKLE_SHARE, 0.01f);
+        result = orl_densify_remove_speckles(d->log, &camera, &maps, pixels / SPECKLE_SHARE,
+                                             0.01f);
     if (result == ORL_OK)
         result = write_maps(d, photo, geometric, &maps);
 end:
@@ -350,6 +368,45 @@ static enum orl_result check_plans(const struct densifier *d)
                     "neighbours overlap by two thirds or more", d->photos.count);
 }
 
+// Settles how many sources and what size the device's memory allows, and says so.
+static enum orl_result plan_memory(struct densifier *d)
+{
+    struct densify_need need = {.padding = orl_densify_padding(&d->params),
+                                .geometric = d->params.geometric_passes > 0};
+    struct densify_budget budget;
+    int width, height, asked = d->params.sources;
+    for (size_t i = 0; i < d->photos.count; i++) {
+        char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, i));
+        enum orl_result result = path ? orl_picture_size(d->log, path, &width, &height)
+                                      : ORL_ERR_MEMORY;
+        free(path);
+        if (result != ORL_OK)
+            return result;
+        need.width = width > need.width ? width : need.width;
+        need.height = height > need.height ? height : need.height;
+        int side = width < height ? width : height;
+        need.least_side = i == 0 || side < need.least_side ? side : need.least_side;
+    }
+    bool fits = orl_densify_fit(&need, asked, d->params.max_vram_bytes, &budget);
+    if (!fits)
+        return orl_fail(d->log, ORL_ERR_GPU,
+                        "densify: %zu MiB of device memory are not enough for a photograph of "
+                        "%dx%d: the least is %.1f MiB", d->params.max_vram_bytes >> 20,
+                        need.width, need.height, (double)budget.bytes / (1 << 20));
+    d->params.sources = budget.sources;
+    d->shrink = budget.shrink;
+    bool less = budget.sources < asked || budget.shrink > 0;
+    if (less)
+        orl_logf(d->log, ORL_LOG_WARNING,
+                 "densify: %d sources at %dx%d need %.0f MiB of device memory; using less", asked,
+                 need.width, need.height,
+                 (double)orl_densify_bytes(&need, asked, 0) / (1 << 20));
+    orl_logf(d->log, ORL_LOG_INFO, "densify: up to %.0f MiB on the device: %d sources, %dx%d",
+             (double)budget.bytes / (1 << 20), budget.sources, need.width >> budget.shrink,
+             need.height >> budget.shrink);
+    return ORL_OK;
+}
+
 static enum orl_result open_workspace(struct densifier *d, const char *workspace,
                                       const struct orl_names *names)
 {
@@ -363,7 +420,9 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     if (result == ORL_OK)
         result = orl_densify_photos_init(d->log, &d->model, names, &d->photos);
     if (result == ORL_OK)
-        result = orl_densify_plans_make(d->log, &d->photos, d->params->sources, &d->plans);
+        result = plan_memory(d);
+    if (result == ORL_OK)
+        result = orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans);
     if (result == ORL_OK)
         result = check_plans(d);
     if (result == ORL_OK)
@@ -378,13 +437,13 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_densify_params *params,
                             const struct orl_progress *progress)
 {
-    struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = params,
+    struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
                           .progress = progress};
     enum orl_result result = check_params(d.log, params);
     if (result == ORL_OK)
         result = open_workspace(&d, workspace, photos);
     if (result == ORL_OK)
-        result = orl_densify_device_create(gpu, params, &d.device);
+        result = orl_densify_device_create(gpu, &d.params, &d.device);
     d.total = (double)d.photos.count * (params->geometric_passes > 0 ? 2.0 : 1.0);
     if (result == ORL_OK)
         result = process_pass(&d, false);

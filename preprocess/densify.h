@@ -16,6 +16,9 @@ struct orl_densify_params {
     int window_step;      // patch sampling step in pixels, [1, 4]
     uint32_t seed;
     const char *masks_dir; // MASKS/NAME.png, 0 = not the subject; NULL: none
+    size_t max_vram_bytes; // device memory to keep to, 0: no limit. When one photograph needs
+                           // more, fewer sources are used, down to four, then photographs and
+                           // maps of half the size, or a quarter, ...; a warning says so
 };
 #define ORL_DENSIFY_DEFAULTS                                                               \
     .sources = 8, .iterations = 4, .geometric_passes = 1, .window_radius = 5, .window_step = 2, \

@@ -77,8 +77,7 @@ enum orl_result orl_densify_device_create(struct orl_gpu *gpu,
         return ORL_ERR_MEMORY;
     device->gpu = gpu;
     device->params = *params;
-    // Patches up to three times as large in a source as in the reference.
-    device->padding = 3 * params->window_radius + 2;
+    device->padding = orl_densify_padding(params);
     return ORL_OK;
 }
 
@@ -325,13 +324,13 @@ static void set_block(const struct densify_device *device, const struct densify_
     for (int k = 0; k < job->plan->count; k++) {
         int shrunk = source_level(job, k, level->number);
         struct orl_view source = job->source_views[k];
-        source.camera = job->sources[k].camera;
+        source.camera = orl_densify_level_camera(&job->sources[k].camera, job->finest);
         orl_densify_transfer(&ref, &source, &block->backward[3 * k]);
-        source.camera = orl_densify_level_camera(&source.camera, shrunk);
+        source.camera = orl_densify_level_camera(&job->sources[k].camera, shrunk);
         block->extent[k][0] = (float)source.camera.width;
         block->extent[k][1] = (float)source.camera.height;
         block->extent[k][2] = (float)job->plan->sources[k].prior;
-        block->extent[k][3] = (float)(1 << shrunk);
+        block->extent[k][3] = (float)(1 << (shrunk - job->finest));
         // Texel centres at whole numbers, behind the padding.
         source.camera.cx += device->padding - 0.5;
         source.camera.cy += device->padding - 0.5;
@@ -509,9 +508,9 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
     struct level level = {0}, coarser = {0};
     enum orl_result result = ORL_OK;
     int count = job->reference.count;
-    for (int number = count - 1; number >= 0 && result == ORL_OK; number--) {
+    for (int number = count - 1; number >= job->finest && result == ORL_OK; number--) {
         // Each level has four times the pixels of the one before.
-        double end = exp2(-2.0 * number), begin = 0.25 * end;
+        double end = exp2(2.0 * (job->finest - number)), begin = 0.25 * end;
         level = (struct level){.number = number};
         result = level_open(device, job, &level);
         if (result != ORL_OK)
@@ -523,7 +522,7 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
         else
             result = sweeps_finer(device, job, &level, coarser.planes, begin, end);
         level_finish(device->gpu, &coarser);
-        if (result == ORL_OK && number == 0)
+        if (result == ORL_OK && number == job->finest)
             result = finish(device, job, &level, FINISH_MATCHED, maps);
         coarser = level;
         level = (struct level){0};
@@ -536,7 +535,7 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
 enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
                                       struct densify_maps *maps)
 {
-    struct level level = {.number = 0};
+    struct level level = {.number = job->finest};
     int count = device->params.geometric_passes;
     enum orl_result result = level_open(device, job, &level);
     if (result == ORL_OK)

@@ -43,6 +43,27 @@ enum orl_result orl_densify_plans_make(const struct orl_log *log,
                                        const struct densify_photos *photos, int sources,
                                        struct densify_plan **plans);
 
+// --- device memory ---
+
+struct densify_need {
+    int width, height; // greatest of any photograph
+    int least_side;    // of any photograph
+    int padding;       // texels around a source
+    bool geometric;    // sources' depths are used
+};
+struct densify_budget {
+    int sources, shrink; // shrink: halvings of the photographs
+    uint64_t bytes;
+};
+// Bytes on the device at most, with one photograph and its sources on it.
+uint64_t orl_densify_bytes(const struct densify_need *need, int sources, int shrink);
+// The largest photographs, then the most sources up to `sources`, that fit into `max_bytes`
+// (0: any number) and whose textures drivers accept; false: nothing does.
+bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_bytes,
+                     struct densify_budget *budget);
+// Texels around each source: patches are up to three times as large there.
+int orl_densify_padding(const struct orl_densify_params *params);
+
 // Rows of matrix (x, y, 1, w) -> to's homogeneous pixels, for a pixel of `from` with
 // inverse depth w.
 void orl_densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4]);
@@ -84,6 +105,7 @@ struct densify_job {
     struct densify_pyramid sources[ORL_DENSIFY_SOURCES_MAX];
     struct orl_image mask;                                  // level 0; no data: none
     struct orl_image seeds;                                 // coarsest level: 1/z or 0
+    int finest;                                             // level of the maps: 0 = full size
     const struct densify_maps *start;                       // geometric pass: own maps
     struct orl_image source_depths[ORL_DENSIFY_SOURCES_MAX]; // geometric pass
     const struct orl_progress *progress;
@@ -93,7 +115,7 @@ struct densify_job {
 enum orl_result orl_densify_photometric(struct densify_device *device,
                                         const struct densify_job *job,
                                         struct densify_maps *maps);
-// Refines job->start at full size, with the sources' depths; keeps only what matches
+// Refines job->start at its size, with the sources' depths; keeps only what matches
 // well and agrees with a source.
 enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
                                       struct densify_maps *maps);

@@ -10,7 +10,7 @@
 struct options {
     struct orl_names exclude;
     struct orl_densify_params params;
-    int seed;
+    int seed, max_vram_mib;
 };
 
 // Names of the workspace's photographs that are not excluded.
@@ -68,6 +68,7 @@ int cmd_densify(int argc, char **argv)
         {"window-radius", ARG_INT, &o.params.window_radius, "PX", "patch radius; default 5", 1, 15},
         {"window-step", ARG_INT, &o.params.window_step, "PX", "patch sampling; default 2", 1, 4},
         {"seed", ARG_INT, &o.seed, "N", "of the random hypotheses; default 1", 0, 1 << 30},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };
     const struct arg_command command = {
@@ -83,6 +84,7 @@ int cmd_densify(int argc, char **argv)
     int status;
     if (command_begin(&command, argc, argv, &common, &terminal, &workspace, &count, &status)) {
         o.params.seed = (uint32_t)o.seed;
+        o.params.max_vram_bytes = (size_t)o.max_vram_mib << 20;
         status = command_status(run(&o, &common, workspace, &terminal));
         terminal_finish(&terminal);
     }

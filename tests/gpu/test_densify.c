@@ -410,6 +410,39 @@ static void test_bad_settings(void **state)
     test_dir_remove(dir);
 }
 
+static void watch_memory(void *priv, const char *step, double done, double total,
+                         const char *detail)
+{
+    (void)step, (void)done, (void)total, (void)detail;
+    size_t *most = priv, now = orl_gpu_bytes(gpu);
+    *most = now > *most ? now : *most;
+}
+
+// Half the size: maps of half the size, as right as before, and not a byte too many.
+static void test_little_memory(void **state)
+{
+    (void)state;
+    struct plane_scene scene = make_scene(215, 202, 0.2, 0.1);
+    char *dir = make_workspace(&scene);
+    struct orl_densify_params params = quick;
+    params.max_vram_bytes = (size_t)2 << 20;
+    size_t most = 0;
+    const struct orl_progress progress = {.report = watch_memory, .priv = &most};
+    assert_int_equal(orl_densify(gpu, dir, NULL, &params, &progress), ORL_OK);
+    assert_in_range(most, params.max_vram_bytes / 4, params.max_vram_bytes);
+    for (int i = 0; i < scene.view_count; i++)
+        scene.views[i].camera = (struct orl_camera){.width = 107, .height = 101,
+                                                    .fx = 0.6 * 215, .fy = 0.6 * 215,
+                                                    .cx = 0.25 * 215, .cy = 0.25 * 202};
+    assert_recovered(&scene, dir);
+    // Whoever changes the size must not mix maps of both.
+    assert_int_equal(unlink(map_path(dir, "depth", 1, "geometric")), 0);
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_DATA);
+    params.max_vram_bytes = 1000;
+    assert_int_equal(orl_densify(gpu, dir, NULL, &params, NULL), ORL_ERR_GPU);
+    test_dir_remove(dir);
+}
+
 struct stopper {
     double stop_at;
     bool stopped;
@@ -459,6 +492,7 @@ int main(void)
         cmocka_unit_test(test_masks),
         cmocka_unit_test(test_lonely_photographs),
         cmocka_unit_test(test_bad_settings),
+        cmocka_unit_test(test_little_memory),
         cmocka_unit_test(test_cancel_and_go_on),
     };
     gpu = gpu_test_device();
