@@ -1,14 +1,15 @@
 # cmake --install: program, library, headers, pkg-config file, CMake package.
 include(CMakePackageConfigHelpers)
-install(TARGETS oriel liboriel EXPORT oriel-targets
-        RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+install(TARGETS oriel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The program stays out of the export: its name is the library's there.
+install(TARGETS liboriel EXPORT oriel-targets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 get_property(modules GLOBAL PROPERTY ORL_MODULES)
 foreach(folder src preprocess datasets)
     install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/oriel/$<IF:$<STREQUAL:${folder},src>,.,${folder}>
-            FILES_MATCHING PATTERN "*.h" PATTERN "internal.h" EXCLUDE PATTERN "cli" EXCLUDE
-            PATTERN "shader_table.h" EXCLUDE)
+            FILES_MATCHING PATTERN "*.h" PATTERN "*internal.h" EXCLUDE PATTERN "cli" EXCLUDE
+            PATTERN "shader_table.h" EXCLUDE PATTERN "job.h" EXCLUDE PATTERN "expose.h" EXCLUDE)
 endforeach()
 install(EXPORT oriel-targets NAMESPACE oriel:: FILE oriel-targets.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oriel)
@@ -18,5 +19,7 @@ write_basic_package_version_file(oriel-config-version.cmake COMPATIBILITY SameMi
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/oriel-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oriel)
+# Relative, so that the installed tree can be moved.
+file(RELATIVE_PATH ORL_PREFIX_FROM_LIBDIR "/${CMAKE_INSTALL_LIBDIR}" "/")
 configure_file(cmake/oriel.pc.in oriel.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
