@@ -77,6 +77,18 @@ run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 says "have changed"
 [ "$(grep -cv help "$work/trace")" = 6 ] || fail "a changed photograph was not noticed"
 
+# Depth maps of an interrupted run stay, unless the settings are others.
+map=$scene/stereo/depth_maps/of-an-interrupted-run.bin
+: >"$map"
+DOUBLE_FAIL=patch_match_stereo run 1 prepare "$work/p" --out "$scene" --seed 2 --resume
+[ -e "$map" ] && fail "depth maps of another seed were kept"
+: >"$map"
+DOUBLE_FAIL=patch_match_stereo run 1 prepare "$work/p" --out "$scene" --seed 2 --resume
+[ -e "$map" ] || fail "depth maps of the same settings were not kept"
+DOUBLE_FAIL=patch_match_stereo run 1 prepare "$work/p" --out "$scene" --seed 2 --quality draft \
+    --resume
+[ -e "$map" ] && fail "depth maps of another quality were kept"
+
 # Killed in the middle of each command.
 rm -r "$scene"
 for command in $all; do
