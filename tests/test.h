@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "core/file.h"
@@ -27,6 +28,26 @@ static inline void test_dir_remove(char *path)
 {
     assert_int_equal(orl_dir_remove(NULL, path), ORL_OK);
     free(path);
+}
+
+// All that was logged, a line each.
+struct said {
+    char text[8192];
+};
+
+static inline void test_listen(void *priv, enum orl_log_level level, const char *message)
+{
+    (void)level;
+    struct said *said = priv;
+    size_t used = strlen(said->text);
+    snprintf(said->text + used, sizeof said->text - used, "%s\n", message);
+}
+
+// A log that collects in `said`, emptied first.
+static inline struct orl_log log_to(struct said *said)
+{
+    said->text[0] = '\0';
+    return (struct orl_log){.level = ORL_LOG_DEBUG, .print = test_listen, .priv = said};
 }
 
 #endif

@@ -35,25 +35,6 @@ static void save_text(const char *dir, const char *name, const char *text)
     assert_int_equal(orl_file_write(NULL, path, text, strlen(text)), ORL_OK);
 }
 
-// What a broken file's message must say.
-struct said {
-    char text[8192];
-};
-
-static void listen(void *priv, enum orl_log_level level, const char *message)
-{
-    (void)level;
-    struct said *said = priv;
-    size_t used = strlen(said->text);
-    snprintf(said->text + used, sizeof said->text - used, "%s\n", message);
-}
-
-static struct orl_log log_to(struct said *said)
-{
-    said->text[0] = '\0';
-    return (struct orl_log){.level = ORL_LOG_DEBUG, .print = listen, .priv = said};
-}
-
 struct model_files {
     struct bytes cameras, images, points;
 };

@@ -7,24 +7,6 @@
 #include "scene/points.h"
 #include "test.h"
 
-struct said {
-    char text[4096];
-};
-
-static void listen(void *priv, enum orl_log_level level, const char *message)
-{
-    (void)level;
-    struct said *said = priv;
-    size_t used = strlen(said->text);
-    snprintf(said->text + used, sizeof said->text - used, "%s\n", message);
-}
-
-static struct orl_log log_to(struct said *said)
-{
-    said->text[0] = '\0';
-    return (struct orl_log){.level = ORL_LOG_DEBUG, .print = listen, .priv = said};
-}
-
 static void save(const char *path, const void *data, size_t size)
 {
     assert_int_equal(orl_file_write(NULL, path, data, size), ORL_OK);
