@@ -69,13 +69,13 @@ static bool read_rows(const json_t *array, size_t rows, size_t columns, double *
     return true;
 }
 
-static bool is_rotation(double r[3][3])
+static bool is_rotation(const struct orl_pose *pose)
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             double dot = 0;
             for (int k = 0; k < 3; k++)
-                dot += r[i][k] * r[j][k];
+                dot += pose->r[i][k] * pose->r[j][k];
             if (fabs(dot - (i == j)) > 1e-3)
                 return false;
         }
@@ -93,7 +93,7 @@ static bool pose_from_world_axes(double world_from_cam[3][3], const double centr
             pose->t[i] -= world_from_cam[j][i] * centre[j];
         }
     }
-    return is_rotation(pose->r);
+    return is_rotation(pose);
 }
 
 // --- interpolation ---
@@ -174,7 +174,7 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
             view->cam_from_world.t[i] = rows[i][3];
         }
-        if (!is_rotation(view->cam_from_world.r))
+        if (!is_rotation(&view->cam_from_world))
             return false;
     } else {
         const json_t *up_json = json_object_get(key, "up");
