@@ -1,0 +1,192 @@
+// Camera paths in every format, against poses found by hand.
+#include <math.h>
+
+#include "scene/path.h"
+#include "test.h"
+
+static char *dir;
+static struct orl_photo photos[2];
+static struct orl_scene scene;
+
+static int set_up(void **state)
+{
+    (void)state;
+    static char first[] = "a.jpg", second[] = "b.jpg";
+    dir = test_dir_make();
+    const double up[3] = {0, -1, 0}, left[3] = {-1, 0, 0}, right[3] = {3, 0, 0};
+    const double ahead_left[3] = {-1, 0, 5}, ahead_right[3] = {3, 0, 5};
+    scene = (struct orl_scene){.dir = dir, .photos = photos, .photo_count = 2};
+    photos[0].name = first;
+    photos[1].name = second;
+    photos[0].view.camera = (struct orl_camera){200, 100, 150, 150, 100, 50};
+    photos[1].view.camera = (struct orl_camera){200, 100, 300, 300, 100, 50};
+    photos[0].view.cam_from_world = orl_pose_look_at(left, ahead_left, up);
+    photos[1].view.cam_from_world = orl_pose_look_at(right, ahead_right, up);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    test_dir_remove(dir);
+    return 0;
+}
+
+static enum orl_result read_text(const char *name, const char *text, struct orl_path *path)
+{
+    char *file = orl_path_join(NULL, dir, name);
+    assert_int_equal(orl_file_write(NULL, file, text, strlen(text)), ORL_OK);
+    enum orl_result result = orl_path_read(NULL, &scene, file, path);
+    free(file);
+    return result;
+}
+
+static void assert_centre(const struct orl_view *view, double x, double y, double z)
+{
+    double c[3];
+    orl_pose_centre(&view->cam_from_world, c);
+    assert_float_equal(c[0], x, 1e-9);
+    assert_float_equal(c[1], y, 1e-9);
+    assert_float_equal(c[2], z, 1e-9);
+}
+
+// Where a view sees a world point.
+static void assert_sees(const struct orl_view *view, double x, double y, double z, double u,
+                        double v)
+{
+    const double world[3] = {x, y, z};
+    double pixel[2], depth;
+    assert_true(orl_view_project(view, world, pixel, &depth));
+    assert_float_equal(pixel[0], u, 1e-6);
+    assert_float_equal(pixel[1], v, 1e-6);
+}
+
+static void keyframes_stand_where_they_say(void **state)
+{
+    (void)state;
+    struct orl_path path;
+    assert_int_equal(
+        read_text("keys.json",
+                  "{\"keyframes\": [{\"photo\": \"b\"},"
+                  " {\"position\": [0,0,-4], \"target\": [0,0,0], \"fov_y_deg\": 90},"
+                  " {\"cam_from_world\": [[1,0,0,7],[0,1,0,8],[0,0,1,9]]}]}", &path), ORL_OK);
+    assert_int_equal(path.count, 3);
+    assert_centre(&path.views[0], 3, 0, 0);
+    assert_float_equal(path.views[0].camera.fx, 300, 0);
+    assert_centre(&path.views[1], 0, 0, -4);
+    assert_float_equal(path.views[1].camera.fy, 50, 1e-9); // 90 degrees over 100 pixels
+    assert_sees(&path.views[1], 0, 4, 0, 100, 100);        // y down: the lower edge
+    assert_centre(&path.views[2], -7, -8, -9);
+    orl_path_finish(&path);
+}
+
+static void frames_move_smoothly_from_end_to_end(void **state)
+{
+    (void)state;
+    struct orl_path path;
+    assert_int_equal(read_text("walk.json", "{\"keyframes\": [{\"photo\": \"a\"},"
+                                            " {\"photo\": \"b\"}], \"frames\": 5}", &path),
+                     ORL_OK);
+    assert_int_equal(path.count, 5);
+    assert_centre(&path.views[0], -1, 0, 0);
+    assert_centre(&path.views[2], 1, 0, 0);
+    assert_centre(&path.views[4], 3, 0, 0);
+    assert_float_equal(path.views[2].camera.fx, sqrt(150.0 * 300), 1e-9);
+    orl_path_finish(&path);
+    assert_int_equal(orl_path_through_photos(NULL, &scene, 3, &path), ORL_OK);
+    assert_centre(&path.views[1], 1, 0, 0);
+    orl_path_finish(&path);
+}
+
+static void nerfstudio_axes_are_turned(void **state)
+{
+    (void)state;
+    // OpenGL axes at (1, 2, 3), looking along world -z with y up.
+    struct orl_path path;
+    assert_int_equal(
+        read_text("ns.json",
+                  "{\"render_width\": 80, \"render_height\": 60, \"camera_path\": [{\"fov\": 90,"
+                  " \"camera_to_world\": [1,0,0,1, 0,1,0,2, 0,0,1,3, 0,0,0,1]}]}", &path),
+        ORL_OK);
+    assert_int_equal(path.views[0].camera.width, 80);
+    assert_centre(&path.views[0], 1, 2, 3);
+    assert_sees(&path.views[0], 1, 2, -7, 40, 30);
+    assert_sees(&path.views[0], 1, 12, -7, 40, 0);  // above: the upper edge
+    assert_sees(&path.views[0], 11, 2, -7, 70, 30); // to the right
+    orl_path_finish(&path);
+}
+
+static void inria_rotation_is_world_from_camera(void **state)
+{
+    (void)state;
+    // A camera at (5, 0, 0) looking along world +x: its z is world x, its x is world -z.
+    struct orl_path path;
+    assert_int_equal(
+        read_text("inria.json",
+                  "[{\"id\": 0, \"width\": 100, \"height\": 50, \"position\": [5,0,0],"
+                  " \"rotation\": [[0,0,1],[0,1,0],[-1,0,0]], \"fx\": 60, \"fy\": 60}]", &path),
+        ORL_OK);
+    assert_centre(&path.views[0], 5, 0, 0);
+    assert_sees(&path.views[0], 15, 0, 0, 50, 25);
+    assert_sees(&path.views[0], 15, 0, -5, 80, 25);
+    orl_path_finish(&path);
+}
+
+static void colmap_text_takes_the_cameras_beside_it(void **state)
+{
+    (void)state;
+    struct orl_path path;
+    static const char images[] = "# comment\n1 1 0 0 0 1 2 3 4 x.jpg\n10 20 -1\n"
+                                 "2 0 1 0 0 0 0 0 4 y.jpg\n\n";
+    assert_int_equal(read_text("images.txt", images, &path), ORL_OK);
+    assert_int_equal(path.count, 2);
+    assert_centre(&path.views[0], -1, -2, -3);
+    assert_float_equal(path.views[0].camera.fx, 150, 0); // the scene's
+    orl_path_finish(&path);
+    char *file = orl_path_join(NULL, dir, "cameras.txt");
+    static const char cameras[] = "# comment\n4 SIMPLE_PINHOLE 64 48 70 32 24\n";
+    assert_int_equal(orl_file_write(NULL, file, cameras, sizeof cameras - 1), ORL_OK);
+    free(file);
+    assert_int_equal(read_text("images.txt", images, &path), ORL_OK);
+    assert_int_equal(path.views[1].camera.width, 64);
+    assert_float_equal(path.views[1].camera.fy, 70, 0);
+    assert_float_equal(path.views[1].cam_from_world.r[1][1], -1, 1e-12); // half a turn about x
+    orl_path_finish(&path);
+}
+
+static void damaged_paths_are_refused(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {
+        "", "{", "{}", "[]", "{\"keyframes\": []}", "{\"keyframes\": [{}]}",
+        "{\"keyframes\": [{\"photo\": \"none\"}]}",
+        "{\"keyframes\": [{\"photo\": \"a\"}], \"frames\": 9}",
+        "{\"keyframes\": [{\"photo\": \"a\"}, {\"photo\": \"b\"}], \"frames\": 1e12}",
+        "{\"keyframes\": [{\"photo\": \"a\", \"fov_y_deg\": 180}]}",
+        "{\"keyframes\": [{\"cam_from_world\": [[2,0,0,0],[0,1,0,0],[0,0,1,0]]}]}",
+        "{\"keyframes\": [{\"position\": [0,0], \"target\": [0,0,1]}]}",
+        "{\"render_width\": 0, \"render_height\": 60, \"camera_path\": [{}]}",
+        "[{\"width\": 10, \"height\": 10, \"fx\": 5}]",
+    };
+    struct orl_path path;
+    for (size_t i = 0; i < ORL_COUNT(bad); i++) {
+        assert_int_not_equal(read_text("bad.json", bad[i], &path), ORL_OK);
+        assert_null(path.views);
+    }
+    assert_int_not_equal(read_text("bad.txt", "1 0 0 0 0 1 2 3 4 x.jpg\n\n", &path), ORL_OK);
+    assert_int_not_equal(read_text("bad.txt", "# nothing\n", &path), ORL_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(keyframes_stand_where_they_say, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(frames_move_smoothly_from_end_to_end, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(nerfstudio_axes_are_turned, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(inria_rotation_is_world_from_camera, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(colmap_text_takes_the_cameras_beside_it, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(damaged_paths_are_refused, set_up, tear_down),
+    };
+    return cmocka_run_group_tests_name("path", tests, NULL, NULL);
+}
