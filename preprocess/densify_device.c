@@ -92,14 +92,23 @@ void orl_densify_device_destroy(struct densify_device **handle)
     *handle = NULL;
 }
 
+static int half(int value)
+{
+    return value > 1 ? value / 2 : 1;
+}
+
 static enum orl_result use_program(struct densify_device *device, enum program which,
                                    struct orl_prog **prog)
 {
     char defines[256];
     const struct orl_densify_params *p = &device->params;
     if (!device->programs[which]) {
+        // Agreement with other photographs holds planes in place, so that a patch may be
+        // small: it then belongs to one surface up to a pixel or two from its edge.
+        bool small = which == INIT_MAPS || which == SWEEP_GEOMETRIC || which == FINISH_AGREED;
         snprintf(defines, sizeof defines, "RADIUS %d\nSTEP %d\nSOURCES %d\nPADDING %d\n%s",
-                 p->window_radius, p->window_step, p->sources, device->padding,
+                 small ? half(p->window_radius) : p->window_radius,
+                 small ? half(p->window_step) : p->window_step, p->sources, device->padding,
                  program_table[which].defines);
         enum orl_result result =
             orl_prog_create(device->gpu, program_table[which].file, defines,

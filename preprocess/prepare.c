@@ -112,7 +112,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                              orl_stage_calibrate, ".oriel/calibrate/model"},
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
                              orl_stage_undistort, "images"},
-    [ORL_STAGE_DENSIFY] = {"densify", 1, ORL_STAGE_UNDISTORT, densify_settings,
+    [ORL_STAGE_DENSIFY] = {"densify", 2, ORL_STAGE_UNDISTORT, densify_settings,
                            orl_stage_densify, NULL},
     [ORL_STAGE_FUSE] = {"fuse", 3, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
                         ".oriel/fused.ply"},

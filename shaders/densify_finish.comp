@@ -9,6 +9,9 @@ layout(rgba32ui, binding = 2) readonly uniform uimage2D view_costs;
 layout(rgba32f, binding = 3) writeonly uniform image2D maps; // normal, depth
 
 const int SMOOTH_RADIUS = 2;
+#ifdef GEOMETRIC
+const int FIT_RADIUS = 9, FIT_STEP = 3; // odd, so that both colours of the sweeps count
+#endif
 
 #ifdef GEOMETRIC
 // x: sources whose own depth is that of this plane, and which look alike; y: sources
@@ -60,6 +63,45 @@ vec3 smoothed_plane(ivec2 at, vec3 plane)
     return sum / total;
 }
 
+#ifdef GEOMETRIC
+// Slopes of the plane through the places around: those of single patches are several
+// degrees off. Depths that are not near the plane belong to something else.
+vec2 fitted_slopes(ivec2 at, vec3 plane)
+{
+    float total = 1.0;
+    vec3 mean = vec3(0.0);    // of w - plane.x, x and y
+    vec3 squares = vec3(0.0); // of xx, xy, yy
+    vec2 products = vec2(0.0), slopes = plane.yz;
+    for (int j = -FIT_RADIUS; j <= FIT_RADIUS; j += FIT_STEP)
+        for (int i = -FIT_RADIUS; i <= FIT_RADIUS; i += FIT_STEP) {
+            ivec2 q = at + ivec2(i, j);
+            if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, area.xy)))
+                continue;
+            vec3 other = imageLoad(planes, q).xyz;
+            vec2 offset = vec2(i, j);
+            float w = other.x - plane.x;
+            float there = (w - dot(other.yz, offset)) / range.z;
+            float here = (w - dot(plane.yz, offset)) / range.z;
+            float weight = max(1.0 - 2.0 * there * there, 0.0) * max(1.0 - 4.0 * here * here, 0.0);
+            total += weight;
+            mean += weight * vec3(w, offset);
+            squares += weight * vec3(i * i, i * j, j * j);
+            products += weight * w * offset;
+            slopes += weight * other.yz;
+        }
+    mean /= total;
+    slopes /= total;
+    squares = squares / total - vec3(mean.y * mean.y, mean.y * mean.z, mean.z * mean.z);
+    products = products / total - mean.x * mean.yz;
+    // The patches' own slopes count like pixels two away.
+    squares.xz += 4.0;
+    products += 4.0 * slopes;
+    return vec2(squares.z * products.x - squares.y * products.y,
+                squares.x * products.y - squares.y * products.x) /
+           (squares.x * squares.z - squares.y * squares.y);
+}
+#endif
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, area.z);
@@ -76,6 +118,9 @@ void main()
 #endif
     if (keep) {
         plane = smoothed_plane(at, plane);
+#ifdef GEOMETRIC
+        plane.yz = fitted_slopes(at, plane);
+#endif
         map = vec4(-normalize(plane_normal(plane, pixel)), 1.0 / plane.x);
     }
     imageStore(maps, at, map);
