@@ -315,9 +315,9 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     if (result != ORL_OK || (result = orl_job_registered(job, &train, &test)) != ORL_OK ||
         (result = orl_job_fresh_dir(job, ".oriel/fuse.tmp")) != ORL_OK)
         goto end;
-    // Photographs that must agree on a point. Against three, two leave fewer holes and
-    // little noise, once points that stand alone are dropped (docs/pipeline.md).
-    const int min_pixels = 2;
+    // Photographs that must agree on a point. Two leave fewer holes than three, but twice
+    // the points and more stray ones (docs/pipeline.md); few photographs cannot spare them.
+    const int min_pixels = train.count >= 6 ? 3 : 2;
     result = fuse_args(job, out, min_pixels, &args, record);
     if (result == ORL_OK)
         result = orl_job_colmap(job, &(struct orl_colmap_run){
