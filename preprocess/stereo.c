@@ -292,47 +292,64 @@ static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_p
     return fuse_memory(job, args, record);
 }
 
-static enum orl_result check_cloud(const struct orl_job *job, const char *path, json_t *record)
+static enum orl_result check_cloud(const struct orl_job *job, const char *path, int min_pixels,
+                                   size_t *count)
 {
     struct orl_points points;
     enum orl_result result = orl_points_read(job->log, path, &points);
-    if (result == ORL_OK && points.count == 0)
+    *count = points.count;
+    if (result == ORL_OK && points.count == 0 && min_pixels == 2)
         result = orl_fail(job->log, ORL_ERR_DATA,
                           "no surface was found that two photographs agree on: take photographs "
                           "closer together, of textured and matt surfaces, or with --quality high");
-    if (result == ORL_OK)
-        json_object_set_new(record, "points", json_integer((json_int_t)points.count));
     orl_points_finish(&points);
+    return result;
+}
+
+// Runs COLMAP's fusion into .oriel/fuse.tmp/<min_pixels>.ply, with that many photographs
+// agreeing on a point. `done` of the stage's work was done before.
+static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double done,
+                                  json_t *record, size_t *points)
+{
+    struct orl_colmap_args args = {0};
+    char name[64];
+    snprintf(name, sizeof name, ".oriel/fuse.tmp/%d.ply", min_pixels);
+    char *out = orl_job_path(job, name);
+    enum orl_result result =
+        out ? fuse_args(job, out, min_pixels, &args, record) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_job_colmap(job, &(struct orl_colmap_run){
+            .command = "stereo_fusion", .step = "fuse", .done = done, .share = 0.5, .total = 1},
+            &args);
+    if (result == ORL_OK)
+        result = check_cloud(job, out, min_pixels, points);
+    free(out);
     return result;
 }
 
 enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
 {
-    struct orl_names train = {0}, test = {0};
-    struct orl_colmap_args args = {0};
-    char *out = orl_job_path(job, ".oriel/fuse.tmp/fused.ply");
-    enum orl_result result = out ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
-    if (result != ORL_OK || (result = orl_job_registered(job, &train, &test)) != ORL_OK ||
-        (result = orl_job_fresh_dir(job, ".oriel/fuse.tmp")) != ORL_OK)
-        goto end;
-    // Photographs that must agree on a point. Two leave fewer holes than three, but twice
-    // the points and more stray ones (docs/pipeline.md); few photographs cannot spare them.
-    const int min_pixels = train.count >= 6 ? 3 : 2;
-    result = fuse_args(job, out, min_pixels, &args, record);
+    size_t two = 0, three = 0;
+    enum orl_result result = orl_job_find_colmap(job);
     if (result == ORL_OK)
-        result = orl_job_colmap(job, &(struct orl_colmap_run){
-            .command = "stereo_fusion", .step = "fuse", .share = 1, .total = 1}, &args);
-    if (result != ORL_OK || (result = check_cloud(job, out, record)) != ORL_OK)
-        goto end;
+        result = orl_job_fresh_dir(job, ".oriel/fuse.tmp");
+    if (result == ORL_OK)
+        result = fuse_cloud(job, 2, 0, record, &two);
+    if (result == ORL_OK)
+        result = fuse_cloud(job, 3, 0.5, record, &three);
+    if (result != ORL_OK)
+        return result;
+    // Three photographs that agree on a point are better than two, unless that loses what
+    // the photographs overlap too little for (docs/pipeline.md).
+    bool dense = (double)three >= 0.47 * (double)two;
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
-    json_object_set_new(record, "settings", json_pack("{s:i}", "min_num_pixels", min_pixels));
-    result = orl_job_replace(job, ".oriel/fuse.tmp/fused.ply", ".oriel/fused.ply");
+    json_object_set_new(record, "settings",
+                        json_pack("{s:i}", "min_num_pixels", dense ? 3 : 2));
+    json_object_set_new(record, "points", json_integer((json_int_t)(dense ? three : two)));
+    result = orl_job_replace(job, dense ? ".oriel/fuse.tmp/3.ply" : ".oriel/fuse.tmp/2.ply",
+                             ".oriel/fused.ply");
     if (result == ORL_OK)
         result = orl_job_remove(job, ".oriel/fuse.tmp");
     orl_progress_report(job->progress, "fuse", 1, 1, NULL);
-end:
-    orl_names_finish(&train);
-    orl_names_finish(&test);
-    free(out);
     return result;
 }
