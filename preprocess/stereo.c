@@ -312,9 +312,7 @@ static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double do
                                   json_t *record, size_t *points)
 {
     struct orl_colmap_args args = {0};
-    char name[64];
-    snprintf(name, sizeof name, ".oriel/fuse.tmp/%d.ply", min_pixels);
-    char *out = orl_job_path(job, name);
+    char *out = orl_job_path(job, ".oriel/fuse.tmp/%d.ply", min_pixels);
     enum orl_result result =
         out ? fuse_args(job, out, min_pixels, &args, record) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
