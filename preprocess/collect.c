@@ -140,6 +140,16 @@ static void finish_source(struct orl_source *source)
     memset(source, 0, sizeof *source);
 }
 
+// Moves a source up behind the *kept ones before it.
+static void keep_source(struct orl_job *job, struct orl_source *source, size_t *kept)
+{
+    if (&job->sources[*kept] != source) {
+        job->sources[*kept] = *source;
+        memset(source, 0, sizeof *source);
+    }
+    ++*kept;
+}
+
 // The same file given twice counts once; two files of one name cannot be told apart.
 static enum orl_result drop_duplicates(struct orl_job *job)
 {
@@ -158,11 +168,7 @@ static enum orl_result drop_duplicates(struct orl_job *job)
             job->given--;
             continue;
         }
-        if (&job->sources[kept] != source) {
-            job->sources[kept] = *source;
-            memset(source, 0, sizeof *source);
-        }
-        kept++;
+        keep_source(job, source, &kept);
     }
     job->source_count = kept;
     return ORL_OK;
@@ -232,11 +238,7 @@ static enum orl_result inspect_all(struct orl_job *job)
             finish_source(source);
             continue;
         }
-        if (&job->sources[kept] != source) {
-            job->sources[kept] = *source;
-            memset(source, 0, sizeof *source);
-        }
-        kept++;
+        keep_source(job, source, &kept);
     }
     job->source_count = kept;
     orl_progress_report(job->progress, "collect", 1, 1, NULL);

@@ -252,29 +252,24 @@ static enum orl_result maps_gib(const struct orl_job *job, double *gib)
     return result;
 }
 
-static enum orl_result fuse_memory(const struct orl_job *job, struct orl_colmap_args *args,
-                                   json_t *record)
+// GiB of COLMAP's cache of maps; 0: they all fit in memory.
+static enum orl_result plan_cache(const struct orl_job *job, double *cache_gib)
 {
     double need;
+    *cache_gib = 0;
     enum orl_result result = maps_gib(job, &need);
-    if (result != ORL_OK)
-        return result;
     double have = available_gib();
-    bool cache = need > 0.5 * have;
-    double cache_gib = cache ? (0.4 * have > 1 ? 0.4 * have : 1) : 0;
-    orl_colmap_arg(args, "--StereoFusion.use_cache", "%d", cache);
-    if (cache) {
-        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.1f", cache_gib);
-        orl_logf(job->log, ORL_LOG_INFO,
-                 "fuse: the maps need %.1f GiB and %.1f are free; reading them through a cache of "
-                 "%.1f GiB, which is slower", need, have, cache_gib);
-    }
-    json_object_set_new(record, "cache_gib", json_real(cache_gib));
+    if (result != ORL_OK || need <= 0.5 * have)
+        return result;
+    *cache_gib = 0.4 * have > 1 ? 0.4 * have : 1;
+    orl_logf(job->log, ORL_LOG_INFO,
+             "fuse: the maps need %.1f GiB and %.1f are free; reading them through a cache of "
+             "%.1f GiB, which is slower", need, have, *cache_gib);
     return ORL_OK;
 }
 
 static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_pixels,
-                                 struct orl_colmap_args *args, json_t *record)
+                                 double cache_gib, struct orl_colmap_args *args)
 {
     orl_colmap_arg(args, "--workspace_path", "%s", job->dir);
     orl_colmap_arg(args, "--output_path", "%s", out);
@@ -289,7 +284,10 @@ static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_p
         orl_colmap_arg(args, "--StereoFusion.mask_path", "%s", masks);
         free(masks);
     }
-    return fuse_memory(job, args, record);
+    orl_colmap_arg(args, "--StereoFusion.use_cache", "%d", cache_gib > 0);
+    if (cache_gib > 0)
+        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.1f", cache_gib);
+    return ORL_OK;
 }
 
 static enum orl_result check_cloud(const struct orl_job *job, const char *path, int min_pixels,
@@ -308,13 +306,13 @@ static enum orl_result check_cloud(const struct orl_job *job, const char *path, 
 
 // Runs COLMAP's fusion into .oriel/fuse.tmp/<min_pixels>.ply, with that many photographs
 // agreeing on a point. `done` of the stage's work was done before.
-static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double done,
-                                  json_t *record, size_t *points)
+static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double cache_gib,
+                                  double done, size_t *points)
 {
     struct orl_colmap_args args = {0};
     char *out = orl_job_path(job, ".oriel/fuse.tmp/%d.ply", min_pixels);
     enum orl_result result =
-        out ? fuse_args(job, out, min_pixels, &args, record) : ORL_ERR_MEMORY;
+        out ? fuse_args(job, out, min_pixels, cache_gib, &args) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_job_colmap(job, &(struct orl_colmap_run){
             .command = "stereo_fusion", .step = "fuse", .done = done, .share = 0.5, .total = 1},
@@ -328,18 +326,22 @@ static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double do
 enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
 {
     size_t two = 0, three = 0;
+    double cache_gib = 0;
     enum orl_result result = orl_job_find_colmap(job);
     if (result == ORL_OK)
         result = orl_job_fresh_dir(job, ".oriel/fuse.tmp");
     if (result == ORL_OK)
-        result = fuse_cloud(job, 2, 0, record, &two);
+        result = plan_cache(job, &cache_gib);
     if (result == ORL_OK)
-        result = fuse_cloud(job, 3, 0.5, record, &three);
+        result = fuse_cloud(job, 2, cache_gib, 0, &two);
+    if (result == ORL_OK)
+        result = fuse_cloud(job, 3, cache_gib, 0.5, &three);
     if (result != ORL_OK)
         return result;
     // Three photographs that agree on a point are better than two, unless that loses what
     // the photographs overlap too little for (docs/pipeline.md).
     bool dense = (double)three >= 0.47 * (double)two;
+    json_object_set_new(record, "cache_gib", json_real(cache_gib));
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
     json_object_set_new(record, "settings",
                         json_pack("{s:i}", "min_num_pixels", dense ? 3 : 2));

@@ -30,6 +30,31 @@ static inline void test_dir_remove(char *path)
     free(path);
 }
 
+// A fresh folder and the path of a file in it, for a test's set-up: 0, else -1.
+static inline int test_file_make(const char *name, char **dir, char **file)
+{
+    *dir = test_dir_make();
+    *file = orl_path_join(NULL, *dir, name);
+    return *file ? 0 : -1;
+}
+
+static inline int test_file_remove(char *dir, char *file)
+{
+    free(file);
+    test_dir_remove(dir);
+    return 0;
+}
+
+// Opens DIR/NAME to write text.
+static inline FILE *test_create(const char *dir, const char *name)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    return file;
+}
+
 // All that was logged, a line each.
 struct said {
     char text[8192];

@@ -99,19 +99,11 @@ static void draw(const struct plane_scene *scene, const struct orl_view *view, c
     orl_image_finish(&image);
 }
 
-static FILE *create(const char *dir, const char *name)
-{
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    return file;
-}
-
 static void write_model(const struct plane_scene *scene, const char *dir)
 {
-    FILE *cameras = create(dir, "sparse/cameras.txt"), *images = create(dir, "sparse/images.txt");
-    FILE *points = create(dir, "sparse/points3D.txt");
+    FILE *cameras = test_create(dir, "sparse/cameras.txt");
+    FILE *images = test_create(dir, "sparse/images.txt");
+    FILE *points = test_create(dir, "sparse/points3D.txt");
     double position[GRID * GRID][3];
     for (int k = 0; k < GRID * GRID; k++) {
         const struct orl_view *view = &scene->views[0];
@@ -299,7 +291,7 @@ static void test_held_out_is_never_read(void **state)
     (void)state;
     struct plane_scene scene = make_scene(80, 64, 0, 0);
     char *dir = make_workspace(&scene);
-    FILE *held_out = create(dir, "images/c.png");
+    FILE *held_out = test_create(dir, "images/c.png");
     fputs("not a picture", held_out);
     fclose(held_out);
     char *items[] = {"a.png", "b.png", "d.png"};

@@ -77,15 +77,6 @@ static bool sees(const struct truth *truth, int index, const double world[3], do
 
 // --- the workspace ---
 
-static FILE *create(const char *dir, const char *name)
-{
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", dir, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    return file;
-}
-
 // The pixel of a cell that a feature detector would take; false: none.
 static bool find_corner(const struct orl_image *photo, int left, int top, int *x, int *y)
 {
@@ -109,8 +100,9 @@ static bool find_corner(const struct orl_image *photo, int left, int top, int *x
 // What structure from motion would find, its points exactly on the surface.
 static void write_model(const struct truth *truth, const char *dir)
 {
-    FILE *cameras = create(dir, "sparse/cameras.txt"), *images = create(dir, "sparse/images.txt");
-    FILE *points = create(dir, "sparse/points3D.txt");
+    FILE *cameras = test_create(dir, "sparse/cameras.txt");
+    FILE *images = test_create(dir, "sparse/images.txt");
+    FILE *points = test_create(dir, "sparse/points3D.txt");
     FILE *seen_by[COUNT];
     const struct orl_camera *c = &truth->views[0].camera;
     int ids = 0, in_photo[COUNT] = {0};

@@ -10,17 +10,13 @@ static char *dir, *file;
 static int set_up(void **state)
 {
     (void)state;
-    dir = test_dir_make();
-    file = orl_path_join(NULL, dir, "a.jpg");
-    return file ? 0 : -1;
+    return test_file_make("a.jpg", &dir, &file);
 }
 
 static int tear_down(void **state)
 {
     (void)state;
-    free(file);
-    test_dir_remove(dir);
-    return 0;
+    return test_file_remove(dir, file);
 }
 
 static struct orl_exif through_file(const struct orl_exif *exif)

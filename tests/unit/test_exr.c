@@ -13,17 +13,13 @@ static char *dir, *file;
 static int set_up(void **state)
 {
     (void)state;
-    dir = test_dir_make();
-    file = orl_path_join(NULL, dir, "a.exr");
-    return file ? 0 : -1;
+    return test_file_make("a.exr", &dir, &file);
 }
 
 static int tear_down(void **state)
 {
     (void)state;
-    free(file);
-    test_dir_remove(dir);
-    return 0;
+    return test_file_remove(dir, file);
 }
 
 // Any reproducible noise (Numerical Recipes' constants).

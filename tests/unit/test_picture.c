@@ -16,17 +16,13 @@ static char *dir, *file;
 static int set_up(void **state)
 {
     (void)state;
-    dir = test_dir_make();
-    file = orl_path_join(NULL, dir, "picture"); // readers go by content
-    return file ? 0 : -1;
+    return test_file_make("picture", &dir, &file); // readers go by content
 }
 
 static int tear_down(void **state)
 {
     (void)state;
-    free(file);
-    test_dir_remove(dir);
-    return 0;
+    return test_file_remove(dir, file);
 }
 
 static uint32_t noise(uint32_t *state)
