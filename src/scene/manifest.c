@@ -84,6 +84,67 @@ static enum orl_result read_exposure(const struct orl_log *log, const char *path
     return ORL_OK;
 }
 
+static enum orl_result read_optics(const struct orl_log *log, const char *path,
+                                   const json_t *entry, const struct orl_scene *scene,
+                                   struct orl_photo *photo)
+{
+    const json_t *vignette = json_object_get(entry, "vignette");
+    const json_t *response = json_object_get(entry, "response");
+    for (size_t i = 0; vignette && i < 3; i++) {
+        const json_t *value = json_array_get(vignette, i);
+        if (json_array_size(vignette) != 3 || !json_is_number(value) ||
+            !(fabs(json_number_value(value)) <= 16))
+            return bad(log, path, photo->name, "\"vignette\" is not three numbers within 16");
+        photo->vignette[i] = (float)json_number_value(value);
+    }
+    if (response && !json_is_null(response)) {
+        json_int_t number = json_integer_value(response);
+        if (!json_is_integer(response) || number < 0 ||
+            (size_t)number >= scene->response_count)
+            return bad(log, path, photo->name, "\"response\" is not one of \"responses\"");
+        photo->response = (int)number;
+    }
+    return ORL_OK;
+}
+
+static enum orl_result read_curve(const struct orl_log *log, const char *path,
+                                  const json_t *curve, float linear[256])
+{
+    double last = -INFINITY;
+    for (size_t v = 0; v < 256; v++) {
+        const json_t *number = json_array_get(curve, v);
+        double value = json_number_value(number);
+        if (json_array_size(curve) != 256 || !json_is_number(number) || !(value >= 0) ||
+            !(value > last) || (v == 255 && fabs(value - 1) > 1e-6))
+            return orl_fail(log, ORL_ERR_FORMAT,
+                            "%s: \"responses\": a curve is not 256 numbers that rise to 1", path);
+        linear[v] = (float)value;
+        last = value;
+    }
+    return ORL_OK;
+}
+
+static enum orl_result read_responses(const struct orl_log *log, const char *path,
+                                      const json_t *root, struct orl_scene *scene)
+{
+    const json_t *list = json_object_get(root, "responses");
+    size_t count = json_array_size(list);
+    if (!count)
+        return ORL_OK;
+    scene->responses = orl_array(log, count, sizeof *scene->responses);
+    if (!scene->responses)
+        return ORL_ERR_MEMORY;
+    scene->response_count = count;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *curves = json_object_get(json_array_get(list, i), "linear");
+        for (size_t c = 0; result == ORL_OK && c < 3; c++)
+            result = read_curve(log, path, json_array_get(curves, c),
+                                scene->responses[i].linear[c]);
+    }
+    return result;
+}
+
 static struct orl_photo *find_photo(struct orl_scene *scene, const char *name)
 {
     for (size_t i = 0; name && i < scene->photo_count; i++)
@@ -117,6 +178,8 @@ static enum orl_result read_photos(const struct orl_log *log, const char *path,
         result = read_split(log, path, entry, photo);
         if (result == ORL_OK)
             result = read_exposure(log, path, entry, photo);
+        if (result == ORL_OK)
+            result = read_optics(log, path, entry, scene, photo);
     }
     free(seen);
     return result;
@@ -155,6 +218,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
         result = orl_fail(log, ORL_ERR_FORMAT,
                           "%s: format version %lld is newer than this program knows (%d)", path,
                           (long long)json_integer_value(version), ORL_MANIFEST_VERSION);
+    if (result == ORL_OK)
+        result = read_responses(log, path, root, scene);
     if (result == ORL_OK)
         result = read_photos(log, path, root, scene);
     if (result == ORL_OK)

@@ -23,6 +23,7 @@ static enum orl_result set_photo(const struct orl_log *log, const char *dir,
     photo->view = (struct orl_view){camera->pinhole, image->cam_from_world};
     for (int i = 0; i < 3; i++)
         photo->gain[i] = 1;
+    photo->response = -1;
     return photo->name ? ORL_OK : ORL_ERR_MEMORY;
 }
 
@@ -272,6 +273,7 @@ void orl_scene_destroy(struct orl_scene **handle)
     for (size_t i = 0; i < scene->photo_count; i++)
         free(scene->photos[i].name);
     free(scene->photos);
+    free(scene->responses);
     orl_points_finish(&scene->points);
     free(scene->dir);
     free(scene);

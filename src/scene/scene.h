@@ -13,6 +13,15 @@ struct orl_photo {
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
     float gain[3];        // multiplies linear colour; 1 1 1 unless aligned
+    // Relative illumination 1 + v[0] r^2 + v[1] r^4 + v[2] r^6 at distance r from the
+    // principal point in units of half the picture's diagonal; 0 0 0: none.
+    float vignette[3];
+    int response; // index into orl_scene.responses; -1: sRGB
+};
+
+// How a camera turns exposure into 8-bit values.
+struct orl_response {
+    float linear[3][256]; // per channel and value: linear exposure, increasing, 255 is 1
 };
 
 struct orl_scene {
@@ -20,6 +29,8 @@ struct orl_scene {
     struct orl_photo *photos;
     size_t photo_count;
     struct orl_points points;
+    struct orl_response *responses; // one per camera model that has a measured one
+    size_t response_count;
     double photo_distance; // median distance from photographs to the points they see
 };
 

@@ -129,7 +129,8 @@ void tiny_scene_make(const char *dir, struct orl_scene *scene)
     free(folder);
     for (size_t i = 0; i < TINY_PHOTOS; i++) {
         struct orl_photo *photo = &scene->photos[i];
-        *photo = (struct orl_photo){.test = i == TINY_TEST_PHOTO, .gain = {1, 1, 1}};
+        *photo = (struct orl_photo){.test = i == TINY_TEST_PHOTO, .gain = {1, 1, 1},
+                                     .response = -1};
         photo->name = orl_format(NULL, "%zu.png", i);
         photo->view.camera = (struct orl_camera){TINY_WIDTH, TINY_HEIGHT, 60, 60,
                                                  TINY_WIDTH / 2.0, TINY_HEIGHT / 2.0};

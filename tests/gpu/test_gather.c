@@ -66,6 +66,7 @@ static void add_photo(struct fixture *f, struct orl_view view, const uint8_t col
     struct orl_photo *photo = &f->photos[f->scene.photo_count];
     photo->view = view;
     photo->gain[0] = photo->gain[1] = photo->gain[2] = 1;
+    photo->response = -1;
     photo->name = malloc(16);
     snprintf(photo->name, 16, "%zu.png", f->scene.photo_count);
     struct orl_image image;

@@ -173,6 +173,14 @@ static void refuses_damage(void **state)
          "[{\"name\": \"a.jpg\", \"split\": \"train\","
          " \"exposure_ev\": 1e9}, 1, 2]}", "\"exposure_ev\"", ORL_ERR_FORMAT},
         {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[{\"name\": \"a.jpg\", \"split\": \"train\","
+         " \"vignette\": [0, 1]}, 1, 2]}", "\"vignette\"", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": "
+         "[{\"name\": \"a.jpg\", \"split\": \"train\","
+         " \"response\": 0}, 1, 2]}", "\"response\"", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"responses\": [{\"linear\": [[0, 1]]}]}",
+         "256 numbers that rise to 1", ORL_ERR_FORMAT},
+        {"scene.json", "{\"version\": 1, \"photographs\": "
          "[{\"name\": \"a.jpg\", \"split\": \"train\"},"
          " {\"name\": \"a.jpg\", \"split\": \"train\"}, 2]}", "listed twice", ORL_ERR_FORMAT},
         {"points.ply", NULL, "points.ply is missing", ORL_ERR_NOT_FOUND},
@@ -215,6 +223,46 @@ static void refuses_what_is_no_scene(void **state)
     test_dir_remove(dir);
 }
 
+// A curve of 256 numbers as JSON: v/255 to the power of `gamma`.
+static void write_curve(char *text, size_t size, double gamma)
+{
+    for (int v = 0; v < 256; v++) {
+        size_t used = strlen(text);
+        snprintf(text + used, size - used, "%s%.9g%s", v ? "," : "[", pow(v / 255.0, gamma),
+                 v == 255 ? "]" : "");
+    }
+}
+
+static void reads_optics(void **state)
+{
+    (void)state;
+    static char text[20000];
+    char *dir = whole();
+    strcpy(text, "{\"version\": 1, \"responses\": [{\"camera\": \"X\", \"linear\": [");
+    for (int c = 1; c <= 3; c++) {
+        write_curve(text, sizeof text, c);
+        strcat(text, c < 3 ? "," : "]}],");
+    }
+    strcat(text, "\"photographs\": [{\"name\": \"a.jpg\", \"split\": \"train\","
+                 " \"response\": 0, \"vignette\": [-0.25, 0.5, 0]},"
+                 "{\"name\": \"b.jpg\", \"split\": \"train\", \"response\": null},"
+                 "{\"name\": \"c.jpg\", \"split\": \"train\"}]}");
+    save(dir, "scene.json", text);
+    struct orl_scene *scene;
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_int_equal(scene->response_count, 1);
+    assert_float_equal(scene->responses[0].linear[1][128], pow(128 / 255.0, 2), 1e-6);
+    assert_float_equal(scene->responses[0].linear[2][255], 1, 0);
+    assert_int_equal(scene->photos[0].response, 0);
+    assert_int_equal(scene->photos[1].response, -1);
+    assert_int_equal(scene->photos[2].response, -1);
+    assert_float_equal(scene->photos[0].vignette[0], -0.25, 0);
+    assert_float_equal(scene->photos[0].vignette[1], 0.5, 0);
+    assert_float_equal(scene->photos[1].vignette[0], 0, 0);
+    orl_scene_destroy(&scene);
+    test_dir_remove(dir);
+}
+
 static void warns_of_other_points(void **state)
 {
     (void)state;
@@ -238,6 +286,7 @@ int main(void)
         cmocka_unit_test(refuses_an_unfinished_scene),
         cmocka_unit_test(refuses_damage),
         cmocka_unit_test(refuses_what_is_no_scene),
+        cmocka_unit_test(reads_optics),
         cmocka_unit_test(warns_of_other_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
