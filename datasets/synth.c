@@ -52,6 +52,10 @@ enum orl_result orl_synth_check(const struct orl_log *log, const struct orl_synt
                             p->exposures_ev[i]);
     if (!(p->noise >= 0 && p->noise <= 0.5))
         return orl_fail(log, ORL_ERR_ARGUMENT, "noise %g: must be from 0 to 0.5", p->noise);
+    if (!(p->vignette >= 0 && p->vignette <= 0.9))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "vignette %g: must be from 0 to 0.9", p->vignette);
+    if (!(p->drift_ev >= 0 && p->drift_ev <= 2))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "drift %g: must be from 0 to 2", p->drift_ev);
     return ORL_OK;
 }
 

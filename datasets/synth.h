@@ -15,6 +15,12 @@ enum {
     ORL_SYNTH_EXPOSURES_MAX = 16,
 };
 
+// How the camera turns light in [0, 1] into values in [0, 1].
+enum orl_synth_response {
+    ORL_SYNTH_SRGB,
+    ORL_SYNTH_FILM, // the sRGB curve with a camera's contrast: darker shadows, soft highlights
+};
+
 struct orl_synth_params {
     const char *name;      // one of orl_synth_names
     int width, height;     // pixels, [ORL_SYNTH_SIDE_MIN, ORL_SYNTH_SIDE_MAX]
@@ -25,6 +31,11 @@ struct orl_synth_params {
     double exposures_ev[ORL_SYNTH_EXPOSURES_MAX]; // [-12, 12], 0: as the eye would
     int exposure_count;    // 0: all at 0 EV
     double noise;          // sensor noise: standard deviation at white, linear, [0, 0.5]
+    enum orl_synth_response response;
+    double vignette;       // light lost in the corners, fraction, [0, 0.9]
+    // Each photograph's exposure is off by up to this much, and each colour's by up to a
+    // quarter of it, without EXIF saying so; EV, [0, 2].
+    double drift_ev;
 };
 #define ORL_SYNTH_DEFAULTS .name = "monument", .width = 768, .height = 512, .count = 24, .seed = 1
 
@@ -61,10 +72,27 @@ enum orl_result orl_synth_draw(struct orl_synth *synth, const struct orl_progres
                                const struct orl_view *view,
                                struct orl_synth_frame *frame) ORL_CHECK_RESULT;
 void orl_synth_frame_finish(struct orl_synth_frame *frame);
-// The photograph that a camera would take: clipped linear radiance * 2^exposure_ev with
-// sensor noise (`key` chooses which), sRGB-encoded, 8 bit.
+// The curve of a response and its inverse, [0, 1] to [0, 1]; arguments are clamped.
+double orl_synth_encode(enum orl_synth_response response, double light);
+double orl_synth_decode(enum orl_synth_response response, double value);
+// "srgb", "film", ended by NULL, in the order of the enum.
+const char *const *orl_synth_response_names(void);
+
+// One photograph's camera.
+struct orl_synth_sensor {
+    double exposure_ev;
+    double drift_ev[3]; // added to exposure_ev, per colour
+    double vignette;    // light lost in the corners, fraction
+    double noise;       // standard deviation at white, linear
+    uint32_t key;       // chooses the noise
+    enum orl_synth_response response;
+};
+// The sensor of photograph `index`.
+struct orl_synth_sensor orl_synth_sensor(const struct orl_synth_params *params, int index);
+// The photograph that it would take: linear radiance * 2^EV, darkened towards the corners,
+// with noise, clipped, encoded, 8 bit.
 enum orl_result orl_synth_expose(const struct orl_log *log, const struct orl_image *radiance,
-                                 double exposure_ev, double noise, uint32_t key,
+                                 const struct orl_synth_sensor *sensor,
                                  struct orl_image *photo) ORL_CHECK_RESULT;
 
 // --- all of them, as files ---

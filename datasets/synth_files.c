@@ -26,11 +26,6 @@ struct job {
     char *photos, *truth;         // folders being filled, owned
 };
 
-static double exposure_of(const struct orl_synth_params *params, int index)
-{
-    return params->exposure_count ? params->exposures_ev[index % params->exposure_count] : 0;
-}
-
 // "<dir>/<folder>/<NNNN><ending>", released with free(); NULL, logged.
 static char *view_path(const struct job *job, const char *dir, const char *folder, int index,
                        const char *ending)
@@ -44,7 +39,8 @@ static char *view_path(const struct job *job, const char *dir, const char *folde
 static enum orl_result write_photo(const struct job *job, int index,
                                    const struct orl_image *radiance)
 {
-    double ev = exposure_of(job->params, index);
+    const struct orl_synth_sensor sensor = orl_synth_sensor(job->params, index);
+    double ev = sensor.exposure_ev;
     struct orl_image photo = {0};
     struct orl_exif exif = {.make = "Oriel", .model = "synthetic pinhole",
                             .exposure_s = BASE_EXPOSURE_S * exp2(ev), .aperture = APERTURE,
@@ -53,8 +49,7 @@ static enum orl_result write_photo(const struct job *job, int index,
     char *path = view_path(job, job->photos, "", index, ".jpg");
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_synth_expose(job->log, radiance, ev, job->params->noise,
-                                  job->params->seed + (uint32_t)index * 7919u, &photo);
+        result = orl_synth_expose(job->log, radiance, &sensor, &photo);
     if (result == ORL_OK)
         result = orl_jpeg_write(job->log, path, &photo, JPEG_QUALITY, &exif);
     orl_image_finish(&photo);
@@ -205,15 +200,23 @@ static enum orl_result write_summary(const struct job *job)
     for (int i = 0; i < p->count; i++) {
         char name[16];
         snprintf(name, sizeof name, "%04d.jpg", i + 1);
-        double ev = exposure_of(p, i);
-        json_array_append_new(photos, json_pack("{s:s, s:f, s:f}", "photo", name, "exposure_ev",
-                                                ev, "exposure_s", BASE_EXPOSURE_S * exp2(ev)));
+        const struct orl_synth_sensor sensor = orl_synth_sensor(p, i);
+        json_array_append_new(
+            photos, json_pack("{s:s, s:f, s:f, s:[f,f,f]}", "photo", name, "exposure_ev",
+                              sensor.exposure_ev, "exposure_s",
+                              BASE_EXPOSURE_S * exp2(sensor.exposure_ev), "drift_ev",
+                              sensor.drift_ev[0], sensor.drift_ev[1], sensor.drift_ev[2]));
     }
+    json_t *curve = json_array();
+    for (int v = 0; v < 256; v++)
+        json_array_append_new(curve, json_real(orl_synth_decode(p->response, v / 255.0)));
     return write_json(job, "synth.json",
-                      json_pack("{s:s, s:[ii], s:i, s:I, s:f, s:s, s:o}", "name", p->name, "size",
-                                p->width, p->height, "count", p->count, "seed",
-                                (json_int_t)p->seed, "noise", p->noise, "oriel", ORL_VERSION,
-                                "photographs", photos));
+                      json_pack("{s:s, s:[ii], s:i, s:I, s:f, s:f, s:f, s:s, s:o, s:s, s:o}",
+                                "name", p->name, "size", p->width, p->height, "count", p->count,
+                                "seed", (json_int_t)p->seed, "noise", p->noise, "vignette",
+                                p->vignette, "drift", p->drift_ev, "response",
+                                orl_synth_response_names()[p->response], "linear", curve,
+                                "oriel", ORL_VERSION, "photographs", photos));
 }
 
 static enum orl_result write_cameras(const struct job *job)

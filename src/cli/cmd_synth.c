@@ -26,6 +26,19 @@ static enum orl_result parse_exposures(const struct orl_log *log, const struct o
     return ORL_OK;
 }
 
+static enum orl_result parse_response(const struct orl_log *log, const char *name,
+                                      struct orl_synth_params *params)
+{
+    const char *const *names = orl_synth_response_names();
+    for (int i = 0; names[i]; i++) {
+        if (strcmp(names[i], name) == 0) {
+            params->response = (enum orl_synth_response)i;
+            return ORL_OK;
+        }
+    }
+    return orl_fail(log, ORL_ERR_ARGUMENT, "--response %s: must be srgb or film", name);
+}
+
 // `path` without slashes at its end, and `suffix`.
 static char *sibling(const struct orl_log *log, const char *path, const char *suffix)
 {
@@ -64,7 +77,7 @@ int cmd_synth(int argc, char **argv)
     struct orl_synth_params params = {ORL_SYNTH_DEFAULTS};
     struct arg_size size = {params.width, params.height};
     struct orl_names exposures = {0};
-    const char *out = NULL, *truth = NULL;
+    const char *out = NULL, *truth = NULL, *response = "srgb";
     int seed = (int)params.seed;
     const struct arg_option options[] = {
         {"out", ARG_STRING, &out, "DIR", "photographs go here: a new or empty folder", 0, 0},
@@ -76,6 +89,12 @@ int cmd_synth(int argc, char **argv)
          "exposures, taken in turn, each photograph one (0)", 0, 0},
         {"noise", ARG_NUMBER, &params.noise, "SIGMA",
          "sensor noise at white, linear, from 0 to 0.5 (0)", 0, 0.5},
+        {"response", ARG_STRING, &response, "NAME",
+         "the camera's curve: srgb, or film (more contrast)", 0, 0},
+        {"vignette", ARG_NUMBER, &params.vignette, "SHARE",
+         "light lost in the corners, from 0 to 0.9 (0)", 0, 0.9},
+        {"drift", ARG_NUMBER, &params.drift_ev, "EV",
+         "exposure and colour wander by up to this, untold by EXIF, from 0 to 2 (0)", 0, 2},
         {0},
     };
     char summary[512] = "Photographs of a synthetic monument with ground truth. NAME is one of:";
@@ -98,6 +117,8 @@ int cmd_synth(int argc, char **argv)
         params.height = size.height;
         params.seed = (uint32_t)seed;
         enum orl_result result = parse_exposures(&terminal.log, &exposures, &params);
+        if (result == ORL_OK)
+            result = parse_response(&terminal.log, response, &params);
         if (result == ORL_OK && !out)
             result = orl_fail(&terminal.log, ORL_ERR_ARGUMENT, "synth: --out DIR is needed");
         if (result == ORL_OK)

@@ -38,7 +38,8 @@ static void draw_truth(struct truth *truth, int width, int height)
     assert_int_equal(orl_synth_create(gpu, &params, &synth), ORL_OK);
     for (int i = 0; i < COUNT; i++) {
         assert_int_equal(orl_synth_draw(synth, NULL, &truth->views[i], &truth->frames[i]), ORL_OK);
-        assert_int_equal(orl_synth_expose(NULL, &truth->frames[i].radiance, 0, 0, 1,
+        assert_int_equal(orl_synth_expose(NULL, &truth->frames[i].radiance,
+                                          &(struct orl_synth_sensor){.key = 1},
                                           &truth->photos[i]), ORL_OK);
     }
     orl_synth_destroy(&synth);

@@ -171,9 +171,10 @@ static void normals_face_the_camera(void **state)
 static void expose_one(float radiance, double ev, uint8_t *value)
 {
     struct orl_image in, out;
+    const struct orl_synth_sensor sensor = {.exposure_ev = ev};
     assert_int_equal(orl_image_init(NULL, &in, 1, 1, 3, ORL_PIXEL_F32), ORL_OK);
     in.f32[0] = in.f32[1] = in.f32[2] = radiance;
-    assert_int_equal(orl_synth_expose(NULL, &in, ev, 0, 0, &out), ORL_OK);
+    assert_int_equal(orl_synth_expose(NULL, &in, &sensor, &out), ORL_OK);
     *value = out.u8[1];
     orl_image_finish(&in);
     orl_image_finish(&out);
@@ -207,12 +208,14 @@ static void noise_has_the_given_spread(void **state)
     enum { SIDE = 128 };
     const double level = 0.25, sigma = 0.05;
     struct orl_image in, out, again, other;
+    struct orl_synth_sensor sensor = {.noise = sigma, .key = 7};
     assert_int_equal(orl_image_init(NULL, &in, SIDE, SIDE, 3, ORL_PIXEL_F32), ORL_OK);
     for (int i = 0; i < 3 * SIDE * SIDE; i++)
         in.f32[i] = (float)level;
-    assert_int_equal(orl_synth_expose(NULL, &in, 0, sigma, 7, &out), ORL_OK);
-    assert_int_equal(orl_synth_expose(NULL, &in, 0, sigma, 7, &again), ORL_OK);
-    assert_int_equal(orl_synth_expose(NULL, &in, 0, sigma, 8, &other), ORL_OK);
+    assert_int_equal(orl_synth_expose(NULL, &in, &sensor, &out), ORL_OK);
+    assert_int_equal(orl_synth_expose(NULL, &in, &sensor, &again), ORL_OK);
+    sensor.key = 8;
+    assert_int_equal(orl_synth_expose(NULL, &in, &sensor, &other), ORL_OK);
     double sum = 0, squares = 0;
     for (int i = 0; i < 3 * SIDE * SIDE; i++) {
         double v = linear_of(out.u8[i]);
@@ -229,6 +232,53 @@ static void noise_has_the_given_spread(void **state)
     orl_image_finish(&out);
     orl_image_finish(&again);
     orl_image_finish(&other);
+}
+
+static void film_response_can_be_undone(void **state)
+{
+    (void)state;
+    double last = -1;
+    for (int i = 0; i <= 1000; i++) {
+        double value = orl_synth_encode(ORL_SYNTH_FILM, i / 1000.0);
+        assert_true(value > last);
+        assert_true(fabs(orl_synth_decode(ORL_SYNTH_FILM, value) - i / 1000.0) < 1e-9);
+        last = value;
+    }
+    assert_true(last == 1);
+    // More contrast than sRGB, which has 0.4614 for middle grey.
+    assert_true(fabs(orl_synth_encode(ORL_SYNTH_FILM, 0.18) - 0.4518) < 5e-4);
+    assert_true(orl_synth_encode(ORL_SYNTH_FILM, 0.8) > orl_synth_encode(ORL_SYNTH_SRGB, 0.8));
+}
+
+static void lens_and_drift_are_as_asked(void **state)
+{
+    (void)state;
+    enum { SIDE = 65 };
+    struct orl_image in, out;
+    assert_int_equal(orl_image_init(NULL, &in, SIDE, SIDE, 3, ORL_PIXEL_F32), ORL_OK);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        in.f32[i] = 0.5f;
+    const struct orl_synth_sensor sensor = {.vignette = 0.4, .drift_ev = {-1, 0, 0.5}};
+    assert_int_equal(orl_synth_expose(NULL, &in, &sensor, &out), ORL_OK);
+    const uint8_t *middle = out.u8 + 3 * (SIDE / 2 * SIDE + SIDE / 2);
+    assert_true(fabs(linear_of(middle[0]) - 0.25) < 0.004);
+    assert_true(fabs(linear_of(middle[1]) - 0.5) < 0.004);
+    assert_true(fabs(linear_of(middle[2]) - 0.5 * sqrt(2)) < 0.004);
+    assert_true(fabs(linear_of(out.u8[1]) - 0.5 * 0.6) < 0.01); // half a pixel off the corner
+    orl_image_finish(&in);
+    orl_image_finish(&out);
+    struct orl_synth_params params = small_params();
+    params.drift_ev = 1;
+    double spread = 0;
+    for (int i = 0; i < 100; i++) {
+        struct orl_synth_sensor one = orl_synth_sensor(&params, i);
+        for (int c = 0; c < 3; c++) {
+            assert_true(fabs(one.drift_ev[c]) <= 1.25);
+            assert_true(fabs(one.drift_ev[c] - one.drift_ev[(c + 1) % 3]) <= 0.5);
+        }
+        spread += fabs(one.drift_ev[1]) / 100;
+    }
+    assert_true(spread > 0.3 && spread < 0.7);
 }
 
 // --- files ---
@@ -281,7 +331,9 @@ static void photograph_is_the_exposed_radiance(const struct folders *f, const ch
     snprintf(name, sizeof name, "%s.jpg", stem);
     path = join(f->photos, name);
     assert_int_equal(orl_picture_read(NULL, path, 3, &photo), ORL_OK);
-    assert_int_equal(orl_synth_expose(NULL, &radiance, ev, 0, 0, &expected), ORL_OK);
+    assert_int_equal(orl_synth_expose(NULL, &radiance,
+                                      &(struct orl_synth_sensor){.exposure_ev = ev}, &expected),
+                     ORL_OK);
     double squares = 0;
     size_t count = orl_image_bytes(&photo);
     for (size_t i = 0; i < count; i++)
@@ -411,7 +463,7 @@ static void seeds_differ(void **state)
 static void refuses_what_is_out_of_range(void **state)
 {
     (void)state;
-    struct orl_synth_params good = small_params(), bad[9];
+    struct orl_synth_params good = small_params(), bad[11];
     assert_int_equal(orl_synth_check(NULL, &good), ORL_OK);
     for (size_t i = 0; i < ORL_COUNT(bad); i++)
         bad[i] = good;
@@ -425,6 +477,8 @@ static void refuses_what_is_out_of_range(void **state)
     bad[7].exposure_count = 1;
     bad[7].exposures_ev[0] = 13;
     bad[8].exposure_count = ORL_SYNTH_EXPOSURES_MAX + 1;
+    bad[9].vignette = 0.95;
+    bad[10].drift_ev = NAN;
     for (size_t i = 0; i < ORL_COUNT(bad); i++)
         assert_int_equal(orl_synth_check(NULL, &bad[i]), ORL_ERR_ARGUMENT);
 }
@@ -474,6 +528,8 @@ int main(void)
     };
     const struct CMUnitTest files[] = {
         cmocka_unit_test(exposure_follows_the_srgb_curve),
+        cmocka_unit_test(film_response_can_be_undone),
+        cmocka_unit_test(lens_and_drift_are_as_asked),
         cmocka_unit_test(noise_has_the_given_spread),
         cmocka_unit_test(files_hold_what_was_drawn),
         cmocka_unit_test(same_seed_same_files),
