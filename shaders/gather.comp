@@ -1,31 +1,10 @@
 // Blends photographs into the frame: projects every pixel's surface point into each,
 // asks its depth map whether it saw that point, and adds its weighted colour.
-#include "include/photo.glsl"
+#include "include/airieau.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 layout(rgba32f, binding = 1) uniform image2D accumulated;      // colour * weight, weight
-
-// Shadow test (Airieau 2012, 5.2) against the four texels around the projection, so
-// that slanted surfaces match themselves. Photographs without depth there pass.
-bool photo_sees(vec4 seen, float z, bool guessed)
-{
-    float tolerance = options.x * z;
-    if (guessed)
-        return photo_unhidden(seen, z, tolerance);
-    return any(lessThanEqual(abs(seen - z), vec4(tolerance))) || all(equal(seen, vec4(0.0)));
-}
-
-// Airieau 2012, 5.3: cos(theta) / delta, with delta relative to the viewing
-// distance and kept from zero, so that the weight has no unit and no pole.
-float airieau_weight(vec3 p, vec3 eye)
-{
-    vec3 to_photo = eye - p;
-    float view_distance = length(p), photo_distance = length(to_photo);
-    float cosine = dot(-p, to_photo) / (view_distance * photo_distance);
-    float delta = abs(view_distance - photo_distance) / view_distance + options.y;
-    return max(cosine, 0.0) / delta;
-}
 
 void main()
 {
@@ -52,7 +31,7 @@ void main()
             weight = pow(weight * options.y, 8.0);
         weight *= photo_border(i, pixel);
         if (weight > 0.0)
-            sum += vec4(photo_sample(i, pixel, photo_mip(i, z, depth)), 1.0) * weight;
+            sum += vec4(photo_sample(i, pixel, photo_mip(i, z, depth)).rgb, 1.0) * weight;
     }
     if (sum.a > 0.0)
         imageStore(accumulated, at, imageLoad(accumulated, at) + sum);

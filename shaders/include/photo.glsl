@@ -10,7 +10,9 @@ struct photo_data {
 layout(std430, binding = 0) readonly buffer photo_list {
     photo_data photos[];
 };
-layout(binding = 0) uniform sampler2DArray photo_color; // sRGB, mipmapped: reads are linear light
+// Mipmapped. sRGB, whose reads are linear light; with RADIANCE linear exposure * trust *
+// ORL_RADIANCE_SCALE, and trust: what is not to be trusted leaves no mark on its neighbours.
+layout(binding = 0) uniform sampler2DArray photo_color;
 layout(binding = 1) uniform sampler2DArray photo_depth; // z, 0: none
 
 // Where a point of the view's camera frame lies in photograph `i`: pixel coordinates and z
@@ -52,15 +54,19 @@ float photo_mip(int i, float z, float view_depth)
     return clamp(log2(magnification), 0.0, photos[i].gain.w);
 }
 
-vec3 photo_bilinear(int i, vec2 pixel, float mip)
+vec4 photo_texel(vec2 at, float slot, float lod)
 {
-    vec3 at = vec3(pixel / photos[i].slot_size.xy, photos[i].eye.w);
-    return textureLod(photo_color, at, mip).rgb * photos[i].gain.rgb;
+    return textureLod(photo_color, vec3(at, slot), lod);
+}
+
+vec4 photo_bilinear(int i, vec2 pixel, float mip)
+{
+    return photo_texel(pixel / photos[i].slot_size.xy, photos[i].eye.w, mip);
 }
 
 // Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005): bilinear sampling would
 // blur every photograph by the phase that it happens to be met at.
-vec3 photo_bicubic(int i, vec2 pixel, float mip)
+vec4 photo_bicubic(int i, vec2 pixel, float mip)
 {
     float lod = floor(mip + 0.5), slot = photos[i].eye.w;
     vec2 size_at = max(floor(photos[i].slot_size.xy / exp2(lod)), vec2(1.0));
@@ -73,20 +79,36 @@ vec3 photo_bicubic(int i, vec2 pixel, float mip)
     vec2 w12 = w1 + w2;
     vec2 p0 = (base - 0.5) / size_at, p3 = (base + 2.5) / size_at;
     vec2 p12 = (base + 0.5 + w2 / w12) / size_at;
-    vec3 sum = textureLod(photo_color, vec3(p12.x, p0.y, slot), lod).rgb * (w12.x * w0.y) +
-               textureLod(photo_color, vec3(p0.x, p12.y, slot), lod).rgb * (w0.x * w12.y) +
-               textureLod(photo_color, vec3(p12, slot), lod).rgb * (w12.x * w12.y) +
-               textureLod(photo_color, vec3(p3.x, p12.y, slot), lod).rgb * (w3.x * w12.y) +
-               textureLod(photo_color, vec3(p12.x, p3.y, slot), lod).rgb * (w12.x * w3.y);
+    vec4 sum = photo_texel(vec2(p12.x, p0.y), slot, lod) * (w12.x * w0.y) +
+               photo_texel(vec2(p0.x, p12.y), slot, lod) * (w0.x * w12.y) +
+               photo_texel(p12, slot, lod) * (w12.x * w12.y) +
+               photo_texel(vec2(p3.x, p12.y), slot, lod) * (w3.x * w12.y) +
+               photo_texel(vec2(p12.x, p3.y), slot, lod) * (w12.x * w3.y);
     float total = w12.x * w0.y + w0.x * w12.y + w12.x * w12.y + w3.x * w12.y + w12.x * w3.y;
     // The four corners, left out, weigh next to nothing.
-    return max(sum / total, 0.0) * photos[i].gain.rgb;
+    return max(sum / total, 0.0);
 }
 
-vec3 photo_sample(int i, vec2 pixel, float mip)
+// Linear colour times gain; a: factor on the weight of this sample, 1 without RADIANCE.
+#ifdef RADIANCE
+vec4 photo_sample(int i, vec2 pixel, float mip)
 {
-    return flags.y == 1 ? photo_bicubic(i, pixel, mip) : photo_bilinear(i, pixel, mip);
+    vec4 texel = photo_bilinear(i, pixel, mip);
+    // Near texels without trust the negative lobes would divide by next to nothing.
+    if (flags.y == 1 && texel.a > 0.1)
+        texel = mix(texel, photo_bicubic(i, pixel, mip), smoothstep(0.1, 0.4, texel.a));
+    if (!(texel.a > 0.0))
+        return vec4(0.0);
+    return vec4(texel.rgb / (texel.a * ORL_RADIANCE_SCALE) * photos[i].gain.rgb, texel.a);
 }
+#else
+vec4 photo_sample(int i, vec2 pixel, float mip)
+{
+    vec3 color = flags.y == 1 ? photo_bicubic(i, pixel, mip).rgb
+                              : photo_bilinear(i, pixel, mip).rgb;
+    return vec4(color * photos[i].gain.rgb, 1.0);
+}
+#endif
 
 // Does none of these depths lie clearly in front of z? For points only known to be
 // behind everything else.

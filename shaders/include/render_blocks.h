@@ -25,6 +25,10 @@ ORL_BLOCK(pyramid_block)
 };
 #endif
 
+// Radiance is kept on the device times this and times trust: half floats have eleven bits
+// above 2^-14, and linear exposures of interest, times trust, reach far below that.
+#define ORL_RADIANCE_SCALE 4096.0
+
 // A photograph as the gather passes see it; an array of these is a storage buffer.
 #define ORL_PHOTO_VEC4S 8
 #if defined(__STDC_VERSION__)
@@ -46,6 +50,8 @@ ORL_BLOCK(gather_block)
     VEC4(options);    // x: depth tolerance, y: distance floor, z: border feather, pixels
     IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic
     IVEC4(area);      // width and height of the view, z: photographs, w: tiles per row
+    VEC4(radiance);   // x: stops that samples of one surface may differ, 0: any;
+                      // y: variance of relative error at full exposure
 };
 #endif
 

@@ -7,7 +7,8 @@
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 
-enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather)
+enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
+                                struct gather *gather)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     memset(gather, 0, sizeof *gather);
@@ -18,8 +19,8 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct 
         result = orl_buf_create(gpu, "photographs of a frame",
                                 photo_count * sizeof *gather->list, NULL, &gather->photos);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "gather.comp", NULL, sizeof(struct gather_block),
-                                 &gather->all);
+        result = orl_prog_create(gpu, radiance ? "gather_radiance.comp" : "gather.comp", NULL,
+                                 sizeof(struct gather_block), &gather->all);
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
     return result;
@@ -98,13 +99,15 @@ static void gather_batch(struct orl_renderer *r, const struct orl_view *view,
         .flags = {params->visibility == ORL_VISIBILITY_HARD,
                   params->sampling == ORL_SAMPLING_BICUBIC},
         .area = {view->camera.width, view->camera.height, (int)count},
+        .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model)},
     };
     set_focal(block.view_focal, &view->camera);
     struct orl_dispatch d = {.prog = g->all, .params = &block,
                              .bufs = {{.buf = g->photos}},
                              .textures = {r->photos.color, r->photos.depth},
                              .images = {{r->target.depth, 0, GL_READ_ONLY},
-                                        {r->accumulated, 0, GL_READ_WRITE}},
+                                        {r->accumulated, 0, GL_READ_WRITE},
+                                        {r->trusted, 0, GL_READ_WRITE}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
     orl_pass_begin(r->gpu, "gather");

@@ -3,6 +3,7 @@
 #define ORL_RENDER_INTERNAL_H
 
 #include "include/render_blocks.h"
+#include "render/radiance.h"
 #include "render/render.h"
 
 // --- the point cloud on the device (proxy.c) ---
@@ -69,15 +70,19 @@ struct photo_state {
 struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
-    struct orl_tex *color;      // sRGB, mipmapped
+    struct orl_tex *color;      // mipmapped: sRGB, or radiance * trust and trust
     struct orl_tex *depth;      // z, 0: none
     int slot_count, divide;     // photographs are loaded at 1/divide of their size
     unsigned clock;
     struct proxy_target target; // for depth maps
+    bool radiance;              // see struct orl_renderer_params
+    struct orl_sensor sensor;
+    float ev_darkest, ev_brightest; // of the photographs in use
 };
 
-enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
-                                size_t budget_bytes, struct photos *photos);
+enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                const struct orl_renderer_params *params, size_t budget_bytes,
+                                struct photos *photos);
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
 // Makes colour resident, and depth (depth_options not NULL); evicts the least recently
 // used when all slots are taken.
@@ -111,7 +116,8 @@ struct gather {
     struct orl_buf *photos;  // struct photo_data
 };
 
-enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather);
+enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
+                                struct gather *gather);
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
 // Adds every usable photograph's weighted colour to r->accumulated.
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
@@ -127,6 +133,7 @@ struct orl_renderer {
     struct orl_prog *points_color, *compose;
     struct proxy_target target;
     struct orl_tex *accumulated; // colour * weight, weight; composed in place
+    struct orl_tex *trusted;     // of radiance: weight * trust, weight
 };
 
 // renderer.c

@@ -10,7 +10,8 @@
 // fountain-P11 is rendered from the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
-    .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f
+    .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f,                      \
+    .ghosts = 1.0f
 
 const struct orl_method orl_methods[] = {
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
@@ -50,6 +51,8 @@ const struct orl_render_option orl_render_options[] = {
      "keeps Airieau's distance difference from zero"},
     {"border_px", FIELD(border_px), NULL, 0, 1024, "pixels of the photograph",
      "photographs fade out over this width at their border"},
+    {"ghosts", FIELD(ghosts), NULL, 0, 16, "stops",
+     "of radiance: samples this far from the others count half, beyond noise; 0: all count"},
     {0},
 };
 

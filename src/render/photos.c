@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "render/internal.h"
+#include "render/radiance.h"
 
 enum {
     DIVIDE_MAX = 4,
@@ -59,15 +60,17 @@ static struct slot_size slot_size(const struct photos *photos, int divide)
     return size;
 }
 
-static size_t color_bytes(const struct slot_size *size)
+static size_t color_bytes(const struct photos *photos, const struct slot_size *size)
 {
     size_t pixels = (size_t)size->width * (size_t)size->height;
-    return pixels * 4 + pixels * 4 / 3;
+    size_t bytes = pixels * (photos->radiance ? 8 : 4);
+    return bytes + bytes / 3;
 }
 
-static size_t slot_bytes(const struct slot_size *size)
+static size_t slot_bytes(const struct photos *photos, const struct slot_size *size)
 {
-    return color_bytes(size) + (size_t)size->depth_width * (size_t)size->depth_height * 4;
+    return color_bytes(photos, size) +
+           (size_t)size->depth_width * (size_t)size->depth_height * 4;
 }
 
 // Photographs smaller first, then fewer at once.
@@ -79,12 +82,13 @@ static struct slot_size plan(const struct orl_log *log, size_t budget, int layer
         count += photos->states[i].usable;
     struct slot_size size = slot_size(photos, 1);
     photos->divide = 1;
-    while (budget && photos->divide < DIVIDE_MAX && slot_bytes(&size) * (size_t)count > budget) {
+    while (budget && photos->divide < DIVIDE_MAX &&
+           slot_bytes(photos, &size) * (size_t)count > budget) {
         photos->divide *= 2;
         size = slot_size(photos, photos->divide);
     }
-    size_t fits = budget ? budget / slot_bytes(&size) : (size_t)count;
-    size_t array_fits = ARRAY_BYTES_MAX / color_bytes(&size);
+    size_t fits = budget ? budget / slot_bytes(photos, &size) : (size_t)count;
+    size_t array_fits = ARRAY_BYTES_MAX / color_bytes(photos, &size);
     fits = fits < array_fits ? fits : array_fits;
     fits = fits < (size_t)layers_max ? fits : (size_t)layers_max;
     fits = fits < (size_t)count ? fits : (size_t)count;
@@ -100,6 +104,20 @@ static struct slot_size plan(const struct orl_log *log, size_t budget, int layer
     return size;
 }
 
+// Exposures of the photographs in use, for those that tell nothing better apart.
+static void find_exposures(struct photos *photos)
+{
+    bool first = true;
+    for (size_t i = 0; i < photos->scene->photo_count; i++) {
+        float ev = (float)photos->scene->photos[i].exposure_ev;
+        if (!photos->states[i].usable)
+            continue;
+        photos->ev_darkest = first || ev < photos->ev_darkest ? ev : photos->ev_darkest;
+        photos->ev_brightest = first || ev > photos->ev_brightest ? ev : photos->ev_brightest;
+        first = false;
+    }
+}
+
 static int mip_levels(int width, int height)
 {
     int levels = 1;
@@ -108,12 +126,17 @@ static int mip_levels(int width, int height)
     return levels;
 }
 
-enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene, const bool *use,
-                                size_t budget_bytes, struct photos *photos)
+enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                const struct orl_renderer_params *params, size_t budget_bytes,
+                                struct photos *photos)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
+    const bool *use = params->use;
     memset(photos, 0, sizeof *photos);
     photos->scene = scene;
+    photos->radiance = params->radiance;
+    photos->sensor = params->sensor ? *params->sensor
+                                    : (struct orl_sensor){ORL_SENSOR_DEFAULTS};
     photos->states = orl_array(log, scene->photo_count, sizeof *photos->states);
     if (!photos->states)
         return ORL_ERR_MEMORY;
@@ -121,6 +144,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         photos->states[i].usable = use ? use[i] : !scene->photos[i].test;
         photos->states[i].slot = -1;
     }
+    find_exposures(photos);
     struct slot_size size =
         plan(log, budget_bytes, orl_gpu_caps(gpu)->max_texture_layers, photos);
     for (size_t i = 0; i < scene->photo_count; i++) {
@@ -131,8 +155,8 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     struct orl_tex_params color = {.width = size.width, .height = size.height,
                                    .layers = photos->slot_count,
                                    .levels = mip_levels(size.width, size.height),
-                                   .format = GL_SRGB8_ALPHA8, .linear = true,
-                                   .tag = "photographs"};
+                                   .format = photos->radiance ? GL_RGBA16F : GL_SRGB8_ALPHA8,
+                                   .linear = true, .tag = "photographs"};
     struct orl_tex_params depth = {.width = size.depth_width, .height = size.depth_height,
                                    .layers = photos->slot_count, .format = GL_R32F,
                                    .tag = "photograph depth"};
@@ -178,6 +202,14 @@ static int take_slot(struct photos *photos)
     return slot;
 }
 
+// sRGB-encoded RGB, or radiance times trust and trust.
+static void write_pixels(const struct orl_image *image, struct orl_tex *tex, int layer)
+{
+    bool radiance = image->type == ORL_PIXEL_F32;
+    orl_tex_write_part(tex, 0, layer, image->width, image->height, radiance ? GL_RGBA : GL_RGB,
+                       radiance ? GL_FLOAT : GL_UNSIGNED_BYTE, image->data);
+}
+
 // A smaller photograph is a mip level of the full one: box filtered in linear light.
 static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_image *image,
                                       int divide, struct orl_tex *to, int slot)
@@ -185,18 +217,45 @@ static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_imag
     struct orl_tex *full = NULL;
     struct orl_tex_params params = {.width = image->width, .height = image->height,
                                     .levels = mip_levels(image->width, image->height),
-                                    .format = GL_SRGB8_ALPHA8, .tag = "photograph"};
+                                    .format = to->params.format, .tag = "photograph"};
     enum orl_result result = orl_tex_create(gpu, &params, &full);
     if (result != ORL_OK)
         return result;
     int level = 0;
     while (1 << level < divide && level + 1 < params.levels)
         level++;
-    orl_tex_write(full, 0, 0, GL_RGB, GL_UNSIGNED_BYTE, image->u8);
+    write_pixels(image, full, 0);
     orl_tex_make_mipmaps(full, 0);
     orl_tex_copy_layer(full, level, divided(image->width, divide),
                        divided(image->height, divide), to, slot);
     orl_tex_destroy(gpu, &full);
+    return ORL_OK;
+}
+
+// Turns a photograph as read into radiance times trust, and trust.
+static enum orl_result make_radiance(const struct orl_log *log, const struct photos *photos,
+                                     size_t index, struct orl_image *image)
+{
+    const struct orl_scene *scene = photos->scene;
+    const struct orl_photo *photo = &scene->photos[index];
+    struct orl_photo_response response = {
+        .sensor = &photos->sensor, .clips = true, .ev = (float)photo->exposure_ev,
+        .linear = photo->response >= 0 ? scene->responses[photo->response].linear : NULL,
+        .centre = {(float)photo->view.camera.cx, (float)photo->view.camera.cy},
+        .ev_darkest = photos->ev_darkest, .ev_brightest = photos->ev_brightest,
+    };
+    memcpy(response.vignette, photo->vignette, sizeof response.vignette);
+    struct orl_image radiance;
+    enum orl_result result = orl_radiance_decode(log, &response, image, &radiance);
+    if (result != ORL_OK)
+        return result;
+    // Half floats keep eleven bits of what is above 2^-14.
+    size_t count = (size_t)radiance.width * (size_t)radiance.height;
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < 3; c++)
+            radiance.f32[4 * i + c] *= ORL_RADIANCE_SCALE;
+    orl_image_finish(image);
+    *image = radiance;
     return ORL_OK;
 }
 
@@ -211,14 +270,15 @@ static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, si
     if (result == ORL_OK && (image.width != c->width || image.height != c->height))
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path,
                           image.width, image.height, c->width, c->height);
+    if (result == ORL_OK && photos->radiance)
+        result = make_radiance(log, photos, index, &image);
     if (result != ORL_OK)
         goto end;
     int slot = take_slot(photos);
     if (photos->divide > 1)
         result = upload_smaller(gpu, &image, photos->divide, photos->color, slot);
     else
-        orl_tex_write_part(photos->color, 0, slot, image.width, image.height, GL_RGB,
-                           GL_UNSIGNED_BYTE, image.u8);
+        write_pixels(&image, photos->color, slot);
     orl_tex_make_mipmaps(photos->color, slot);
     if (result == ORL_OK)
         photos->states[index].slot = slot;

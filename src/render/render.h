@@ -28,6 +28,9 @@ struct orl_render_params {
                                     // that a pixel needs to count as surface, [0, 25]
     float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
     float border_px;                // photographs fade out over this width, [0, 1024] pixels
+    float ghosts;                   // of a radiance renderer: samples that differ from the
+                                    // others by this many stops beyond noise count half,
+                                    // [0, 16]; 0: all count
 };
 
 // One row of the option table.
@@ -56,10 +59,15 @@ enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_rend
 // --- the renderer ---
 
 struct orl_renderer;
+struct orl_sensor;
 
 struct orl_renderer_params {
     const bool *use;       // per photograph: may it be used? NULL: all that are not held out
     size_t max_vram_bytes; // plan for this much device memory; 0: no limit
+    // Photographs as radiance: their response, vignetting and exposure undone, each pixel
+    // weighing by how well exposed it is (radiance.h). For scenes of several exposures.
+    bool radiance;
+    const struct orl_sensor *sensor; // with radiance; NULL: ORL_SENSOR_DEFAULTS
 };
 
 // Uploads the points and loads photographs. When they do not fit max_vram_bytes it
@@ -76,6 +84,9 @@ struct orl_frame {
     struct orl_image depth;    // F32 x1, z in scene units, 0 = none
     struct orl_image normal;   // F32 x3, camera frame, 0 = none
     struct orl_image coverage; // F32 x1, 1 where the proxy and a photograph cover, else 0
+    // F32 x1, only of a radiance renderer: mean trust (radiance.h) of the samples that made
+    // the pixel, each weighing as in its colour; 0 where there were none.
+    struct orl_image confidence;
 };
 void orl_frame_finish(struct orl_frame *frame);
 

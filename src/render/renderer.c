@@ -42,12 +42,12 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     }
     enum orl_result result = orl_proxy_init(gpu, &scene->points, &r->proxy);
     if (result == ORL_OK)
-        result = orl_photos_init(gpu, scene, params->use, budget, &r->photos);
+        result = orl_photos_init(gpu, scene, params, budget, &r->photos);
     if (result == ORL_OK)
         result = orl_fill_init(gpu, scene->photo_distance > 0 ? (float)scene->photo_distance : 1.0f,
                                &r->fill);
     if (result == ORL_OK)
-        result = orl_gather_init(gpu, scene->photo_count, &r->gather);
+        result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "points_color.comp", NULL, sizeof(struct image_block),
                                  &r->points_color);
@@ -75,6 +75,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_prog_destroy(r->gpu, &r->compose);
     orl_proxy_target_finish(r->gpu, &r->target);
     orl_tex_destroy(r->gpu, &r->accumulated);
+    orl_tex_destroy(r->gpu, &r->trusted);
     free(r);
     *renderer = NULL;
 }
@@ -90,7 +91,13 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
     orl_tex_destroy(r->gpu, &r->accumulated);
     struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA32F,
                                     .tag = "accumulated colour"};
-    return orl_tex_create(r->gpu, &params, &r->accumulated);
+    result = orl_tex_create(r->gpu, &params, &r->accumulated);
+    if (result != ORL_OK || !r->photos.radiance)
+        return result;
+    orl_tex_destroy(r->gpu, &r->trusted);
+    params.format = GL_RG32F;
+    params.tag = "trust";
+    return orl_tex_create(r->gpu, &params, &r->trusted);
 }
 
 struct proxy_options orl_proxy_options(const struct orl_render_params *params)
@@ -136,6 +143,8 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
     struct proxy_options options = orl_proxy_options(params);
     orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
     orl_tex_clear(r->accumulated, 0);
+    if (r->trusted)
+        orl_tex_clear(r->trusted, 0);
     if (params->color == ORL_COLOR_PHOTOS) {
         if (params->fill == ORL_FILL_DEPTH) {
             orl_pass_begin(gpu, "fill");
@@ -164,6 +173,25 @@ void orl_frame_finish(struct orl_frame *frame)
     orl_image_finish(&frame->depth);
     orl_image_finish(&frame->normal);
     orl_image_finish(&frame->coverage);
+    orl_image_finish(&frame->confidence);
+}
+
+static enum orl_result read_confidence(struct orl_renderer *r, struct orl_frame *frame)
+{
+    const struct orl_log *log = orl_gpu_log(r->gpu);
+    struct orl_image sums = {0}; // two channels
+    int width = r->target.width, height = r->target.height;
+    enum orl_result result = orl_image_init(log, &sums, width, height, 2, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &frame->confidence, width, height, 1, ORL_PIXEL_F32);
+    if (result == ORL_OK) {
+        orl_tex_read(r->trusted, 0, GL_RG, GL_FLOAT, orl_image_bytes(&sums), sums.f32);
+        for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+            frame->confidence.f32[i] =
+                sums.f32[2 * i + 1] > 0 ? sums.f32[2 * i] / sums.f32[2 * i + 1] : 0;
+    }
+    orl_image_finish(&sums);
+    return result;
 }
 
 static enum orl_result read_back(struct orl_renderer *r, struct orl_frame *frame)
@@ -193,7 +221,10 @@ static enum orl_result read_back(struct orl_renderer *r, struct orl_frame *frame
         if (frame->depth.f32[i] < 0) // a guess, not a surface
             frame->depth.f32[i] = 0;
     }
-    result = orl_gpu_finish(r->gpu);
+    if (r->trusted)
+        result = read_confidence(r, frame);
+    if (result == ORL_OK)
+        result = orl_gpu_finish(r->gpu);
 end:
     orl_image_finish(&rgba);
     return result;
