@@ -426,6 +426,8 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     if (result == ORL_OK)
         result = check_plans(d);
     if (result == ORL_OK)
+        result = orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink);
+    if (result == ORL_OK)
         result = orl_dir_make(d->log, d->depth_dir);
     if (result == ORL_OK)
         result = orl_dir_make(d->log, d->normal_dir);

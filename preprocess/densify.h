@@ -7,6 +7,9 @@
 #include "core/progress.h"
 #include "gpu/gpu.h"
 
+// Raised when the same photographs and settings give other maps than before.
+enum { ORL_DENSIFY_VERSION = 2 };
+
 struct orl_densify_params {
     int sources;          // source photographs per reference, [1, 16]; cost grows with it
     int iterations;       // photometric red-black sweeps, [1, 16]: two more at the coarsest of
@@ -26,8 +29,10 @@ struct orl_densify_params {
 
 // Writes WORKSPACE/stereo/{depth_maps,normal_maps}/NAME.{photometric,geometric}.bin
 // for every photograph in `photos` (names; NULL: all of the model), using only
-// those as sources. Photographs whose maps are already there are skipped. The
-// same seed gives the same maps. Interrupted, it leaves whole files only.
+// those as sources. Photographs whose maps are already there are skipped when these were
+// made from the same photographs with the same settings, as stereo/densify.json says; else
+// all maps are made again. The same seed gives the same maps. Interrupted, it leaves whole
+// files only. ORL_ERR_ARGUMENT: there are maps that densify did not make.
 enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_names *photos,
                             const struct orl_densify_params *params,

@@ -61,6 +61,15 @@ uint64_t orl_densify_bytes(const struct densify_need *need, int sources, int shr
 // (0: any number) and whose textures drivers accept; false: nothing does.
 bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_bytes,
                      struct densify_budget *budget);
+// Takes the maps in WORKSPACE/stereo that were made from the same photographs and model
+// with the same settings (params as used, photographs halved `shrink` times) as this run's,
+// removes those of others, and leaves stereo/densify.json saying so. ORL_ERR_ARGUMENT:
+// there are maps without it, which may be another program's.
+enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *workspace,
+                                       const struct densify_photos *photos,
+                                       const struct orl_densify_params *params,
+                                       int shrink) ORL_CHECK_RESULT;
+
 // Texels around each source: patches are up to three times as large there.
 int orl_densify_padding(const struct orl_densify_params *params);
 

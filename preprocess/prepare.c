@@ -14,6 +14,7 @@
 
 #include "core/memory.h"
 #include "core/process.h"
+#include "preprocess/densify.h"
 #include "preprocess/job.h"
 #include "scene/manifest.h"
 
@@ -69,9 +70,11 @@ static json_t *undistort_settings(const struct orl_job *job)
 static json_t *densify_settings(const struct orl_job *job)
 {
     const struct orl_prepare_params *p = job->params;
-    return json_pack("{s:s, s:s, s:i, s:o}", "quality", quality_names[p->quality], "densifier",
-                     densifier_names[p->densifier], "seed", (int)p->seed, "test",
-                     test_names(job));
+    // Without a limit the key stays what it was before there was one.
+    return json_pack("{s:s, s:s, s:i, s:o, s:o*}", "quality", quality_names[p->quality],
+                     "densifier", densifier_names[p->densifier], "seed", (int)p->seed, "test",
+                     test_names(job), "max_vram",
+                     p->max_vram_bytes ? json_integer((json_int_t)p->max_vram_bytes) : NULL);
 }
 
 static json_t *expose_settings(const struct orl_job *job)
@@ -112,7 +115,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                              orl_stage_calibrate, ".oriel/calibrate/model"},
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
                              orl_stage_undistort, "images"},
-    [ORL_STAGE_DENSIFY] = {"densify", 2, ORL_STAGE_UNDISTORT, densify_settings,
+    [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
                            orl_stage_densify, NULL},
     [ORL_STAGE_FUSE] = {"fuse", 5, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
                         ".oriel/fused.ply"},

@@ -33,6 +33,7 @@ struct orl_prepare_params {
     bool resume;               // go on with what is there
     uint32_t seed;
     struct orl_gpu *gpu;       // NULL: opened when densify needs it
+    size_t max_vram_bytes;     // device memory that densify keeps to; 0: no limit
     const char *shader_dir;    // for that; NULL: the embedded shaders
 };
 

@@ -115,6 +115,7 @@ static struct orl_densify_params densify_settings(const struct orl_job *job)
         params.geometric_passes = 2;
     }
     params.seed = job->params->seed;
+    params.max_vram_bytes = job->params->max_vram_bytes;
     return params;
 }
 

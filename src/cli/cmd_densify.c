@@ -74,8 +74,9 @@ int cmd_densify(int argc, char **argv)
     const struct arg_command command = {
         "densify", "WORKSPACE [options]",
         "Writes stereo/depth_maps and stereo/normal_maps of a COLMAP undistorted workspace, as\n"
-        "colmap patch_match_stereo does, without CUDA. Photographs that have their maps are\n"
-        "skipped, so that an interrupted run goes on. colmap stereo_fusion reads the result.",
+        "colmap patch_match_stereo does, without CUDA. Photographs that have maps of these\n"
+        "settings are skipped, so that an interrupted run goes on. colmap stereo_fusion reads the\n"
+        "result.",
         table, 1, 1};
     struct arg_common common = {0};
     struct terminal terminal;

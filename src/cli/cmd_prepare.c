@@ -9,7 +9,7 @@ enum { INPUTS_MAX = 4096 };
 
 struct options {
     const char *out, *quality, *sharing, *matching, *densifier, *masks;
-    int test_every, max_size, seed;
+    int test_every, max_size, seed, max_vram_mib;
     struct orl_names test_list;
     bool resume;
 };
@@ -56,7 +56,8 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
     struct orl_prepare_params params = {
         .inputs = inputs, .input_count = input_count, .out = o->out, .test_every = o->test_every,
         .test_list = &o->test_list, .max_size = o->max_size, .masks_dir = o->masks,
-        .resume = o->resume, .seed = (uint32_t)o->seed, .shader_dir = common->shader_dir};
+        .resume = o->resume, .seed = (uint32_t)o->seed,
+        .max_vram_bytes = (size_t)o->max_vram_mib << 20, .shader_dir = common->shader_dir};
     if (!o->out)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT, "prepare: --out SCENE is missing");
     if (o->test_every && o->test_list.count)
@@ -87,6 +88,8 @@ int cmd_prepare(int argc, char **argv)
          "auto, exhaustive, or sequential (photographs in order of name)", 0, 0},
         {"densifier", ARG_STRING, &o.densifier, "NAME",
          "auto, gl (built in) or colmap (needs CUDA)", 0, 0},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
+         1 << 20},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},
         {"seed", ARG_INT, &o.seed, "N", "of random choices", 0, 2147483647},
         {0},

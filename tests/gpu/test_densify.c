@@ -335,6 +335,75 @@ static void test_resume_keeps_finished_maps(void **state)
     test_dir_remove(dir);
 }
 
+// Marks the first photograph's map, runs again, and says whether the mark is gone.
+static bool is_made_again(const char *dir, const struct orl_names *photos,
+                          const struct orl_densify_params *params)
+{
+    struct orl_image map = read_map(dir, "depth", 0, "geometric");
+    map.f32[17] = 42;
+    assert_int_equal(orl_colmap_map_write(NULL, map_path(dir, "depth", 0, "geometric"), &map),
+                     ORL_OK);
+    orl_image_finish(&map);
+    assert_int_equal(orl_densify(gpu, dir, photos, params, NULL), ORL_OK);
+    map = read_map(dir, "depth", 0, "geometric");
+    bool again = map.f32[17] != 42;
+    orl_image_finish(&map);
+    return again;
+}
+
+static void test_other_settings_make_maps_again(void **state)
+{
+    (void)state;
+    struct plane_scene scene = make_scene(40, 32, 0, 0);
+    char *dir = make_workspace(&scene), *fresh = make_workspace(&scene), path[4096];
+    struct orl_densify_params params = quick;
+    assert_int_equal(orl_densify(gpu, dir, NULL, &params, NULL), ORL_OK);
+    assert_false(is_made_again(dir, NULL, &params));
+    params.max_vram_bytes = (size_t)1 << 30; // enough: nothing changes
+    assert_false(is_made_again(dir, NULL, &params));
+    params.iterations++;
+    assert_true(is_made_again(dir, NULL, &params));
+    params.seed++;
+    assert_true(is_made_again(dir, NULL, &params));
+    char *items[] = {"a.png", "b.png", "c.png"};
+    struct orl_names photos = {.count = 3, .items = items};
+    assert_true(is_made_again(dir, &photos, &params));
+    assert_false(orl_path_is_file(map_path(dir, "depth", 3, "geometric")));
+    // Another picture under the same name, and a record that was cut.
+    snprintf(path, sizeof path, "%s/images/b.png", dir);
+    draw(&scene, &scene.views[3], path);
+    assert_true(is_made_again(dir, &photos, &params));
+    snprintf(path, sizeof path, "%s/stereo/densify.json", dir);
+    assert_int_equal(orl_file_write(NULL, path, "{", 1), ORL_OK);
+    assert_true(is_made_again(dir, &photos, &params));
+    // Made again, they are as if made at once.
+    snprintf(path, sizeof path, "%s/images/b.png", dir);
+    draw(&scene, &scene.views[1], path);
+    assert_int_equal(orl_densify(gpu, dir, NULL, &params, NULL), ORL_OK);
+    assert_int_equal(orl_densify(gpu, fresh, NULL, &params, NULL), ORL_OK);
+    snprintf(path, sizeof path, "%s", map_path(dir, "normal", 2, "geometric"));
+    assert_same_file(path, map_path(fresh, "normal", 2, "geometric"));
+    test_dir_remove(dir);
+    test_dir_remove(fresh);
+}
+
+// COLMAP's own maps took hours: neither taken for ours nor removed.
+static void test_maps_of_others_stay(void **state)
+{
+    (void)state;
+    struct plane_scene scene = make_scene(40, 32, 0, 0);
+    char *dir = make_workspace(&scene), path[4096];
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_OK);
+    snprintf(path, sizeof path, "%s/stereo/densify.json", dir);
+    assert_int_equal(unlink(path), 0);
+    for (int i = 1; i < VIEWS_MAX; i++)
+        assert_int_equal(unlink(map_path(dir, "depth", i, "geometric")), 0);
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_ARGUMENT);
+    assert_true(orl_path_is_file(map_path(dir, "depth", 0, "geometric")));
+    assert_false(orl_path_is_file(map_path(dir, "depth", 1, "geometric")));
+    test_dir_remove(dir);
+}
+
 static void test_masks(void **state)
 {
     (void)state;
@@ -427,11 +496,15 @@ static void test_little_memory(void **state)
                                                     .fx = 0.6 * 215, .fy = 0.6 * 215,
                                                     .cx = 0.25 * 215, .cy = 0.25 * 202};
     assert_recovered(&scene, dir);
-    // Whoever changes the size must not mix maps of both.
-    assert_int_equal(unlink(map_path(dir, "depth", 1, "geometric")), 0);
-    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_DATA);
     params.max_vram_bytes = 1000;
     assert_int_equal(orl_densify(gpu, dir, NULL, &params, NULL), ORL_ERR_GPU);
+    assert_true(orl_path_is_file(map_path(dir, "depth", 1, "geometric")));
+    // Whoever changes the size must not mix maps of both.
+    assert_int_equal(unlink(map_path(dir, "depth", 1, "geometric")), 0);
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_OK);
+    struct orl_image depth = read_map(dir, "depth", 0, "geometric");
+    assert_int_equal(depth.width, 215);
+    orl_image_finish(&depth);
     test_dir_remove(dir);
 }
 
@@ -481,6 +554,8 @@ int main(void)
         cmocka_unit_test(test_same_seed_same_bytes),
         cmocka_unit_test(test_held_out_is_never_read),
         cmocka_unit_test(test_resume_keeps_finished_maps),
+        cmocka_unit_test(test_other_settings_make_maps_again),
+        cmocka_unit_test(test_maps_of_others_stay),
         cmocka_unit_test(test_masks),
         cmocka_unit_test(test_lonely_photographs),
         cmocka_unit_test(test_bad_settings),
