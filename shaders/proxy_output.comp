@@ -35,7 +35,8 @@ void main()
         surfel s = surfel_unpack(a, imageLoad(surfel_b, at));
         vec2 centre = vec2(at) + 0.5;
         bool inside;
-        depth = surfel_depth_at(s, centre + s.displacement, centre, camera, inside);
+        depth = surfel_depth_at(s, (centre + s.displacement - camera.zw) / camera.xy,
+                                (centre - camera.zw) / camera.xy, inside);
         normal = s.normal;
     }
     imageStore(depth_out, at, vec4(depth));

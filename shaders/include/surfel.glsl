@@ -31,21 +31,20 @@ vec2 level_centre(ivec2 pixel, int level)
     return (vec2(pixel) + 0.5) * float(1 << level);
 }
 
-// Depth at which the ray through `target` (level 0 pixels) meets the plane of the disc
-// whose centre projects to `centre`, within the disc's depth range; 0: behind the eye.
-// `inside`: the ray meets the disc itself. The projected disc is Marroquim's ellipse;
-// meeting it with the ray is exact under perspective.
-float surfel_depth_at(surfel s, vec2 centre, vec2 target, vec4 camera, out bool inside)
+// Depth at which the ray (target, 1) meets the plane of the disc whose centre lies on the
+// ray (centre, 1), within the disc's depth range; 0: behind the eye. `inside`: the ray meets
+// the disc itself. The projected disc is Marroquim's ellipse; meeting it with the ray is
+// exact under perspective.
+float surfel_depth_at(surfel s, vec2 centre, vec2 target, out bool inside)
 {
-    vec3 centre_ray = vec3((centre - camera.zw) / camera.xy, 1.0);
-    vec3 ray = vec3((target - camera.zw) / camera.xy, 1.0);
-    float along = dot(s.normal, ray);
-    float plane = s.depth * dot(s.normal, centre_ray);
+    float along = dot(s.normal.xy, target) + s.normal.z;
+    float plane = s.depth * (dot(s.normal.xy, centre) + s.normal.z);
     // Nearly edge-on discs have no stable depth: treat them as facing the viewer.
-    bool edge_on = abs(along) < 0.1 * length(ray);
+    bool edge_on = along * along < 0.01 * (dot(target, target) + 1.0);
     float depth = edge_on ? s.depth : plane / along;
     depth = clamp(depth, s.depth - s.radius, s.depth + s.radius);
-    vec3 offset = ray * depth - centre_ray * s.depth;
-    inside = dot(offset, offset) <= s.radius * s.radius;
+    vec2 offset = target * depth - centre * s.depth;
+    float behind = depth - s.depth;
+    inside = dot(offset, offset) + behind * behind <= s.radius * s.radius;
     return max(depth, 0.0);
 }

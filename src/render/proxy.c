@@ -293,7 +293,11 @@ static void pyramid_step(struct orl_gpu *gpu, struct orl_prog *prog, struct pyra
                                         {t->surfel_a[coarse], 0, coarse_access},
                                         {t->surfel_b[coarse], 0, coarse_access}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    orl_pixel_groups(out->params.width, out->params.height, d.groups);
+    if (pull)
+        orl_pixel_groups(out->params.width, out->params.height, d.groups);
+    else // one invocation per corner of the coarse level's pixels
+        orl_pixel_groups(t->surfel_a[coarse]->params.width + 1,
+                         t->surfel_a[coarse]->params.height + 1, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }
 
