@@ -64,8 +64,10 @@ static enum orl_result write_layers(const struct job *job, int index, const char
                                     bool half)
 {
     struct orl_exr_params exr = {.width = image->width, .height = image->height,
-                                 .channel_count = image->channels, .view = &job->views[index],
-                                 .srgb_primaries = strcmp(folder, "radiance") == 0};
+                                 .channel_count = image->channels,
+                                 .attributes = {
+                                     .view = &job->views[index],
+                                     .srgb_primaries = strcmp(folder, "radiance") == 0}};
     for (int c = 0; c < image->channels; c++) {
         struct orl_exr_channel *channel = &exr.channels[c];
         snprintf(channel->name, sizeof channel->name, "%s", names[c]);

@@ -1,5 +1,11 @@
+#include <algorithm>
+#include <climits>
+#include <vector>
+
 #include <opencv2/core.hpp>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/photo.hpp>
 
 extern "C" {
 #include "bridge/bridge.h"
@@ -38,6 +44,27 @@ enum orl_result run(const struct orl_log *log, const struct orl_image *from, str
     return ORL_ERR_EXTERNAL;
 }
 
+// OpenCV prints a warning on the tone mapping operators' own arithmetic.
+struct quiet {
+    cv::utils::logging::LogLevel before =
+        cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_ERROR);
+    ~quiet() { cv::utils::logging::setLogLevel(before); }
+};
+
+// OpenCV's Mantiuk makes the brightest pixel white, and a single glint the rest dark:
+// let the brightest hundredth clip instead.
+void anchor_white(cv::Mat &rgb)
+{
+    std::vector<float> peaks(rgb.total());
+    const cv::Vec3f *pixels = rgb.ptr<cv::Vec3f>();
+    for (size_t i = 0; i < peaks.size(); i++)
+        peaks[i] = std::max({pixels[i][0], pixels[i][1], pixels[i][2], 0.f});
+    auto at = peaks.begin() + static_cast<std::ptrdiff_t>(peaks.size() * 99 / 100);
+    std::nth_element(peaks.begin(), at, peaks.end());
+    if (*at > 0)
+        cv::min(rgb * (1 / *at), cv::Scalar::all(1), rgb);
+}
+
 } // namespace
 
 enum orl_result orl_bridge_blur(const struct orl_log *log, const struct orl_image *image, int taps,
@@ -69,5 +96,64 @@ enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_im
     return run(log, image, resized, [&](const cv::Mat &source, cv::Mat &target) {
         cv::resize(source, target, target.size(), 0, 0,
                    shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+    });
+}
+
+enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_image *image,
+                                   enum orl_tonemap kind, struct orl_image *mapped)
+{
+    *mapped = orl_image();
+    ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->channels == 3 && image->data);
+    enum orl_result result =
+        orl_image_init(log, mapped, image->width, image->height, 3, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    return run(log, image, mapped, [&](const cv::Mat &source, cv::Mat &target) {
+        // Operators divide by the range and the mean.
+        double least = 0, most = 0;
+        cv::minMaxLoc(source.reshape(1), &least, &most);
+        if (!(most > least)) {
+            target.setTo(cv::Scalar::all(most > 0 ? 1 : 0));
+            return;
+        }
+        // Mantiuk's pyramid needs some pixels.
+        const int least_side = 8;
+        cv::Mat bgr, out;
+        cv::copyMakeBorder(source, bgr, 0, std::max(0, least_side - source.rows), 0,
+                           std::max(0, least_side - source.cols), cv::BORDER_REPLICATE);
+        cv::Ptr<cv::Tonemap> map;
+        if (kind == ORL_TONEMAP_DRAGO)
+            map = cv::createTonemapDrago();
+        else
+            map = cv::createTonemapMantiuk();
+        quiet hush;
+        map->process(bgr, out);
+        out(cv::Rect(0, 0, source.cols, source.rows)).copyTo(target);
+        // They subtract the least light and then divide by what is left.
+        cv::Mat dark;
+        cv::inRange(source, cv::Scalar::all(least), cv::Scalar::all(least), dark);
+        target.setTo(cv::Scalar(), dark);
+        if (kind == ORL_TONEMAP_MANTIUK)
+            anchor_white(target);
+    });
+}
+
+enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_image *image,
+                                 const struct orl_image *map, struct orl_image *remapped)
+{
+    *remapped = orl_image();
+    ORL_REQUIRE(log, image->data && map->data);
+    ORL_REQUIRE(log, map->type == ORL_PIXEL_F32 && map->channels == 2);
+    // OpenCV's remap counts rows and columns in 16 bits.
+    if (image->width >= SHRT_MAX || image->height >= SHRT_MAX)
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "a picture of %dx%d pixels is too large here",
+                        image->width, image->height);
+    enum orl_result result =
+        orl_image_init(log, remapped, map->width, map->height, image->channels, image->type);
+    if (result != ORL_OK)
+        return result;
+    return run(log, image, remapped, [&](const cv::Mat &source, cv::Mat &target) {
+        cv::remap(source, target, as_mat(map), cv::noArray(), cv::INTER_LINEAR,
+                  cv::BORDER_CONSTANT, cv::Scalar());
     });
 }

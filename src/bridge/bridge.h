@@ -19,6 +19,20 @@ enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_im
                                   int width, int height,
                                   struct orl_image *resized) ORL_CHECK_RESULT;
 
+
+// Tone mapping operators over a whole picture, with OpenCV's defaults; the brightest
+// hundredth of Mantiuk's result is clipped.
+enum orl_tonemap { ORL_TONEMAP_DRAGO, ORL_TONEMAP_MANTIUK };
+// F32 x3 of finite light from 0 on, in any unit; linear light in [0, 1] comes out.
+enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_image *image,
+                                   enum orl_tonemap kind,
+                                   struct orl_image *mapped) ORL_CHECK_RESULT;
+// The picture as seen through `map`: F32 x2 per pixel of the result, the position in
+// `image` in pixels, centres at whole numbers. Bilinear; black outside.
+enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_image *image,
+                                 const struct orl_image *map,
+                                 struct orl_image *remapped) ORL_CHECK_RESULT;
+
 #ifdef __cplusplus
 }
 #endif

@@ -17,16 +17,17 @@ struct job {
     struct orl_renderer *renderer;
     struct orl_path path;
     struct orl_render_params params;
-    struct orl_frame_layers layers;
+    struct orl_frame_output output;
     bool *skip; // per photograph
 };
 
 struct options {
-    const char *at, *camera, *path, *out, *method;
+    const char *at, *camera, *path, *out, *method, *tone, *compression;
     struct orl_names settings, exclude, layers;
     struct arg_size size;
     int frames, max_vram_mib;
-    double fps;
+    double fps, exposure_ev, white;
+    bool float_color;
 };
 
 static enum orl_result choose_layers(const struct orl_log *log, const struct orl_names *names,
@@ -47,13 +48,29 @@ static enum orl_result choose_layers(const struct orl_log *log, const struct orl
     return ORL_OK;
 }
 
+static enum orl_result choose_output(const struct options *options, struct job *job)
+{
+    struct orl_frame_output *output = &job->output;
+    output->float_color = options->float_color;
+    output->tone.exposure_ev = options->exposure_ev;
+    output->tone.white = options->white;
+    if (strcmp(options->compression, "piz") == 0)
+        output->compression = ORL_EXR_PIZ;
+    else if (strcmp(options->compression, "zip") != 0)
+        return orl_fail(job->log, ORL_ERR_ARGUMENT, "--compression %s: must be zip or piz",
+                        options->compression);
+    return orl_tone_find(job->log, options->tone, &output->tone.curve);
+}
+
 static enum orl_result choose_method(const struct options *options, struct job *job)
 {
     const struct orl_method *method = orl_method_find(job->log, options->method);
     if (!method)
         return ORL_ERR_ARGUMENT;
     job->params = method->params;
-    enum orl_result result = choose_layers(job->log, &options->layers, &job->layers);
+    enum orl_result result = choose_layers(job->log, &options->layers, &job->output.layers);
+    if (result == ORL_OK)
+        result = choose_output(options, job);
     for (size_t i = 0; result == ORL_OK && i < options->settings.count; i++)
         result = orl_render_params_set(job->log, &job->params, options->settings.items[i]);
     return result;
@@ -118,7 +135,7 @@ static enum orl_result draw_to(struct job *job, size_t view, const char *file)
                                                job->skip, &frame);
     if (result != ORL_OK)
         return result;
-    result = orl_frame_write(job->log, file, &job->path.views[view], &frame, &job->layers);
+    result = orl_frame_write(job->log, file, &job->path.views[view], &frame, &job->output);
     orl_frame_finish(&frame);
     return result;
 }
@@ -167,8 +184,9 @@ static enum orl_result draw_all(const struct options *options, struct job *job)
     if (orl_frame_can_write(out))
         return orl_fail(job->log, ORL_ERR_ARGUMENT,
                         "--out %s: a path needs a folder or an .mp4 file", out);
-    return draw_frames(job, out, job->layers.depth || job->layers.normal || job->layers.coverage
-                                     ? "exr" : "png");
+    const struct orl_frame_layers *layers = &job->output.layers;
+    return draw_frames(job, out, layers->depth || layers->normal || layers->coverage ? "exr"
+                                                                                    : "png");
 }
 
 static enum orl_result run(const struct options *options, const struct arg_common *common,
@@ -201,7 +219,8 @@ static enum orl_result run(const struct options *options, const struct arg_commo
 
 int cmd_render(int argc, char **argv)
 {
-    struct options o = {.method = "airieau", .frames = 120, .fps = 30};
+    struct options o = {.method = "airieau", .frames = 120, .fps = 30, .tone = "srgb",
+                        .white = 8, .compression = "zip"};
     const struct arg_option table[] = {
         {"at", ARG_STRING, &o.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.camera, "FILE", "from the camera in FILE", 0, 0},
@@ -214,6 +233,14 @@ int cmd_render(int argc, char **argv)
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
         {"layers", ARG_LIST, &o.layers, "A,B", "also write depth, normal, coverage", 0, 0},
+        {"exposure", ARG_NUMBER, &o.exposure_ev, "EV", "of .png and .mp4, in stops; default 0",
+         -32, 32},
+        {"tone", ARG_STRING, &o.tone, "NAME",
+         "of .png and .mp4: srgb (default), reinhard, filmic, drago, mantiuk", 0, 0},
+        {"white", ARG_NUMBER, &o.white, "L",
+         "of reinhard: the luminance that becomes white; default 8", 1e-3, 1e6},
+        {"float", ARG_FLAG, &o.float_color, NULL, "of .exr: 32-bit colour; default: 16-bit", 0, 0},
+        {"compression", ARG_STRING, &o.compression, "NAME", "of .exr: zip (default) or piz", 0, 0},
         {"frames", ARG_INT, &o.frames, "N", "of --path photos; default 120", 2, 100000},
         {"fps", ARG_NUMBER, &o.fps, "N", "of .mp4; default 30", 1, 240},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
@@ -228,7 +255,8 @@ int cmd_render(int argc, char **argv)
     size_t count;
     int status;
     if (command_begin(&command, argc, argv, &common, &terminal, &scene_dir, &count, &status)) {
-        struct job job = {.log = &terminal.log, .progress = &terminal.progress};
+        struct job job = {.log = &terminal.log, .progress = &terminal.progress,
+                          .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
         status = command_status(run(&o, &common, scene_dir, &job));
         orl_renderer_destroy(&job.renderer);
         orl_gpu_destroy(&job.gpu);

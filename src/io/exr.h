@@ -14,19 +14,33 @@ struct orl_exr_channel {
     size_t stride;     // floats from one pixel to the next
 };
 
+// OpenEXR's standard attributes. What is zero or NULL is not known and not written.
+struct orl_exr_view_attributes {
+    // worldToCamera (row vectors, left-handed, +z forward, y up, as OpenEXR defines it)
+    // and worldToNDC.
+    const struct orl_view *view;
+    double exposure_s, iso, aperture; // expTime in seconds, isoSpeed, aperture as f-number
+    double white_luminance;           // whiteLuminance: cd/m2 of RGB (1, 1, 1)
+    bool srgb_primaries;              // chromaticities of Rec. 709 / sRGB
+    const char *comments;
+};
+
+// Both lossless: ZIP packs rows of renderings and layers well, PIZ grainy photographs.
+enum orl_exr_compression { ORL_EXR_ZIP, ORL_EXR_PIZ };
+
 struct orl_exr_params {
     int width, height;
     struct orl_exr_channel channels[ORL_EXR_CHANNELS_MAX];
     int channel_count;
-    // Standard attributes, written when set: worldToCamera (row vectors, left-handed, +z
-    // forward, y up, as OpenEXR defines it), worldToNDC.
-    const struct orl_view *view;
-    double exposure_s, iso, aperture; // 0: not written
-    bool srgb_primaries;              // chromaticities of Rec. 709 / sRGB
-    const char *comments;             // NULL: not written
+    enum orl_exr_compression compression;
+    struct orl_exr_view_attributes attributes;
 };
 
-// Scanlines, ZIP. Written whole or not at all.
+// Adds the interleaved channel `index` of an F32 image, which must outlive params, under
+// this name. False when there is no room or the name is too long.
+bool orl_exr_add_channel(struct orl_exr_params *params, const char *name, bool half,
+                         const struct orl_image *image, int index);
+// Scanlines. Written whole or not at all.
 enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
                               const struct orl_exr_params *params) ORL_CHECK_RESULT;
 // Reads `count` named channels into an interleaved float image (at most 4).

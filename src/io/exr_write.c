@@ -1,4 +1,4 @@
-// Writing OpenEXR: one part, scanlines, ZIP.
+// Writing OpenEXR: one part, scanlines, ZIP or PIZ.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,7 +81,8 @@ static exr_attr_m44f_t world_to_ndc(const struct orl_view *view)
 
 // --- header ---
 
-static exr_result_t set_attributes(exr_context_t context, const struct orl_exr_params *params)
+static exr_result_t set_attributes(exr_context_t context,
+                                   const struct orl_exr_view_attributes *params)
 {
     exr_result_t code = exr_attr_set_string(context, 0, "software", "Oriel " ORL_VERSION);
     if (code == EXR_ERR_SUCCESS && params->view) {
@@ -96,7 +97,8 @@ static exr_result_t set_attributes(exr_context_t context, const struct orl_exr_p
         double value;
     } numbers[] = {{"expTime", params->exposure_s},
                    {"isoSpeed", params->iso},
-                   {"aperture", params->aperture}};
+                   {"aperture", params->aperture},
+                   {"whiteLuminance", params->white_luminance}};
     for (size_t i = 0; i < ORL_COUNT(numbers) && code == EXR_ERR_SUCCESS; i++)
         if (numbers[i].value > 0)
             code = exr_attr_set_float(context, 0, numbers[i].name, (float)numbers[i].value);
@@ -117,7 +119,9 @@ static exr_result_t write_header(exr_context_t context, const struct orl_exr_par
     exr_result_t code = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(context, part, params->width, params->height,
-                                                   EXR_COMPRESSION_ZIP);
+                                                   params->compression == ORL_EXR_PIZ
+                                                       ? EXR_COMPRESSION_PIZ
+                                                       : EXR_COMPRESSION_ZIP);
     for (int i = 0; i < params->channel_count && code == EXR_ERR_SUCCESS; i++) {
         const struct orl_exr_channel *channel = &params->channels[i];
         code = exr_add_channel(context, part, channel->name,
@@ -125,7 +129,7 @@ static exr_result_t write_header(exr_context_t context, const struct orl_exr_par
                                EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     }
     if (code == EXR_ERR_SUCCESS)
-        code = set_attributes(context, params);
+        code = set_attributes(context, &params->attributes);
     return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
 }
 
@@ -245,7 +249,24 @@ static bool params_valid(const struct orl_exr_params *params)
             find_channel(params, channel->name) != channel)
             return false;
     }
-    return !params->view || orl_camera_valid(&params->view->camera);
+    const struct orl_view *view = params->attributes.view;
+    return !view || orl_camera_valid(&view->camera);
+}
+
+bool orl_exr_add_channel(struct orl_exr_params *params, const char *name, bool half,
+                         const struct orl_image *image, int index)
+{
+    if (params->channel_count >= ORL_EXR_CHANNELS_MAX)
+        return false;
+    struct orl_exr_channel *channel = &params->channels[params->channel_count];
+    if (strlen(name) >= sizeof channel->name)
+        return false;
+    snprintf(channel->name, sizeof channel->name, "%s", name);
+    channel->half = half;
+    channel->data = image->f32 + index;
+    channel->stride = (size_t)image->channels;
+    params->channel_count++;
+    return true;
 }
 
 enum orl_result orl_exr_write(const struct orl_log *log, const char *path,

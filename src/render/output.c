@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "io/exr.h"
 #include "io/picture.h"
 
 static bool has_extension(const char *path, const char *extension)
@@ -20,32 +19,33 @@ bool orl_frame_can_write(const char *path)
     return has_extension(path, ".png") || has_extension(path, ".exr");
 }
 
-static void add_channel(struct orl_exr_params *exr, const char *name, bool half,
-                        const struct orl_image *image, int channel)
-{
-    struct orl_exr_channel *c = &exr->channels[exr->channel_count++];
-    snprintf(c->name, sizeof c->name, "%s", name);
-    c->half = half;
-    c->data = image->f32 + channel;
-    c->stride = (size_t)image->channels;
-}
-
 static enum orl_result write_exr(const struct orl_log *log, const char *path,
                                  const struct orl_view *view, const struct orl_frame *frame,
-                                 const struct orl_frame_layers *layers)
+                                 const struct orl_frame_output *output)
 {
     struct orl_exr_params exr = {.width = frame->color.width, .height = frame->color.height,
-                                 .view = view, .srgb_primaries = true};
-    static const char *const rgb[] = {"R", "G", "B"};
-    static const char *const xyz[] = {"normal.X", "normal.Y", "normal.Z"};
-    for (int i = 0; i < 3; i++)
-        add_channel(&exr, rgb[i], true, &frame->color, i);
-    if (layers->depth)
-        add_channel(&exr, "depth.Z", false, &frame->depth, 0);
-    for (int i = 0; layers->normal && i < 3; i++)
-        add_channel(&exr, xyz[i], true, &frame->normal, i);
-    if (layers->coverage)
-        add_channel(&exr, "coverage", true, &frame->coverage, 0);
+                                 .compression = output->compression,
+                                 .attributes = output->attributes};
+    exr.attributes.view = view;
+    exr.attributes.srgb_primaries = true;
+    const struct orl_frame_layers *layers = &output->layers;
+    bool half = !output->float_color;
+    const struct {
+        bool wanted;
+        const char *names[3];
+        bool half;
+        const struct orl_image *image;
+    } all[] = {
+        {true, {"R", "G", "B"}, half, &frame->color},
+        {layers->depth, {"depth.Z"}, false, &frame->depth},
+        {layers->normal, {"normal.X", "normal.Y", "normal.Z"}, half, &frame->normal},
+        {layers->coverage, {"coverage.Y"}, true, &frame->coverage},
+        {layers->confidence, {"confidence.Y"}, true, output->confidence},
+    };
+    for (size_t i = 0; i < ORL_COUNT(all); i++)
+        for (int c = 0; all[i].wanted && c < all[i].image->channels; c++)
+            ORL_REQUIRE(log, orl_exr_add_channel(&exr, all[i].names[c], all[i].half,
+                                                 all[i].image, c));
     return orl_exr_write(log, path, &exr);
 }
 
@@ -75,7 +75,7 @@ static void layer_picture(const struct orl_image *layer, bool is_depth, struct o
         depth_picture(layer, out);
     } else if (layer->channels == 1) {
         for (size_t i = 0; i < count; i++)
-            out->u8[i] = (uint8_t)lrintf(255 * layer->f32[i]);
+            out->u8[i] = (uint8_t)lrintf(255 * fminf(fmaxf(layer->f32[i], 0), 1));
     } else {
         // Normals: x right red, y up green, towards the viewer blue.
         for (size_t i = 0; i < count; i++) {
@@ -109,14 +109,16 @@ static enum orl_result write_layer(const struct orl_log *log, const char *path, 
 
 enum orl_result orl_frame_write(const struct orl_log *log, const char *path,
                                 const struct orl_view *view, const struct orl_frame *frame,
-                                const struct orl_frame_layers *layers)
+                                const struct orl_frame_output *output)
 {
+    const struct orl_frame_layers *layers = &output->layers;
+    ORL_REQUIRE(log, !layers->confidence || (output->confidence && output->confidence->data));
     if (has_extension(path, ".exr"))
-        return write_exr(log, path, view, frame, layers);
+        return write_exr(log, path, view, frame, output);
     if (!has_extension(path, ".png"))
         return orl_fail(log, ORL_ERR_ARGUMENT, "%s: must end in .png or .exr", path);
     struct orl_image srgb = {0};
-    enum orl_result result = orl_tone_srgb(log, &frame->color, &srgb);
+    enum orl_result result = orl_tone_apply(log, &frame->color, &output->tone, &srgb);
     if (result == ORL_OK)
         result = orl_png_write(log, path, &srgb);
     if (result == ORL_OK && layers->depth)
@@ -125,6 +127,8 @@ enum orl_result orl_frame_write(const struct orl_log *log, const char *path,
         result = write_layer(log, path, "normal", &frame->normal, false);
     if (result == ORL_OK && layers->coverage)
         result = write_layer(log, path, "coverage", &frame->coverage, false);
+    if (result == ORL_OK && layers->confidence)
+        result = write_layer(log, path, "confidence", output->confidence, false);
     orl_image_finish(&srgb);
     return result;
 }

@@ -1,28 +1,126 @@
-// Scene-linear light to what a screen shows.
-#include <math.h>
+#include "render/tone.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bridge/bridge.h"
+#include "core/color.h"
 #include "render/render.h"
 
-// IEC 61966-2-1.
-static float srgb_encode(float c)
+const struct orl_tone_info orl_tones[ORL_TONE_COUNT] = {
+    [ORL_TONE_SRGB] = {"srgb", "clips at white, as a photograph does", false},
+    [ORL_TONE_REINHARD] = {"reinhard", "compresses highlights up to a white point", false},
+    [ORL_TONE_FILMIC] = {"filmic", "film-like shoulder and toe (fit of ACES)", false},
+    [ORL_TONE_DRAGO] = {"drago", "adaptive logarithm, whole range of the picture", true},
+    [ORL_TONE_MANTIUK] = {"mantiuk", "contrast by contrast, whole range of the picture", true},
+};
+
+// Light beyond this is this: the sun in a picture must not drive sums to infinity.
+static const float light_max = 1e6f;
+
+enum orl_result orl_tone_find(const struct orl_log *log, const char *name,
+                              enum orl_tone_curve *curve)
 {
-    if (!(c > 0)) // also NaN
-        return 0;
-    if (c >= 1)
-        return 1;
-    return c <= 0.0031308f ? 12.92f * c : 1.055f * powf(c, 1 / 2.4f) - 0.055f;
+    char list[256] = "";
+    for (int i = 0; i < ORL_TONE_COUNT; i++) {
+        if (strcmp(orl_tones[i].name, name) == 0) {
+            *curve = (enum orl_tone_curve)i;
+            return ORL_OK;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, " %s", orl_tones[i].name);
+    }
+    return orl_fail(log, ORL_ERR_ARGUMENT, "tone curve %s is not known; there are:%s", name, list);
+}
+
+// --- curves: linear light in and out, 1 is white ---
+
+// Reinhard, Stark, Shirley and Ferwerda 2002, equation 4.
+static void reinhard(float rgb[3], float white)
+{
+    float l = orl_luminance(rgb);
+    if (!(l > 0))
+        return;
+    float scale = (1 + l / (white * white)) / (1 + l);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= scale;
+}
+
+// Narkowicz 2015, "ACES Filmic Tone Mapping Curve". The factor matches the exposure of
+// ACES, as he says.
+static float filmic(float x)
+{
+    x *= 0.6f;
+    return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
+}
+
+static void apply_curve(const struct orl_tone_params *params, float rgb[3])
+{
+    if (params->curve == ORL_TONE_REINHARD)
+        reinhard(rgb, (float)params->white);
+    else if (params->curve == ORL_TONE_FILMIC)
+        for (int c = 0; c < 3; c++)
+            rgb[c] = filmic(rgb[c]);
+}
+
+// NaN and negative values, of black or broken pixels, are 0.
+static float clean(float value)
+{
+    return value > 0 ? fminf(value, light_max) : 0;
+}
+
+// Light as the whole-picture operators give it, or as it was.
+static enum orl_result map_picture(const struct orl_log *log, const struct orl_image *linear,
+                                   enum orl_tone_curve curve, struct orl_image *mapped)
+{
+    struct orl_image cleaned;
+    enum orl_result result = orl_image_init(log, &cleaned, linear->width, linear->height, 3,
+                                            ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    size_t count = (size_t)linear->width * (size_t)linear->height * 3;
+    for (size_t i = 0; i < count; i++)
+        cleaned.f32[i] = clean(linear->f32[i]);
+    result = orl_bridge_tonemap(log, &cleaned,
+                                curve == ORL_TONE_DRAGO ? ORL_TONEMAP_DRAGO : ORL_TONEMAP_MANTIUK,
+                                mapped);
+    orl_image_finish(&cleaned);
+    return result;
+}
+
+enum orl_result orl_tone_apply(const struct orl_log *log, const struct orl_image *linear,
+                               const struct orl_tone_params *params, struct orl_image *srgb)
+{
+    memset(srgb, 0, sizeof *srgb);
+    ORL_REQUIRE(log, linear->type == ORL_PIXEL_F32 && linear->channels == 3 && linear->data);
+    ORL_REQUIRE(log, params->curve >= 0 && params->curve < ORL_TONE_COUNT && params->white > 0);
+    struct orl_image mapped = {0};
+    if (orl_tones[params->curve].whole_picture) {
+        enum orl_result result = map_picture(log, linear, params->curve, &mapped);
+        if (result != ORL_OK)
+            return result;
+    }
+    const float *light = mapped.data ? mapped.f32 : linear->f32;
+    enum orl_result result = orl_image_init(log, srgb, linear->width, linear->height, 3,
+                                            ORL_PIXEL_U8);
+    size_t count = result == ORL_OK ? (size_t)linear->width * (size_t)linear->height : 0;
+    float scale = (float)exp2(params->exposure_ev);
+    for (size_t i = 0; i < count; i++) {
+        float rgb[3];
+        for (size_t c = 0; c < 3; c++)
+            rgb[c] = clean(scale * light[3 * i + c]);
+        apply_curve(params, rgb);
+        for (size_t c = 0; c < 3; c++)
+            srgb->u8[3 * i + c] = (uint8_t)lrintf(255 * orl_srgb_encode(rgb[c]));
+    }
+    orl_image_finish(&mapped);
+    return result;
 }
 
 enum orl_result orl_tone_srgb(const struct orl_log *log, const struct orl_image *linear,
                               struct orl_image *srgb)
 {
-    ORL_REQUIRE(log, linear->type == ORL_PIXEL_F32);
-    enum orl_result result = orl_image_init(log, srgb, linear->width, linear->height,
-                                            linear->channels, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
-    size_t count = (size_t)linear->width * (size_t)linear->height * (size_t)linear->channels;
-    for (size_t i = 0; i < count; i++)
-        srgb->u8[i] = (uint8_t)lrintf(255 * srgb_encode(linear->f32[i]));
-    return ORL_OK;
+    return orl_tone_apply(log, linear, &(struct orl_tone_params){ORL_TONE_DEFAULTS}, srgb);
 }

@@ -6,7 +6,9 @@
 #include <OpenEXR/openexr.h>
 
 #include "core/memory.h"
+#include "core/process.h"
 #include "io/exr.h"
+#include "opencv_files.h"
 
 static char *dir, *file;
 
@@ -66,6 +68,26 @@ static void floats_come_back_exactly(void **state)
         assert_int_equal(back.width, image.width);
         assert_int_equal(back.height, image.height);
         assert_int_equal(back.channels, 3);
+        assert_memory_equal(back.f32, image.f32, orl_image_bytes(&image));
+        orl_image_finish(&image);
+        orl_image_finish(&back);
+    }
+}
+
+static void piz_is_lossless_too(void **state)
+{
+    (void)state;
+    static const char *const rgb[] = {"R", "G", "B"};
+    const int sizes[][2] = {{1, 1}, {7, 31}, {33, 32}, {64, 65}};
+    for (size_t i = 0; i < 2 * ORL_COUNT(sizes); i++) {
+        struct orl_image image = picture(sizes[i / 2][0], sizes[i / 2][1], 3), back;
+        bool half = i % 2 == 0;
+        for (size_t k = 0; half && k < orl_image_bytes(&image) / sizeof(float); k++)
+            image.f32[k] = (float)((int)k % 1024) / 512; // halves hold these exactly
+        struct orl_exr_params params = rgb_params(&image, half);
+        params.compression = ORL_EXR_PIZ;
+        assert_int_equal(orl_exr_write(NULL, file, &params), ORL_OK);
+        assert_int_equal(orl_exr_read(NULL, file, rgb, 3, &back), ORL_OK);
         assert_memory_equal(back.f32, image.f32, orl_image_bytes(&image));
         orl_image_finish(&image);
         orl_image_finish(&back);
@@ -165,12 +187,9 @@ static void camera_and_exposure_attributes(void **state)
     view.cam_from_world =
         orl_pose_look_at((double[]){1, -2, 3}, (double[]){0.2, 0.1, -0.5}, (double[]){0, -1, 0.2});
     struct orl_exr_params params = rgb_params(&image, true);
-    params.view = &view;
-    params.exposure_s = 0.004;
-    params.iso = 200;
-    params.aperture = 5.6;
-    params.srgb_primaries = true;
-    params.comments = "a comment";
+    params.attributes = (struct orl_exr_view_attributes){
+        .view = &view, .exposure_s = 0.004, .iso = 200, .aperture = 5.6, .white_luminance = 120,
+        .srgb_primaries = true, .comments = "a comment"};
     assert_int_equal(orl_exr_write(NULL, file, &params), ORL_OK);
 
     exr_context_t context;
@@ -194,6 +213,8 @@ static void camera_and_exposure_attributes(void **state)
     assert_float_equal(number, 200, 0);
     assert_int_equal(exr_attr_get_float(context, 0, "aperture", &number), EXR_ERR_SUCCESS);
     assert_float_equal(number, 5.6, 1e-6);
+    assert_int_equal(exr_attr_get_float(context, 0, "whiteLuminance", &number), EXR_ERR_SUCCESS);
+    assert_float_equal(number, 120, 0);
     exr_attr_chromaticities_t c;
     assert_int_equal(exr_attr_get_chromaticities(context, 0, "chromaticities", &c),
                      EXR_ERR_SUCCESS);
@@ -217,13 +238,121 @@ static void nothing_is_said_that_is_not_known(void **state)
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     assert_int_equal(exr_start_read(&context, file, &init), EXR_ERR_SUCCESS);
     static const char *const names[] = {"worldToCamera", "worldToNDC", "expTime",
-                                        "isoSpeed", "chromaticities", "comments"};
+                                        "isoSpeed", "whiteLuminance", "chromaticities",
+                                        "comments"};
     const exr_attribute_t *attribute;
     for (size_t i = 0; i < ORL_COUNT(names); i++)
         assert_int_not_equal(exr_get_attribute_by_name(context, 0, names[i], &attribute),
                              EXR_ERR_SUCCESS);
     exr_finish(&context);
     orl_image_finish(&image);
+}
+
+// --- other readers ---
+
+static struct orl_exr_params framed(const struct orl_image *color, const struct orl_image *depth,
+                                    const struct orl_view *view)
+{
+    struct orl_exr_params params = rgb_params(color, true);
+    params.attributes = (struct orl_exr_view_attributes){
+        .view = view, .exposure_s = 0.25, .iso = 400, .aperture = 8, .white_luminance = 100,
+        .srgb_primaries = true, .comments = "seen by others"};
+    assert_true(orl_exr_add_channel(&params, "depth.Z", false, depth, 0));
+    assert_false(orl_exr_add_channel(&params, "a name that is longer than any channel's", false,
+                                     depth, 0));
+    return params;
+}
+
+// OpenCV decodes with OpenEXR's C++ library.
+static void opencv_reads_the_same_colours(void **state)
+{
+    (void)state;
+    struct orl_image color = picture(37, 21, 3), depth = picture(37, 21, 1);
+    float *seen = orl_array(NULL, 37 * 21 * 3, sizeof *seen);
+    for (int compression = ORL_EXR_ZIP; compression <= ORL_EXR_PIZ; compression++) {
+        struct orl_exr_params params = framed(&color, &depth, NULL);
+        params.compression = (enum orl_exr_compression)compression;
+        assert_int_equal(orl_exr_write(NULL, file, &params), ORL_OK);
+        assert_true(test_opencv_read_rgb(file, 37, 21, seen));
+        for (int i = 0; i < 37 * 21 * 3; i++)
+            assert_float_equal(seen[i], color.f32[i], 1e-3 * fabsf(color.f32[i]) + 1e-7);
+    }
+    free(seen);
+    orl_image_finish(&color);
+    orl_image_finish(&depth);
+}
+
+static void keep_line(void *priv, const char *line)
+{
+    struct said *said = priv;
+    test_listen(said, ORL_LOG_INFO, line);
+}
+
+// False when the program is not installed.
+static bool ask(const char *const *argv, struct said *said)
+{
+    said->text[0] = '\0';
+    enum orl_result result = orl_process_run(
+        NULL, &(struct orl_process_params){.argv = argv, .line = keep_line, .line_priv = said},
+        NULL);
+    if (result == ORL_ERR_NOT_FOUND)
+        return false;
+    assert_int_equal(result, ORL_OK);
+    return true;
+}
+
+static void exrheader_sees_channels_and_attributes(void **state)
+{
+    (void)state;
+    struct orl_image color = picture(64, 32, 3), depth = picture(64, 32, 1);
+    struct orl_view view = {.camera = {64, 32, 70, 75, 30, 17}};
+    view.cam_from_world.r[0][0] = view.cam_from_world.r[1][1] = view.cam_from_world.r[2][2] = 1;
+    view.cam_from_world.t[1] = 2;
+    view.cam_from_world.t[2] = 5;
+    struct orl_exr_params params = framed(&color, &depth, &view);
+    assert_int_equal(orl_exr_write(NULL, file, &params), ORL_OK);
+    struct said said;
+    if (!ask((const char *const[]){"exrheader", file, NULL}, &said)) {
+        printf("skipped: exrheader (Debian's openexr) is not installed\n");
+        skip();
+    }
+    static const char *const lines[] = {
+        "depth.Z, 32-bit floating-point", "R, 16-bit floating-point", "zip, multi-scanline",
+        "expTime (type float): 0.25", "isoSpeed (type float): 400", "aperture (type float): 8",
+        "whiteLuminance (type float): 100", "red   (0.64 0.33)", "seen by others",
+        "software (type string): \"Oriel",
+        // y down to y up; translation in the last row
+        "worldToCamera (type m44f):\n   (1 0 0 0\n    0 -1 0 0\n    0 0 1 0\n    0 -2 5 1)"};
+    for (size_t i = 0; i < ORL_COUNT(lines); i++)
+        if (!strstr(said.text, lines[i]))
+            fail_msg("exrheader does not say \"%s\" but:\n%s", lines[i], said.text);
+    orl_image_finish(&color);
+    orl_image_finish(&depth);
+}
+
+static void imagemagick_reads_the_same_colours(void **state)
+{
+    (void)state;
+    struct orl_image color = picture(8, 4, 3), depth = picture(8, 4, 1);
+    for (int i = 0; i < 8 * 4 * 3; i++)
+        color.f32[i] = (float)(i + 1) / 128;
+    struct orl_exr_params params = framed(&color, &depth, NULL);
+    assert_int_equal(orl_exr_write(NULL, file, &params), ORL_OK);
+    struct said said;
+    const char *const formats[] = {"sh", "-c", "convert -list format | grep EXR || true", NULL};
+    if (!ask(formats, &said) || !strstr(said.text, "EXR")) {
+        printf("skipped: no ImageMagick that reads EXR (Debian's libmagickcore-6.q16-6-extra)\n");
+        skip();
+    }
+    const char *const argv[] = {"convert", file, "-format",
+                                "%[fx:p{5,2}.r] %[fx:p{5,2}.g] %[fx:p{5,2}.b]\n", "info:", NULL};
+    assert_true(ask(argv, &said));
+    double rgb[3];
+    assert_int_equal(sscanf(said.text, "%lf %lf %lf", &rgb[0], &rgb[1], &rgb[2]), 3);
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(rgb[c], color.f32[3 * (2 * 8 + 5) + c], 2e-4);
+    orl_image_finish(&color);
+    orl_image_finish(&depth);
 }
 
 // --- files of others ---
@@ -360,11 +489,15 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(floats_come_back_exactly),
+        cmocka_unit_test(piz_is_lossless_too),
         cmocka_unit_test(halves_round_and_clamp),
         cmocka_unit_test(chunks_that_hardly_compress),
         cmocka_unit_test(layers_and_channel_choice),
         cmocka_unit_test(camera_and_exposure_attributes),
         cmocka_unit_test(nothing_is_said_that_is_not_known),
+        cmocka_unit_test(opencv_reads_the_same_colours),
+        cmocka_unit_test(exrheader_sees_channels_and_attributes),
+        cmocka_unit_test(imagemagick_reads_the_same_colours),
         cmocka_unit_test(tiles_and_unsigned_integers),
         cmocka_unit_test(not_exr),
         cmocka_unit_test(every_truncation_is_an_error),

@@ -1,0 +1,14 @@
+// The sRGB transfer functions (IEC 61966-2-1).
+#ifndef ORL_CORE_COLOR_H
+#define ORL_CORE_COLOR_H
+
+#include "core/common.h"
+
+// Linear light to an sRGB value, both 1 at white; clamped to [0, 1], NaN is 0.
+float orl_srgb_encode(float linear);
+// The way back, for any value from 0 on.
+float orl_srgb_decode(float encoded);
+// Luminance of linear Rec. 709 colour.
+float orl_luminance(const float rgb[3]);
+
+#endif
