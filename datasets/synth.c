@@ -50,6 +50,9 @@ enum orl_result orl_synth_check(const struct orl_log *log, const struct orl_synt
         if (!(fabs(p->exposures_ev[i]) <= 12))
             return orl_fail(log, ORL_ERR_ARGUMENT, "exposure %g EV: must be from -12 to 12",
                             p->exposures_ev[i]);
+    if (!(p->contrast_ev >= 0 && p->contrast_ev <= 16))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "contrast %g EV: must be from 0 to 16",
+                        p->contrast_ev);
     if (!(p->noise >= 0 && p->noise <= 0.5))
         return orl_fail(log, ORL_ERR_ARGUMENT, "noise %g: must be from 0 to 0.5", p->noise);
     if (!(p->vignette >= 0 && p->vignette <= 0.9))

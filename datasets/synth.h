@@ -30,6 +30,9 @@ struct orl_synth_params {
     // path belong to different series, no two photographs share a viewpoint.
     double exposures_ev[ORL_SYNTH_EXPOSURES_MAX]; // [-12, 12], 0: as the eye would
     int exposure_count;    // 0: all at 0 EV
+    // A sun this / 4 stops stronger, and the passage and the far side of the square up to
+    // this many stops darker; [0, 16].
+    double contrast_ev;
     double noise;          // sensor noise: standard deviation at white, linear, [0, 0.5]
     enum orl_synth_response response;
     double vignette;       // light lost in the corners, fraction, [0, 0.9]

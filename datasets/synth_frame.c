@@ -17,13 +17,15 @@ struct frame_params {
     float camera[4];
     int32_t size[4];
     uint32_t seed[4];
+    float light[4];
 };
-_Static_assert(sizeof(struct frame_params) == 112, "std140");
+_Static_assert(sizeof(struct frame_params) == 128, "std140");
 
 struct orl_synth {
     struct orl_gpu *gpu;
     int width, height;
     uint32_t seed;
+    double contrast_ev;
     struct orl_prog *cone, *frame;
     struct orl_tex *start, *radiance, *truth;
 };
@@ -48,7 +50,7 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
     if (!synth)
         return ORL_ERR_MEMORY;
     *synth = (struct orl_synth){.gpu = gpu, .width = params->width, .height = params->height,
-                                .seed = params->seed};
+                                .seed = params->seed, .contrast_ev = params->contrast_ev};
     int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
     const size_t block = sizeof(struct frame_params);
     result = orl_prog_create(gpu, "synth_cone.comp", NULL, block, &synth->cone);
@@ -90,6 +92,7 @@ static struct frame_params params_of(const struct orl_synth *synth, const struct
                    (float)view->camera.cy},
         .size = {synth->width, synth->height, 0, synth->height},
         .seed = {synth->seed * 0x9e3779b9u},
+        .light = {(float)synth->contrast_ev},
     };
     double eye[3];
     orl_pose_centre(&view->cam_from_world, eye);

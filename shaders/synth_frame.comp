@@ -91,7 +91,7 @@ void main()
             centre = hit;
         float footprint = hit.t / camera.x;
         if (hit.t < SKY_T)
-            sum += radiance(hit.n, material_at(hit.p, hit.n, footprint), hit.light);
+            sum += radiance(hit.p, hit.n, material_at(hit.p, hit.n, footprint), hit.light);
         else
             sum += sky(ray);
     }

@@ -61,13 +61,23 @@ vec2 light_at(vec3 p, vec3 n)
     return vec2(sunlight(p, n), openness(p, n));
 }
 
-vec3 radiance(vec3 n, Material m, vec2 light)
+// Where contrast darkens: the middle of the passage, and the far side of the square as
+// under a black cloud. 0 to 1, without edges of its own.
+float deep_shade(vec3 p)
+{
+    float passage = smoothstep(0.0, 1.1, min(-p.z, p.z + 2.2)) * fall(1.35, 1.6, abs(p.x)) *
+                    fall(4.6, 5.0, p.y);
+    return max(passage, smoothstep(7.0, 18.0, -p.z));
+}
+
+vec3 radiance(vec3 p, vec3 n, Material m, vec2 light)
 {
     vec3 bent = normalize(n + m.bump - n * dot(n, m.bump));
     float open = light.y;
-    vec3 sum = SUN * max(dot(bent, SUN_DIRECTION), 0.0) * light.x +
+    float sun = exp2(0.25 * view_light.x), shade = exp2(-view_light.x * deep_shade(p));
+    vec3 sum = sun * SUN * max(dot(bent, SUN_DIRECTION), 0.0) * light.x +
                SKY_LIGHT * open * (0.55 + 0.45 * bent.y) +
                GROUND_LIGHT * (0.3 + 0.7 * open) * (0.5 - 0.5 * bent.y) +
                0.04 * SUN * (1.0 - open) * open;
-    return m.albedo * sum;
+    return m.albedo * sum * shade;
 }

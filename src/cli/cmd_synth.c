@@ -87,6 +87,8 @@ int cmd_synth(int argc, char **argv)
         {"seed", ARG_INT, &seed, "N", "another set of cameras and stones (1)", 0, INT32_MAX},
         {"exposures", ARG_LIST, &exposures, "EV,..",
          "exposures, taken in turn, each photograph one (0)", 0, 0},
+        {"contrast", ARG_NUMBER, &params.contrast_ev, "EV",
+         "deepens the shade by this many stops, and strengthens the sun, from 0 to 16 (0)", 0, 16},
         {"noise", ARG_NUMBER, &params.noise, "SIGMA",
          "sensor noise at white, linear, from 0 to 0.5 (0)", 0, 0.5},
         {"response", ARG_STRING, &response, "NAME",
