@@ -15,6 +15,8 @@ layout(std430, binding = 0) readonly buffer photo_list {
 layout(binding = 0) uniform sampler2DArray photo_color;
 layout(binding = 1) uniform sampler2DArray photo_depth; // z, 0: none
 
+const float SHARPEN_MAX = 1.5;
+
 // Where a point of the view's camera frame lies in photograph `i`: pixel coordinates and z
 // in its frame. False behind it or outside.
 bool photo_project(int i, vec3 p, out vec2 pixel, out float z)
@@ -94,12 +96,17 @@ vec4 photo_bicubic(int i, vec2 pixel, float mip)
 vec4 photo_sample(int i, vec2 pixel, float mip)
 {
     vec4 texel = photo_bilinear(i, pixel, mip);
-    // Near texels without trust the negative lobes would divide by next to nothing.
-    if (flags.y == 1 && texel.a > 0.1)
-        texel = mix(texel, photo_bicubic(i, pixel, mip), smoothstep(0.1, 0.4, texel.a));
     if (!(texel.a > 0.0))
         return vec4(0.0);
-    return vec4(texel.rgb / (texel.a * ORL_RADIANCE_SCALE) * photos[i].gain.rgb, texel.a);
+    vec3 color = texel.rgb / texel.a;
+    if (flags.y == 1) {
+        // Where contrasts are high, or trust falls, the negative lobes of the sharper filter
+        // ring far below black: it may change what is there by a factor, no more.
+        vec4 sharp = photo_bicubic(i, pixel, mip);
+        vec3 sharper = sharp.rgb / max(sharp.a, 0.25 * texel.a);
+        color = clamp(sharper, color / SHARPEN_MAX, color * SHARPEN_MAX);
+    }
+    return vec4(color / ORL_RADIANCE_SCALE * photos[i].gain.rgb, texel.a);
 }
 #else
 vec4 photo_sample(int i, vec2 pixel, float mip)

@@ -1,4 +1,5 @@
 // Photographs and their depth maps on the device, within a budget.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -104,12 +105,18 @@ static struct slot_size plan(const struct orl_log *log, size_t budget, int layer
     return size;
 }
 
+// Stops by which a photograph is brighter than the scene's middle exposure.
+static float photo_ev(const struct orl_photo *photo)
+{
+    return -log2f(photo->gain[0] * photo->gain[1] * photo->gain[2]) / 3;
+}
+
 // Exposures of the photographs in use, for those that tell nothing better apart.
 static void find_exposures(struct photos *photos)
 {
     bool first = true;
     for (size_t i = 0; i < photos->scene->photo_count; i++) {
-        float ev = (float)photos->scene->photos[i].exposure_ev;
+        float ev = photo_ev(&photos->scene->photos[i]);
         if (!photos->states[i].usable)
             continue;
         photos->ev_darkest = first || ev < photos->ev_darkest ? ev : photos->ev_darkest;
@@ -239,7 +246,7 @@ static enum orl_result make_radiance(const struct orl_log *log, const struct pho
     const struct orl_scene *scene = photos->scene;
     const struct orl_photo *photo = &scene->photos[index];
     struct orl_photo_response response = {
-        .sensor = &photos->sensor, .clips = true, .ev = (float)photo->exposure_ev,
+        .sensor = &photos->sensor, .clips = true, .ev = photo_ev(photo),
         .linear = photo->response >= 0 ? scene->responses[photo->response].linear : NULL,
         .centre = {(float)photo->view.camera.cx, (float)photo->view.camera.cy},
         .ev_darkest = photos->ev_darkest, .ev_brightest = photos->ev_brightest,

@@ -30,7 +30,7 @@ struct orl_photo_response {
     float vignette[3];          // as of struct orl_photo
     float centre[2];            // of vignetting: the principal point, pixels of the image
     bool clips;                 // false: values above 1 are as good as any (linear files)
-    float ev;                   // exposure, relative to the scene's middle
+    float ev;                   // exposure in stops, relative to the scene's middle
     float ev_darkest, ev_brightest; // of all photographs of the scene
 };
 

@@ -1,0 +1,99 @@
+#include "hdr/hdr.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "hdr/internal.h"
+
+enum orl_result orl_hdr_merge_find(const struct orl_log *log, const char *name,
+                                   enum orl_hdr_merge *merge)
+{
+    static const char *const names[ORL_HDR_MERGE_COUNT] = {"fused", "series"};
+    for (int i = 0; i < ORL_HDR_MERGE_COUNT; i++) {
+        if (strcmp(names[i], name) == 0) {
+            *merge = (enum orl_hdr_merge)i;
+            return ORL_OK;
+        }
+    }
+    return orl_fail(log, ORL_ERR_ARGUMENT, "merge %s is not known; there are: fused series", name);
+}
+
+// Exposures of the photographs in use, in stops.
+static double exposure_range(const struct orl_scene *scene, const bool *use)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        if (use ? !use[i] : scene->photos[i].test)
+            continue;
+        low = fmin(low, scene->photos[i].exposure_ev);
+        high = fmax(high, scene->photos[i].exposure_ev);
+    }
+    return high - low;
+}
+
+enum orl_result orl_hdr_create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                               const struct orl_hdr_params *params, struct orl_hdr **out)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    *out = NULL;
+    ORL_REQUIRE(log, params->samples >= 1 && params->samples <= 4);
+    struct orl_hdr *hdr = orl_array(log, 1, sizeof *hdr);
+    if (!hdr)
+        return ORL_ERR_MEMORY;
+    hdr->gpu = gpu;
+    hdr->scene = scene;
+    hdr->params = *params;
+    if (!(exposure_range(scene, params->use) > 0.5))
+        orl_logf(log, ORL_LOG_WARNING,
+                 "%s: the photographs have one exposure: what it clips stays clipped", scene->dir);
+    struct orl_renderer_params renderer = {.use = params->use, .radiance = true,
+                                           .sensor = &params->sensor,
+                                           .max_vram_bytes = params->max_vram_bytes};
+    enum orl_result result =
+        params->merge == ORL_HDR_FUSED ? orl_renderer_create(gpu, scene, &renderer, &hdr->fused)
+                                       : orl_series_init(gpu, scene, params, &hdr->series);
+    if (result == ORL_OK)
+        *out = hdr;
+    else
+        orl_hdr_destroy(&hdr);
+    return result;
+}
+
+void orl_hdr_destroy(struct orl_hdr **handle)
+{
+    struct orl_hdr *hdr = *handle;
+    if (!hdr)
+        return;
+    orl_renderer_destroy(&hdr->fused);
+    orl_series_finish(&hdr->series);
+    free(hdr);
+    *handle = NULL;
+}
+
+static enum orl_result draw(struct orl_hdr *hdr, const struct orl_view *view, const bool *skip,
+                            struct orl_frame *frame)
+{
+    if (hdr->fused)
+        return orl_renderer_draw(hdr->fused, view, &hdr->params.render, skip, frame);
+    return orl_series_draw(orl_gpu_log(hdr->gpu), &hdr->series, &hdr->params, view, skip, frame);
+}
+
+enum orl_result orl_hdr_draw(struct orl_hdr *hdr, const struct orl_view *view, const bool *skip,
+                             struct orl_frame *frame)
+{
+    int samples = hdr->params.samples;
+    if (samples == 1)
+        return draw(hdr, view, skip, frame);
+    struct orl_view large = *view;
+    struct orl_frame fine = {0};
+    large.camera = orl_camera_resized(&view->camera, samples * view->camera.width,
+                                      samples * view->camera.height);
+    memset(frame, 0, sizeof *frame);
+    enum orl_result result = draw(hdr, &large, skip, &fine);
+    if (result == ORL_OK)
+        result = orl_frame_reduce(orl_gpu_log(hdr->gpu), &fine, samples, frame);
+    orl_frame_finish(&fine);
+    return result;
+}
