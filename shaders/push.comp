@@ -2,22 +2,35 @@
 // the four nearest coarser pixels whose disc they lie in (Airieau 2012, 5.1).
 // One invocation takes the four fine pixels around a corner where four coarse pixels meet:
 // those are the bilinear neighbours of all four, so they are read and prepared once.
+// LAST: the finest level, which comes out as depth and normal at pixel centres.
 #define BLOCK_PYRAMID
 #include "include/render_blocks.h"
 #include "include/octahedron.glsl"
 #include "include/surfel.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(rgba32f, binding = 0) uniform image2D fine_a;
-layout(rgba32f, binding = 1) writeonly uniform image2D fine_b;
-layout(rgba32f, binding = 2) readonly uniform image2D coarse_a;
-layout(rgba32f, binding = 3) readonly uniform image2D coarse_b;
+layout(rgba32f, binding = 0) readonly uniform image2D coarse_a;
+layout(rg32ui, binding = 1) readonly uniform uimage2D coarse_b;
+#ifdef LAST
+layout(rgba32ui, binding = 2) readonly uniform uimage2D splats;
+layout(r32f, binding = 3) writeonly uniform image2D depth_out;     // 0: none
+layout(rgba16f, binding = 4) writeonly uniform image2D normal_out; // w: 1 on a splat
+#else
+layout(rgba32f, binding = 2) uniform image2D fine_a;
+layout(rg32ui, binding = 3) writeonly uniform uimage2D fine_b;
+#endif
 
-// centre: of the discs, level 0 pixels; ray: to them, at unit depth.
-void fill(ivec2 at, vec4 own, surfel disc[4], vec2 centre[4], vec2 ray[4], vec4 weight)
+vec2 camera_ray(vec2 pixel)
 {
-    vec2 target = level_centre(at, level.z);
-    vec2 target_ray = (target - camera.zw) / camera.xy;
+    return (pixel - camera.zw) / camera.xy;
+}
+
+// What the discs put into the pixel whose centre is `target`, given its own near depth
+// (0: empty); no surfel where they leave it alone. centre: of the discs, level 0 pixels;
+// ray: to them, at unit depth.
+surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 ray[4], vec4 weight)
+{
+    vec2 target_ray = camera_ray(target);
     float front = 1e38, front_far = 0.0;
     bool hit[4];
     for (int i = 0; i < 4; i++) {
@@ -27,15 +40,13 @@ void fill(ivec2 at, vec4 own, surfel disc[4], vec2 centre[4], vec2 ray[4], vec4 
         // centre, as EWA's low-pass filter does: otherwise slanted surfaces are full of
         // pinholes. It hides nothing there.
         vec2 off = centre[i] - target;
-        bool closes = own.w <= 0.0 && dot(off, off) <= SURFEL_MIN_RADIUS_PX * SURFEL_MIN_RADIUS_PX;
+        bool closes = own_near <= 0.0 &&
+                      dot(off, off) <= SURFEL_MIN_RADIUS_PX * SURFEL_MIN_RADIUS_PX;
         hit[i] = disc[i].radius > 0.0 && depth > 0.0 && (inside || closes);
         bool nearer = hit[i] && disc[i].near < front;
         front = nearer ? disc[i].near : front;
         front_far = nearer ? disc[i].far : front_far;
     }
-    // A pixel with a surface of its own keeps it unless a nearer disc hides it.
-    if (front_far == 0.0 || (own.w > 0.0 && own.x <= front_far))
-        return;
     surfel sum = surfel(front, front_far, 0.0, 0.0, vec3(0.0), vec2(0.0));
     float total = 0.0;
     for (int i = 0; i < 4; i++) {
@@ -47,14 +58,16 @@ void fill(ivec2 at, vec4 own, surfel disc[4], vec2 centre[4], vec2 ray[4], vec4 
         sum.displacement += w * (centre[i] - target);
         total += w;
     }
+    // A pixel with a surface of its own keeps it unless a nearer disc hides it.
+    if (total == 0.0 || (own_near > 0.0 && own_near <= front_far))
+        return NO_SURFEL;
     float scale = 1.0 / total;
     sum.depth *= scale;
     sum.radius *= scale;
     sum.displacement *= scale;
-    if (!(dot(sum.normal, sum.normal) > 1e-12 * total * total))
-        sum.normal = vec3(0.0, 0.0, -1.0);
-    imageStore(fine_a, at, surfel_pack_a(sum));
-    imageStore(fine_b, at, surfel_pack_b(sum));
+    if (!(dot(sum.normal, sum.normal) > 1e-12))
+        sum.normal = NO_SURFEL.normal;
+    return sum;
 }
 
 void main()
@@ -65,16 +78,12 @@ void main()
         return;
     surfel disc[4];
     vec2 centre[4], ray[4];
-    vec4 own[4];
-    float least = 1e38; // depth up to which a pixel's own surface is certainly not hidden
     for (int i = 0; i < 4; i++) {
         ivec2 from = corner + ivec2(i & 1, i >> 1);
         // Outside: zero, thus empty.
         disc[i] = surfel_unpack(imageLoad(coarse_a, from), imageLoad(coarse_b, from));
         centre[i] = level_centre(from, level.z + 1) + disc[i].displacement;
-        ray[i] = (centre[i] - camera.zw) / camera.xy;
-        own[i] = imageLoad(fine_a, 2 * corner + 1 + ivec2(i & 1, i >> 1));
-        least = disc[i].radius > 0.0 ? min(least, disc[i].far) : least;
+        ray[i] = camera_ray(centre[i]);
     }
     for (int i = 0; i < 4; i++) {
         ivec2 at = 2 * corner + 1 + ivec2(i & 1, i >> 1);
@@ -82,8 +91,28 @@ void main()
                     : i == 1 ? vec4(0.1875, 0.5625, 0.0625, 0.1875)
                     : i == 2 ? vec4(0.1875, 0.0625, 0.5625, 0.1875)
                              : vec4(0.0625, 0.1875, 0.1875, 0.5625);
-        if (all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level.xy)) &&
-            !(own[i].w > 0.0 && own[i].x <= least))
-            fill(at, own[i], disc, centre, ray, weight);
+        vec2 target = level_centre(at, level.z);
+#ifdef LAST
+        surfel own = surfel_unpack_splat(imageLoad(splats, at));
+        surfel s = filled(target, own.near, disc, centre, ray, weight);
+        bool kept = s.radius == 0.0;
+        if (kept)
+            s = own;
+        s.normal = normalize(s.normal);
+        bool inside;
+        float depth = surfel_depth_at(s, camera_ray(target + s.displacement), camera_ray(target),
+                                      inside);
+        bool any = s.radius > 0.0;
+        imageStore(depth_out, at, vec4(any ? depth : 0.0));
+        imageStore(normal_out, at, any ? vec4(s.normal, kept ? 1.0 : 0.0) : vec4(0.0));
+#else
+        float own_near = imageLoad(fine_a, at).x;
+        surfel s = filled(target, own_near, disc, centre, ray, weight);
+        // Stores outside the level do nothing.
+        if (s.radius > 0.0) {
+            imageStore(fine_a, at, surfel_pack_a(s));
+            imageStore(fine_b, at, surfel_pack_b(s));
+        }
+#endif
     }
 }

@@ -4,33 +4,28 @@
 #include "include/splat.glsl"
 
 layout(local_size_x = ORL_POINT_GROUP) in;
-layout(std430, binding = 1) readonly buffer pixel_depth {
-    uint depth_bits[];
-};
-layout(std430, binding = 2) buffer pixel_point {
-    uint point_index[]; // all ones: empty
-};
-layout(std430, binding = 3) buffer pixel_layer {
-    uvec2 layer[]; // points of the front layer, sum of their SPLAT_LAYER_STEPS behind it
-};
+layout(rgba32f, binding = 0) readonly uniform imageBuffer positions;
+layout(r32ui, binding = 1) readonly uniform uimage2D splat_depth;
+layout(r32ui, binding = 2) uniform uimage2D splat_index; // all ones: empty
+layout(r32ui, binding = 3) uniform uimage2D splat_layer;
 
 void main()
 {
     int point = int(gl_GlobalInvocationID.x);
     if (point >= size.z)
         return;
-    vec3 p = splat_camera_position(positions[point].xyz);
+    vec3 p = splat_camera_position(imageLoad(positions, point).xyz);
     vec2 pixel;
-    int index = splat_pixel(p, pixel);
-    if (index < 0)
+    if (!splat_pixel(p, pixel))
         return;
-    uint front_bits = depth_bits[index];
+    ivec2 at = ivec2(pixel);
+    uint front_bits = imageLoad(splat_depth, at).x;
     if (floatBitsToUint(p.z) == front_bits)
-        atomicMin(point_index[index], uint(size.w + point));
+        imageAtomicMin(splat_index, at, uint(size.w + point));
     float front = uintBitsToFloat(front_bits);
-    float behind = (p.z - front) / (front * options.y);
-    if (options.y > 0.0 && behind <= 1.0) {
-        atomicAdd(layer[index].x, 1u);
-        atomicAdd(layer[index].y, uint(behind * SPLAT_LAYER_STEPS));
+    float behind = p.z - front, thickness = front * options.y;
+    if (behind < thickness) {
+        uint steps = uint(behind / thickness * SPLAT_LAYER_STEPS);
+        imageAtomicAdd(splat_layer, at, SPLAT_LAYER_COUNT + steps);
     }
 }

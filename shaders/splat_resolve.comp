@@ -1,53 +1,52 @@
-// Level 0 of the pyramid, from the winning point of each pixel; runs once per chunk
-// of points and writes the pixels that this chunk won.
+// Levels 0 and 1 of the pyramid from the winning points, 2x2 pixels an invocation. Runs once
+// per chunk of points and writes the pixels that this chunk won; the last run leaves level 1
+// whole.
 #include "include/splat.glsl"
 #include "include/octahedron.glsl"
 #include "include/surfel.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(std430, binding = 2) readonly buffer pixel_point {
-    uint point_index[];
-};
-layout(std430, binding = 3) readonly buffer point_attributes {
-    uvec2 attributes[]; // octahedral normal (2x16 snorm), colour (8-bit sRGB)
-};
-layout(std430, binding = 4) readonly buffer pixel_layer {
-    uvec2 layer[];
-};
-layout(rgba32f, binding = 0) writeonly uniform image2D surfel_a;
-layout(rgba32f, binding = 1) writeonly uniform image2D surfel_b;
-layout(rgba8, binding = 2) writeonly uniform image2D splat_color;
+layout(rgba32f, binding = 0) readonly uniform imageBuffer positions;
+layout(rg32ui, binding = 1) readonly uniform uimageBuffer attributes; // normal, colour
+layout(r32ui, binding = 2) readonly uniform uimage2D splat_index;
+layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
+layout(rgba32ui, binding = 4) uniform uimage2D splats;
+layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
+layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
+
+surfel splat(ivec2 at, int point)
+{
+    vec4 position = imageLoad(positions, point);
+    vec3 p = splat_camera_position(position.xyz);
+    vec2 pixel;
+    splat_pixel(p, pixel);
+    uint word = imageLoad(splat_layer, at).x;
+    float count = float(word / SPLAT_LAYER_COUNT), steps = float(word % SPLAT_LAYER_COUNT);
+    float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
+    p *= 1.0 + behind * options.y;
+    vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
+    n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
+    float radius = position.w * options.x;
+    return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
+                  pixel - (vec2(at) + 0.5));
+}
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= size.x || at.y >= size.y)
+    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
+    if (2 * parent.x >= size.x || 2 * parent.y >= size.y)
         return;
-    uint winner = point_index[at.y * size.x + at.x];
-    uint first = uint(size.w);
-    if (winner < first || winner >= first + uint(size.z))
-        return;
-    uint point = winner - first;
-    vec3 p = splat_camera_position(positions[point].xyz);
-    vec2 pixel;
-    splat_pixel(p, pixel);
-
-    uvec2 mean = layer[at.y * size.x + at.x];
-    if (mean.x > 0u) {
-        float steps = (float(mean.y) / float(mean.x) + 0.5) / SPLAT_LAYER_STEPS;
-        p *= 1.0 + (mean.x > 1u ? steps * options.y : 0.0);
+    surfel child[4];
+    for (int i = 0; i < 4; i++) {
+        ivec2 at = 2 * parent + ivec2(i & 1, i >> 1);
+        uint point = imageLoad(splat_index, at).x - uint(size.w);
+        // What an earlier chunk won.
+        child[i] = size.w > 0 ? surfel_unpack_splat(imageLoad(splats, at)) : NO_SURFEL;
+        if (point < uint(size.z) && at.x < size.x && at.y < size.y)
+            child[i] = splat(at, int(point));
+        imageStore(splats, at, surfel_pack_splat(child[i]));
     }
-
-    surfel s;
-    s.radius = positions[point].w * options.x;
-    s.near = p.z;
-    s.far = p.z + s.radius;
-    s.depth = p.z;
-    vec3 n = octahedron_decode(unpackSnorm2x16(attributes[point].x));
-    n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
-    s.normal = dot(n, p) > 0.0 ? -n : n;
-    s.displacement = pixel - (vec2(at) + 0.5);
-    imageStore(surfel_a, at, surfel_pack_a(s));
-    imageStore(surfel_b, at, surfel_pack_b(s));
-    imageStore(splat_color, at, unpackUnorm4x8(attributes[point].y));
+    surfel merged = surfel_merge(child, 0);
+    imageStore(coarse_a, parent, surfel_pack_a(merged));
+    imageStore(coarse_b, parent, surfel_pack_b(merged));
 }

@@ -1,18 +1,28 @@
 // A pixel of the pull-push pyramid (Airieau 2012 section 5.1; Marroquim 2007).
-// surfel_a: nearest and farthest depth of the interval, depth of the centre, radius;
-// radius 0: empty. surfel_b: normal (octahedron, camera frame), displacement of the
-// projected centre from this pixel's centre, in level 0 pixels.
 const float SURFEL_MIN_RADIUS_PX = 1.5;
 
 struct surfel {
-    float near, far, depth, radius;
-    vec3 normal;
-    vec2 displacement;
+    float near, far;   // nearest and farthest depth of the interval
+    float depth;       // of the centre
+    float radius;      // 0: empty
+    vec3 normal;       // camera frame
+    vec2 displacement; // of the projected centre from this pixel's centre, level 0 pixels
 };
 
-surfel surfel_unpack(vec4 a, vec4 b)
+const surfel NO_SURFEL = surfel(0.0, 0.0, 0.0, 0.0, vec3(0.0, 0.0, -1.0), vec2(0.0));
+
+// Centre of a pixel of a level, in level 0 pixels.
+vec2 level_centre(ivec2 pixel, int level)
 {
-    return surfel(a.x, a.y, a.z, a.w, octahedron_decode(b.xy), b.zw);
+    return (vec2(pixel) + 0.5) * float(1 << level);
+}
+
+// --- as kept: from level 1 on in two texels, level 0 in one ---
+
+surfel surfel_unpack(vec4 a, uvec4 b)
+{
+    return surfel(a.x, a.y, a.z, a.w, octahedron_decode(unpackSnorm2x16(b.x)),
+                  unpackHalf2x16(b.y));
 }
 
 vec4 surfel_pack_a(surfel s)
@@ -20,16 +30,62 @@ vec4 surfel_pack_a(surfel s)
     return vec4(s.near, s.far, s.depth, s.radius);
 }
 
-vec4 surfel_pack_b(surfel s)
+uvec4 surfel_pack_b(surfel s)
 {
-    return vec4(octahedron_encode(s.normal), s.displacement);
+    return uvec4(packSnorm2x16(octahedron_encode(s.normal)), packHalf2x16(s.displacement), 0u,
+                 0u);
 }
 
-// Centre of a pixel of a level, in level 0 pixels.
-vec2 level_centre(ivec2 pixel, int level)
+// A splat's interval is [depth, depth + radius].
+surfel surfel_unpack_splat(uvec4 words)
 {
-    return (vec2(pixel) + 0.5) * float(1 << level);
+    float depth = uintBitsToFloat(words.x), radius = uintBitsToFloat(words.y);
+    return surfel(depth, depth + radius, depth, radius,
+                  octahedron_decode(unpackSnorm2x16(words.z)), unpackHalf2x16(words.w));
 }
+
+uvec4 surfel_pack_splat(surfel s)
+{
+    return uvec4(floatBitsToUint(s.depth), floatBitsToUint(s.radius),
+                 packSnorm2x16(octahedron_encode(s.normal)), packHalf2x16(s.displacement));
+}
+
+// --- pull ---
+
+// The 2x2 children of a pixel as one. Only those inside the interval of the nearest are
+// merged, the others are occluded (Airieau 2012, 5.1).
+surfel surfel_merge(surfel child[4], int child_level)
+{
+    float front = 1e38, front_far = 0.0;
+    for (int i = 0; i < 4; i++) {
+        bool nearer = child[i].radius > 0.0 && child[i].near < front;
+        front = nearer ? child[i].near : front;
+        front_far = nearer ? child[i].far : front_far;
+    }
+    surfel sum = surfel(front, front_far, 0.0, 0.0, vec3(0.0), vec2(0.0));
+    float count = 0.0;
+    for (int i = 0; i < 4; i++) {
+        float one = child[i].radius > 0.0 && child[i].near <= front_far ? 1.0 : 0.0;
+        vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(1 << child_level);
+        sum.far = max(sum.far, one * child[i].far);
+        sum.depth += one * child[i].depth;
+        sum.radius += one * child[i].radius;
+        sum.normal += one * child[i].normal;
+        sum.displacement += one * (child[i].displacement + offset);
+        count += one;
+    }
+    if (count == 0.0)
+        return NO_SURFEL;
+    float scale = 1.0 / count;
+    sum.depth *= scale;
+    sum.radius *= scale;
+    sum.displacement *= scale;
+    if (!(dot(sum.normal, sum.normal) > 1e-12))
+        sum.normal = NO_SURFEL.normal;
+    return sum;
+}
+
+// --- push ---
 
 // Depth at which the ray (target, 1) meets the plane of the disc whose centre lies on the
 // ray (centre, 1), within the disc's depth range; 0: behind the eye. `inside`: the ray meets

@@ -95,6 +95,7 @@ static void query_caps(struct orl_gpu_caps *caps)
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
     caps->max_storage_block = (size_t)block;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &caps->max_texture_size);
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &caps->max_buffer_texels);
     glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &caps->max_texture_layers);
     glGetIntegerv(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, &caps->max_texture_units);
 }

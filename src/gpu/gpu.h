@@ -22,6 +22,7 @@ struct orl_gpu_caps {
     bool software;               // a CPU renderer such as llvmpipe
     size_t max_storage_block;    // bytes of one shader storage binding
     int max_texture_size;        // pixels
+    int max_buffer_texels;       // of one buffer bound as an image
     int max_texture_layers;
     int max_texture_units;       // samplers of one compute shader
 };
@@ -89,6 +90,13 @@ void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int he
                         struct orl_tex *to, int layer);
 // Every channel of every layer of one level becomes 0.
 void orl_tex_clear(struct orl_tex *tex, int level);
+// Every texel of level 0 of a GL_R32UI texture becomes `word`.
+void orl_tex_fill(struct orl_tex *tex, uint32_t word);
+// A buffer seen as texels of `format` (GL_RGBA32F, GL_RG32UI, ...), to be bound as an image:
+// reads as storage do, but several times cheaper on software renderers. It has no memory of
+// its own; the buffer must outlive it and hold at most caps->max_buffer_texels texels.
+enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *buf, GLenum format,
+                                    struct orl_tex **out) ORL_CHECK_RESULT;
 // Fills the coarser levels of one layer (0 without layers) from its level 0.
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer);
 

@@ -179,6 +179,36 @@ void orl_tex_clear(struct orl_tex *tex, int level)
                     integer ? GL_UNSIGNED_INT : GL_FLOAT, NULL);
 }
 
+void orl_tex_fill(struct orl_tex *tex, uint32_t word)
+{
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
+    glClearTexImage(tex->id, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *buf, GLenum format,
+                                    struct orl_tex **out)
+{
+    *out = NULL;
+    struct orl_tex *tex = orl_array(gpu->log, 1, sizeof *tex);
+    if (!tex)
+        return ORL_ERR_MEMORY;
+    size_t texels = buf->size / texel_bytes(format);
+    tex->params = (struct orl_tex_params){.width = (int)texels, .height = 1, .levels = 1,
+                                          .format = format, .tag = buf->tag};
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &tex->id);
+    glTextureBuffer(tex->id, format, buf->id);
+    glObjectLabel(GL_TEXTURE, tex->id, -1, buf->tag);
+    gpu->live_texs++;
+    if (!orl_gpu_check_errors(gpu, buf->tag) || texels > (size_t)gpu->caps.max_buffer_texels) {
+        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no view of %zu texels on the device", buf->tag,
+                 texels);
+        orl_tex_destroy(gpu, &tex);
+        return ORL_ERR_GPU;
+    }
+    *out = tex;
+    return ORL_OK;
+}
+
 void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,
                         struct orl_tex *to, int layer)
 {

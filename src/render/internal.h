@@ -10,8 +10,9 @@
 
 // Points in chunks, so that no storage binding exceeds the device's limit.
 struct point_chunk {
-    struct orl_buf *positions;  // vec4: world xyz, radius
-    struct orl_buf *attributes; // uvec2: octahedral normal, colour
+    struct orl_buf *positions, *attributes;
+    struct orl_tex *position_texels;  // RGBA32F: world xyz, radius
+    struct orl_tex *attribute_texels; // RG32UI: octahedral normal, colour
     int first, count;
 };
 
@@ -19,7 +20,8 @@ enum { PYRAMID_LEVELS_MAX = 9 };
 
 // Depth of one view, rebuilt from the points: splat, pull, push.
 struct proxy {
-    struct orl_prog *splat_depth, *splat_index, *splat_resolve, *pull, *push, *output;
+    struct orl_prog *splat_depth, *splat_index, *splat_resolve, *pull, *push, *push_last, *support;
+    struct orl_prog *color;
     struct point_chunk *chunks;
     size_t chunk_count;
 };
@@ -27,12 +29,15 @@ struct proxy {
 // What the proxy writes for one picture size.
 struct proxy_target {
     int width, height, levels;
-    struct orl_buf *depth_bits, *point_index;      // one word per pixel
-    struct orl_buf *layer;                         // two: splat_index.comp
-    struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX];  // shaders/include/surfel.glsl
+    struct orl_tex *splat_depth;  // R32UI: bits of the nearest depth; all ones: empty
+    struct orl_tex *splat_index;  // R32UI: the nearest point; all ones: empty
+    struct orl_tex *splat_layer;  // R32UI: shaders/include/splat.glsl
+    struct orl_tex *splats;       // level 0 of the pyramid: shaders/include/surfel.glsl
+    struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // from level 1 on
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
-    struct orl_tex *splat_color;                   // sRGB; alpha 1 where a splat is
-    struct orl_tex *depth, *normal;                // z, 0: none; camera frame
+    struct orl_tex *pushed_depth; // before stray points are dropped
+    struct orl_tex *depth;        // R32F: z, 0: none
+    struct orl_tex *normal;       // RGBA16F: camera frame, 0: none; w: 1 where a splat shows
 };
 
 enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
@@ -50,6 +55,10 @@ struct proxy_options {
 };
 void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
                     const struct proxy_options *options, struct proxy_target *target);
+// Colours of the splats that show in a drawn target, linear, 1 as weight, into `color`
+// (GL_RGBA32F); other pixels stay as they are.
+void orl_proxy_color(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
+                     const struct proxy_target *target, struct orl_tex *color);
 
 // Work groups that cover width x height pixels.
 void orl_pixel_groups(int width, int height, unsigned groups[3]);
@@ -130,7 +139,7 @@ struct orl_renderer {
     struct photos photos;
     struct fill fill;
     struct gather gather;
-    struct orl_prog *points_color, *compose;
+    struct orl_prog *compose;
     struct proxy_target target;
     struct orl_tex *accumulated; // colour * weight, weight; composed in place
     struct orl_tex *trusted;     // of radiance: weight * trust, weight

@@ -59,6 +59,10 @@ static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points
     if (result == ORL_OK)
         result = orl_buf_create(gpu, "point attributes", count * sizeof *attributes, attributes,
                                 &chunk->attributes);
+    if (result == ORL_OK)
+        result = orl_tex_view_buffer(gpu, chunk->positions, GL_RGBA32F, &chunk->position_texels);
+    if (result == ORL_OK)
+        result = orl_tex_view_buffer(gpu, chunk->attributes, GL_RG32UI, &chunk->attribute_texels);
     free(positions);
     free(attributes);
     return result;
@@ -70,16 +74,18 @@ static enum orl_result upload_points(struct orl_gpu *gpu, const struct orl_point
     if (points->count > INT32_MAX)
         return orl_fail(orl_gpu_log(gpu), ORL_ERR_UNSUPPORTED, "%zu points are too many",
                         points->count);
-    size_t chunks = (points->count + CHUNK_POINTS - 1) / CHUNK_POINTS;
+    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels;
+    most = most < CHUNK_POINTS ? most : CHUNK_POINTS;
+    size_t chunks = (points->count + most - 1) / most;
     proxy->chunks = orl_array(orl_gpu_log(gpu), chunks, sizeof *proxy->chunks);
     if (!proxy->chunks)
         return ORL_ERR_MEMORY;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < chunks; i++) {
         struct point_chunk *chunk = &proxy->chunks[proxy->chunk_count++];
-        size_t first = i * CHUNK_POINTS, rest = points->count - first;
+        size_t first = i * most, rest = points->count - first;
         chunk->first = (int)first;
-        chunk->count = rest < CHUNK_POINTS ? (int)rest : CHUNK_POINTS;
+        chunk->count = (int)(rest < most ? rest : most);
         result = upload_chunk(gpu, points, chunk);
     }
     return result;
@@ -90,21 +96,23 @@ enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *poi
 {
     memset(proxy, 0, sizeof *proxy);
     const struct {
-        const char *file;
+        const char *file, *defines;
         size_t params_size;
         struct orl_prog **prog;
     } programs[] = {
-        {"splat_depth.comp", sizeof(struct splat_block), &proxy->splat_depth},
-        {"splat_index.comp", sizeof(struct splat_block), &proxy->splat_index},
-        {"splat_resolve.comp", sizeof(struct splat_block), &proxy->splat_resolve},
-        {"pull.comp", sizeof(struct pyramid_block), &proxy->pull},
-        {"push.comp", sizeof(struct pyramid_block), &proxy->push},
-        {"proxy_output.comp", sizeof(struct pyramid_block), &proxy->output},
+        {"splat_depth.comp", NULL, sizeof(struct splat_block), &proxy->splat_depth},
+        {"splat_index.comp", NULL, sizeof(struct splat_block), &proxy->splat_index},
+        {"splat_resolve.comp", NULL, sizeof(struct splat_block), &proxy->splat_resolve},
+        {"points_color.comp", NULL, sizeof(struct splat_block), &proxy->color},
+        {"pull.comp", NULL, sizeof(struct pyramid_block), &proxy->pull},
+        {"push.comp", NULL, sizeof(struct pyramid_block), &proxy->push},
+        {"push.comp", "LAST", sizeof(struct pyramid_block), &proxy->push_last},
+        {"support.comp", NULL, sizeof(struct pyramid_block), &proxy->support},
     };
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(programs); i++)
-        result = orl_prog_create(gpu, programs[i].file, NULL, programs[i].params_size,
-                                 programs[i].prog);
+        result = orl_prog_create(gpu, programs[i].file, programs[i].defines,
+                                 programs[i].params_size, programs[i].prog);
     if (result == ORL_OK)
         result = upload_points(gpu, points, proxy);
     if (result != ORL_OK)
@@ -115,51 +123,50 @@ enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *poi
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
 {
     for (size_t i = 0; i < proxy->chunk_count; i++) {
+        orl_tex_destroy(gpu, &proxy->chunks[i].position_texels);
+        orl_tex_destroy(gpu, &proxy->chunks[i].attribute_texels);
         orl_buf_destroy(gpu, &proxy->chunks[i].positions);
         orl_buf_destroy(gpu, &proxy->chunks[i].attributes);
     }
     free(proxy->chunks);
-    orl_prog_destroy(gpu, &proxy->splat_depth);
-    orl_prog_destroy(gpu, &proxy->splat_index);
-    orl_prog_destroy(gpu, &proxy->splat_resolve);
-    orl_prog_destroy(gpu, &proxy->pull);
-    orl_prog_destroy(gpu, &proxy->push);
-    orl_prog_destroy(gpu, &proxy->output);
+    struct orl_prog **const programs[] = {
+        &proxy->splat_depth, &proxy->splat_index, &proxy->splat_resolve, &proxy->color,
+        &proxy->pull, &proxy->push, &proxy->push_last, &proxy->support,
+    };
+    for (size_t i = 0; i < ORL_COUNT(programs); i++)
+        orl_prog_destroy(gpu, programs[i]);
     memset(proxy, 0, sizeof *proxy);
 }
 
 // Pyramid levels: enough for discs of some 2^8 pixels; finer than that no point cloud
-// made from photographs is.
+// made from photographs is. At least two: level 0 is made with level 1, and pushed from it.
 static int pyramid_levels(int width, int height)
 {
-    int levels = 1;
-    for (int side = width > height ? width : height; side > 1; side /= 2)
+    int levels = 2;
+    for (int side = width > height ? width : height; side > 2; side /= 2)
         levels++;
     return levels < PYRAMID_LEVELS_MAX ? levels : PYRAMID_LEVELS_MAX;
 }
 
-// Rounded up so that every level halves exactly and no pixel is lost.
-static int padded(int side, int levels)
-{
-    int unit = 1 << (levels - 1);
-    return (side + unit - 1) / unit * unit;
-}
-
 size_t orl_proxy_target_bytes(int width, int height)
 {
-    int levels = pyramid_levels(width, height);
-    size_t pyramid = (size_t)padded(width, levels) * (size_t)padded(height, levels) * 32;
-    return pyramid + pyramid / 3 + (size_t)width * (size_t)height * (16 + 4 + 4 + 8);
+    // Three words a pixel of splats, 16 bytes of level 0, two depths, a normal, and 24 bytes
+    // of the coarser levels.
+    return (size_t)width * (size_t)height * (12 + 16 + 8 + 8 + 24 / 3);
 }
 
+// Each level half as large as the one before, rounded up: loads outside read as empty.
 static enum orl_result make_pyramid(struct orl_gpu *gpu, struct proxy_target *t)
 {
-    int width = padded(t->width, t->levels), height = padded(t->height, t->levels);
     enum orl_result result = ORL_OK;
-    for (int i = 0; result == ORL_OK && i < t->levels; i++) {
-        struct orl_tex_params params = {.width = width >> i, .height = height >> i,
-                                        .format = GL_RGBA32F, .tag = "surfel pyramid"};
+    int width = t->width, height = t->height;
+    for (int i = 1; result == ORL_OK && i < t->levels; i++) {
+        width = (width + 1) / 2;
+        height = (height + 1) / 2;
+        struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA32F,
+                                        .tag = "surfel pyramid"};
         result = orl_tex_create(gpu, &params, &t->surfel_a[i]);
+        params.format = GL_RG32UI;
         if (result == ORL_OK)
             result = orl_tex_create(gpu, &params, &t->surfel_b[i]);
     }
@@ -175,27 +182,25 @@ enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, struct proxy_target
     target->width = width;
     target->height = height;
     target->levels = pyramid_levels(width, height);
-    size_t words = (size_t)width * (size_t)height * 4;
-    struct orl_tex_params params = {.width = width, .height = height};
+    const struct {
+        const char *tag;
+        GLenum format;
+        struct orl_tex **tex;
+    } rows[] = {
+        {"splat depth", GL_R32UI, &target->splat_depth},
+        {"splat index", GL_R32UI, &target->splat_index},
+        {"splat layer", GL_R32UI, &target->splat_layer},
+        {"splats", GL_RGBA32UI, &target->splats},
+        {"pushed depth", GL_R32F, &target->pushed_depth},
+        {"proxy depth", GL_R32F, &target->depth},
+        {"proxy normal", GL_RGBA16F, &target->normal},
+    };
     enum orl_result result = make_pyramid(gpu, target);
-    if (result == ORL_OK)
-        result = orl_buf_create(gpu, "splat depth", words, NULL, &target->depth_bits);
-    if (result == ORL_OK)
-        result = orl_buf_create(gpu, "splat index", words, NULL, &target->point_index);
-    if (result == ORL_OK)
-        result = orl_buf_create(gpu, "splat layer", 2 * words, NULL, &target->layer);
-    params.format = GL_RGBA8;
-    params.tag = "splat colour";
-    if (result == ORL_OK)
-        result = orl_tex_create(gpu, &params, &target->splat_color);
-    params.format = GL_R32F;
-    params.tag = "proxy depth";
-    if (result == ORL_OK)
-        result = orl_tex_create(gpu, &params, &target->depth);
-    params.format = GL_RGBA16F;
-    params.tag = "proxy normal";
-    if (result == ORL_OK)
-        result = orl_tex_create(gpu, &params, &target->normal);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
+        struct orl_tex_params params = {.width = width, .height = height,
+                                        .format = rows[i].format, .tag = rows[i].tag};
+        result = orl_tex_create(gpu, &params, rows[i].tex);
+    }
     if (result != ORL_OK)
         orl_proxy_target_finish(gpu, target);
     return result;
@@ -207,12 +212,12 @@ void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target)
         orl_tex_destroy(gpu, &target->surfel_a[i]);
         orl_tex_destroy(gpu, &target->surfel_b[i]);
     }
-    orl_buf_destroy(gpu, &target->depth_bits);
-    orl_buf_destroy(gpu, &target->point_index);
-    orl_buf_destroy(gpu, &target->layer);
-    orl_tex_destroy(gpu, &target->splat_color);
-    orl_tex_destroy(gpu, &target->depth);
-    orl_tex_destroy(gpu, &target->normal);
+    struct orl_tex **const textures[] = {
+        &target->splat_depth, &target->splat_index, &target->splat_layer, &target->splats,
+        &target->pushed_depth, &target->depth, &target->normal,
+    };
+    for (size_t i = 0; i < ORL_COUNT(textures); i++)
+        orl_tex_destroy(gpu, textures[i]);
     memset(target, 0, sizeof *target);
 }
 
@@ -236,68 +241,108 @@ static struct splat_block splat_params(const struct orl_view *view,
     return block;
 }
 
-static void splat(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                  const struct proxy_options *options, struct proxy_target *t)
+static void splat(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_block *block,
+                  struct proxy_target *t)
 {
-    struct splat_block block = splat_params(view, options);
-    orl_buf_fill(t->depth_bits, UINT32_MAX);
-    orl_buf_fill(t->point_index, UINT32_MAX);
-    orl_buf_fill(t->layer, 0);
-    orl_tex_clear(t->surfel_a[0], 0);
-    orl_tex_clear(t->splat_color, 0);
+    orl_tex_fill(t->splat_depth, UINT32_MAX);
+    orl_tex_fill(t->splat_index, UINT32_MAX);
+    orl_tex_fill(t->splat_layer, 0);
     struct orl_prog *const passes[] = {proxy->splat_depth, proxy->splat_index};
     for (size_t pass = 0; pass < ORL_COUNT(passes); pass++)
         for (size_t i = 0; i < proxy->chunk_count; i++) {
             const struct point_chunk *chunk = &proxy->chunks[i];
-            block.size[2] = chunk->count;
-            block.size[3] = chunk->first;
-            struct orl_dispatch d = {.prog = passes[pass], .params = &block,
-                                     .bufs = {{.buf = chunk->positions}, {.buf = t->depth_bits},
-                                              {.buf = t->point_index}, {.buf = t->layer}},
+            block->size[2] = chunk->count;
+            block->size[3] = chunk->first;
+            struct orl_dispatch d = {.prog = passes[pass], .params = block,
+                                     .images = {{chunk->position_texels, 0, GL_READ_ONLY},
+                                                {t->splat_depth, 0, GL_READ_WRITE},
+                                                {t->splat_index, 0, GL_READ_WRITE},
+                                                {t->splat_layer, 0, GL_READ_WRITE}},
                                      .groups = {orl_groups((size_t)chunk->count, ORL_POINT_GROUP)},
-                                     .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
+                                     .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
             orl_gpu_dispatch(gpu, &d);
         }
+}
+
+static void resolve(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_block *block,
+                    struct proxy_target *t)
+{
     for (size_t i = 0; i < proxy->chunk_count; i++) {
         const struct point_chunk *chunk = &proxy->chunks[i];
-        block.size[2] = chunk->count;
-        block.size[3] = chunk->first;
-        struct orl_dispatch d = {.prog = proxy->splat_resolve, .params = &block,
-                                 .bufs = {{.buf = chunk->positions}, {.buf = NULL},
-                                          {.buf = t->point_index}, {.buf = chunk->attributes},
-                                          {.buf = t->layer}},
-                                 .images = {{t->surfel_a[0], 0, GL_WRITE_ONLY},
-                                            {t->surfel_b[0], 0, GL_WRITE_ONLY},
-                                            {t->splat_color, 0, GL_WRITE_ONLY}},
+        block->size[2] = chunk->count;
+        block->size[3] = chunk->first;
+        struct orl_dispatch d = {.prog = proxy->splat_resolve, .params = block,
+                                 .images = {{chunk->position_texels, 0, GL_READ_ONLY},
+                                            {chunk->attribute_texels, 0, GL_READ_ONLY},
+                                            {t->splat_index, 0, GL_READ_ONLY},
+                                            {t->splat_layer, 0, GL_READ_ONLY},
+                                            {t->splats, 0, GL_READ_WRITE},
+                                            {t->surfel_a[1], 0, GL_WRITE_ONLY},
+                                            {t->surfel_b[1], 0, GL_WRITE_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-        orl_pixel_groups(t->width, t->height, d.groups);
+        orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }
 }
 
-// Level `written` from level `other`, by pull (other is finer) or push (coarser).
-static void pyramid_step(struct orl_gpu *gpu, struct orl_prog *prog, struct pyramid_block *block,
-                         struct proxy_target *t, int written, int other)
+static void set_level(struct pyramid_block *block, const struct orl_tex *written, int level)
 {
-    bool pull = other < written;
-    int fine = pull ? other : written, coarse = pull ? written : other;
-    const struct orl_tex *out = t->surfel_a[written];
-    block->level[0] = out->params.width;
-    block->level[1] = out->params.height;
-    block->level[2] = written;
-    GLenum fine_access = pull ? GL_READ_ONLY : GL_READ_WRITE;
-    GLenum coarse_access = pull ? GL_WRITE_ONLY : GL_READ_ONLY;
-    struct orl_dispatch d = {.prog = prog, .params = block,
-                             .images = {{t->surfel_a[fine], 0, fine_access},
-                                        {t->surfel_b[fine], 0, fine_access},
-                                        {t->surfel_a[coarse], 0, coarse_access},
-                                        {t->surfel_b[coarse], 0, coarse_access}},
+    block->level[0] = written->params.width;
+    block->level[1] = written->params.height;
+    block->level[2] = level;
+}
+
+static void pull(struct orl_gpu *gpu, const struct proxy *proxy, struct pyramid_block *block,
+                 struct proxy_target *t, int level)
+{
+    const struct orl_tex *coarse = t->surfel_a[level];
+    set_level(block, coarse, level);
+    struct orl_dispatch d = {.prog = proxy->pull, .params = block,
+                             .images = {{t->surfel_a[level - 1], 0, GL_READ_ONLY},
+                                        {t->surfel_b[level - 1], 0, GL_READ_ONLY},
+                                        {coarse, 0, GL_WRITE_ONLY},
+                                        {t->surfel_b[level], 0, GL_WRITE_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    if (pull)
-        orl_pixel_groups(out->params.width, out->params.height, d.groups);
-    else // one invocation per corner of the coarse level's pixels
-        orl_pixel_groups(t->surfel_a[coarse]->params.width + 1,
-                         t->surfel_a[coarse]->params.height + 1, d.groups);
+    orl_pixel_groups(coarse->params.width, coarse->params.height, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+}
+
+// Into `level` from the one above; level 0 comes out as `depth` and the normal.
+static void push(struct orl_gpu *gpu, const struct proxy *proxy, struct pyramid_block *block,
+                 struct proxy_target *t, int level, const struct orl_tex *depth)
+{
+    const struct orl_tex *coarse = t->surfel_a[level + 1];
+    struct orl_dispatch d = {.prog = level ? proxy->push : proxy->push_last, .params = block,
+                             .images = {{coarse, 0, GL_READ_ONLY},
+                                        {t->surfel_b[level + 1], 0, GL_READ_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_TEXTURE_FETCH_BARRIER_BIT};
+    if (level) {
+        d.images[2] = (struct orl_image_binding){t->surfel_a[level], 0, GL_READ_WRITE};
+        d.images[3] = (struct orl_image_binding){t->surfel_b[level], 0, GL_WRITE_ONLY};
+    } else {
+        d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY};
+        d.images[3] = (struct orl_image_binding){depth, 0, GL_WRITE_ONLY};
+        d.images[4] = (struct orl_image_binding){t->normal, 0, GL_WRITE_ONLY};
+    }
+    set_level(block, level ? t->surfel_a[level] : t->splats, level);
+    // One invocation per corner of the coarse level's pixels.
+    orl_pixel_groups(block->level[0] / 2 + 1, block->level[1] / 2 + 1, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+}
+
+static void drop_strays(struct orl_gpu *gpu, const struct proxy *proxy,
+                        struct pyramid_block *block, int least, struct proxy_target *t)
+{
+    set_level(block, t->depth, 0);
+    block->level[3] = least;
+    struct orl_dispatch d = {.prog = proxy->support, .params = block,
+                             .images = {{t->pushed_depth, 0, GL_READ_ONLY},
+                                        {t->depth, 0, GL_WRITE_ONLY},
+                                        {t->normal, 0, GL_WRITE_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_TEXTURE_FETCH_BARRIER_BIT};
+    orl_pixel_groups((t->width + 1) / 2, (t->height + 1) / 2, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }
 
@@ -306,32 +351,43 @@ static void pull_push(struct orl_gpu *gpu, const struct proxy *proxy, const stru
 {
     struct pyramid_block block = {.camera = {(float)view->camera.fx, (float)view->camera.fy,
                                              (float)view->camera.cx, (float)view->camera.cy}};
-    for (int i = 1; i < t->levels; i++)
-        pyramid_step(gpu, proxy->pull, &block, t, i, i - 1);
+    int least = (int)options->min_support;
+    for (int i = 2; i < t->levels; i++)
+        pull(gpu, proxy, &block, t, i);
     for (int i = t->levels - 2; i >= 0; i--)
-        pyramid_step(gpu, proxy->push, &block, t, i, i + 1);
-    block.level[0] = t->width;
-    block.level[1] = t->height;
-    block.level[2] = 0;
-    block.level[3] = (int)options->min_support;
-    struct orl_dispatch d = {.prog = proxy->output, .params = &block,
-                             .images = {{t->surfel_a[0], 0, GL_READ_ONLY},
-                                        {t->surfel_b[0], 0, GL_READ_ONLY},
-                                        {t->depth, 0, GL_WRITE_ONLY},
-                                        {t->normal, 0, GL_WRITE_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups(t->width, t->height, d.groups);
-    orl_gpu_dispatch(gpu, &d);
+        push(gpu, proxy, &block, t, i, least > 0 ? t->pushed_depth : t->depth);
+    if (least > 0)
+        drop_strays(gpu, proxy, &block, least, t);
 }
 
 void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
                     const struct proxy_options *options, struct proxy_target *target)
 {
+    struct splat_block block = splat_params(view, options);
     orl_pass_begin(gpu, "splat");
-    splat(gpu, proxy, view, options, target);
+    splat(gpu, proxy, &block, target);
     orl_pass_end(gpu);
     orl_pass_begin(gpu, "pull-push");
+    resolve(gpu, proxy, &block, target);
     pull_push(gpu, proxy, view, options, target);
     orl_pass_end(gpu);
+}
+
+void orl_proxy_color(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
+                     const struct proxy_target *t, struct orl_tex *color)
+{
+    struct splat_block block = splat_params(view, &(struct proxy_options){0});
+    for (size_t i = 0; i < proxy->chunk_count; i++) {
+        const struct point_chunk *chunk = &proxy->chunks[i];
+        block.size[2] = chunk->count;
+        block.size[3] = chunk->first;
+        struct orl_dispatch d = {.prog = proxy->color, .params = &block,
+                                 .images = {{chunk->attribute_texels, 0, GL_READ_ONLY},
+                                            {t->splat_index, 0, GL_READ_ONLY},
+                                            {t->normal, 0, GL_READ_ONLY},
+                                            {color, 0, GL_WRITE_ONLY}},
+                                 .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+        orl_pixel_groups(t->width, t->height, d.groups);
+        orl_gpu_dispatch(gpu, &d);
+    }
 }

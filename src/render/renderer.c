@@ -49,9 +49,6 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     if (result == ORL_OK)
         result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "points_color.comp", NULL, sizeof(struct image_block),
-                                 &r->points_color);
-    if (result == ORL_OK)
         result = orl_prog_create(gpu, "compose.comp", NULL, sizeof(struct image_block),
                                  &r->compose);
     if (result != ORL_OK) {
@@ -71,7 +68,6 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_photos_finish(r->gpu, &r->photos);
     orl_fill_finish(r->gpu, &r->fill);
     orl_gather_finish(r->gpu, &r->gather);
-    orl_prog_destroy(r->gpu, &r->points_color);
     orl_prog_destroy(r->gpu, &r->compose);
     orl_proxy_target_finish(r->gpu, &r->target);
     orl_tex_destroy(r->gpu, &r->accumulated);
@@ -105,19 +101,6 @@ struct proxy_options orl_proxy_options(const struct orl_render_params *params)
     return (struct proxy_options){.splat_scale = params->splat_scale,
                                   .front_layer = params->front_layer,
                                   .min_support = params->min_support};
-}
-
-static void color_from_points(struct orl_renderer *r)
-{
-    struct image_block block = {.area = {r->target.width, r->target.height}};
-    struct orl_dispatch d = {.prog = r->points_color, .params = &block,
-                             .bufs = {{.buf = NULL}, {.buf = r->target.depth_bits}},
-                             .images = {{r->target.surfel_a[0], 0, GL_READ_ONLY},
-                                        {r->target.splat_color, 0, GL_READ_ONLY},
-                                        {r->accumulated, 0, GL_WRITE_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    orl_pixel_groups(r->target.width, r->target.height, d.groups);
-    orl_gpu_dispatch(r->gpu, &d);
 }
 
 static void compose(struct orl_renderer *r, const struct orl_render_params *params)
@@ -154,7 +137,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
         result = orl_gather(r, view, params, skip);
     } else {
         orl_pass_begin(gpu, "gather");
-        color_from_points(r);
+        orl_proxy_color(gpu, &r->proxy, view, &r->target, r->accumulated);
         orl_pass_end(gpu);
     }
     if (result != ORL_OK)

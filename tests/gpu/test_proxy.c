@@ -46,8 +46,10 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, &target);
     orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof out->depth, out->depth);
     orl_tex_read(target.normal, 0, GL_RGBA, GL_FLOAT, sizeof out->normal, out->normal);
-    orl_buf_read(target.depth_bits, 0, sizeof out->bits, out->bits);
-    orl_buf_read(target.point_index, 0, sizeof out->index, out->index);
+    orl_tex_read(target.splat_depth, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->bits,
+                 out->bits);
+    orl_tex_read(target.splat_index, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->index,
+                 out->index);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     orl_proxy_target_finish(gpu, &target);
     orl_proxy_finish(gpu, &proxy);
