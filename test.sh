@@ -57,7 +57,7 @@ finish() {
 }
 
 step dependencies "checking dependencies"
-extra=(libcmocka-dev)
+extra=(libcmocka-dev openexr imagemagick)
 [ "$quick" ] || extra+=(clang)
 install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }
 

@@ -43,6 +43,9 @@ bool orl_exr_add_channel(struct orl_exr_params *params, const char *name, bool h
 // Scanlines. Written whole or not at all.
 enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
                               const struct orl_exr_params *params) ORL_CHECK_RESULT;
+// Size of the first part's data window, from the header.
+enum orl_result orl_exr_size(const struct orl_log *log, const char *path, int *width,
+                             int *height) ORL_CHECK_RESULT;
 // Reads `count` named channels into an interleaved float image (at most 4).
 // ORL_ERR_NOT_FOUND names the first channel that the file lacks.
 enum orl_result orl_exr_read(const struct orl_log *log, const char *path,

@@ -68,7 +68,7 @@ static enum orl_result find_channels(const struct exr_reader *reader)
 
 // A header may claim any size: every chunk of it takes 8 bytes in the chunk table
 // and 8 of its own, which the file must have.
-static enum orl_result check_window(struct exr_reader *reader)
+static enum orl_result check_window(struct exr_reader *reader, int *width_out, int *height_out)
 {
     struct stat st;
     int32_t chunks = 0;
@@ -87,8 +87,9 @@ static enum orl_result check_window(struct exr_reader *reader)
     if (stat(reader->path, &st) != 0 || chunks < 1 || (int64_t)chunks * 16 > (int64_t)st.st_size)
         return orl_fail(reader->log, ORL_ERR_FORMAT, "%s: too short for %lldx%lld pixels",
                         reader->path, (long long)width, (long long)height);
-    return orl_image_init(reader->log, reader->image, (int)width, (int)height, reader->count,
-                          ORL_PIXEL_F32);
+    *width_out = (int)width;
+    *height_out = (int)height;
+    return ORL_OK;
 }
 
 // --- pixels ---
@@ -171,13 +172,45 @@ static enum orl_result read_part(struct exr_reader *reader)
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return orl_fail(reader->log, ORL_ERR_UNSUPPORTED, "%s: deep pictures cannot be read",
                         reader->path);
+    int width = 0, height = 0;
     result = find_channels(reader);
     if (result == ORL_OK)
-        result = check_window(reader);
+        result = check_window(reader, &width, &height);
+    if (result == ORL_OK)
+        result = orl_image_init(reader->log, reader->image, width, height, reader->count,
+                                ORL_PIXEL_F32);
     if (result != ORL_OK)
         return result;
     return check(reader, storage == EXR_STORAGE_SCANLINE ? read_scanlines(reader)
                                                          : read_tiles(reader));
+}
+
+static enum orl_result start(struct exr_reader *reader)
+{
+    if (!orl_path_is_file(reader->path))
+        return orl_fail(reader->log, ORL_ERR_NOT_FOUND, "%s: no such file", reader->path);
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = take_error;
+    init.user_data = reader;
+    init.max_image_width = ORL_IMAGE_MAX_SIDE;
+    init.max_image_height = ORL_IMAGE_MAX_SIDE;
+    init.max_tile_width = EXR_MAX_TILE_SIDE;
+    init.max_tile_height = EXR_MAX_TILE_SIDE;
+    // A file that was cut off is damaged, not something to guess about.
+    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    return check(reader, exr_start_read(&reader->context, reader->path, &init));
+}
+
+enum orl_result orl_exr_size(const struct orl_log *log, const char *path, int *width, int *height)
+{
+    *width = *height = 0;
+    struct exr_reader reader = {.log = log, .path = path};
+    enum orl_result result = start(&reader);
+    if (result == ORL_OK)
+        result = check_window(&reader, width, height);
+    if (reader.context)
+        exr_finish(&reader.context);
+    return result;
 }
 
 enum orl_result orl_exr_read(const struct orl_log *log, const char *path,
@@ -185,20 +218,9 @@ enum orl_result orl_exr_read(const struct orl_log *log, const char *path,
 {
     memset(image, 0, sizeof *image);
     ORL_REQUIRE(log, count >= 1 && count <= 4);
-    if (!orl_path_is_file(path))
-        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such file", path);
     struct exr_reader reader = {.log = log, .path = path, .names = channels, .count = count,
                                 .image = image};
-    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = take_error;
-    init.user_data = &reader;
-    init.max_image_width = ORL_IMAGE_MAX_SIDE;
-    init.max_image_height = ORL_IMAGE_MAX_SIDE;
-    init.max_tile_width = EXR_MAX_TILE_SIDE;
-    init.max_tile_height = EXR_MAX_TILE_SIDE;
-    // A file that was cut off is damaged, not something to guess about.
-    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-    enum orl_result result = check(&reader, exr_start_read(&reader.context, path, &init));
+    enum orl_result result = start(&reader);
     if (result == ORL_OK)
         result = read_part(&reader);
     if (reader.pipe_ready)

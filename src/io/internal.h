@@ -20,6 +20,7 @@ struct orl_picture_header {
     int width, height;
     uint8_t *exif;
     size_t exif_size;
+    int bits; // of a sample
 };
 enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                      struct orl_picture_header *header);
@@ -31,6 +32,21 @@ enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, con
                                 size_t size, int channels, struct orl_image *image);
 enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                size_t size, int channels, struct orl_image *image);
+// F32 x3, linear light, from 8 or 16 bits: sRGB unless its gamma says linear.
+enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
+                                      const uint8_t *data, size_t size,
+                                      struct orl_image *image);
+
+// TIFF and RAW: straight from the file, as their libraries want it. Values are linear
+// light, F32 x3; exif says what the header does.
+enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
+                                 struct orl_picture_info *info, struct orl_exif *exif);
+enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *path,
+                                       struct orl_image *image);
+enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
+                                struct orl_picture_info *info, struct orl_exif *exif);
+enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *path,
+                                      struct orl_image *image);
 
 // From a block "Exif\0\0...". Damaged blocks say nothing, with a warning.
 enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, const uint8_t *data,

@@ -109,6 +109,7 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
         return result;
     header->width = (int)info->image_width;
     header->height = (int)info->image_height;
+    header->bits = info->data_precision;
     for (jpeg_saved_marker_ptr marker = info->marker_list; marker; marker = marker->next) {
         if (!is_exif(marker) || header->exif)
             continue;

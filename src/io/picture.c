@@ -1,32 +1,59 @@
-// Pictures by content: JPEG or PNG.
+// Which reader a file needs, and what 8-bit and linear pictures have in common.
 #include "io/picture.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
+#include "core/color.h"
 #include "core/file.h"
+#include "io/exr.h"
 #include "io/internal.h"
 
-enum format { FORMAT_UNKNOWN, FORMAT_JPEG, FORMAT_PNG };
+enum format { FORMAT_UNKNOWN, FORMAT_JPEG, FORMAT_PNG, FORMAT_TIFF, FORMAT_EXR, FORMAT_RAW };
 
 static const size_t max_file_bytes = (size_t)1 << 30;
 
-static enum format format_of(const uint8_t *data, size_t size)
+bool orl_picture_is_raw(const char *path)
 {
-    static const uint8_t png[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    if (size >= 3 && data[0] == 0xff && data[1] == 0xd8 && data[2] == 0xff)
-        return FORMAT_JPEG;
-    if (size >= sizeof png && memcmp(data, png, sizeof png) == 0)
-        return FORMAT_PNG;
-    return FORMAT_UNKNOWN;
+    static const char *const known[] = {"3fr", "arw", "cr2", "cr3", "crw", "dcr", "dng", "erf",
+                                        "iiq", "k25", "kdc", "mef", "mrw", "nef", "nrw", "orf",
+                                        "pef", "raf", "raw", "rw2", "sr2", "srf", "srw", "x3f"};
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < ORL_COUNT(known); i++)
+        if (strcasecmp(dot + 1, known[i]) == 0)
+            return true;
+    return false;
+}
+
+static enum format format_of(const char *path, const uint8_t *data, size_t size)
+{
+    static const struct {
+        enum format format;
+        size_t size;
+        uint8_t magic[8];
+    } known[] = {
+        {FORMAT_JPEG, 3, {0xff, 0xd8, 0xff}},
+        {FORMAT_PNG, 8, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}},
+        {FORMAT_EXR, 4, {0x76, 0x2f, 0x31, 0x01}},
+        {FORMAT_TIFF, 4, {'I', 'I', 42, 0}}, {FORMAT_TIFF, 4, {'M', 'M', 0, 42}},
+        {FORMAT_TIFF, 4, {'I', 'I', 43, 0}}, {FORMAT_TIFF, 4, {'M', 'M', 0, 43}}, // above 4 GiB
+    };
+    enum format format = FORMAT_UNKNOWN;
+    for (size_t i = 0; i < ORL_COUNT(known) && format == FORMAT_UNKNOWN; i++)
+        if (size >= known[i].size && memcmp(data, known[i].magic, known[i].size) == 0)
+            format = known[i].format;
+    bool may_be_raw = format == FORMAT_UNKNOWN || format == FORMAT_TIFF;
+    return may_be_raw && size && orl_picture_is_raw(path) ? FORMAT_RAW : format;
 }
 
 static enum orl_result fail_unknown(const struct orl_log *log, const char *path)
 {
-    return orl_fail(log, ORL_ERR_FORMAT, "%s: neither JPEG nor PNG", path);
+    return orl_fail(log, ORL_ERR_FORMAT, "%s: not a picture of a known kind "
+                    "(JPEG, PNG, TIFF, EXR, RAW)", path);
 }
 
 enum orl_result orl_picture_check_size(const struct orl_log *log, const char *path,
@@ -39,47 +66,195 @@ enum orl_result orl_picture_check_size(const struct orl_log *log, const char *pa
     return ORL_OK;
 }
 
-static enum orl_result read_header(const struct orl_log *log, const char *path,
-                                   struct orl_picture_header *header)
+// --- headers ---
+
+static enum orl_result open_file(const struct orl_log *log, const char *path, FILE **stream,
+                                 enum format *format)
 {
-    memset(header, 0, sizeof *header);
     uint8_t magic[8];
     struct stat st;
     if (stat(path, &st) == 0 && !S_ISREG(st.st_mode))
         return orl_fail(log, ORL_ERR_IO, "%s: not a regular file", path);
-    FILE *stream = fopen(path, "rb");
-    if (!stream)
+    *stream = fopen(path, "rb");
+    if (!*stream)
         return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
                         strerror(errno));
-    size_t got = fread(magic, 1, sizeof magic, stream);
-    rewind(stream);
-    enum orl_result result;
-    switch (format_of(magic, got)) {
+    size_t got = fread(magic, 1, sizeof magic, *stream);
+    rewind(*stream);
+    *format = format_of(path, magic, got);
+    return ORL_OK;
+}
+
+static bool has_exif_head(const struct orl_picture_header *header)
+{
+    return header->exif_size > 6 && memcmp(header->exif, "Exif\0", 6) == 0;
+}
+
+static enum orl_result read_stream_header(const struct orl_log *log, const char *path,
+                                          FILE *stream, bool jpeg, struct orl_picture_info *info,
+                                          struct orl_exif *exif)
+{
+    struct orl_picture_header header = {0};
+    enum orl_result result = jpeg ? orl_jpeg_read_header(log, path, stream, &header)
+                                  : orl_png_read_header(log, path, stream, &header);
+    if (result == ORL_OK)
+        *info = (struct orl_picture_info){.width = header.width, .height = header.height,
+                                          .bits = header.bits};
+    if (result == ORL_OK && exif && has_exif_head(&header))
+        result = orl_exif_decode(log, path, header.exif, header.exif_size, exif);
+    free(header.exif);
+    return result;
+}
+
+// exif may be NULL.
+static enum orl_result read_header(const struct orl_log *log, const char *path,
+                                   struct orl_picture_info *info, struct orl_exif *exif)
+{
+    struct orl_exif unused = {0};
+    FILE *stream = NULL;
+    enum format format = FORMAT_UNKNOWN;
+    enum orl_result result = open_file(log, path, &stream, &format);
+    if (result != ORL_OK)
+        return result;
+    switch (format) {
     case FORMAT_JPEG:
-        result = orl_jpeg_read_header(log, path, stream, header);
-        break;
     case FORMAT_PNG:
-        result = orl_png_read_header(log, path, stream, header);
+        result = read_stream_header(log, path, stream, format == FORMAT_JPEG, info, exif);
+        break;
+    case FORMAT_TIFF:
+        result = orl_tiff_inspect(log, path, info, exif ? exif : &unused);
+        break;
+    case FORMAT_RAW:
+        result = orl_raw_inspect(log, path, info, exif ? exif : &unused);
+        break;
+    case FORMAT_EXR:
+        *info = (struct orl_picture_info){.bits = 32, .unbounded = true};
+        result = orl_exr_size(log, path, &info->width, &info->height);
         break;
     default:
         result = fail_unknown(log, path);
     }
     fclose(stream);
-    if (result != ORL_OK) {
-        free(header->exif);
-        memset(header, 0, sizeof *header);
-    }
+    return result;
+}
+
+enum orl_result orl_picture_inspect(const struct orl_log *log, const char *path,
+                                    struct orl_picture_info *info)
+{
+    memset(info, 0, sizeof *info);
+    enum orl_result result = read_header(log, path, info, NULL);
+    if (result != ORL_OK)
+        memset(info, 0, sizeof *info);
     return result;
 }
 
 enum orl_result orl_picture_size(const struct orl_log *log, const char *path, int *width,
                                  int *height)
 {
-    struct orl_picture_header header;
-    enum orl_result result = read_header(log, path, &header);
-    *width = header.width;
-    *height = header.height;
-    free(header.exif);
+    struct orl_picture_info info;
+    enum orl_result result = orl_picture_inspect(log, path, &info);
+    *width = info.width;
+    *height = info.height;
+    return result;
+}
+
+enum orl_result orl_exif_read(const struct orl_log *log, const char *path, struct orl_exif *exif)
+{
+    memset(exif, 0, sizeof *exif);
+    struct orl_picture_info info;
+    return read_header(log, path, &info, exif);
+}
+
+// --- pixels ---
+
+static enum orl_result read_exr(const struct orl_log *log, const char *path,
+                                struct orl_image *image)
+{
+    static const char *const rgb[] = {"R", "G", "B"}, *const gray[] = {"Y"};
+    struct orl_image luma;
+    if (orl_exr_read(NULL, path, rgb, 3, image) == ORL_OK)
+        return ORL_OK;
+    if (orl_exr_read(NULL, path, gray, 1, &luma) != ORL_OK)
+        return orl_exr_read(log, path, rgb, 3, image); // for its message
+    enum orl_result result = orl_image_init(log, image, luma.width, luma.height, 3, ORL_PIXEL_F32);
+    size_t count = result == ORL_OK ? orl_image_bytes(&luma) / sizeof(float) : 0;
+    for (size_t i = 0; i < 3 * count; i++)
+        image->f32[i] = luma.f32[i / 3];
+    orl_image_finish(&luma);
+    return result;
+}
+
+static enum orl_result decode_eight(const struct orl_log *log, const struct orl_image *from,
+                                    struct orl_image *image)
+{
+    enum orl_result result = orl_image_init(log, image, from->width, from->height, 3,
+                                            ORL_PIXEL_F32);
+    float table[256];
+    for (int v = 0; v < 256; v++)
+        table[v] = orl_srgb_decode((float)v / 255);
+    size_t count = orl_image_bytes(from);
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        image->f32[i] = table[from->u8[i]];
+    return result;
+}
+
+static enum orl_result decode_linear(const struct orl_log *log, const char *path,
+                                     enum format format, struct orl_image *image)
+{
+    if (format == FORMAT_EXR)
+        return read_exr(log, path, image);
+    if (format == FORMAT_TIFF)
+        return orl_tiff_decode_linear(log, path, image);
+    if (format == FORMAT_RAW)
+        return orl_raw_decode_linear(log, path, image);
+    struct orl_image eight = {0};
+    uint8_t *data = NULL;
+    size_t size = 0;
+    enum orl_result result = orl_file_read(log, path, max_file_bytes, &data, &size);
+    if (result == ORL_OK && format == FORMAT_PNG)
+        result = orl_png_decode_linear(log, path, data, size, image);
+    else if (result == ORL_OK)
+        result = orl_jpeg_decode(log, path, data, size, 3, &eight);
+    if (result == ORL_OK && eight.data)
+        result = decode_eight(log, &eight, image);
+    orl_image_finish(&eight);
+    free(data);
+    return result;
+}
+
+enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
+                                        struct orl_image *image)
+{
+    memset(image, 0, sizeof *image);
+    FILE *stream = NULL;
+    enum format format = FORMAT_UNKNOWN;
+    enum orl_result result = open_file(log, path, &stream, &format);
+    if (result != ORL_OK)
+        return result;
+    fclose(stream);
+    result = format == FORMAT_UNKNOWN ? fail_unknown(log, path)
+                                      : decode_linear(log, path, format, image);
+    if (result != ORL_OK)
+        orl_image_finish(image);
+    return result;
+}
+
+// Linear light as 8-bit sRGB, or luma of that.
+static enum orl_result encode_eight(const struct orl_log *log, const struct orl_image *linear,
+                                    int channels, struct orl_image *image)
+{
+    enum orl_result result = orl_image_init(log, image, linear->width, linear->height, channels,
+                                            ORL_PIXEL_U8);
+    size_t count = (size_t)linear->width * (size_t)linear->height;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        uint32_t rgb[3];
+        for (size_t c = 0; c < 3; c++)
+            rgb[c] = (uint32_t)lrintf(255 * orl_srgb_encode(linear->f32[3 * i + c]));
+        for (size_t c = 0; c < 3 && channels == 3; c++)
+            image->u8[3 * i + c] = (uint8_t)rgb[c];
+        if (channels == 1)
+            image->u8[i] = (uint8_t)((299 * rgb[0] + 587 * rgb[1] + 114 * rgb[2] + 500) / 1000);
+    }
     return result;
 }
 
@@ -88,40 +263,29 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
 {
     memset(image, 0, sizeof *image);
     ORL_REQUIRE(log, channels == 1 || channels == 3);
-    uint8_t *data;
-    size_t size;
-    enum orl_result result = orl_file_read(log, path, max_file_bytes, &data, &size);
+    uint8_t *data = NULL;
+    size_t size = 0;
+    struct orl_image linear = {0};
+    FILE *stream = NULL;
+    enum format format = FORMAT_UNKNOWN;
+    enum orl_result result = open_file(log, path, &stream, &format);
     if (result != ORL_OK)
         return result;
-    switch (format_of(data, size)) {
-    case FORMAT_JPEG:
+    fclose(stream);
+    if (format == FORMAT_JPEG || format == FORMAT_PNG)
+        result = orl_file_read(log, path, max_file_bytes, &data, &size);
+    if (result == ORL_OK && format == FORMAT_JPEG)
         result = orl_jpeg_decode(log, path, data, size, channels, image);
-        break;
-    case FORMAT_PNG:
+    else if (result == ORL_OK && format == FORMAT_PNG)
         result = orl_png_decode(log, path, data, size, channels, image);
-        break;
-    default:
-        result = fail_unknown(log, path);
-    }
+    else if (result == ORL_OK)
+        result = orl_picture_read_linear(log, path, &linear);
+    if (result == ORL_OK && linear.data)
+        result = encode_eight(log, &linear, channels, image);
     if (result != ORL_OK)
         orl_image_finish(image);
+    orl_image_finish(&linear);
     free(data);
-    return result;
-}
-
-static bool has_exif_head(const struct orl_picture_header *header)
-{
-    return header->exif_size > 6 && memcmp(header->exif, "Exif\0", 6) == 0;
-}
-
-enum orl_result orl_exif_read(const struct orl_log *log, const char *path, struct orl_exif *exif)
-{
-    memset(exif, 0, sizeof *exif);
-    struct orl_picture_header header;
-    enum orl_result result = read_header(log, path, &header);
-    if (result == ORL_OK && has_exif_head(&header))
-        result = orl_exif_decode(log, path, header.exif, header.exif_size, exif);
-    free(header.exif);
     return result;
 }
 

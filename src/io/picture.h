@@ -1,16 +1,35 @@
-// Photographs and pictures as files: JPEG, PNG, and EXIF.
+// Photographs and pictures as files. JPEG, PNG, TIFF and EXR are known by content, camera
+// RAW files by their extension, as many begin like TIFF.
 #ifndef ORL_IO_PICTURE_H
 #define ORL_IO_PICTURE_H
 
 #include "core/image.h"
 
-// Size without decoding, from the file's header. JPEG or PNG, by content.
+// What the file's header says.
+struct orl_picture_info {
+    int width, height;
+    int bits;       // of a sample, before any compression; more than 8: deep
+    bool unbounded; // floats: light above white is kept
+};
+enum orl_result orl_picture_inspect(const struct orl_log *log, const char *path,
+                                    struct orl_picture_info *info) ORL_CHECK_RESULT;
+// Its size alone.
 enum orl_result orl_picture_size(const struct orl_log *log, const char *path, int *width,
                                  int *height) ORL_CHECK_RESULT;
-// 8-bit, `channels` 1 (luma) or 3 (RGB); alpha is dropped, 16-bit is rounded. EXIF
-// orientation is ignored: pixels as stored. A truncated file is an error.
+// 8-bit, `channels` 1 (luma) or 3 (RGB); alpha is dropped, 16-bit is rounded, linear
+// light is clipped and sRGB-encoded. EXIF orientation is ignored: pixels as stored. A
+// truncated file is an error.
 enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
                                  struct orl_image *image) ORL_CHECK_RESULT;
+// Linear light, F32 x3, Rec. 709 primaries assumed; colour profiles are not applied. 8 and
+// 16-bit samples are taken as sRGB (PNG's with a gamma of 1 as linear), white being 1; float
+// TIFF and EXR (R, G, B, or Y) as they are; RAW with the camera's white balance, 1 where
+// the sensor saturates.
+enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
+                                        struct orl_image *image) ORL_CHECK_RESULT;
+// Camera RAW by its extension?
+bool orl_picture_is_raw(const char *path);
+
 // 8-bit, 1 or 3 channels. Written whole or not at all.
 enum orl_result orl_png_write(const struct orl_log *log, const char *path,
                               const struct orl_image *image) ORL_CHECK_RESULT;

@@ -1,11 +1,13 @@
 // PNG through libpng, which reports errors by longjmp: whatever must survive one
 // lives in struct png_job, owned by the caller of the function that calls setjmp.
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <png.h>
 
+#include "core/color.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "io/internal.h"
@@ -18,6 +20,7 @@ struct png_job {
     const uint8_t *data; // what is left to read
     size_t size;
     png_bytepp rows;     // owned
+    bool wide, linear;   // what was decoded: 16 bits a sample, linear light
 };
 
 static void stop(png_structp png, png_const_charp message)
@@ -75,6 +78,7 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
         return result;
     header->width = (int)width;
     header->height = (int)height;
+    header->bits = png_get_bit_depth(job->png, job->info);
 #ifdef PNG_eXIf_SUPPORTED
     png_uint_32 size = 0;
     png_bytep exif = NULL;
@@ -103,7 +107,19 @@ enum orl_result orl_png_read_header(const struct orl_log *log, const char *path,
 
 // --- pixels ---
 
-static enum orl_result decode_rgb(struct png_job *job, size_t file_size, struct orl_image *rgb)
+// Linear light is stored only when the file's gamma says so: cameras' and converters'
+// 16-bit files are sRGB-encoded like others.
+static bool is_linear(const struct png_job *job)
+{
+    double gamma = 0;
+    int intent;
+    return !png_get_sRGB(job->png, job->info, &intent) &&
+           png_get_gAMA(job->png, job->info, &gamma) && fabs(gamma - 1) < 0.01;
+}
+
+// 8-bit samples, or with `deep` those of the file's depth in this machine's byte order.
+static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool deep,
+                                  struct orl_image *rgb)
 {
     // Deflate reaches 1032 to 1 at most (zlib's technical notes).
     const uint64_t max_ratio = 1032;
@@ -120,21 +136,29 @@ static enum orl_result decode_rgb(struct png_job *job, size_t file_size, struct 
         return orl_fail(job->log, ORL_ERR_FORMAT, "%s: %zu bytes cannot hold %ux%u pixels",
                         job->path, file_size, (unsigned)width, (unsigned)height);
     png_set_expand(job->png);
-    png_set_scale_16(job->png); // rounds, unlike strip_16
+    job->wide = deep && png_get_bit_depth(job->png, job->info) == 16;
+    job->linear = is_linear(job);
+    if (!deep)
+        png_set_scale_16(job->png); // rounds, unlike strip_16
+    else if (job->wide)
+        png_set_swap(job->png);
     png_set_strip_alpha(job->png);
     png_set_gray_to_rgb(job->png);
     png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
-    if (png_get_rowbytes(job->png, job->info) != (size_t)width * 3)
+    size_t row = (size_t)width * (job->wide ? 6 : 3);
+    if (png_get_rowbytes(job->png, job->info) != row)
         png_error(job->png, "unexpected row size");
-    result = orl_image_init(job->log, rgb, (int)width, (int)height, 3, ORL_PIXEL_U8);
+    // Wide samples lie at the end of their pixels' room as floats.
+    result = orl_image_init(job->log, rgb, (int)width, (int)height, 3,
+                            deep ? ORL_PIXEL_F32 : ORL_PIXEL_U8);
     if (result != ORL_OK)
         return result;
     job->rows = orl_array(job->log, height, sizeof *job->rows);
     if (!job->rows)
         return ORL_ERR_MEMORY;
     for (size_t y = 0; y < height; y++)
-        job->rows[y] = rgb->u8 + y * width * 3;
+        job->rows[y] = rgb->u8 + (orl_image_bytes(rgb) - row * height) + y * row;
     png_read_image(job->png, job->rows);
     png_read_end(job->png, NULL);
     return ORL_OK;
@@ -165,9 +189,34 @@ enum orl_result orl_png_decode(const struct orl_log *log, const char *path, cons
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
     if (result == ORL_OK)
-        result = decode_rgb(&job, size, image);
+        result = decode_rgb(&job, size, false, image);
     end_reading(&job);
     return result == ORL_OK && channels == 1 ? to_luma(log, image) : result;
+}
+
+enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
+                                      const uint8_t *data, size_t size, struct orl_image *image)
+{
+    struct png_job job = {.log = log, .path = path, .data = data, .size = size};
+    enum orl_result result = start_reading(&job);
+    if (result == ORL_OK)
+        result = decode_rgb(&job, size, true, image);
+    end_reading(&job);
+    if (result != ORL_OK)
+        return result;
+    // From the front: a float is written only over samples that were read before.
+    size_t count = (size_t)image->width * (size_t)image->height * 3;
+    size_t sample = job.wide ? 2 : 1;
+    const uint8_t *from = image->u8 + orl_image_bytes(image) - count * sample;
+    float white = job.wide ? 65535 : 255;
+    for (size_t i = 0; i < count; i++) {
+        uint16_t value = from[i];
+        if (job.wide)
+            memcpy(&value, from + 2 * i, 2);
+        float encoded = (float)value / white;
+        image->f32[i] = job.linear ? encoded : orl_srgb_decode(encoded);
+    }
+    return ORL_OK;
 }
 
 // --- writing ---

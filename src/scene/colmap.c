@@ -25,6 +25,11 @@ int orl_colmap_model_params(int model)
     return model >= 0 && model < (int)ORL_COUNT(models) ? models[model].params : 0;
 }
 
+int orl_colmap_model_focal_lengths(int model)
+{
+    return models[model].focal_lengths;
+}
+
 int orl_colmap_model_id(const char *name)
 {
     for (size_t i = 0; i < ORL_COUNT(models); i++)

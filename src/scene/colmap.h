@@ -51,6 +51,11 @@ void orl_colmap_finish(struct orl_colmap_model *model);
 const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
                                                         uint32_t id);
 
+// Where a ray with x/z, y/z = ray meets the picture, in pixels, distortion included, as
+// COLMAP's model of this camera has it. The camera must come from orl_colmap_read.
+void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],
+                               double pixel[2]);
+
 // "W&H&C&" then W*H*C float32, channel by channel. Depth maps have one channel
 // (z in scene units, 0 = none), normal maps three (camera frame).
 // The image is interleaved in memory.

@@ -6,6 +6,8 @@
 
 // Number of parameters of a camera model, 0 when it is unknown.
 int orl_colmap_model_params(int model);
+// 1: its parameters start with f cx cy; 2: with fx fy cx cy. The model must be known.
+int orl_colmap_model_focal_lengths(int model);
 // COLMAP's id of a model's name, -1 when it is unknown.
 int orl_colmap_model_id(const char *name);
 

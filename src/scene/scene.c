@@ -27,7 +27,7 @@ static enum orl_result set_photo(const struct orl_log *log, const char *dir,
     return photo->name ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-static enum orl_result check_photo_files(const struct orl_log *log, const struct orl_scene *scene)
+static enum orl_result check_photo_files(const struct orl_log *log, struct orl_scene *scene)
 {
     for (size_t i = 0; i < scene->photo_count; i++) {
         char *path = orl_scene_photo_path(log, scene, i);
@@ -36,6 +36,11 @@ static enum orl_result check_photo_files(const struct orl_log *log, const struct
                                  : there ? ORL_OK
                                          : orl_fail(log, ORL_ERR_NOT_FOUND,
                                                     "%s: this photograph is missing", path);
+        free(path);
+        path = orl_scene_linear_path(log, scene, i);
+        scene->photos[i].linear = path && orl_path_is_file(path);
+        if (!path)
+            result = ORL_ERR_MEMORY;
         free(path);
         if (result != ORL_OK)
             return result;
@@ -297,4 +302,9 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name)
 char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
 {
     return orl_format(log, "%s/images/%s", scene->dir, scene->photos[photo].name);
+}
+
+char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+{
+    return orl_format(log, "%s/images_linear/%s.exr", scene->dir, scene->photos[photo].name);
 }

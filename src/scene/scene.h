@@ -9,6 +9,7 @@ struct orl_photo {
     char *name;           // owned; file SCENE/images/<name>
     struct orl_view view; // size and intrinsics as of the undistorted file
     bool test;            // held out: calibration only
+    bool linear;          // there is a linear version too: orl_scene_read_linear
     double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
@@ -45,5 +46,8 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
 // "SCENE/images/<name>", released with free().
 char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene,
                            size_t photo);
+// "SCENE/images_linear/<name>.exr", there or not.
+char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene,
+                            size_t photo);
 
 #endif

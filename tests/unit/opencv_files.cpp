@@ -17,19 +17,10 @@ bool test_opencv_read_rgb(const char *path, int width, int height, float *rgb)
     return to.data == reinterpret_cast<unsigned char *>(rgb);
 }
 
-static bool write(const char *path, const cv::Mat &rgb)
-{
-    cv::Mat bgr;
-    cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-    return cv::imwrite(path, bgr);
-}
-
 bool test_opencv_write_rgb16(const char *path, int width, int height, const unsigned short *rgb)
 {
-    return write(path, cv::Mat(height, width, CV_16UC3, const_cast<unsigned short *>(rgb)));
-}
-
-bool test_opencv_write_rgb32(const char *path, int width, int height, const float *rgb)
-{
-    return write(path, cv::Mat(height, width, CV_32FC3, const_cast<float *>(rgb)));
+    cv::Mat bgr;
+    cv::cvtColor(cv::Mat(height, width, CV_16UC3, const_cast<unsigned short *>(rgb)), bgr,
+                 cv::COLOR_RGB2BGR);
+    return cv::imwrite(path, bgr);
 }

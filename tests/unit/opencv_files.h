@@ -12,7 +12,6 @@ extern "C" {
 bool test_opencv_read_rgb(const char *path, int width, int height, float *rgb);
 // Writes RGB samples; the format follows from the extension.
 bool test_opencv_write_rgb16(const char *path, int width, int height, const unsigned short *rgb);
-bool test_opencv_write_rgb32(const char *path, int width, int height, const float *rgb);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,273 @@
+// TIFF through libtiff: 8 or 16 bits of sRGB, or 32-bit floats of linear light.
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <tiffio.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "io/internal.h"
+
+// What compression may gain at most: more is a header that lies about its size.
+enum { MAX_RATIO = 20000 };
+
+struct tiff_job {
+    const struct orl_log *log;
+    const char *path;
+    TIFF *tiff;
+    uint32_t width, height;
+    uint16_t bits, samples, format, photometric, planar;
+    char message[512]; // the first error of libtiff
+};
+
+static int take_error(TIFF *tiff, void *priv, const char *module, const char *format, va_list args)
+{
+    (void)tiff;
+    (void)module;
+    struct tiff_job *job = priv;
+    if (!*job->message)
+        vsnprintf(job->message, sizeof job->message, format, args);
+    return 1; // handled
+}
+
+static int take_warning(TIFF *tiff, void *priv, const char *module, const char *format,
+                        va_list args)
+{
+    (void)tiff;
+    (void)module;
+    struct tiff_job *job = priv;
+    char text[512];
+    vsnprintf(text, sizeof text, format, args);
+    orl_logf(job->log, ORL_LOG_DEBUG, "%s: TIFF: %s", job->path, text);
+    return 1;
+}
+
+static enum orl_result fail(const struct tiff_job *job)
+{
+    return orl_fail(job->log, ORL_ERR_FORMAT, "%s: TIFF: %s", job->path,
+                    *job->message ? job->message : "damaged");
+}
+
+static enum orl_result open_tiff(struct tiff_job *job)
+{
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    if (!options)
+        return ORL_ERR_MEMORY;
+    TIFFOpenOptionsSetErrorHandlerExtR(options, take_error, job);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, take_warning, job);
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)1 << 30);
+    job->tiff = TIFFOpenExt(job->path, "rm", options); // m: not mapped into memory
+    TIFFOpenOptionsFree(options);
+    return job->tiff ? ORL_OK : fail(job);
+}
+
+// --- header ---
+
+static bool is_supported(const struct tiff_job *job)
+{
+    bool integer = job->format == SAMPLEFORMAT_UINT && (job->bits == 8 || job->bits == 16);
+    bool floating = job->format == SAMPLEFORMAT_IEEEFP && job->bits == 32;
+    bool gray = job->photometric == PHOTOMETRIC_MINISBLACK && job->samples >= 1;
+    bool colour = job->photometric == PHOTOMETRIC_RGB && job->samples >= 3;
+    return (integer || floating) && (gray || colour);
+}
+
+static enum orl_result read_header(struct tiff_job *job)
+{
+    struct stat st;
+    TIFF *t = job->tiff;
+    TIFFGetField(t, TIFFTAG_IMAGEWIDTH, &job->width);
+    TIFFGetField(t, TIFFTAG_IMAGELENGTH, &job->height);
+    TIFFGetFieldDefaulted(t, TIFFTAG_BITSPERSAMPLE, &job->bits);
+    TIFFGetFieldDefaulted(t, TIFFTAG_SAMPLESPERPIXEL, &job->samples);
+    TIFFGetFieldDefaulted(t, TIFFTAG_SAMPLEFORMAT, &job->format);
+    TIFFGetFieldDefaulted(t, TIFFTAG_PLANARCONFIG, &job->planar);
+    TIFFGetField(t, TIFFTAG_PHOTOMETRIC, &job->photometric);
+    enum orl_result result =
+        orl_picture_check_size(job->log, job->path, job->width, job->height);
+    if (result != ORL_OK)
+        return result;
+    if (!is_supported(job))
+        return orl_fail(job->log, ORL_ERR_UNSUPPORTED,
+                        "%s: a TIFF of %u samples of %u bits in this colour space cannot be read; "
+                        "save it as RGB with 8 or 16 bits", job->path, job->samples, job->bits);
+    uint64_t bytes = (uint64_t)job->width * job->height * job->samples * (job->bits / 8);
+    if (stat(job->path, &st) != 0 || bytes / MAX_RATIO > (uint64_t)st.st_size)
+        return orl_fail(job->log, ORL_ERR_FORMAT, "%s: too short for %ux%u pixels", job->path,
+                        job->width, job->height);
+    return ORL_OK;
+}
+
+static void copy_text(TIFF *tiff, uint32_t tag, char *text, size_t size)
+{
+    const char *value = NULL;
+    if (!TIFFGetField(tiff, tag, &value) || !value)
+        return;
+    size_t length = 0;
+    while (value[length] && length + 1 < size) {
+        text[length] = (unsigned char)value[length] < 32 ? ' ' : value[length];
+        length++;
+    }
+    while (length && text[length - 1] == ' ')
+        length--;
+    text[length] = '\0';
+}
+
+static double positive(TIFF *tiff, uint32_t tag)
+{
+    float value = 0;
+    return TIFFGetField(tiff, tag, &value) && isfinite(value) && value > 0 ? (double)value : 0;
+}
+
+// Leaves the directory of the picture.
+static void read_exif(struct tiff_job *job, struct orl_exif *exif)
+{
+    TIFF *t = job->tiff;
+    uint16_t orientation = 1, iso_count = 0, focal_35 = 0, *iso = NULL;
+    float bias = 0;
+    toff_t offset = 0;
+    copy_text(t, TIFFTAG_MAKE, exif->make, sizeof exif->make);
+    copy_text(t, TIFFTAG_MODEL, exif->model, sizeof exif->model);
+    TIFFGetFieldDefaulted(t, TIFFTAG_ORIENTATION, &orientation);
+    exif->orientation = orientation;
+    if (!TIFFGetField(t, TIFFTAG_EXIFIFD, &offset) || !TIFFReadEXIFDirectory(t, offset))
+        return;
+    exif->exposure_s = positive(t, EXIFTAG_EXPOSURETIME);
+    exif->aperture = positive(t, EXIFTAG_FNUMBER);
+    exif->focal_mm = positive(t, EXIFTAG_FOCALLENGTH);
+    if (TIFFGetField(t, EXIFTAG_EXPOSUREBIASVALUE, &bias) && isfinite(bias))
+        exif->bias_ev = (double)bias;
+    if (TIFFGetField(t, EXIFTAG_ISOSPEEDRATINGS, &iso_count, &iso) && iso_count && iso)
+        exif->iso = iso[0];
+    if (TIFFGetField(t, EXIFTAG_FOCALLENGTHIN35MMFILM, &focal_35))
+        exif->focal_35mm = focal_35;
+}
+
+enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
+                                 struct orl_picture_info *info, struct orl_exif *exif)
+{
+    struct tiff_job job = {.log = log, .path = path};
+    enum orl_result result = open_tiff(&job);
+    if (result == ORL_OK)
+        result = read_header(&job);
+    if (result == ORL_OK) {
+        *info = (struct orl_picture_info){.width = (int)job.width, .height = (int)job.height,
+                                          .bits = job.bits,
+                                          .unbounded = job.format == SAMPLEFORMAT_IEEEFP};
+        read_exif(&job, exif);
+    }
+    if (job.tiff)
+        TIFFClose(job.tiff);
+    return result;
+}
+
+// --- pixels ---
+
+static float light(const struct tiff_job *job, const uint8_t *sample)
+{
+    if (job->bits == 8)
+        return orl_srgb_decode((float)*sample / 255);
+    if (job->bits == 16) {
+        uint16_t value;
+        memcpy(&value, sample, sizeof value);
+        return orl_srgb_decode((float)value / 65535);
+    }
+    float value;
+    memcpy(&value, sample, sizeof value);
+    return value;
+}
+
+// `count` pixels from a buffer into a row of the image. plane -1: samples are interleaved.
+static void take_pixels(const struct tiff_job *job, const uint8_t *from, size_t count, int plane,
+                        float *rgb)
+{
+    size_t bytes = job->bits / 8, step = plane < 0 ? bytes * job->samples : bytes;
+    bool gray = job->photometric == PHOTOMETRIC_MINISBLACK;
+    for (size_t i = 0; i < count; i++, from += step) {
+        if (gray && plane <= 0)
+            rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = light(job, from);
+        else if (!gray && plane < 0)
+            for (size_t c = 0; c < 3; c++)
+                rgb[3 * i + c] = light(job, from + c * bytes);
+        else if (!gray && plane < 3)
+            rgb[3 * i + (size_t)plane] = light(job, from);
+    }
+}
+
+static int plane_count(const struct tiff_job *job)
+{
+    return job->planar == PLANARCONFIG_SEPARATE ? job->samples : 1;
+}
+
+static enum orl_result read_rows(struct tiff_job *job, struct orl_image *image)
+{
+    bool separate = job->planar == PLANARCONFIG_SEPARATE;
+    tmsize_t size = TIFFScanlineSize(job->tiff);
+    size_t need = (size_t)job->width * (job->bits / 8) * (separate ? 1 : job->samples);
+    if (size < 0 || (size_t)size < need)
+        return fail(job);
+    uint8_t *row = orl_array(job->log, (size_t)size, 1);
+    if (!row)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    for (int plane = 0; plane < plane_count(job) && result == ORL_OK; plane++)
+        for (uint32_t y = 0; y < job->height && result == ORL_OK; y++) {
+            if (TIFFReadScanline(job->tiff, row, y, (uint16_t)plane) != 1)
+                result = fail(job);
+            take_pixels(job, row, job->width, separate ? plane : -1,
+                        image->f32 + (size_t)y * job->width * 3);
+        }
+    free(row);
+    return result;
+}
+
+static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
+{
+    uint32_t width = 0, height = 0;
+    bool separate = job->planar == PLANARCONFIG_SEPARATE;
+    TIFFGetField(job->tiff, TIFFTAG_TILEWIDTH, &width);
+    TIFFGetField(job->tiff, TIFFTAG_TILELENGTH, &height);
+    tmsize_t size = TIFFTileSize(job->tiff);
+    uint64_t pitch = (uint64_t)width * (job->bits / 8) * (separate ? 1 : job->samples);
+    if (!width || !height || size <= 0 || (uint64_t)size / height < pitch || size > 1 << 30)
+        return fail(job);
+    uint8_t *tile = orl_array(job->log, (size_t)size, 1);
+    if (!tile)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    for (int plane = 0; plane < plane_count(job); plane++)
+        for (uint32_t y = 0; y < job->height && result == ORL_OK; y += height)
+            for (uint32_t x = 0; x < job->width && result == ORL_OK; x += width) {
+                if (TIFFReadTile(job->tiff, tile, x, y, 0, (uint16_t)plane) < 0)
+                    result = fail(job);
+                uint32_t columns = job->width - x < width ? job->width - x : width;
+                uint32_t rows = job->height - y < height ? job->height - y : height;
+                for (uint32_t r = 0; r < rows && result == ORL_OK; r++)
+                    take_pixels(job, tile + r * pitch, columns, separate ? plane : -1,
+                                image->f32 + ((size_t)(y + r) * job->width + x) * 3);
+            }
+    free(tile);
+    return result;
+}
+
+enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *path,
+                                       struct orl_image *image)
+{
+    struct tiff_job job = {.log = log, .path = path};
+    enum orl_result result = open_tiff(&job);
+    if (result == ORL_OK)
+        result = read_header(&job);
+    if (result == ORL_OK)
+        result = orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = TIFFIsTiled(job.tiff) ? read_tiles(&job, image) : read_rows(&job, image);
+    if (job.tiff)
+        TIFFClose(job.tiff);
+    if (result != ORL_OK)
+        orl_image_finish(image);
+    return result;
+}

@@ -1,0 +1,95 @@
+// COLMAP's camera models (src/base/camera_models.h of COLMAP 3.8, documented there).
+#include <math.h>
+
+#include "scene/colmap.h"
+#include "scene/colmap_internal.h"
+
+enum {
+    SIMPLE_RADIAL = 2, RADIAL, OPENCV, OPENCV_FISHEYE, FULL_OPENCV, FOV,
+    SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE,
+};
+
+// u, v scaled by `radial`, then OpenCV's tangential terms.
+static void brown(double radial, double p1, double p2, double uv[2])
+{
+    double u = uv[0], v = uv[1], r2 = u * u + v * v;
+    uv[0] = u * radial + 2 * p1 * u * v + p2 * (r2 + 2 * u * u);
+    uv[1] = v * radial + 2 * p2 * u * v + p1 * (r2 + 2 * v * v);
+}
+
+// The angle from the axis in place of its tangent, times 1 + k0 t^2 + k1 t^4 + ...
+static void fisheye(const double *k, int count, double uv[2])
+{
+    double r = hypot(uv[0], uv[1]);
+    if (!(r > 1e-12))
+        return;
+    double theta = atan(r), t2 = theta * theta, power = 1, sum = 1;
+    for (int i = 0; i < count; i++) {
+        power *= t2;
+        sum += k[i] * power;
+    }
+    uv[0] *= theta * sum / r;
+    uv[1] *= theta * sum / r;
+}
+
+static void fov(double omega, double uv[2])
+{
+    double r = hypot(uv[0], uv[1]);
+    if (!(r > 1e-12) || !(fabs(omega) > 1e-9))
+        return;
+    double scale = atan(2 * r * tan(omega / 2)) / (r * omega);
+    uv[0] *= scale;
+    uv[1] *= scale;
+}
+
+static void thin_prism(const double *k, double uv[2])
+{
+    fisheye(NULL, 0, uv);
+    double u = uv[0], v = uv[1], r2 = u * u + v * v, r4 = r2 * r2;
+    brown(1 + k[0] * r2 + k[1] * r4 + k[4] * r4 * r2 + k[5] * r4 * r4, k[2], k[3], uv);
+    uv[0] += k[6] * r2;
+    uv[1] += k[7] * r2;
+}
+
+void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],
+                               double pixel[2])
+{
+    const struct orl_camera *c = &camera->pinhole;
+    // After f cx cy or fx fy cx cy.
+    const double *k = camera->params + orl_colmap_model_focal_lengths(camera->model) + 2;
+    double uv[2] = {ray[0], ray[1]}, r2 = ray[0] * ray[0] + ray[1] * ray[1], r4 = r2 * r2;
+    switch (camera->model) {
+    case SIMPLE_RADIAL:
+        brown(1 + k[0] * r2, 0, 0, uv);
+        break;
+    case RADIAL:
+        brown(1 + k[0] * r2 + k[1] * r4, 0, 0, uv);
+        break;
+    case OPENCV:
+        brown(1 + k[0] * r2 + k[1] * r4, k[2], k[3], uv);
+        break;
+    case FULL_OPENCV:
+        brown((1 + k[0] * r2 + k[1] * r4 + k[4] * r4 * r2) /
+                  (1 + k[5] * r2 + k[6] * r4 + k[7] * r4 * r2), k[2], k[3], uv);
+        break;
+    case OPENCV_FISHEYE:
+        fisheye(k, 4, uv);
+        break;
+    case SIMPLE_RADIAL_FISHEYE:
+        fisheye(k, 1, uv);
+        break;
+    case RADIAL_FISHEYE:
+        fisheye(k, 2, uv);
+        break;
+    case FOV:
+        fov(k[0], uv);
+        break;
+    case THIN_PRISM_FISHEYE:
+        thin_prism(k, uv);
+        break;
+    default: // SIMPLE_PINHOLE, PINHOLE
+        break;
+    }
+    pixel[0] = c->fx * uv[0] + c->cx;
+    pixel[1] = c->fy * uv[1] + c->cy;
+}

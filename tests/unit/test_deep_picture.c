@@ -1,0 +1,368 @@
+// Photographs with more than 8 bits a sample: PNG, TIFF, EXR and RAW.
+#include "test.h"
+
+#include <math.h>
+#include <string.h>
+
+#include <tiffio.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "io/exr.h"
+#include "io/picture.h"
+#include "opencv_files.h"
+
+enum { W = 90, H = 70 };
+
+static char *dir;
+
+static int set_up(void **state)
+{
+    (void)state;
+    dir = test_dir_make();
+    return dir ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    test_dir_remove(dir);
+    return 0;
+}
+
+static const char *in_dir(const char *name)
+{
+    static char path[4096];
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    return path;
+}
+
+// Every level that 16 bits have, in no order.
+static uint16_t sample(int i)
+{
+    return (uint16_t)(((uint32_t)i * 40503u) >> 3);
+}
+
+static struct orl_image read_linear(const char *path, int bits, bool unbounded)
+{
+    struct orl_picture_info info;
+    struct orl_image image;
+    assert_int_equal(orl_picture_inspect(NULL, path, &info), ORL_OK);
+    assert_int_equal(info.width, W);
+    assert_int_equal(info.height, H);
+    assert_int_equal(info.bits, bits);
+    assert_int_equal(info.unbounded, unbounded);
+    assert_int_equal(orl_picture_read_linear(NULL, path, &image), ORL_OK);
+    assert_true(image.width == W && image.height == H && image.channels == 3);
+    return image;
+}
+
+static void sixteen_bits_of_srgb(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.png", "a.tif"};
+    static uint16_t rgb[W * H * 3];
+    for (int i = 0; i < W * H * 3; i++)
+        rgb[i] = sample(i);
+    for (size_t n = 0; n < ORL_COUNT(names); n++) {
+        const char *path = in_dir(names[n]);
+        assert_true(test_opencv_write_rgb16(path, W, H, rgb));
+        struct orl_image image = read_linear(path, 16, false), eight;
+        for (int i = 0; i < W * H * 3; i++)
+            assert_true(image.f32[i] == orl_srgb_decode((float)rgb[i] / 65535));
+        assert_int_equal(orl_picture_read(NULL, path, 3, &eight), ORL_OK);
+        for (int i = 0; i < W * H * 3; i++)
+            assert_true(fabs(eight.u8[i] - rgb[i] / 257.0) <= 0.51);
+        orl_image_finish(&image);
+        orl_image_finish(&eight);
+    }
+}
+
+// --- TIFF's varieties, by libtiff ---
+
+struct variety {
+    uint16_t bits, samples, planar, compression;
+    uint32_t tile; // 0: strips
+    const char *mode;
+};
+
+static uint16_t value_at(const struct variety *v, uint32_t x, uint32_t y, uint32_t s)
+{
+    uint16_t value = sample((int)((y * W + x) * v->samples + s));
+    return v->bits == 8 ? value >> 8 : value;
+}
+
+// `plane` -1: samples interleaved.
+static void fill_block(const struct variety *v, uint32_t x0, uint32_t y0, uint32_t width,
+                       uint32_t height, int plane, uint8_t *to)
+{
+    uint32_t first = plane < 0 ? 0 : (uint32_t)plane, last = plane < 0 ? v->samples : first + 1;
+    for (uint32_t y = y0; y < y0 + height; y++)
+        for (uint32_t x = x0; x < x0 + width; x++)
+            for (uint32_t s = first; s < last; s++) {
+                uint16_t value = value_at(v, x, y, s);
+                if (v->bits == 8)
+                    *to++ = (uint8_t)value;
+                else
+                    memcpy(to, &value, 2), to += 2;
+            }
+}
+
+static TIFF *begin_tiff(const char *path, const struct variety *v, uint16_t photometric)
+{
+    TIFF *t = TIFFOpen(path, v->mode);
+    assert_non_null(t);
+    TIFFSetField(t, TIFFTAG_IMAGEWIDTH, W);
+    TIFFSetField(t, TIFFTAG_IMAGELENGTH, H);
+    TIFFSetField(t, TIFFTAG_BITSPERSAMPLE, v->bits);
+    TIFFSetField(t, TIFFTAG_SAMPLESPERPIXEL, v->samples);
+    TIFFSetField(t, TIFFTAG_PLANARCONFIG, v->planar);
+    TIFFSetField(t, TIFFTAG_COMPRESSION, v->compression);
+    TIFFSetField(t, TIFFTAG_PHOTOMETRIC, photometric);
+    return t;
+}
+
+static void write_variety(const char *path, const struct variety *v)
+{
+    static uint8_t block[W * H * 8];
+    bool separate = v->planar == PLANARCONFIG_SEPARATE;
+    TIFF *t = begin_tiff(path, v, v->samples >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
+    if (v->tile) {
+        TIFFSetField(t, TIFFTAG_TILEWIDTH, v->tile);
+        TIFFSetField(t, TIFFTAG_TILELENGTH, v->tile);
+    } else {
+        TIFFSetField(t, TIFFTAG_ROWSPERSTRIP, 9);
+    }
+    for (int plane = 0; plane < (separate ? v->samples : 1); plane++) {
+        for (uint32_t y = 0; y < H; y += v->tile ? v->tile : 1)
+            for (uint32_t x = 0; x < (v->tile ? W : 1); x += v->tile ? v->tile : 1) {
+                fill_block(v, x, y, v->tile ? v->tile : W, v->tile ? v->tile : 1,
+                           separate ? plane : -1, block);
+                if (v->tile)
+                    assert_true(TIFFWriteTile(t, block, x, y, 0, (uint16_t)plane) > 0);
+                else
+                    assert_int_equal(TIFFWriteScanline(t, block, y, (uint16_t)plane), 1);
+            }
+    }
+    TIFFClose(t);
+}
+
+static void tiff_varieties(void **state)
+{
+    (void)state;
+    const struct variety all[] = {
+        {16, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"},
+        {16, 3, PLANARCONFIG_CONTIG, COMPRESSION_LZW, 0, "wb"}, // big endian
+        {16, 4, PLANARCONFIG_CONTIG, COMPRESSION_ADOBE_DEFLATE, 0, "w8"}, // BigTIFF
+        {16, 3, PLANARCONFIG_SEPARATE, COMPRESSION_NONE, 0, "w"},
+        {16, 3, PLANARCONFIG_CONTIG, COMPRESSION_LZW, 32, "w"},
+        {16, 4, PLANARCONFIG_SEPARATE, COMPRESSION_NONE, 16, "w"},
+        {16, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"},
+        {8, 3, PLANARCONFIG_CONTIG, COMPRESSION_LZW, 0, "w"},
+        {8, 1, PLANARCONFIG_CONTIG, COMPRESSION_PACKBITS, 48, "w"},
+    };
+    for (size_t n = 0; n < ORL_COUNT(all); n++) {
+        const struct variety *v = &all[n];
+        const char *path = in_dir("v.tiff");
+        write_variety(path, v);
+        struct orl_image image = read_linear(path, v->bits, false);
+        float white = v->bits == 8 ? 255 : 65535;
+        for (uint32_t i = 0; i < W * H * 3; i++) {
+            uint32_t s = v->samples >= 3 ? i % 3 : 0;
+            float want = orl_srgb_decode((float)value_at(v, i / 3 % W, i / 3 / W, s) / white);
+            assert_true(image.f32[i] == want);
+        }
+        orl_image_finish(&image);
+    }
+}
+
+static void floats_are_light_as_it_is(void **state)
+{
+    (void)state;
+    static float rgb[W * H * 3];
+    for (int i = 0; i < W * H * 3; i++)
+        rgb[i] = exp2f((float)(i % 24) - 12);
+    const struct variety v = {32, 3, PLANARCONFIG_CONTIG, COMPRESSION_ADOBE_DEFLATE, 0, "w"};
+    const char *path = in_dir("f.tif");
+    TIFF *t = begin_tiff(path, &v, PHOTOMETRIC_RGB);
+    TIFFSetField(t, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+    for (uint32_t y = 0; y < H; y++)
+        assert_int_equal(TIFFWriteScanline(t, rgb + (size_t)y * W * 3, y, 0), 1);
+    TIFFClose(t);
+    struct orl_image image = read_linear(path, 32, true);
+    assert_memory_equal(image.f32, rgb, sizeof rgb);
+    orl_image_finish(&image);
+
+    struct orl_image from;
+    assert_int_equal(orl_image_init(NULL, &from, W, H, 3, ORL_PIXEL_F32), ORL_OK);
+    memcpy(from.f32, rgb, sizeof rgb);
+    struct orl_exr_params exr = {.width = W, .height = H};
+    static const char *const names[] = {"R", "G", "B"};
+    for (int c = 0; c < 3; c++)
+        assert_true(orl_exr_add_channel(&exr, names[c], false, &from, c));
+    path = in_dir("f.exr");
+    assert_int_equal(orl_exr_write(NULL, path, &exr), ORL_OK);
+    image = read_linear(path, 32, true);
+    assert_memory_equal(image.f32, rgb, sizeof rgb);
+    orl_image_finish(&image);
+    exr.channel_count = 1;
+    strcpy(exr.channels[0].name, "Y");
+    assert_int_equal(orl_exr_write(NULL, path, &exr), ORL_OK);
+    image = read_linear(path, 32, true);
+    for (int i = 0; i < W * H * 3; i++)
+        assert_true(image.f32[i] == rgb[i / 3 * 3]);
+    orl_image_finish(&image);
+    orl_image_finish(&from);
+}
+
+static void damaged_tiff_is_an_error(void **state)
+{
+    (void)state;
+    const struct variety v = {16, 3, PLANARCONFIG_CONTIG, COMPRESSION_LZW, 0, "w"};
+    char path[4096], cut[4096];
+    snprintf(path, sizeof path, "%s", in_dir("d.tif"));
+    snprintf(cut, sizeof cut, "%s", in_dir("cut.tif"));
+    write_variety(path, &v);
+    uint8_t *data;
+    size_t size;
+    struct orl_image image;
+    assert_int_equal(orl_file_read(NULL, path, 1 << 20, &data, &size), ORL_OK);
+    for (size_t keep = 5; keep < size; keep += size / 50) {
+        assert_int_equal(orl_file_write(NULL, cut, data, keep), ORL_OK);
+        assert_int_not_equal(orl_picture_read_linear(NULL, cut, &image), ORL_OK);
+        assert_null(image.data);
+    }
+    uint32_t seed = 5;
+    for (int round = 0; round < 200; round++) { // any result, no crash
+        uint8_t *copy = orl_array(NULL, size, 1);
+        memcpy(copy, data, size);
+        for (int k = 0; k < 4; k++) {
+            seed = seed * 1664525u + 1013904223u;
+            size_t at = round % 2 ? (seed >> 8) % size : size - 1 - (seed >> 8) % 250;
+            copy[at] ^= (uint8_t)(1u << (seed >> 5) % 8);
+        }
+        FILE *out = fopen(cut, "wb");
+        assert_int_equal(fwrite(copy, 1, size, out), size);
+        fclose(out);
+        if (orl_picture_read_linear(NULL, cut, &image) != ORL_OK)
+            assert_null(image.data);
+        orl_image_finish(&image);
+        free(copy);
+    }
+    free(data);
+    assert_int_equal(orl_file_write(NULL, cut, "II*\0", 4), ORL_OK);
+    assert_int_not_equal(orl_picture_read_linear(NULL, cut, &image), ORL_OK);
+}
+
+static void unusual_tiff_is_refused_with_advice(void **state)
+{
+    (void)state;
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_image image;
+    const struct variety v = {8, 4, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"};
+    const char *path = in_dir("cmyk.tif");
+    uint8_t row[W * 4] = {0};
+    TIFF *t = begin_tiff(path, &v, PHOTOMETRIC_SEPARATED);
+    for (uint32_t y = 0; y < H; y++)
+        assert_int_equal(TIFFWriteScanline(t, row, y, 0), 1);
+    TIFFClose(t);
+    assert_int_equal(orl_picture_read_linear(&log, path, &image), ORL_ERR_UNSUPPORTED);
+    assert_non_null(strstr(said.text, "save it as RGB"));
+}
+
+// --- RAW ---
+
+static const double camera_light[2][3] = {{0.25, 0.5, 0.125}, {0.02, 0.04, 0.03}};
+static const double neutral[3] = {0.5, 1, 0.8};
+
+// A DNG of a camera whose primaries are sRGB's and that sees neutral light as `neutral`:
+// two halves of one colour each and a saturated corner, RGGB.
+static bool write_dng(const char *path)
+{
+    enum { BLACK = 512, WHITE = 15360 };
+    static const float xyz_to_srgb[9] = {3.2404542f, -1.5371385f, -0.4985314f,
+                                         -0.9692660f, 1.8760108f, 0.0415560f,
+                                         0.0556434f, -0.2040259f, 1.0572252f};
+    const float shot[3] = {(float)neutral[0], (float)neutral[1], (float)neutral[2]};
+    const uint16_t repeat[2] = {2, 2};
+    const float black = BLACK;
+    const uint32_t white = WHITE;
+    struct variety v = {16, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"};
+    TIFF *t = begin_tiff(path, &v, 32803 /* CFA */);
+    // What the camera sees of XYZ: sRGB's matrix, rows scaled by its neutral.
+    float matrix[9];
+    for (int i = 0; i < 9; i++)
+        matrix[i] = xyz_to_srgb[i] * shot[i / 3];
+    bool ok = TIFFSetField(t, TIFFTAG_SUBFILETYPE, 0) && TIFFSetField(t, TIFFTAG_MAKE, "Oriel") &&
+              TIFFSetField(t, TIFFTAG_MODEL, "Test") &&
+              TIFFSetField(t, TIFFTAG_UNIQUECAMERAMODEL, "Oriel Test") &&
+              TIFFSetField(t, TIFFTAG_DNGVERSION, "\001\004\000\000") &&
+              TIFFSetField(t, TIFFTAG_CFAREPEATPATTERNDIM, repeat) &&
+              TIFFSetField(t, TIFFTAG_CFAPATTERN, 4, "\000\001\001\002") &&
+              TIFFSetField(t, TIFFTAG_CFAPLANECOLOR, 3, "\000\001\002") &&
+              TIFFSetField(t, TIFFTAG_CFALAYOUT, 1) &&
+              TIFFSetField(t, TIFFTAG_BLACKLEVEL, 1, &black) &&
+              TIFFSetField(t, TIFFTAG_WHITELEVEL, 1, &white) &&
+              TIFFSetField(t, TIFFTAG_COLORMATRIX1, 9, matrix) &&
+              TIFFSetField(t, TIFFTAG_CALIBRATIONILLUMINANT1, 21) &&
+              TIFFSetField(t, TIFFTAG_ASSHOTNEUTRAL, 3, shot);
+    for (uint32_t y = 0; y < H && ok; y++) {
+        uint16_t row[W];
+        for (uint32_t x = 0; x < W; x++) {
+            int c = y % 2 == 0 ? (x % 2 == 0 ? 0 : 1) : (x % 2 == 0 ? 1 : 2);
+            double seen = x > 70 && y > 50 ? 9 : camera_light[x >= W / 2][c] * neutral[c];
+            row[x] = (uint16_t)fmin(WHITE, lround(BLACK + seen * (WHITE - BLACK)));
+        }
+        ok = TIFFWriteScanline(t, row, y, 0) == 1;
+    }
+    TIFFClose(t);
+    return ok;
+}
+
+// White balance divides by the neutral; the smallest multiplier is 1, so white stays the
+// sensor's full scale and light comes out as it went in.
+static void raw_is_linear_with_the_cameras_white_balance(void **state)
+{
+    (void)state;
+    const char *path = in_dir("a.dng");
+    struct orl_exif exif;
+    if (!write_dng(path)) {
+        printf("skipped: this libtiff cannot write a DNG\n");
+        skip();
+    }
+    struct orl_image image = read_linear(path, 16, false);
+    for (int half = 0; half < 2; half++)
+        for (int c = 0; c < 3; c++) {
+            float got = image.f32[3 * (30 * W + (half ? 60 : 20)) + c];
+            assert_float_equal(got, camera_light[half][c], 0.01 * camera_light[half][c] + 2e-4);
+        }
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(image.f32[3 * (62 * W + 82) + c], 1, 0.01);
+    orl_image_finish(&image);
+    assert_int_equal(orl_exif_read(NULL, path, &exif), ORL_OK);
+    assert_string_equal(exif.model, "Test");
+
+    uint8_t *data;
+    size_t size;
+    assert_int_equal(orl_file_read(NULL, path, 1 << 20, &data, &size), ORL_OK);
+    assert_int_equal(orl_file_write(NULL, path, data, size / 2), ORL_OK);
+    assert_int_not_equal(orl_picture_read_linear(NULL, path, &image), ORL_OK);
+    assert_null(image.data);
+    assert_int_equal(orl_file_write(NULL, path, "nothing of the kind", 19), ORL_OK);
+    assert_int_not_equal(orl_picture_read_linear(NULL, path, &image), ORL_OK);
+    free(data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sixteen_bits_of_srgb),
+        cmocka_unit_test(floats_are_light_as_it_is),
+        cmocka_unit_test(tiff_varieties),
+        cmocka_unit_test(damaged_tiff_is_an_error),
+        cmocka_unit_test(unusual_tiff_is_refused_with_advice),
+        cmocka_unit_test(raw_is_linear_with_the_cameras_white_balance),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
