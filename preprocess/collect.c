@@ -23,14 +23,13 @@ static bool has_extension(const char *name, const char *const *extensions)
 static bool is_photo_name(const char *name)
 {
     static const char *const known[] = {"jpg", "jpeg", "png", NULL};
-    return name[0] != '.' && has_extension(name, known);
+    return name[0] != '.' && (has_extension(name, known) || orl_develop_wanted(name));
 }
 
 // Pictures that a user may expect to be taken.
 static bool is_other_photo_name(const char *name)
 {
-    static const char *const known[] = {"tif", "tiff", "heic", "heif", "webp", "bmp", "gif", "avif",
-                                        "cr2", "cr3", "nef", "arw", "dng", "raf", "orf", NULL};
+    static const char *const known[] = {"heic", "heif", "webp", "bmp", "gif", "avif", NULL};
     return name[0] != '.' && has_extension(name, known);
 }
 
@@ -75,9 +74,12 @@ static enum orl_result add_candidate(struct orl_job *job, const char *path)
     if (result != ORL_OK)
         goto end;
     struct orl_source *source = &job->sources[job->source_count++];
-    *source = (struct orl_source){.name = orl_strdup(job->log, name), .path = real};
+    *source = (struct orl_source){.name = orl_develop_wanted(name)
+                                              ? orl_develop_name(job->log, name)
+                                              : orl_strdup(job->log, name),
+                                  .given = orl_strdup(job->log, name), .path = real};
     real = NULL;
-    result = source->name ? ORL_OK : ORL_ERR_MEMORY;
+    result = source->name && source->given ? ORL_OK : ORL_ERR_MEMORY;
 end:
     free(real);
     return result;
@@ -98,14 +100,14 @@ static enum orl_result add_folder(struct orl_job *job, const char *dir)
             result = add_candidate(job, path);
         else if (is_other_photo_name(names.items[i])) {
             job->given++;
-            skip(job, path, "neither JPEG nor PNG");
+            skip(job, path, "not JPEG, PNG, TIFF, EXR or RAW");
         }
         free(path);
     }
     orl_names_finish(&names);
     if (result == ORL_OK && job->given == before)
         result = orl_fail(job->log, ORL_ERR_NOT_FOUND,
-                          "%s: no photograph here (files .jpg, .jpeg or .png)%s", dir,
+                          "%s: no photograph here (JPEG, PNG, TIFF, EXR or RAW files)%s", dir,
                           folders ? "; name its subfolders instead" : "");
     return result;
 }
@@ -135,7 +137,9 @@ static int compare_sources(const void *a, const void *b)
 static void finish_source(struct orl_source *source)
 {
     free(source->name);
+    free(source->given);
     free(source->path);
+    free(source->original);
     free(source->mask);
     memset(source, 0, sizeof *source);
 }
@@ -148,6 +152,43 @@ static void keep_source(struct orl_job *job, struct orl_source *source, size_t *
         memset(source, 0, sizeof *source);
     }
     ++*kept;
+}
+
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot ? (size_t)(dot - name) : strlen(name);
+}
+
+// Cameras write a JPEG beside a RAW file: the same moment, and two photographs from one
+// place would only mislead COLMAP.
+static enum orl_result drop_twins(struct orl_job *job)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        static const char *const jpeg[] = {"jpg", "jpeg", NULL};
+        const struct orl_source *better = NULL;
+        size_t stem = stem_length(source->given);
+        bool may_be = has_extension(source->given, jpeg);
+        for (size_t k = 0; may_be && k < job->source_count && !better; k++) {
+            const struct orl_source *other = &job->sources[k];
+            if (other->given && orl_develop_wanted(other->given) &&
+                stem_length(other->given) == stem &&
+                strncasecmp(other->given, source->given, stem) == 0)
+                better = other;
+        }
+        if (better) {
+            char why[512];
+            snprintf(why, sizeof why, "%s holds more of the same photograph", better->given);
+            skip(job, source->path, why);
+            finish_source(source);
+        } else {
+            keep_source(job, source, &kept);
+        }
+    }
+    job->source_count = kept;
+    return ORL_OK;
 }
 
 // The same file given twice counts once; two files of one name cannot be told apart.
@@ -203,10 +244,15 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
 {
     struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = reason};
     struct orl_image image = {0};
+    struct orl_picture_info info;
     if (orl_file_hash(&log, source->path, &source->hash) != ORL_OK ||
-        orl_picture_size(&log, source->path, &source->width, &source->height) != ORL_OK ||
+        orl_picture_inspect(&log, source->path, &info) != ORL_OK ||
         orl_exif_read(&log, source->path, &source->exif) != ORL_OK)
         return false;
+    source->width = info.width;
+    source->height = info.height;
+    source->deep = info.bits > 8;
+    source->unbounded = info.unbounded;
     if (source->width < 64 || source->height < 64) {
         snprintf(reason->text, sizeof reason->text, "%dx%d pixels are too few", source->width,
                  source->height);
@@ -248,8 +294,7 @@ static enum orl_result inspect_all(struct orl_job *job)
 // "name", with or without its extension.
 static bool same_photo(const char *name, const char *given)
 {
-    const char *dot = strrchr(name, '.');
-    size_t stem = dot ? (size_t)(dot - name) : strlen(name);
+    size_t stem = stem_length(name);
     return strcmp(name, given) == 0 || (strlen(given) == stem && strncmp(name, given, stem) == 0);
 }
 
@@ -262,7 +307,8 @@ static enum orl_result choose_test(struct orl_job *job)
     for (size_t n = 0; params->test_list && n < params->test_list->count; n++) {
         bool found = false;
         for (size_t i = 0; i < job->source_count; i++)
-            if (same_photo(job->sources[i].name, params->test_list->items[n]))
+            if (same_photo(job->sources[i].name, params->test_list->items[n]) ||
+                same_photo(job->sources[i].given, params->test_list->items[n]))
                 found = job->sources[i].test = true;
         if (!found)
             return orl_fail(job->log, ORL_ERR_ARGUMENT,
@@ -351,12 +397,14 @@ static enum orl_result too_few(const struct orl_job *job)
 enum orl_result orl_stage_collect(struct orl_job *job)
 {
     enum orl_result result;
-    if ((result = list_inputs(job)) != ORL_OK || (result = drop_duplicates(job)) != ORL_OK ||
+    if ((result = list_inputs(job)) != ORL_OK || (result = drop_twins(job)) != ORL_OK ||
+        (result = drop_duplicates(job)) != ORL_OK ||
         (result = inspect_all(job)) != ORL_OK)
         return result;
     if (job->source_count < 3)
         return too_few(job);
-    if ((result = choose_test(job)) != ORL_OK || (result = find_masks(job)) != ORL_OK)
+    if ((result = choose_test(job)) != ORL_OK || (result = find_masks(job)) != ORL_OK ||
+        (result = orl_develop(job)) != ORL_OK)
         return result;
     return link_photos(job);
 }

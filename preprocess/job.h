@@ -21,13 +21,17 @@ enum orl_stage_id {
 
 // A photograph that was given and can be read.
 struct orl_source {
-    char *name; // owned; unique, also COLMAP's name for it
-    char *path; // owned; absolute
+    char *name;     // owned; unique, also COLMAP's name for it
+    char *given;    // owned; the name it was given under
+    char *path;     // owned; absolute; what COLMAP reads
+    char *original; // owned; absolute; what `path` was developed from, NULL: nothing
     char *mask; // owned; absolute path of its mask, NULL: none
     uint64_t hash, mask_hash;
     int width, height;
     struct orl_exif exif;
     bool test;
+    bool deep;      // more than 8 bits a sample
+    bool unbounded; // floats, whose white is a matter of choice
 };
 
 struct orl_job {
@@ -39,6 +43,7 @@ struct orl_job {
     bool fresh;  // the folder was empty or new
     struct orl_source *sources; // owned; sorted by name
     size_t source_count, source_capacity;
+    double linear_scale; // what light of unbounded sources is multiplied by, once developed
     size_t given;    // photographs found, readable or not
     json_t *skipped; // owned; [{"name", "why"}]
     json_t *stages;  // owned; .oriel/stages.json
@@ -106,6 +111,18 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
 // Progress in [0, 1) that a line of COLMAP's output tells; negative: none. `total`
 // is the number of photographs, for the mapper's lines.
 double orl_colmap_line_progress(const char *line, double total);
+
+// --- develop.c: photographs that COLMAP cannot read, or with more than 8 bits ---
+
+// By its extension: does COLMAP need an 8-bit twin of it?
+bool orl_develop_wanted(const char *name);
+// The twin's name, released with free().
+char *orl_develop_name(const struct orl_log *log, const char *name);
+// Makes the twins that are not there yet: source->path becomes the twin's.
+enum orl_result orl_develop(struct orl_job *job) ORL_CHECK_RESULT;
+// Linear light of all deep photographs in the model SCENE/`sparse`, as SCENE/`out`/NAME.exr.
+enum orl_result orl_develop_undistort(const struct orl_job *job, const char *sparse,
+                                      const char *out, size_t *written) ORL_CHECK_RESULT;
 
 // --- the stages ---
 // Each leaves whole results under their final names or fails. `record` takes what

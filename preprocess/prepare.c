@@ -355,7 +355,9 @@ static void finish(struct orl_job *job)
 {
     for (size_t i = 0; i < job->source_count; i++) {
         free(job->sources[i].name);
+        free(job->sources[i].given);
         free(job->sources[i].path);
+        free(job->sources[i].original);
         free(job->sources[i].mask);
     }
     free(job->sources);
@@ -372,6 +374,7 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
     ORL_REQUIRE(log, params->input_count > 0 && params->out && *params->out);
     ORL_REQUIRE(log, params->test_every >= 0 && params->max_size >= 0);
     struct orl_job job = {.log = log, .progress = progress, .params = params, .lock_fd = -1,
+                          .linear_scale = 1,
                           .skipped = json_array()};
     enum orl_result result = job.skipped ? open_folder(&job) : ORL_ERR_MEMORY;
     if (result == ORL_OK)

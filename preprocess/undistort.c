@@ -146,14 +146,20 @@ static enum orl_result undistort_masks(struct orl_job *job)
 enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
 {
     static const char *const temporary[] = {WORK, MASK_WORK, ".oriel/masks-in.tmp"};
+    size_t linear = 0;
     enum orl_result result;
     if ((result = orl_job_find_colmap(job)) != ORL_OK ||
         (result = run_undistorter(job, ".oriel/photos", WORK, "undistort")) != ORL_OK ||
         (result = check_output(job, record)) != ORL_OK ||
+        (result = orl_develop_undistort(job, WORK "/sparse", WORK "/linear", &linear)) != ORL_OK ||
         (job->params->masks_dir && (result = undistort_masks(job)) != ORL_OK) ||
         (result = orl_job_replace(job, WORK "/sparse", "sparse")) != ORL_OK ||
+        (result = linear ? orl_job_replace(job, WORK "/linear", "images_linear")
+                         : orl_job_remove(job, "images_linear")) != ORL_OK ||
         (result = orl_job_replace(job, WORK "/images", "images")) != ORL_OK)
         return result;
+    if (linear)
+        json_object_set_new(record, "linear_scale", json_real(job->linear_scale));
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(temporary); i++)
         result = orl_job_remove(job, temporary[i]);

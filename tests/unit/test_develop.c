@@ -1,0 +1,187 @@
+// Prepare with photographs of more than 8 bits, by a stand-in for COLMAP.
+#include "test.h"
+
+#include <math.h>
+#include <unistd.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "io/exr.h"
+#include "io/linear.h"
+#include "io/picture.h"
+#include "opencv_files.h"
+#include "preprocess/prepare.h"
+
+enum { W = 96, H = 80 }; // the stand-in's camera
+
+static char *dir, *photos, *scene_dir;
+
+static int set_up(void **state)
+{
+    (void)state;
+    dir = test_dir_make();
+    photos = orl_path_join(NULL, dir, "photos");
+    scene_dir = orl_path_join(NULL, dir, "scene");
+    return dir && photos && scene_dir && orl_dir_make(NULL, photos) == ORL_OK &&
+                   setenv("ORIEL_COLMAP", SOURCE_DIR "/tests/e2e/colmap_double", 1) == 0
+               ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    free(photos);
+    free(scene_dir);
+    test_dir_remove(dir);
+    return 0;
+}
+
+// Light of the pictures: smooth, with a bright window; mean about 3, so that white has
+// to be chosen.
+static float light(int x, int y, int c)
+{
+    float base = 3 * (1 + 0.3f * sinf(0.1f * (float)x) + 0.2f * cosf(0.13f * (float)y));
+    return base * (1 + 0.1f * (float)c) * (x > 40 && x < 60 && y > 30 && y < 50 ? 16 : 1);
+}
+
+static void path_of(char path[4096], const char *folder, const char *name)
+{
+    snprintf(path, 4096, "%s/%s", folder, name);
+}
+
+static void write_exr(const char *name, float factor)
+{
+    char path[4096];
+    struct orl_image image;
+    struct orl_exr_params exr = {.width = W, .height = H};
+    static const char *const names[] = {"R", "G", "B"};
+    assert_int_equal(orl_image_init(NULL, &image, W, H, 3, ORL_PIXEL_F32), ORL_OK);
+    for (int i = 0; i < W * H * 3; i++)
+        image.f32[i] = factor * light(i / 3 % W, i / 3 / W, i % 3);
+    for (int c = 0; c < 3; c++)
+        assert_true(orl_exr_add_channel(&exr, names[c], false, &image, c));
+    path_of(path, photos, name);
+    assert_int_equal(orl_exr_write(NULL, path, &exr), ORL_OK);
+    orl_image_finish(&image);
+}
+
+static void write_sixteen(const char *name)
+{
+    static uint16_t rgb[W * H * 3];
+    char path[4096];
+    for (int i = 0; i < W * H * 3; i++)
+        rgb[i] = (uint16_t)lrintf(
+            65535 * orl_srgb_encode(0.05f * light(i / 3 % W, i / 3 / W, i % 3)));
+    path_of(path, photos, name);
+    assert_true(test_opencv_write_rgb16(path, W, H, rgb));
+}
+
+static void write_eight(const char *name, float grey)
+{
+    char path[4096];
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, W, H, 3, ORL_PIXEL_U8), ORL_OK);
+    memset(image.u8, (int)grey, W * H * 3);
+    path_of(path, photos, name);
+    assert_int_equal(orl_jpeg_write(NULL, path, &image, 95, NULL), ORL_OK);
+    orl_image_finish(&image);
+}
+
+static void prepare(struct said *said, bool resume)
+{
+    const char *const inputs[] = {photos};
+    struct orl_log log = log_to(said);
+    const struct orl_prepare_params params = {.inputs = inputs, .input_count = 1,
+                                              .out = scene_dir, .resume = resume};
+    if (orl_prepare(&log, &params, NULL) != ORL_OK)
+        fail_msg("%s", said->text);
+}
+
+// scale: of light, as the 8-bit twin has it.
+static void check_photo(const struct orl_scene *scene, const char *name, float scale, bool clips)
+{
+    int index = orl_scene_find_photo(scene, name);
+    assert_true(index >= 0);
+    struct orl_image linear, eight;
+    bool got;
+    char *path = orl_scene_photo_path(NULL, scene, (size_t)index);
+    assert_true(scene->photos[index].linear);
+    assert_int_equal(orl_scene_read_linear(NULL, scene, (size_t)index, &linear, &got), ORL_OK);
+    assert_int_equal(got, clips);
+    assert_int_equal(orl_picture_read(NULL, path, 3, &eight), ORL_OK);
+    for (int y = 20; y < 60; y++)
+        for (int x = 25; x < 75; x++)
+            for (int c = 0; c < 3; c++) {
+                if (abs(x - 50) < 14 && abs(y - 40) < 14 && (abs(x - 50) > 6 || abs(y - 40) > 6))
+                    continue; // the window's edge moves by a fraction of a pixel
+                // Distortion is 0.01 r^2, r less than 0.4 here.
+                float want = scale * light(x, y, c), value = linear.f32[3 * (y * W + x) + c];
+                if (clips)
+                    want = fminf(want, 1);
+                assert_float_equal(value, want, 0.02 * (double)want);
+                // The stand-in does not undistort.
+                assert_float_equal(eight.u8[3 * (y * W + x) + c],
+                                   255 * (double)orl_srgb_encode(want), 5);
+            }
+    orl_image_finish(&linear);
+    orl_image_finish(&eight);
+    free(path);
+}
+
+static void deep_photographs_get_twins_and_linear_light(void **state)
+{
+    (void)state;
+    struct said said;
+    struct orl_scene *scene;
+    write_exr("a.exr", 1);
+    write_exr("b.exr", 0.5f);
+    write_exr("c.exr", 2);
+    write_sixteen("d.tif");
+    write_sixteen("e.png");
+    write_eight("f.jpg", 120);
+    write_eight("a.JPG", 90); // the camera's own of a.exr
+    prepare(&said, false);
+    assert_non_null(strstr(said.text, "a.JPG: a.exr holds more of the same photograph"));
+    assert_int_equal(orl_scene_open(NULL, scene_dir, &scene), ORL_OK);
+    assert_int_equal(scene->photo_count, 6);
+    // The median picture's average, about 3.3, becomes about 0.18 by a power of two.
+    check_photo(scene, "a", 0.0625f, false);
+    check_photo(scene, "b", 0.03125f, false);
+    check_photo(scene, "c.jpg", 0.125f, false);
+    check_photo(scene, "d.jpg", 0.05f, true);
+    check_photo(scene, "e.png", 0.05f, true);
+    int plain = orl_scene_find_photo(scene, "f.jpg");
+    struct orl_image none;
+    bool clips;
+    assert_false(scene->photos[plain].linear);
+    assert_int_equal(orl_scene_read_linear(NULL, scene, (size_t)plain, &none, &clips), ORL_OK);
+    assert_null(none.data);
+    orl_scene_destroy(&scene);
+    prepare(&said, true);
+    assert_non_null(strstr(said.text, "undistort: done already"));
+}
+
+static void without_deep_photographs_the_folder_goes(void **state)
+{
+    (void)state;
+    struct said said;
+    static const char *const deep[] = {"a.exr", "b.exr", "c.exr", "d.tif", "e.png"};
+    char path[4096];
+    for (size_t i = 0; i < ORL_COUNT(deep); i++) {
+        path_of(path, photos, deep[i]);
+        assert_int_equal(remove(path), 0);
+    }
+    write_eight("g.jpg", 100);
+    prepare(&said, true);
+    path_of(path, scene_dir, "images_linear");
+    assert_false(orl_path_is_dir(path));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(deep_photographs_get_twins_and_linear_light),
+        cmocka_unit_test(without_deep_photographs_the_folder_goes),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
