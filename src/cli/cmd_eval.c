@@ -6,9 +6,10 @@
 #include "cli/commands.h"
 #include "core/memory.h"
 #include "eval/eval.h"
+#include "hdr/hdr.h"
 
 struct options {
-    const char *method, *json, *images;
+    const char *method, *json, *images, *merge, *truth;
     struct orl_names settings;
     int max_vram_mib;
 };
@@ -20,7 +21,9 @@ struct job {
     bool verbose;
     struct orl_scene *scene;
     struct orl_gpu *gpu;
-    struct orl_renderer *renderer;
+    struct orl_renderer *renderer; // NULL with --merge
+    struct orl_hdr *hdr;           // of the method at hand, with --merge
+    struct orl_truth truth;
     struct orl_eval *evals; // one per method
     size_t count;
 };
@@ -33,6 +36,19 @@ static void print_figures(const struct orl_eval_view *view)
     printf(" %7.2f %7.2f %7.2f  %.4f  %6.1f %6.1f  %.4f %9.1f\n", m->psnr_db, m->psnr_cc_db,
            m->psnr_covered_db, m->ssim, 100 * m->coverage, 100 * m->completeness, m->ncc_error,
            view->render_ms);
+}
+
+static void print_radiance(const struct orl_eval *eval)
+{
+    printf("%-24s %9s %9s %9s %9s\n", "radiance", "PU21 dB", "mu dB", "stops", "fitted");
+    for (size_t i = 0; i <= eval->view_count; i++) {
+        bool mean = i == eval->view_count;
+        const struct orl_eval_view *view = mean ? &eval->mean : &eval->views[i];
+        const struct orl_radiance_metrics *m = &view->radiance;
+        printf("%-24s %9.2f %9.2f %9.4f %9.4f\n",
+               mean ? "mean" : eval->scene->photos[view->photo].name, m->pu21_psnr_db,
+               m->mu_psnr_db, m->log2_rmse, m->log2_rmse_fitted);
+    }
 }
 
 static void print_table(const struct orl_eval *eval)
@@ -49,6 +65,8 @@ static void print_table(const struct orl_eval *eval)
     }
     printf("%-24s %11s", "mean", "");
     print_figures(&eval->mean);
+    if (eval->has_truth)
+        print_radiance(eval);
 }
 
 static void print_passes(const struct orl_eval *eval)
@@ -68,17 +86,41 @@ static enum orl_result apply_settings(const struct job *job, struct orl_render_p
     return result;
 }
 
+static enum orl_result draw_radiance(void *priv, const struct orl_view *view,
+                                     struct orl_frame *frame)
+{
+    return orl_hdr_draw(priv, view, NULL, frame);
+}
+
+static enum orl_result start_hdr(struct job *job, const struct orl_render_params *render)
+{
+    struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
+    params.render = *render;
+    params.max_vram_bytes = (size_t)job->options->max_vram_mib << 20;
+    enum orl_result result = orl_hdr_merge_find(job->log, job->options->merge, &params.merge);
+    return result == ORL_OK ? orl_hdr_create(job->gpu, job->scene, &params, &job->hdr) : result;
+}
+
 static enum orl_result evaluate(struct job *job, const struct orl_method *method)
 {
     struct orl_render_params render = method->params;
     enum orl_result result = apply_settings(job, &render);
     if (result != ORL_OK)
         return result;
-    const struct orl_eval_params params = {.method = method->name, .render = &render,
+    struct orl_eval_params params = {.method = method->name, .render = &render,
                                            .image_dir = job->options->images,
-                                           .progress = job->progress};
+                                           .progress = job->progress,
+                                           .truth = job->options->truth ? &job->truth : NULL};
     struct orl_eval *eval = &job->evals[job->count];
+    if (job->options->merge) {
+        result = start_hdr(job, &render);
+        if (result != ORL_OK)
+            return result;
+        params.draw_radiance = draw_radiance;
+        params.draw_priv = job->hdr;
+    }
     result = orl_eval_run(job->gpu, job->renderer, job->scene, &params, eval);
+    orl_hdr_destroy(&job->hdr);
     if (result != ORL_OK)
         return result;
     job->count++;
@@ -126,10 +168,15 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         return ORL_ERR_MEMORY;
     struct orl_render_params tried = first->params; // wrong settings are found before the work
     enum orl_result result = apply_settings(job, &tried);
+    enum orl_hdr_merge merge;
+    if (result == ORL_OK && job->options->merge)
+        result = orl_hdr_merge_find(job->log, job->options->merge, &merge);
     if (result == ORL_OK)
         result = orl_scene_open(job->log, scene_dir, &job->scene);
     if (result == ORL_OK)
         result = orl_eval_check(job->log, job->scene);
+    if (result == ORL_OK && job->options->truth)
+        result = orl_truth_open(job->log, job->scene, job->options->truth, &job->truth);
     if (result == ORL_OK)
         result = orl_gpu_create(job->log,
                                 &(struct orl_gpu_params){.shader_dir = common->shader_dir,
@@ -137,7 +184,7 @@ static enum orl_result run(struct job *job, const char *scene_dir,
                                 &job->gpu);
     struct orl_renderer_params limits = {
         .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
-    if (result == ORL_OK)
+    if (result == ORL_OK && !job->options->merge)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     for (size_t i = 0; i < methods && result == ORL_OK; i++)
         result = evaluate(job, &first[i]);
@@ -151,6 +198,8 @@ static void finish(struct job *job)
     for (size_t i = 0; i < job->count; i++)
         orl_eval_finish(&job->evals[i]);
     free(job->evals);
+    orl_hdr_destroy(&job->hdr);
+    orl_truth_finish(&job->truth);
     orl_renderer_destroy(&job->renderer);
     orl_gpu_destroy(&job->gpu);
     orl_scene_destroy(&job->scene);
@@ -165,6 +214,10 @@ int cmd_eval(int argc, char **argv)
         {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
         {"images", ARG_STRING, &o.images, "DIR", "write photographs, renderings, differences",
          0, 0},
+        {"merge", ARG_STRING, &o.merge, "NAME",
+         "blend as radiance, as oriel hdr does: fused or series", 0, 0},
+        {"truth", ARG_STRING, &o.truth, "DIR",
+         "compare with true radiance too; DIR is what oriel synth wrote", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

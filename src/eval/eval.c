@@ -9,6 +9,7 @@
 #include "core/process.h"
 #include "eval/internal.h"
 #include "io/picture.h"
+#include "render/reexpose.h"
 
 // Timed draws of one view after a warm-up: a software renderer's are slow and
 // steady enough for one.
@@ -36,8 +37,11 @@ static enum orl_result timed_draw(struct job *job, const struct orl_view *view,
                                   struct orl_frame *frame, double *ms)
 {
     double start = orl_time_s();
+    const struct orl_eval_params *params = job->params;
     enum orl_result result =
-        orl_renderer_draw(job->renderer, view, job->params->render, NULL, frame);
+        params->draw_radiance
+            ? params->draw_radiance(params->draw_priv, view, frame)
+            : orl_renderer_draw(job->renderer, view, params->render, NULL, frame);
     *ms = 1e3 * (orl_time_s() - start); // drawing ends with reading back: the pipeline is empty
     return result;
 }
@@ -111,6 +115,27 @@ static enum orl_result read_photograph(const struct job *job, size_t photo,
     return result;
 }
 
+static enum orl_result as_photograph(const struct job *job, size_t index,
+                                     struct orl_image *color, struct orl_image *rendered)
+{
+    if (job->params->draw_radiance)
+        return orl_photo_expose(job->log, job->scene, index, color, rendered);
+    undo_gain(job->scene->photos[index].gain, color);
+    return orl_tone_srgb(job->log, color, rendered);
+}
+
+static enum orl_result compare_radiance(const struct job *job, struct orl_eval_view *view,
+                                        const struct orl_frame *frame)
+{
+    struct orl_image truth;
+    enum orl_result result = orl_truth_read(job->log, job->params->truth, view->photo, &truth);
+    if (result == ORL_OK)
+        result = orl_radiance_compare(job->log, &frame->color, &truth, &frame->coverage,
+                                      &view->radiance);
+    orl_image_finish(&truth);
+    return result;
+}
+
 static enum orl_result measure(struct job *job, struct orl_eval_view *view)
 {
     const struct orl_photo *photo = &job->scene->photos[view->photo];
@@ -121,10 +146,10 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
     view->height = photograph.height;
     if (result == ORL_OK)
         result = draw(job, &photo->view, &frame, &view->render_ms);
-    if (result == ORL_OK) {
-        undo_gain(photo->gain, &frame.color);
-        result = orl_tone_srgb(job->log, &frame.color, &rendered);
-    }
+    if (result == ORL_OK && job->params->truth)
+        result = compare_radiance(job, view, &frame);
+    if (result == ORL_OK)
+        result = as_photograph(job, view->photo, &frame.color, &rendered);
     if (result == ORL_OK)
         result = orl_metrics_compare(job->log, &rendered, &photograph, &frame.coverage,
                                      &view->metrics);
@@ -152,6 +177,10 @@ static void take_means(struct orl_eval *eval)
         mean->metrics.coverage += m->coverage / n;
         mean->metrics.completeness += m->completeness / n;
         mean->metrics.ncc_error += m->ncc_error / n;
+        mean->radiance.pu21_psnr_db += eval->views[i].radiance.pu21_psnr_db / n;
+        mean->radiance.mu_psnr_db += eval->views[i].radiance.mu_psnr_db / n;
+        mean->radiance.log2_rmse += eval->views[i].radiance.log2_rmse / n;
+        mean->radiance.log2_rmse_fitted += eval->views[i].radiance.log2_rmse_fitted / n;
         mean->render_ms += eval->views[i].render_ms / n;
     }
 }
@@ -210,6 +239,7 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                       .params = params, .eval = eval};
     eval->scene = scene;
     eval->method = params->method;
+    eval->has_truth = params->truth != NULL;
     snprintf(eval->device, sizeof eval->device, "%s", orl_gpu_caps(gpu)->renderer);
     enum orl_result result = orl_eval_check(job.log, scene);
     if (result == ORL_OK)

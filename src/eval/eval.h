@@ -5,12 +5,15 @@
 
 #include "core/progress.h"
 #include "eval/metrics.h"
+#include "eval/radiance_metrics.h"
+#include "eval/truth.h"
 #include "render/render.h"
 
 struct orl_eval_view {
     size_t photo; // index in the scene
     int width, height;
     struct orl_metrics metrics;
+    struct orl_radiance_metrics radiance; // only with a truth
     double render_ms;
 };
 
@@ -30,6 +33,7 @@ struct orl_eval {
     struct orl_eval_view mean; // arithmetic mean of each figure
     struct orl_eval_pass passes[ORL_EVAL_PASSES_MAX];
     size_t pass_count;
+    bool has_truth;
 };
 
 struct orl_eval_params {
@@ -39,6 +43,12 @@ struct orl_eval_params {
     // NAME.<method>.diff.png: photograph, rendering and four times their difference
     // beside each other. NULL: none.
     const char *image_dir;
+    // Draws radiance in place of the renderer; NULL: the renderer draws. Radiance is brought
+    // to each photograph's exposure, vignetting and response before it is compared.
+    enum orl_result (*draw_radiance)(void *priv, const struct orl_view *view,
+                                     struct orl_frame *frame);
+    void *draw_priv;
+    const struct orl_truth *truth; // NULL: photographs are all there is to compare with
     const struct orl_progress *progress;
 };
 
@@ -46,7 +56,8 @@ struct orl_eval_params {
 enum orl_result orl_eval_check(const struct orl_log *log,
                                const struct orl_scene *scene) ORL_CHECK_RESULT;
 // Renders every held-out photograph's view, at the photograph's own size, and compares.
-// A renderer with default orl_renderer_params uses no held-out photograph.
+// A renderer with default orl_renderer_params uses no held-out photograph; NULL will do
+// with draw_radiance.
 // Fails as orl_eval_check does.
 enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              const struct orl_scene *scene, const struct orl_eval_params *params,

@@ -9,10 +9,20 @@ static bool set(json_t *object, const char *key, json_t *value)
     return json_object_set_new(object, key, value) == 0;
 }
 
-static bool set_figures(json_t *object, const struct orl_eval_view *view)
+static bool set_radiance(json_t *object, const struct orl_radiance_metrics *m)
+{
+    return set(object, "pu21_psnr_db", json_real(m->pu21_psnr_db)) &&
+           set(object, "mu_psnr_db", json_real(m->mu_psnr_db)) &&
+           set(object, "log2_rmse", json_real(m->log2_rmse)) &&
+           set(object, "log2_rmse_fitted", json_real(m->log2_rmse_fitted));
+}
+
+static bool set_figures(json_t *object, const struct orl_eval *eval,
+                        const struct orl_eval_view *view)
 {
     const struct orl_metrics *m = &view->metrics;
-    return set(object, "psnr_db", json_real(m->psnr_db)) &&
+    return (!eval->has_truth || set_radiance(object, &view->radiance)) &&
+           set(object, "psnr_db", json_real(m->psnr_db)) &&
            set(object, "psnr_cc_db", json_real(m->psnr_cc_db)) &&
            set(object, "psnr_covered_db", json_real(m->psnr_covered_db)) &&
            set(object, "ssim", json_real(m->ssim)) &&
@@ -33,7 +43,7 @@ static bool add_views(json_t *views, const struct orl_eval *eval)
         const struct orl_eval_view *view = &eval->views[i];
         json_t *object = json_object();
         bool ok = set(object, "photo", json_string(eval->scene->photos[view->photo].name)) &&
-                  set(object, "size", size_json(view)) && set_figures(object, view);
+                  set(object, "size", size_json(view)) && set_figures(object, eval, view);
         if (json_array_append_new(views, object) != 0 || !ok)
             return false;
     }
@@ -56,7 +66,7 @@ static bool add_eval(json_t *array, const struct orl_eval *eval)
               set(object, "method", json_string(eval->method)) &&
               set(object, "device", json_string(eval->device)) &&
               set(object, "size", size_json(&eval->views[0])) && add_views(views, eval) &&
-              set_figures(mean, &eval->mean);
+              set_figures(mean, eval, &eval->mean);
     ok = set(object, "views", views) && ok;
     ok = set(object, "mean", mean) && ok;
     ok = set_passes(object, eval) && ok;

@@ -40,7 +40,7 @@ static enum orl_result write_exr(const struct orl_log *log, const char *path,
         {layers->depth, {"depth.Z"}, false, &frame->depth},
         {layers->normal, {"normal.X", "normal.Y", "normal.Z"}, half, &frame->normal},
         {layers->coverage, {"coverage.Y"}, true, &frame->coverage},
-        {layers->confidence, {"confidence.Y"}, true, output->confidence},
+        {layers->confidence, {"confidence.Y"}, true, &frame->confidence},
     };
     for (size_t i = 0; i < ORL_COUNT(all); i++)
         for (int c = 0; all[i].wanted && c < all[i].image->channels; c++)
@@ -112,7 +112,7 @@ enum orl_result orl_frame_write(const struct orl_log *log, const char *path,
                                 const struct orl_frame_output *output)
 {
     const struct orl_frame_layers *layers = &output->layers;
-    ORL_REQUIRE(log, !layers->confidence || (output->confidence && output->confidence->data));
+    ORL_REQUIRE(log, !layers->confidence || frame->confidence.data);
     if (has_extension(path, ".exr"))
         return write_exr(log, path, view, frame, output);
     if (!has_extension(path, ".png"))
@@ -128,7 +128,7 @@ enum orl_result orl_frame_write(const struct orl_log *log, const char *path,
     if (result == ORL_OK && layers->coverage)
         result = write_layer(log, path, "coverage", &frame->coverage, false);
     if (result == ORL_OK && layers->confidence)
-        result = write_layer(log, path, "confidence", output->confidence, false);
+        result = write_layer(log, path, "confidence", &frame->confidence, false);
     orl_image_finish(&srgb);
     return result;
 }

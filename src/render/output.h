@@ -7,7 +7,8 @@
 #include "render/tone.h"
 
 struct orl_frame_layers {
-    bool depth, normal, coverage, confidence;
+    bool depth, normal, coverage;
+    bool confidence; // of frames that have it
 };
 
 struct orl_frame_output {
@@ -17,8 +18,6 @@ struct orl_frame_output {
     bool float_color; // R, G, B and normals as 32-bit floats; false: half
     enum orl_exr_compression compression;
     struct orl_exr_view_attributes attributes; // view and srgb_primaries are set here
-    // F32 x1 of the view's size, for layers.confidence; NULL: none.
-    const struct orl_image *confidence;
 };
 #define ORL_FRAME_OUTPUT_DEFAULTS .tone = {ORL_TONE_DEFAULTS}
 

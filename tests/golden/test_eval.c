@@ -149,8 +149,8 @@ static void report_has_the_agreed_fields(void **state)
                                   {.name = (char[]){"b.jpg"}, .test = true}};
     struct orl_scene scene = {.dir = (char[]){"some/scene"}, .photos = photos, .photo_count = 2};
     struct orl_eval_view views[2] = {
-        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125}, 3.5},
-        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125}, 1.5}};
+        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125}, {33, 34, 0.25, 0.5}, 3.5},
+        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125}, {35, 36, 0.75, 1}, 1.5}};
     struct orl_eval eval = {.scene = &scene, .method = "points", .device = "a device",
                             .views = views, .view_count = 2, .mean = views[1],
                             .passes = {{"splat", 0.5}}, .pass_count = 1};
@@ -170,7 +170,20 @@ static void report_has_the_agreed_fields(void **state)
         check_figures(view, &views[i]);
     }
     check_figures(json_object_get(json, "mean"), &views[1]);
+    assert_null(json_object_get(json_object_get(json, "mean"), "log2_rmse")); // no truth
     assert_float_equal(number(json_object_get(json, "passes_ms"), "splat"), 0.5, 1e-9);
+    json_decref(json);
+    free(text);
+
+    eval.has_truth = true;
+    text = orl_eval_to_json(NULL, &eval, 1, false);
+    json = json_loads(text, 0, NULL);
+    const json_t *view = json_array_get(json_object_get(json, "views"), 0);
+    assert_float_equal(number(view, "pu21_psnr_db"), 33, 0);
+    assert_float_equal(number(view, "mu_psnr_db"), 34, 0);
+    assert_float_equal(number(view, "log2_rmse"), 0.25, 0);
+    assert_float_equal(number(view, "log2_rmse_fitted"), 0.5, 0);
+    assert_float_equal(number(json_object_get(json, "mean"), "mu_psnr_db"), 36, 0);
     json_decref(json);
     free(text);
 

@@ -6,6 +6,7 @@
 
 #include "core/color.h"
 #include "core/memory.h"
+#include "eval/truth.h"
 #include "io/exr.h"
 #include "io/linear.h"
 #include "io/picture.h"
@@ -161,6 +162,48 @@ static void deep_photographs_get_twins_and_linear_light(void **state)
     assert_non_null(strstr(said.text, "undistort: done already"));
 }
 
+// The truth has the photographs' own pixels and exposures; the scene sees it undistorted.
+static void true_radiance_is_undistorted(void **state)
+{
+    (void)state;
+    struct orl_scene *scene;
+    struct orl_truth truth;
+    struct orl_image radiance;
+    char *truth_dir = orl_path_join(NULL, dir, "truth"), path[4096];
+    assert_non_null(truth_dir);
+    path_of(path, truth_dir, "radiance");
+    assert_int_equal(orl_scene_open(NULL, scene_dir, &scene), ORL_OK);
+    assert_int_equal(orl_truth_open(NULL, scene, truth_dir, &truth), ORL_ERR_NOT_FOUND);
+    assert_int_equal(orl_dir_make(NULL, path), ORL_OK);
+    FILE *file = test_create(truth_dir, "synth.json");
+    fprintf(file, "{\"photographs\": [");
+    for (size_t i = 0; i < scene->photo_count; i++)
+        fprintf(file, "%s{\"photo\": \"%s\", \"exposure_ev\": %d}", i ? ", " : "",
+                scene->photos[i].name, (int)i);
+    fprintf(file, "]}\n");
+    fclose(file);
+    snprintf(path, sizeof path, "%s/photos/b.exr", dir);
+    uint8_t *data;
+    size_t size;
+    assert_int_equal(orl_file_read(NULL, path, 1 << 20, &data, &size), ORL_OK);
+    path_of(path, truth_dir, "radiance/b.exr");
+    assert_int_equal(orl_file_write(NULL, path, data, size), ORL_OK);
+    free(data);
+    int b = orl_scene_find_photo(scene, "b");
+    assert_int_equal(orl_truth_open(NULL, scene, truth_dir, &truth), ORL_OK);
+    assert_int_equal(orl_truth_read(NULL, &truth, (size_t)b, &radiance), ORL_OK);
+    assert_int_equal(radiance.width, W);
+    for (int x = 30; x < 66; x++) { // b.exr has half the light; exposure b stops; above the window
+        float want = 0.5f * light(x, 22, 1) * exp2f((float)b);
+        assert_float_equal(radiance.f32[3 * (22 * W + x) + 1], want, 0.02 * (double)want);
+    }
+    orl_image_finish(&radiance);
+    assert_int_not_equal(orl_truth_read(NULL, &truth, (size_t)b + 1, &radiance), ORL_OK);
+    orl_truth_finish(&truth);
+    orl_scene_destroy(&scene);
+    free(truth_dir);
+}
+
 static void without_deep_photographs_the_folder_goes(void **state)
 {
     (void)state;
@@ -181,6 +224,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(deep_photographs_get_twins_and_linear_light),
+        cmocka_unit_test(true_radiance_is_undistorted),
         cmocka_unit_test(without_deep_photographs_the_folder_goes),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,123 @@
+#include "eval/truth.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "io/exr.h"
+#include "io/undistort.h"
+#include "scene/manifest.h"
+
+// Length of a name without its extension.
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot ? (size_t)(dot - name) : strlen(name);
+}
+
+static bool same_stem(const char *a, const char *b)
+{
+    size_t length = stem_length(a);
+    return length == stem_length(b) && strncmp(a, b, length) == 0;
+}
+
+static enum orl_result take_exposures(const struct orl_log *log, const char *path,
+                                      const json_t *root, struct orl_truth *truth)
+{
+    const json_t *photos = json_object_get(root, "photographs");
+    for (size_t i = 0; i < truth->scene->photo_count; i++) {
+        const char *name = truth->scene->photos[i].name;
+        bool found = false;
+        for (size_t k = 0; k < json_array_size(photos) && !found; k++) {
+            const json_t *entry = json_array_get(photos, k);
+            const char *photo = json_string_value(json_object_get(entry, "photo"));
+            const json_t *ev = json_object_get(entry, "exposure_ev");
+            found = photo && same_stem(photo, name) && json_is_number(ev);
+            if (found)
+                truth->ev[i] = json_number_value(ev);
+        }
+        if (!found)
+            return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: says nothing of photograph %s", path,
+                            name);
+    }
+    return ORL_OK;
+}
+
+static enum orl_result read_summary(const struct orl_log *log, struct orl_truth *truth)
+{
+    json_t *root = NULL;
+    char *path = orl_path_join(log, truth->dir, "synth.json");
+    enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = take_exposures(log, path, root, truth);
+    json_decref(root);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_truth_open(const struct orl_log *log, const struct orl_scene *scene,
+                               const char *dir, struct orl_truth *truth)
+{
+    memset(truth, 0, sizeof *truth);
+    truth->scene = scene;
+    truth->dir = orl_strdup(log, dir);
+    truth->ev = orl_array(log, scene->photo_count, sizeof *truth->ev);
+    char *model = orl_path_join(log, scene->dir, ".oriel/calibrate/model");
+    enum orl_result result = truth->dir && truth->ev && model ? read_summary(log, truth)
+                                                              : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !orl_path_is_dir(model))
+        result = orl_fail(log, ORL_ERR_NOT_FOUND,
+                          "%s: no such folder; without it true radiance cannot be brought to the "
+                          "photographs' pixels", model);
+    if (result == ORL_OK)
+        result = orl_colmap_read(log, model, &truth->model);
+    free(model);
+    if (result != ORL_OK)
+        orl_truth_finish(truth);
+    return result;
+}
+
+void orl_truth_finish(struct orl_truth *truth)
+{
+    free(truth->dir);
+    free(truth->ev);
+    orl_colmap_finish(&truth->model);
+    memset(truth, 0, sizeof *truth);
+}
+
+static const struct orl_colmap_camera *find_camera(const struct orl_truth *truth,
+                                                   const char *name)
+{
+    for (size_t i = 0; i < truth->model.image_count; i++)
+        if (strcmp(truth->model.images[i].name, name) == 0)
+            return orl_colmap_camera_by_id(&truth->model, truth->model.images[i].camera_id);
+    return NULL;
+}
+
+enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth *truth,
+                               size_t index, struct orl_image *radiance)
+{
+    static const char *const rgb[] = {"R", "G", "B"};
+    memset(radiance, 0, sizeof *radiance);
+    const struct orl_photo *photo = &truth->scene->photos[index];
+    const struct orl_colmap_camera *camera = find_camera(truth, photo->name);
+    struct orl_image seen = {0};
+    if (!camera)
+        return orl_fail(log, ORL_ERR_DATA, "%s: not in the calibrated model", photo->name);
+    char *path = orl_format(log, "%s/radiance/%.*s.exr", truth->dir,
+                            (int)stem_length(photo->name), photo->name);
+    enum orl_result result = path ? orl_exr_read(log, path, rgb, 3, &seen) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_undistort(log, camera, &photo->view.camera, &seen, radiance);
+    // A photograph of exposure e takes radiance times 2^e, and so does the scene's unit
+    // for its middle exposure, exposure_ev below it.
+    float scale = (float)exp2(truth->ev[index] - photo->exposure_ev);
+    size_t count = result == ORL_OK ? orl_image_bytes(radiance) / sizeof(float) : 0;
+    for (size_t i = 0; i < count; i++)
+        radiance->f32[i] *= scale;
+    orl_image_finish(&seen);
+    free(path);
+    return result;
+}

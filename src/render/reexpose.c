@@ -1,0 +1,66 @@
+#include "render/reexpose.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/color.h"
+
+// The value whose exposure is nearest, as seen through the curve: between two of them the
+// one on whose side of their mean it lies. The curve rises.
+static uint8_t nearest_value(const float curve[256], float exposure)
+{
+    int low = 0, high = 255;
+    if (!(exposure > curve[0])) // also NaN
+        return 0;
+    if (exposure >= curve[255])
+        return 255;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (curve[middle] <= exposure)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (uint8_t)(exposure - curve[low] < curve[high] - exposure ? low : high);
+}
+
+// Relative illumination of each pixel; the principal point and the diagonal of a picture of
+// another size scale with it.
+static float illumination(const struct orl_photo *photo, const struct orl_image *light, int x,
+                          int y)
+{
+    const struct orl_camera *c = &photo->view.camera;
+    const struct orl_camera seen = orl_camera_resized(c, light->width, light->height);
+    double dx = x + 0.5 - seen.cx, dy = y + 0.5 - seen.cy;
+    double half2 = 0.25 * ((double)seen.width * seen.width + (double)seen.height * seen.height);
+    double r2 = (dx * dx + dy * dy) / half2;
+    const float *v = photo->vignette;
+    return (float)(1 + r2 * ((double)v[0] + r2 * ((double)v[1] + r2 * (double)v[2])));
+}
+
+enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_scene *scene,
+                                 size_t index, const struct orl_image *light,
+                                 struct orl_image *picture)
+{
+    memset(picture, 0, sizeof *picture);
+    ORL_REQUIRE(log, index < scene->photo_count);
+    ORL_REQUIRE(log, light->data && light->type == ORL_PIXEL_F32 && light->channels == 3);
+    const struct orl_photo *photo = &scene->photos[index];
+    const struct orl_response *response =
+        photo->response >= 0 ? &scene->responses[photo->response] : NULL;
+    bool vignetted = photo->vignette[0] != 0 || photo->vignette[1] != 0 || photo->vignette[2] != 0;
+    enum orl_result result = orl_image_init(log, picture, light->width, light->height, 3,
+                                            ORL_PIXEL_U8);
+    for (int y = 0; result == ORL_OK && y < light->height; y++)
+        for (int x = 0; x < light->width; x++) {
+            size_t at = 3 * ((size_t)y * (size_t)light->width + (size_t)x);
+            float dimmed = vignetted ? illumination(photo, light, x, y) : 1;
+            for (size_t c = 0; c < 3; c++) {
+                float exposure = light->f32[at + c] / photo->gain[c] * dimmed;
+                picture->u8[at + c] =
+                    response ? nearest_value(response->linear[c], exposure)
+                             : (uint8_t)lrintf(255 * orl_srgb_encode(exposure));
+            }
+        }
+    return result;
+}
