@@ -117,7 +117,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                              orl_stage_undistort, "images"},
     [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
                            orl_stage_densify, NULL},
-    [ORL_STAGE_FUSE] = {"fuse", 5, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
+    [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
                         ".oriel/fused.ply"},
     [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii, "points.ply"},
     [ORL_STAGE_EXPOSE] = {"expose", 1, ORL_STAGE_UNDISTORT, expose_settings, orl_stage_expose,

@@ -1,14 +1,12 @@
-// Densify and fuse: depth maps by the built-in stereo or COLMAP's, then one cloud.
+// Densify: depth maps by the built-in stereo or COLMAP's.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/memory.h"
 #include "gpu/gpu.h"
 #include "preprocess/densify.h"
 #include "preprocess/job.h"
-#include "scene/points.h"
 
 enum { COLMAP_SOURCES = 20 };
 
@@ -214,143 +212,5 @@ enum orl_result orl_stage_densify(struct orl_job *job, json_t *record)
 end:
     orl_names_finish(&train);
     orl_names_finish(&test);
-    return result;
-}
-
-// --- fuse ---
-
-static double available_gib(void)
-{
-    long pages = sysconf(_SC_AVPHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
-    double gib = pages > 0 && size > 0 ? (double)pages * (double)size / (1 << 30) : 4;
-    // The kernel's own figure counts the file cache, which it can give up.
-    FILE *info = fopen("/proc/meminfo", "r");
-    char line[256];
-    unsigned long kib;
-    while (info && fgets(line, sizeof line, info))
-        if (sscanf(line, "MemAvailable: %lu kB", &kib) == 1)
-            gib = (double)kib / (1 << 20);
-    if (info)
-        fclose(info);
-    return gib;
-}
-
-// Depth, normal and colour of all photographs, as COLMAP keeps them.
-static enum orl_result maps_gib(const struct orl_job *job, double *gib)
-{
-    struct orl_colmap_model model = {0};
-    char *sparse = orl_job_path(job, "sparse");
-    enum orl_result result = sparse ? orl_colmap_read(job->log, sparse, &model) : ORL_ERR_MEMORY;
-    double bytes = 0;
-    for (size_t i = 0; i < model.image_count; i++) {
-        const struct orl_camera *camera =
-            &orl_colmap_camera_by_id(&model, model.images[i].camera_id)->pinhole;
-        bytes += 24.0 * camera->width * camera->height;
-    }
-    *gib = bytes / (1 << 30);
-    orl_colmap_finish(&model);
-    free(sparse);
-    return result;
-}
-
-// GiB of COLMAP's cache of maps; 0: they all fit in memory.
-static enum orl_result plan_cache(const struct orl_job *job, double *cache_gib)
-{
-    double need;
-    *cache_gib = 0;
-    enum orl_result result = maps_gib(job, &need);
-    double have = available_gib();
-    if (result != ORL_OK || need <= 0.5 * have)
-        return result;
-    *cache_gib = 0.4 * have > 1 ? 0.4 * have : 1;
-    orl_logf(job->log, ORL_LOG_INFO,
-             "fuse: the maps need %.1f GiB and %.1f are free; reading them through a cache of "
-             "%.1f GiB, which is slower", need, have, *cache_gib);
-    return ORL_OK;
-}
-
-static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_pixels,
-                                 double cache_gib, struct orl_colmap_args *args)
-{
-    orl_colmap_arg(args, "--workspace_path", "%s", job->dir);
-    orl_colmap_arg(args, "--output_path", "%s", out);
-    orl_colmap_arg(args, "--input_type", "geometric");
-    orl_colmap_arg(args, "--StereoFusion.min_num_pixels", "%d", min_pixels);
-    // With several threads the points depend on which is faster; fusion is quick enough.
-    orl_colmap_arg(args, "--StereoFusion.num_threads", "1");
-    if (job->params->masks_dir) {
-        char *masks = orl_job_path(job, ".oriel/masks");
-        if (!masks)
-            return ORL_ERR_MEMORY;
-        orl_colmap_arg(args, "--StereoFusion.mask_path", "%s", masks);
-        free(masks);
-    }
-    orl_colmap_arg(args, "--StereoFusion.use_cache", "%d", cache_gib > 0);
-    if (cache_gib > 0)
-        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.1f", cache_gib);
-    return ORL_OK;
-}
-
-static enum orl_result check_cloud(const struct orl_job *job, const char *path, int min_pixels,
-                                   size_t *count)
-{
-    struct orl_points points;
-    enum orl_result result = orl_points_read(job->log, path, &points);
-    *count = points.count;
-    if (result == ORL_OK && points.count == 0 && min_pixels == 2)
-        result = orl_fail(job->log, ORL_ERR_DATA,
-                          "no surface was found that two photographs agree on: take photographs "
-                          "closer together, of textured and matt surfaces, or with --quality high");
-    orl_points_finish(&points);
-    return result;
-}
-
-// Runs COLMAP's fusion into .oriel/fuse.tmp/<min_pixels>.ply, with that many photographs
-// agreeing on a point. `done` of the stage's work was done before.
-static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double cache_gib,
-                                  double done, size_t *points)
-{
-    struct orl_colmap_args args = {0};
-    char *out = orl_job_path(job, ".oriel/fuse.tmp/%d.ply", min_pixels);
-    enum orl_result result =
-        out ? fuse_args(job, out, min_pixels, cache_gib, &args) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_colmap(job, &(struct orl_colmap_run){
-            .command = "stereo_fusion", .step = "fuse", .done = done, .share = 0.5, .total = 1},
-            &args);
-    if (result == ORL_OK)
-        result = check_cloud(job, out, min_pixels, points);
-    free(out);
-    return result;
-}
-
-enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
-{
-    size_t two = 0, three = 0;
-    double cache_gib = 0;
-    enum orl_result result = orl_job_find_colmap(job);
-    if (result == ORL_OK)
-        result = orl_job_fresh_dir(job, ".oriel/fuse.tmp");
-    if (result == ORL_OK)
-        result = plan_cache(job, &cache_gib);
-    if (result == ORL_OK)
-        result = fuse_cloud(job, 2, cache_gib, 0, &two);
-    if (result == ORL_OK)
-        result = fuse_cloud(job, 3, cache_gib, 0.5, &three);
-    if (result != ORL_OK)
-        return result;
-    // Three photographs that agree on a point are better than two, unless that loses what
-    // the photographs overlap too little for (docs/pipeline.md).
-    bool dense = (double)three >= 0.47 * (double)two;
-    json_object_set_new(record, "cache_gib", json_real(cache_gib));
-    json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
-    json_object_set_new(record, "settings",
-                        json_pack("{s:i}", "min_num_pixels", dense ? 3 : 2));
-    json_object_set_new(record, "points", json_integer((json_int_t)(dense ? three : two)));
-    result = orl_job_replace(job, dense ? ".oriel/fuse.tmp/3.ply" : ".oriel/fuse.tmp/2.ply",
-                             ".oriel/fused.ply");
-    if (result == ORL_OK)
-        result = orl_job_remove(job, ".oriel/fuse.tmp");
-    orl_progress_report(job->progress, "fuse", 1, 1, NULL);
     return result;
 }

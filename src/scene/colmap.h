@@ -64,4 +64,9 @@ enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
 enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path,
                                      const struct orl_image *image) ORL_CHECK_RESULT;
 
+// Of each of the `count` points of a fused cloud, how many photographs it was fused from
+// (255: as many or more), from the file that COLMAP writes beside it (fused.ply.vis).
+enum orl_result orl_colmap_visibility_read(const struct orl_log *log, const char *path,
+                                           size_t count, uint8_t *photographs) ORL_CHECK_RESULT;
+
 #endif

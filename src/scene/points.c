@@ -17,7 +17,9 @@ enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *po
     points->normal = orl_array(log, count, sizeof *points->normal);
     points->radius = orl_array(log, count, sizeof *points->radius);
     points->color = orl_array(log, count, sizeof *points->color);
-    if (points->position && points->normal && points->radius && points->color)
+    points->photographs = orl_array(log, count, sizeof *points->photographs);
+    if (points->position && points->normal && points->radius && points->color &&
+        points->photographs)
         return ORL_OK;
     orl_points_finish(points);
     return ORL_ERR_MEMORY;
@@ -31,11 +33,21 @@ void orl_points_finish(struct orl_points *points)
     free(points->normal);
     free(points->radius);
     free(points->color);
+    free(points->photographs);
     memset(points, 0, sizeof *points);
 }
 
-// As in the file: packed, 31 bytes.
-enum { RECORD_SIZE = 6 * 4 + 3 + 4 };
+void orl_points_copy(const struct orl_points *from, size_t i, struct orl_points *to, size_t k)
+{
+    memmove(to->position[k], from->position[i], sizeof *to->position);
+    memmove(to->normal[k], from->normal[i], sizeof *to->normal);
+    memmove(to->color[k], from->color[i], sizeof *to->color);
+    to->radius[k] = from->radius[i];
+    to->photographs[k] = from->photographs[i];
+}
+
+// As in the file: packed, 32 bytes.
+enum { RECORD_SIZE = 6 * 4 + 3 + 4 + 1 };
 
 static void pack_point(const struct orl_points *points, size_t i, uint8_t record[RECORD_SIZE])
 {
@@ -43,6 +55,7 @@ static void pack_point(const struct orl_points *points, size_t i, uint8_t record
     memcpy(record + 12, points->normal[i], 12);
     memcpy(record + 24, points->color[i], 3);
     memcpy(record + 27, &points->radius[i], 4);
+    record[31] = points->photographs[i];
 }
 
 static bool write_points(FILE *stream, const struct orl_points *points)
@@ -52,7 +65,7 @@ static bool write_points(FILE *stream, const struct orl_points *points)
                               "property float x\nproperty float y\nproperty float z\n"
                               "property float nx\nproperty float ny\nproperty float nz\n"
                               "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                              "property float radius\nend_header\n",
+                              "property float radius\nproperty uchar photographs\nend_header\n",
                       points->count) > 0;
     for (size_t i = 0; ok && i < points->count; i++) {
         uint8_t record[RECORD_SIZE];

@@ -10,20 +10,24 @@ struct orl_points {
     float (*normal)[3];   // world, unit length, towards the photographs; 0 0 0: unknown
     float *radius;        // scene units, > 0; 0: not known yet
     uint8_t (*color)[3];  // sRGB
+    uint8_t *photographs; // how many agree on the point, 255: as many or more;
+                          // 0: not known
 };
 
 // Room for `count` points, zeroed.
 enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points,
                                 size_t count) ORL_CHECK_RESULT;
 void orl_points_finish(struct orl_points *points);
+// All of one point. `to` may be `from`.
+void orl_points_copy(const struct orl_points *from, size_t i, struct orl_points *to, size_t k);
 
 // PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue,
-// radius, in any order and scalar type; other properties and elements after
+// radius, photographs, in any order and scalar type; other properties and elements after
 // `vertex` are skipped. Points that are not finite are dropped and counted in a
 // warning, as are negative radii (set to 0).
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,
                                 struct orl_points *points) ORL_CHECK_RESULT;
-// Binary little-endian PLY: x y z nx ny nz red green blue radius.
+// Binary little-endian PLY: x y z nx ny nz red green blue radius photographs.
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
                                  const struct orl_points *points) ORL_CHECK_RESULT;
 

@@ -21,9 +21,11 @@ static const struct {
 };
 
 // What a property is to us.
-enum role { X, Y, Z, NX, NY, NZ, RED, GREEN, BLUE, RADIUS, ROLE_COUNT, OTHER = ROLE_COUNT };
+enum role {
+    X, Y, Z, NX, NY, NZ, RED, GREEN, BLUE, RADIUS, PHOTOGRAPHS, ROLE_COUNT, OTHER = ROLE_COUNT
+};
 static const char *const roles[ROLE_COUNT] = {"x", "y", "z", "nx", "ny", "nz",
-                                              "red", "green", "blue", "radius"};
+                                              "red", "green", "blue", "radius", "photographs"};
 
 enum { PROPERTIES_MAX = 256, HEADER_LINE_MAX = 1024 };
 
@@ -294,6 +296,8 @@ static bool set_point(struct orl_points *points, size_t i, const double values[R
     bool usable = isfinite(radius) && radius >= 0;
     points->radius[i] = usable ? radius : 0;
     *bad_radii += !usable;
+    double seen = values[PHOTOGRAPHS];
+    points->photographs[i] = (uint8_t)(seen >= 255 ? 255 : seen > 0 ? seen : 0);
     return true;
 }
 

@@ -4,7 +4,6 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "core/memory.h"
@@ -246,10 +245,7 @@ enum orl_result orl_points_limit_radii(const struct orl_log *log,
             continue;
         if (size_px > (double)limits->largest_px)
             points->radius[i] = (float)((double)limits->largest_px / scale);
-        memmove(points->position[kept], points->position[i], sizeof *points->position);
-        memmove(points->normal[kept], points->normal[i], sizeof *points->normal);
-        memmove(points->color[kept], points->color[i], sizeof *points->color);
-        points->radius[kept++] = points->radius[i];
+        orl_points_copy(points, i, points, kept++);
     }
     if (kept < points->count)
         orl_logf(log, ORL_LOG_INFO, "%zu of %zu points stand alone: dropped",

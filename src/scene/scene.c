@@ -137,10 +137,7 @@ static void drop_flat_points(const struct orl_log *log, struct orl_scene *scene)
     for (size_t i = 0; i < points->count; i++) {
         if (!(points->radius[i] > 0))
             continue;
-        memmove(points->position[kept], points->position[i], sizeof *points->position);
-        memmove(points->normal[kept], points->normal[i], sizeof *points->normal);
-        memmove(points->color[kept], points->color[i], sizeof *points->color);
-        points->radius[kept++] = points->radius[i];
+        orl_points_copy(points, i, points, kept++);
     }
     if (kept < points->count)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu points have no radius: dropped",

@@ -23,6 +23,7 @@ static void make_points(struct orl_points *points, size_t count)
         points->radius[i] = 0.25f + (float)i;
         points->color[i][0] = (uint8_t)i;
         points->color[i][2] = 255;
+        points->photographs[i] = (uint8_t)(40 * i);
     }
 }
 
@@ -40,6 +41,7 @@ static void round_trips(void **state)
     assert_memory_equal(back.normal, points.normal, 7 * sizeof *points.normal);
     assert_memory_equal(back.radius, points.radius, 7 * sizeof *points.radius);
     assert_memory_equal(back.color, points.color, 7 * sizeof *points.color);
+    assert_memory_equal(back.photographs, points.photographs, 7);
     orl_points_finish(&points);
     orl_points_finish(&back);
     test_dir_remove(dir);
@@ -72,6 +74,7 @@ static void reads_ascii(void **state)
     const uint8_t colors[2][3] = {{255, 128, 0}, {0, 0, 255}};
     assert_memory_equal(points.color, colors, sizeof colors);
     assert_float_equal(points.radius[0], 0, 0);
+    assert_int_equal(points.photographs[0], 0);
     orl_points_finish(&points);
     test_dir_remove(dir);
 }
