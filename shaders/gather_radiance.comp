@@ -2,116 +2,225 @@
 // times its trust, so that clipped and noisy samples lose to better ones pixel by pixel.
 #define RADIANCE
 #include "include/airieau.glsl"
+#include "include/trust.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 layout(rgba32f, binding = 1) uniform image2D accumulated;      // colour * weight, weight
 layout(rg32f, binding = 2) uniform image2D trusted;            // weight * trust, weight
 
-// Candidates of a pixel, best first; the last one only sets where weights start from.
-const int KEEP = 8;
-struct Sample {
-    float weight, mip;
-    vec2 pixel;
-    int photo;
-};
-Sample best[KEEP + 1];
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
+#define MODEL radiance.y // variance of relative error at full exposure
 
-void offer(Sample candidate)
+struct Sample {
+    vec3 color;   // radiance
+    float clip;   // trust as far as clipping goes
+    float weight; // geometric
+    vec2 pixel;
+    float mip;
+};
+
+// Exposure at which a photograph would have taken a radiance.
+vec3 exposure_of(int i, vec3 color)
 {
-    int at = KEEP;
-    while (at > 0 && best[at - 1].weight < candidate.weight) {
-        best[at] = best[at - 1];
-        at--;
-    }
-    best[at] = candidate;
+    return color / photos[i].gain.rgb;
 }
 
-void find_candidates(vec3 p, bool guessed)
+// Trust in a photograph where the radiance is about this.
+float noise_trust(int i, vec3 color)
 {
-    for (int k = 0; k <= KEEP; k++)
-        best[k] = Sample(0.0, 0.0, vec2(0.0), 0);
-    for (int i = 0; i < area.z; i++) {
-        Sample s;
-        float z;
-        s.photo = i;
-        if (!photo_project(i, p, s.pixel, z))
-            continue;
-        s.weight = airieau_weight(p, photos[i].eye.xyz);
-        if (guessed)
-            s.weight = pow(s.weight * options.y, 8.0);
-        s.weight *= photo_border(i, s.pixel);
-        // Trust is at most 1: what is too light already needs no looking up.
-        if (!(s.weight > best[KEEP].weight))
-            continue;
-        s.mip = photo_mip(i, z, p.z);
-        s.weight *= photo_bilinear(i, s.pixel, s.mip).a;
-        if (!(s.weight > best[KEEP].weight))
-            continue;
-        if (flags.x == 1 && !photo_sees(photo_depths(i, s.pixel), z, guessed))
-            continue;
-        offer(s);
+    return MODEL / (MODEL + relative_variance(exposure_of(i, color), photos[i].noise));
+}
+
+// How much of a sample is the surface at z, squared: what lies before it may be a thousand
+// times as bright. 0: hidden.
+float seen_share(vec4 seen, float z, bool guessed)
+{
+    if (!photo_sees(seen, z, guessed))
+        return 0.0;
+    vec4 same = vec4(lessThanEqual(abs(seen - z), vec4(options.x * z)));
+    same = max(same, vec4(equal(seen, vec4(0.0))));
+    if (guessed)
+        same = vec4(greaterThanEqual(seen, vec4(z * (1.0 - options.x)))) +
+               vec4(equal(seen, vec4(0.0)));
+    float share = dot(min(same, 1.0), vec4(0.25));
+    return share * share;
+}
+
+// What photograph `i` says of a point; false when it does not see it.
+bool ask(int i, vec3 p, bool guessed, out Sample s)
+{
+    float z;
+    s.weight = 0.0;
+    if (!photo_project(i, p, s.pixel, z))
+        return false;
+    s.weight = airieau_weight(p, photos[i].eye.xyz);
+    // Where depth is only guessed, photographs disagree: let the best one dominate.
+    if (guessed)
+        s.weight = pow(s.weight * options.y, 8.0);
+    s.weight *= photo_border(i, s.pixel);
+    if (!(s.weight > 0.0))
+        return false;
+    if (flags.x == 1)
+        s.weight *= seen_share(photo_depths(i, s.pixel), z, guessed);
+    if (!(s.weight > 0.0))
+        return false;
+    s.mip = photo_mip(i, z, p.z);
+    vec4 texel = photo_radiance(i, s.pixel, s.mip);
+    s.color = texel.rgb;
+    s.clip = texel.a;
+    return texel.a > 0.0;
+}
+
+vec3 surface_point(ivec2 at, float depth)
+{
+    return vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
+}
+
+// --- the photographs that matter to this work group's pixels ---
+
+const int PROBES_X = 4, PROBES_Y = 2;
+const int PROBES = PROBES_X * PROBES_Y;
+const int LANES = ORL_PIXEL_GROUP_X * ORL_PIXEL_GROUP_Y;
+const float LEAST_SHARE = 0.01; // of the best photograph's weight
+
+shared uint scores[ORL_RADIANCE_PHOTOS]; // bits of the largest weight * trust among probes
+shared int chosen[ORL_RADIANCE_KEPT];
+shared int chosen_count;
+
+void probe(int i, int probe_index)
+{
+    ivec2 local = ivec2(probe_index % PROBES_X, probe_index / PROBES_X);
+    ivec2 at = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy) +
+               (2 * local + 1) * ivec2(ORL_PIXEL_GROUP_X / (2 * PROBES_X),
+                                       ORL_PIXEL_GROUP_Y / (2 * PROBES_Y));
+    at = min(at, area.xy - 1);
+    float depth = imageLoad(view_depth, at).r;
+    Sample s;
+    if (depth != 0.0 && ask(i, surface_point(at, abs(depth)), depth < 0.0, s))
+        atomicMax(scores[i], floatBitsToUint(s.weight * s.clip * noise_trust(i, s.color)));
+}
+
+void choose()
+{
+    int lane = int(gl_LocalInvocationIndex);
+    for (int i = lane; i < area.z; i += LANES)
+        scores[i] = 0u;
+    if (lane == 0)
+        chosen_count = 0;
+    barrier();
+    for (int k = lane; k < area.z * PROBES; k += LANES)
+        probe(k / PROBES, k % PROBES);
+    barrier();
+    for (int i = lane; i < area.z; i += LANES) {
+        uint mine = scores[i], most = mine;
+        int rank = 0;
+        for (int j = 0; j < area.z; j++) {
+            rank += int(scores[j] > mine || (scores[j] == mine && j < i));
+            most = max(most, scores[j]);
+        }
+        if (rank < ORL_RADIANCE_KEPT && mine > 0u &&
+            uintBitsToFloat(mine) >= LEAST_SHARE * uintBitsToFloat(most)) {
+            chosen[rank] = i;
+            atomicMax(chosen_count, rank + 1);
+        }
     }
+    barrier();
+}
+
+// --- one pixel ---
+
+Sample samples[ORL_RADIANCE_KEPT];
+float brightness[ORL_RADIANCE_KEPT];
+int sample_photo[ORL_RADIANCE_KEPT];
+float weights[ORL_RADIANCE_KEPT];
+int sample_count;
+
+void ask_chosen(vec3 p, bool guessed)
+{
+    sample_count = 0;
+    for (int k = 0; k < chosen_count; k++) {
+        if (ask(chosen[k], p, guessed, samples[sample_count]))
+            sample_photo[sample_count++] = chosen[k];
+    }
+    // What no probe saw: a small surface that the chosen photographs do not see.
+    for (int i = 0; i < area.z && sample_count == 0; i++)
+        if (ask(i, p, guessed, samples[0])) {
+            sample_photo[0] = i;
+            sample_count = 1;
+        }
+}
+
+// Radiance of the sample at the weighted median of brightness.
+vec3 median_color()
+{
+    float total = 0.0;
+    for (int k = 0; k < sample_count; k++) {
+        Sample s = samples[k];
+        weights[k] = s.weight * s.clip * noise_trust(sample_photo[k], s.color);
+        brightness[k] = dot(s.color, LUMINANCE);
+        total += weights[k];
+    }
+    int median = 0;
+    for (int k = 0; k < sample_count; k++) {
+        float below = 0.0, mine = brightness[k];
+        for (int j = 0; j < sample_count; j++)
+            below += brightness[j] < mine || (brightness[j] == mine && j < k) ? weights[j] : 0.0;
+        if (below <= 0.5 * total && below + weights[k] > 0.5 * total)
+            median = k;
+    }
+    return samples[median].color;
 }
 
 // Squared difference in stops, mean of the channels.
-float stops2(vec3 a, vec3 b)
+float stops2(vec3 a, vec3 b, float floor_level)
 {
-    vec3 d = log2(max(a, 1e-12)) - log2(max(b, 1e-12));
+    vec3 d = log2(max(a, floor_level)) - log2(max(b, floor_level));
     return dot(d, d) / 3.0;
+}
+
+void blend(ivec2 at)
+{
+    // How far each sample is to be trusted depends on how much light there was, which its
+    // own noise must not decide: the median says.
+    vec3 level = max(median_color(), radiance.z);
+    vec4 sum = vec4(0.0);
+    float total = 0.0, trust = 0.0;
+    for (int k = 0; k < sample_count; k++) {
+        int i = sample_photo[k];
+        float noise = relative_variance(exposure_of(i, level), photos[i].noise);
+        float believed = samples[k].clip * MODEL / (MODEL + noise);
+        float w = samples[k].weight * believed;
+        // Things that moved between the photographs. 1 / ln(2)^2 makes relative error stops.
+        if (radiance.x > 0.0) {
+            float excess = stops2(samples[k].color, level, radiance.z) /
+                           (radiance.x * radiance.x + 2.0814 * noise);
+            w /= 1.0 + excess * excess;
+        }
+        weights[k] = w;
+        total += w;
+        trust += w * believed;
+    }
+    for (int k = 0; k < sample_count; k++) {
+        vec3 color = samples[k].color;
+        if (flags.y == 1 && weights[k] > 0.02 * total)
+            color = photo_sharper(sample_photo[k], samples[k].pixel, samples[k].mip, color);
+        sum += vec4(color, 1.0) * weights[k];
+    }
+    imageStore(accumulated, at, imageLoad(accumulated, at) + sum);
+    imageStore(trusted, at, imageLoad(trusted, at) + vec4(trust, total, 0.0, 0.0));
 }
 
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    choose();
     if (at.x >= area.x || at.y >= area.y)
         return;
-    float stored = imageLoad(view_depth, at).r;
-    float depth = abs(stored);
-    if (!(depth > 0.0))
+    float depth = imageLoad(view_depth, at).r;
+    if (depth == 0.0)
         return;
-    vec3 p = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
-    find_candidates(p, stored < 0.0);
-
-    // Weights start from the best candidate left out, so that none appears at once.
-    vec4 color[KEEP];
-    float brightness[KEEP], weight[KEEP], total = 0.0;
-    int count = 0;
-    for (; count < KEEP && best[count].weight > best[KEEP].weight; count++) {
-        Sample s = best[count];
-        color[count] = photo_sample(s.photo, s.pixel, s.mip);
-        brightness[count] = dot(color[count].rgb, vec3(0.2126, 0.7152, 0.0722));
-        weight[count] = s.weight - best[KEEP].weight;
-        total += weight[count];
-    }
-    if (!(total > 0.0))
-        return;
-
-    // What moved between the photographs: samples that differ from the weighted median by
-    // more than noise and `ghosts` stops lose their weight.
-    int median = 0;
-    for (int k = 0; k < count; k++) {
-        float below = 0.0;
-        for (int j = 0; j < count; j++)
-            below += brightness[j] < brightness[k] || (brightness[j] == brightness[k] && j < k)
-                         ? weight[j] : 0.0;
-        if (below <= 0.5 * total && below + weight[k] > 0.5 * total)
-            median = k;
-    }
-    vec4 sum = vec4(0.0);
-    float trust = 0.0;
-    for (int k = 0; k < count; k++) {
-        float w = weight[k];
-        if (radiance.x > 0.0) {
-            // Trust is model / (model + noise), as variances of relative error (radiance.h).
-            float noise = radiance.y * (1.0 / max(color[k].a, 1e-7) - 1.0);
-            float allowed = radiance.x * radiance.x + 2.0814 * noise; // 1 / ln(2)^2: in stops
-            float excess = stops2(color[k].rgb, color[median].rgb) / allowed;
-            w /= 1.0 + excess * excess;
-        }
-        sum += vec4(color[k].rgb, 1.0) * w;
-        trust += w * color[k].a;
-    }
-    imageStore(accumulated, at, imageLoad(accumulated, at) + sum);
-    imageStore(trusted, at, imageLoad(trusted, at) + vec4(trust, sum.a, 0.0, 0.0));
+    ask_chosen(surface_point(at, abs(depth)), depth < 0.0);
+    if (sample_count > 0)
+        blend(at);
 }

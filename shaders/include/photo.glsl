@@ -5,17 +5,15 @@
 // As struct photo_data of render_blocks.h.
 struct photo_data {
     vec4 from_view[3];
-    vec4 eye, focal, size, slot_size, gain;
+    vec4 eye, focal, size, slot_size, gain, noise;
 };
 layout(std430, binding = 0) readonly buffer photo_list {
     photo_data photos[];
 };
 // Mipmapped. sRGB, whose reads are linear light; with RADIANCE linear exposure * trust *
-// ORL_RADIANCE_SCALE, and trust: what is not to be trusted leaves no mark on its neighbours.
+// ORL_RADIANCE_SCALE, and trust: what is clipped leaves no mark on its neighbours.
 layout(binding = 0) uniform sampler2DArray photo_color;
 layout(binding = 1) uniform sampler2DArray photo_depth; // z, 0: none
-
-const float SHARPEN_MAX = 1.5;
 
 // Where a point of the view's camera frame lies in photograph `i`: pixel coordinates and z
 // in its frame. False behind it or outside.
@@ -93,20 +91,30 @@ vec4 photo_bicubic(int i, vec2 pixel, float mip)
 
 // Linear colour times gain; a: factor on the weight of this sample, 1 without RADIANCE.
 #ifdef RADIANCE
-vec4 photo_sample(int i, vec2 pixel, float mip)
+const float SHARPEN_MAX = 1.5;
+
+vec4 photo_radiance(int i, vec2 pixel, float mip)
 {
     vec4 texel = photo_bilinear(i, pixel, mip);
-    if (!(texel.a > 0.0))
-        return vec4(0.0);
-    vec3 color = texel.rgb / texel.a;
-    if (flags.y == 1) {
-        // Where contrasts are high, or trust falls, the negative lobes of the sharper filter
-        // ring far below black: it may change what is there by a factor, no more.
-        vec4 sharp = photo_bicubic(i, pixel, mip);
-        vec3 sharper = sharp.rgb / max(sharp.a, 0.25 * texel.a);
-        color = clamp(sharper, color / SHARPEN_MAX, color * SHARPEN_MAX);
-    }
-    return vec4(color / ORL_RADIANCE_SCALE * photos[i].gain.rgb, texel.a);
+    vec3 exposure = texel.rgb / (ORL_RADIANCE_SCALE * max(texel.a, 1e-8));
+    return vec4(exposure * photos[i].gain.rgb, texel.a);
+}
+
+// What is `color` by photo_radiance, sharper. Where contrasts are high, or trust falls, the
+// negative lobes of this filter ring far below black: it changes by a factor, no more.
+vec3 photo_sharper(int i, vec2 pixel, float mip, vec3 color)
+{
+    vec4 texel = photo_bicubic(i, pixel, mip);
+    if (!(texel.a > 1e-8))
+        return color;
+    vec3 sharper = texel.rgb / (ORL_RADIANCE_SCALE * texel.a) * photos[i].gain.rgb;
+    return clamp(sharper, color / SHARPEN_MAX, color * SHARPEN_MAX);
+}
+
+vec4 photo_sample(int i, vec2 pixel, float mip)
+{
+    vec4 texel = photo_radiance(i, pixel, mip);
+    return flags.y == 1 ? vec4(photo_sharper(i, pixel, mip, texel.rgb), texel.a) : texel;
 }
 #else
 vec4 photo_sample(int i, vec2 pixel, float mip)

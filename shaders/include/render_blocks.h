@@ -29,8 +29,11 @@ ORL_BLOCK(pyramid_block)
 // above 2^-14, and linear exposures of interest, times trust, reach far below that.
 #define ORL_RADIANCE_SCALE 4096.0
 
+#define ORL_RADIANCE_PHOTOS 128 // of one gather of radiance
+#define ORL_RADIANCE_KEPT 8    // of those, for the pixels of a work group
+
 // A photograph as the gather passes see it; an array of these is a storage buffer.
-#define ORL_PHOTO_VEC4S 8
+#define ORL_PHOTO_VEC4S 9
 #if defined(__STDC_VERSION__)
 struct photo_data {
     VEC4S(from_view, 3); // rows: rotation | translation, photograph's camera from the view's
@@ -39,6 +42,7 @@ struct photo_data {
     VEC4(size);          // width, height of the resident photograph; of its depth map
     VEC4(slot_size);     // width, height of a slot; of a depth slot
     VEC4(gain);          // rgb gain on linear colour; w: largest mip level
+    VEC4(noise);         // of radiance: variance per light, of reading out; z: 1 if rounded
 };
 #endif
 
@@ -51,7 +55,8 @@ ORL_BLOCK(gather_block)
     IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic
     IVEC4(area);      // width and height of the view, z: photographs, w: tiles per row
     VEC4(radiance);   // x: stops that samples of one surface may differ, 0: any;
-                      // y: variance of relative error at full exposure
+                      // y: variance of relative error at full exposure; z: least radiance
+                      // that can be told from darkness
 };
 #endif
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/color.h"
 #include "core/memory.h"
 #include "hdr/internal.h"
 
@@ -96,56 +97,68 @@ void orl_series_finish(struct series_set *set)
 
 // --- merging ---
 
-// IEC 61966-2-1, as an 8-bit value with its fraction.
-static float encoded(float c)
+static float linearise(const struct series *s, int channel, float color)
 {
-    c = c > 0 ? c < 1 ? c : 1 : 0;
-    return 255 * (c <= 0.0031308f ? 12.92f * c : 1.055f * powf(c, 1 / 2.4f) - 0.055f);
-}
-
-// Linear exposure of one channel, and the step between 8-bit values there.
-static float linearise(const struct series *s, int channel, float color, float *slope)
-{
-    float value = encoded(color);
+    if (!s->response)
+        return color;
+    const float *curve = s->response[channel];
+    float value = 255 * orl_srgb_encode(color);
     int below = (int)value < 254 ? (int)value : 254;
-    if (s->response) {
-        const float *curve = s->response[channel];
-        *slope = curve[below + 1] - curve[below];
-        return curve[below] + (value - (float)below) * *slope;
-    }
-    // Derivative of the sRGB curve, per 8-bit value.
-    *slope = color <= 0.0031308f ? 1 / (12.92f * 255)
-                                 : 2.4f / (1.055f * 255) * powf(color, 1 - 1 / 2.4f);
-    return color;
+    return curve[below] + (value - (float)below) * (curve[below + 1] - curve[below]);
 }
 
-struct sums {
-    float color[3], weight, trust;
+// What a series says of a pixel.
+struct opinion {
+    float color[3]; // radiance
+    float clip;     // trust as far as clipping goes, less where it has no surface
 };
 
-static void add_pixel(const struct orl_photo_response *response, const struct series *s,
-                      const float color[3], float coverage, struct sums *sums)
-{
-    float x[3], slope[3], peak = 0;
-    for (int c = 0; c < 3; c++) {
-        x[c] = linearise(s, c, color[c], &slope[c]);
-        peak = fmaxf(peak, x[c]);
-    }
-    float trust = orl_trust(response, x, slope, peak);
-    float weight = trust * (coverage > 0.5f ? 1 : UNCOVERED_SHARE);
-    float scale = exp2f(-s->ev);
-    for (int c = 0; c < 3; c++)
-        sums->color[c] += weight * scale * x[c];
-    sums->weight += weight;
-    sums->trust += weight * trust;
-}
-
-static void add_picture(const struct orl_photo_response *response, const struct series *s,
-                        const struct orl_frame *picture, struct sums *sums)
+static void form_opinions(const struct orl_sensor *sensor, const struct series *s, float ev_above,
+                          const struct orl_frame *picture, struct opinion *opinions, size_t stride)
 {
     size_t pixels = (size_t)picture->color.width * (size_t)picture->color.height;
-    for (size_t i = 0; i < pixels; i++)
-        add_pixel(response, s, picture->color.f32 + 3 * i, picture->coverage.f32[i], &sums[i]);
+    for (size_t i = 0; i < pixels; i++) {
+        struct opinion *opinion = &opinions[i * stride];
+        float peak = 0, scale = exp2f(-s->ev);
+        for (int c = 0; c < 3; c++) {
+            float x = linearise(s, c, picture->color.f32[3 * i + (size_t)c]);
+            opinion->color[c] = scale * x;
+            peak = fmaxf(peak, x);
+        }
+        opinion->clip = orl_clip_trust(sensor, peak, ev_above) *
+                        (picture->coverage.f32[i] > 0.5f ? 1 : UNCOVERED_SHARE);
+    }
+}
+
+static float trust_at(const struct orl_sensor *sensor, const struct series *s,
+                      const struct opinion *opinion, const float level[3])
+{
+    float scale = exp2f(s->ev), model = (float)(sensor->model * sensor->model);
+    const float exposure[3] = {scale * level[0], scale * level[1], scale * level[2]};
+    return opinion->clip * model / (model + orl_relative_variance(sensor, exposure, true));
+}
+
+// Twice: trust depends on how much light there was, which at first each series says itself.
+static void merge_pixel(const struct orl_sensor *sensor, const struct series_set *set, float least,
+                        const struct opinion *opinions, float color[3], float *confidence)
+{
+    float level[3];
+    for (int round = 0; round < 2; round++) {
+        float sum[3] = {0}, total = 0, trusted = 0;
+        for (size_t k = 0; k < set->count; k++) {
+            const struct opinion *o = &opinions[k];
+            float trust = trust_at(sensor, &set->items[k], o, round ? level : o->color);
+            for (int c = 0; c < 3; c++)
+                sum[c] += trust * o->color[c];
+            total += trust;
+            trusted += trust * trust;
+        }
+        for (int c = 0; c < 3; c++) {
+            color[c] = total > 0 ? sum[c] / total : 0;
+            level[c] = fmaxf(color[c], least);
+        }
+        *confidence = total > 0 ? trusted / total : 0;
+    }
 }
 
 // The first picture's depth and normals, which come from the points alone, are everyone's.
@@ -156,54 +169,63 @@ static void merge_layers(const struct orl_frame *picture, struct orl_frame *fram
         frame->coverage.f32[i] = fmaxf(frame->coverage.f32[i], picture->coverage.f32[i]);
 }
 
-static void divide(const struct sums *sums, struct orl_frame *frame)
+// Exposures of the darkest and the brightest series.
+static void exposure_range(const struct series_set *set, float range[2])
 {
-    size_t pixels = (size_t)frame->color.width * (size_t)frame->color.height;
-    for (size_t i = 0; i < pixels; i++) {
-        float weight = sums[i].weight;
-        for (size_t c = 0; c < 3; c++)
-            frame->color.f32[3 * i + c] = weight > 0 ? sums[i].color[c] / weight : 0;
-        frame->confidence.f32[i] = weight > 0 ? sums[i].trust / weight : 0;
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t k = 0; k < set->count; k++) {
+        range[0] = fminf(range[0], set->items[k].ev);
+        range[1] = fmaxf(range[1], set->items[k].ev);
     }
+}
+
+static enum orl_result draw_series(struct series_set *set, size_t k,
+                                   const struct orl_hdr_params *params,
+                                   const struct orl_view *view, const bool *skip,
+                                   struct opinion *opinions, struct orl_frame *frame)
+{
+    struct series *s = &set->items[k];
+    struct orl_frame picture;
+    float range[2];
+    exposure_range(set, range);
+    for (size_t i = 0; i < set->scene.photo_count; i++)
+        s->skip[i] = set->scene.photos[i].series != s->number || (skip && skip[i]);
+    enum orl_result result =
+        orl_renderer_draw(set->renderer, view, &params->render, s->skip, &picture);
+    if (result != ORL_OK)
+        return result;
+    form_opinions(&params->sensor, s, s->ev - range[0], &picture, opinions + k, set->count);
+    if (k == 0) {
+        *frame = picture;
+    } else {
+        merge_layers(&picture, frame);
+        orl_frame_finish(&picture);
+    }
+    return ORL_OK;
 }
 
 enum orl_result orl_series_draw(const struct orl_log *log, struct series_set *set,
                                 const struct orl_hdr_params *params, const struct orl_view *view,
                                 const bool *skip, struct orl_frame *frame)
 {
-    int width = view->camera.width, height = view->camera.height;
-    struct orl_photo_response response = {.sensor = &params->sensor, .clips = true,
-                                          .ev_darkest = INFINITY, .ev_brightest = -INFINITY};
+    size_t pixels = (size_t)view->camera.width * (size_t)view->camera.height;
+    float range[2];
     memset(frame, 0, sizeof *frame);
-    struct sums *sums = orl_array(log, (size_t)width * (size_t)height, sizeof *sums);
-    enum orl_result result = sums ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t k = 0; k < set->count; k++) {
-        response.ev_darkest = fminf(response.ev_darkest, set->items[k].ev);
-        response.ev_brightest = fmaxf(response.ev_brightest, set->items[k].ev);
-    }
-    for (size_t k = 0; result == ORL_OK && k < set->count; k++) {
-        struct series *s = &set->items[k];
-        struct orl_frame picture;
-        for (size_t i = 0; i < set->scene.photo_count; i++)
-            s->skip[i] = set->scene.photos[i].series != s->number || (skip && skip[i]);
-        result = orl_renderer_draw(set->renderer, view, &params->render, s->skip, &picture);
-        if (result != ORL_OK)
-            break;
-        response.ev = s->ev;
-        add_picture(&response, s, &picture, sums);
-        if (k == 0) {
-            *frame = picture;
-            continue;
-        }
-        merge_layers(&picture, frame);
-        orl_frame_finish(&picture);
-    }
+    struct opinion *opinions = orl_array(log, pixels, set->count * sizeof *opinions);
+    enum orl_result result = opinions ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t k = 0; result == ORL_OK && k < set->count; k++)
+        result = draw_series(set, k, params, view, skip, opinions, frame);
     if (result == ORL_OK)
-        result = orl_image_init(log, &frame->confidence, width, height, 1, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        divide(sums, frame);
-    else
+        result = orl_image_init(log, &frame->confidence, view->camera.width, view->camera.height, 1,
+                                ORL_PIXEL_F32);
+    exposure_range(set, range);
+    float least = orl_least_radiance(&params->sensor, range[1], true);
+    for (size_t i = 0; result == ORL_OK && i < pixels; i++)
+        merge_pixel(&params->sensor, set, least, opinions + i * set->count,
+                    frame->color.f32 + 3 * i, &frame->confidence.f32[i]);
+    if (result != ORL_OK)
         orl_frame_finish(frame);
-    free(sums);
+    free(opinions);
     return result;
 }

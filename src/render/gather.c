@@ -1,4 +1,5 @@
 // Colour from photographs.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -84,6 +85,14 @@ static void describe_photo(const struct photos *photos, size_t index, const stru
     data->slot_size[3] = (float)depth->height;
     memcpy(data->gain, photo->gain, sizeof photo->gain);
     data->gain[3] = (float)(color->levels - 1);
+    if (!photos->radiance)
+        return;
+    for (int c = 0; c < 3; c++)
+        data->gain[c] *= state->white;
+    // In units of the device's colours.
+    data->noise[0] = (float)photos->sensor.shot / state->white;
+    data->noise[1] = powf((float)photos->sensor.read / state->white, 2);
+    data->noise[2] = state->rounded;
 }
 
 static void gather_batch(struct orl_renderer *r, const struct orl_view *view,
@@ -99,7 +108,8 @@ static void gather_batch(struct orl_renderer *r, const struct orl_view *view,
         .flags = {params->visibility == ORL_VISIBILITY_HARD,
                   params->sampling == ORL_SAMPLING_BICUBIC},
         .area = {view->camera.width, view->camera.height, (int)count},
-        .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model)},
+        .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model),
+                     orl_least_radiance(&r->photos.sensor, r->photos.ev_brightest, true)},
     };
     set_focal(block.view_focal, &view->camera);
     struct orl_dispatch d = {.prog = g->all, .params = &block,
@@ -124,8 +134,9 @@ enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
     for (size_t i = 0; i < r->scene->photo_count; i++) {
         if (!r->photos.states[i].usable || (skip && skip[i]))
             continue;
-        // As many at once as are resident together.
-        if (count == (size_t)r->photos.slot_count) {
+        // As many at once as are resident together, and as the shader takes.
+        if (count == (size_t)r->photos.slot_count ||
+            (r->photos.radiance && count == ORL_RADIANCE_PHOTOS)) {
             gather_batch(r, view, params, count);
             count = 0;
         }

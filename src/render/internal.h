@@ -73,6 +73,8 @@ struct photo_state {
     bool has_depth;
     struct proxy_options depth_options; // that its depth was made with
     unsigned last_use;
+    float white;  // of radiance: what its colours on the device are multiplied by
+    bool rounded; // to 8 bits
     struct orl_camera color_camera, depth_camera; // as resident, in pixels of level 0
 };
 

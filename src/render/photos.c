@@ -240,43 +240,56 @@ static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_imag
 }
 
 // Turns a photograph as read into radiance times trust, and trust.
-static enum orl_result make_radiance(const struct orl_log *log, const struct photos *photos,
-                                     size_t index, struct orl_image *image)
+static enum orl_result make_radiance(const struct orl_log *log, struct photos *photos, size_t index,
+                                     struct orl_image *image)
 {
     const struct orl_scene *scene = photos->scene;
     const struct orl_photo *photo = &scene->photos[index];
     struct orl_photo_response response = {
-        .sensor = &photos->sensor, .clips = true, .ev = photo_ev(photo),
+        .sensor = &photos->sensor, .ev_above = photo_ev(photo) - photos->ev_darkest,
         .linear = photo->response >= 0 ? scene->responses[photo->response].linear : NULL,
         .centre = {(float)photo->view.camera.cx, (float)photo->view.camera.cy},
-        .ev_darkest = photos->ev_darkest, .ev_brightest = photos->ev_brightest,
     };
     memcpy(response.vignette, photo->vignette, sizeof response.vignette);
     struct orl_image radiance;
-    enum orl_result result = orl_radiance_decode(log, &response, image, &radiance);
+    struct photo_state *state = &photos->states[index];
+    state->rounded = image->type == ORL_PIXEL_U8;
+    enum orl_result result = orl_radiance_decode(log, &response, image, &radiance, &state->white);
     if (result != ORL_OK)
         return result;
-    // Half floats keep eleven bits of what is above 2^-14.
     size_t count = (size_t)radiance.width * (size_t)radiance.height;
     for (size_t i = 0; i < count; i++)
         for (size_t c = 0; c < 3; c++)
-            radiance.f32[4 * i + c] *= ORL_RADIANCE_SCALE;
+            radiance.f32[4 * i + c] *= (float)ORL_RADIANCE_SCALE;
     orl_image_finish(image);
     *image = radiance;
     return ORL_OK;
 }
 
+// As in the file; the linear version, if there is one, for radiance.
+static enum orl_result read_photo(const struct orl_log *log, const struct photos *photos,
+                                  size_t index, struct orl_image *image)
+{
+    const struct orl_photo *photo = &photos->scene->photos[index];
+    const struct orl_camera *c = &photo->view.camera;
+    bool linear = photos->radiance && photo->linear;
+    char *path = linear ? orl_scene_linear_path(log, photos->scene, index)
+                        : orl_scene_photo_path(log, photos->scene, index);
+    enum orl_result result = !path   ? ORL_ERR_MEMORY
+                             : linear ? orl_picture_read_linear(log, path, image)
+                                      : orl_picture_read(log, path, 3, image);
+    if (result == ORL_OK && (image->width != c->width || image->height != c->height))
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path,
+                          image->width, image->height, c->width, c->height);
+    free(path);
+    return result;
+}
+
 static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, size_t index)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    const struct orl_camera *c = &photos->scene->photos[index].view.camera;
     struct orl_image image = {0};
-    char *path = orl_scene_photo_path(log, photos->scene, index);
-    enum orl_result result =
-        path ? orl_picture_read(log, path, 3, &image) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && (image.width != c->width || image.height != c->height))
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path,
-                          image.width, image.height, c->width, c->height);
+    enum orl_result result = read_photo(log, photos, index, &image);
     if (result == ORL_OK && photos->radiance)
         result = make_radiance(log, photos, index, &image);
     if (result != ORL_OK)
@@ -291,7 +304,6 @@ static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, si
         photos->states[index].slot = slot;
 end:
     orl_image_finish(&image);
-    free(path);
     return result;
 }
 

@@ -4,152 +4,126 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/color.h"
 #include "core/memory.h"
 
-// IEC 61966-2-1.
-static float srgb_decode(int value)
+// --- trust; shaders/include/trust.glsl says the same ---
+
+float orl_clip_trust(const struct orl_sensor *sensor, float peak, float ev_above)
 {
-    float c = (float)value / 255;
-    return c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
-}
-
-// The linear exposure of every 8-bit value, and the step from one to the next.
-struct decoder {
-    float linear[3][256], step[3][256];
-};
-
-static void make_decoder(const struct orl_photo_response *response, struct decoder *d)
-{
-    for (int c = 0; c < 3; c++) {
-        for (int v = 0; v < 256; v++)
-            d->linear[c][v] = response->linear ? response->linear[c][v] : srgb_decode(v);
-        for (int v = 0; v < 256; v++) {
-            int below = v > 0 ? v - 1 : 0, above = v < 255 ? v + 1 : 255;
-            d->step[c][v] = fabsf(d->linear[c][above] - d->linear[c][below]) /
-                            (float)(above - below);
-        }
-    }
-}
-
-// --- trust ---
-
-// Expected squared relative error, mean of the channels: that of log radiance too.
-static double relative_variance(const struct orl_photo_response *response, const float x[3],
-                                const float slope[3])
-{
-    const struct orl_sensor *s = response->sensor;
-    // Below the noise of the scene's brightest photograph all is one darkness. So the same
-    // darkness is measured worst by the darkest photograph.
-    double brighter = exp2((double)(response->ev - response->ev_brightest));
-    double sum = 0;
-    for (int c = 0; c < 3; c++) {
-        double rounding = (double)slope[c] * (double)slope[c] / 12;
-        double dark = s->read * s->read + rounding;
-        double level = fmax((double)x[c], sqrt(dark) * brighter);
-        sum += (s->shot * fmax((double)x[c], 0) + dark) / (level * level);
-    }
-    return sum / 3;
-}
-
-float orl_trust(const struct orl_photo_response *response, const float x[3],
-                const float slope[3], float peak)
-{
-    const struct orl_sensor *s = response->sensor;
-    double model = s->model * s->model;
-    double trust = model / (model + relative_variance(response, x, slope));
-    trust = fmax(trust, (double)ORL_TRUST_MIN);
-    if (!response->clips)
-        return (float)trust;
-    double over = ((double)peak - s->soft) / (s->hard - s->soft);
+    double over = ((double)peak - sensor->soft) / (sensor->hard - sensor->soft);
     over = over < 0 ? 0 : over > 1 ? 1 : over;
     double fall = 1 - over * over * (3 - 2 * over);
-    // White says "at least this": most in the darkest photograph.
-    double bound = 0x1p-10 * exp2(-2 * (double)(response->ev - response->ev_darkest));
-    bound = fmax(fmin(bound, trust), (double)ORL_TRUST_MIN);
-    return (float)(bound + (trust - bound) * fall);
+    double bound = fmax(0x1p-10 * exp2(-2 * (double)ev_above), (double)ORL_TRUST_MIN);
+    return (float)(bound + (1 - bound) * fall);
+}
+
+// Step between 8-bit sRGB values, within a tenth where rounding matters.
+static double step_at(double x)
+{
+    return fmax(1 / 12.92, 1.6 * sqrt(x)) / 255;
+}
+
+static double variance(const struct orl_sensor *sensor, double x, bool rounded)
+{
+    double step = rounded ? step_at(x) : 0;
+    return sensor->shot * x + sensor->read * sensor->read + step * step / 12;
+}
+
+float orl_relative_variance(const struct orl_sensor *sensor, const float exposure[3],
+                            bool rounded)
+{
+    double sum = 0;
+    for (int c = 0; c < 3; c++) {
+        double x = fmax((double)exposure[c], 1e-9);
+        sum += variance(sensor, x, rounded) / (x * x) / 3;
+    }
+    return (float)sum;
+}
+
+float orl_least_radiance(const struct orl_sensor *sensor, float ev, bool rounded)
+{
+    return (float)(sqrt(variance(sensor, 0, rounded)) * exp2(-(double)ev));
 }
 
 // --- whole photographs ---
 
-// Largest channel of each pixel of a row.
-static void row_peaks(const struct orl_image *image, const struct decoder *d, int y, float *peaks)
-{
-    size_t width = (size_t)image->width;
-    for (size_t x = 0; x < width; x++) {
-        size_t at = 3 * ((size_t)y * width + x);
-        float peak = 0;
-        for (size_t c = 0; c < 3; c++) {
-            float value = image->type == ORL_PIXEL_U8 ? d->linear[c][image->u8[at + c]]
-                                                      : image->f32[at + c];
-            peak = fmaxf(peak, value);
-        }
-        peaks[x] = peak;
-    }
-}
-
 // Relative illumination at a squared distance from the centre, in half diagonals.
 static float light_at(const float vignette[3], float r2)
 {
-    return fmaxf(1 + r2 * (vignette[0] + r2 * (vignette[1] + r2 * vignette[2])), 0.05f);
+    return fmaxf(1 + r2 * (vignette[0] + r2 * (vignette[1] + r2 * vignette[2])), 0.1f);
 }
 
-// peaks: of the rows above, here and below. A pixel beside a clipped one holds some of it:
-// lenses, Bayer patterns, JPEG and resampling have all mixed them.
-static void decode_row(const struct orl_photo_response *response, const struct decoder *d,
-                       const struct orl_image *image, int y, float *const peaks[3], float *out)
+struct decoder {
+    const struct orl_photo_response *response;
+    float linear[3][256];
+    float white;
+    bool clips;
+};
+
+static float exposure_at(const struct decoder *d, const struct orl_image *image, size_t at,
+                         size_t channel)
 {
-    static const float exact[3] = {0};
-    int width = image->width;
-    float half[2] = {0.5f * (float)width, 0.5f * (float)image->height};
-    float scale = 1 / (half[0] * half[0] + half[1] * half[1]);
-    float dy = (float)y + 0.5f - response->centre[1];
-    for (int x = 0; x < width; x++) {
-        size_t at = 3 * ((size_t)y * (size_t)width + (size_t)x);
-        int left = x > 0 ? x - 1 : 0, right = x < width - 1 ? x + 1 : x;
-        float peak = 0, value[3], slope[3];
-        for (int i = left; i <= right; i++)
-            peak = fmaxf(peak, fmaxf(peaks[0][i], fmaxf(peaks[1][i], peaks[2][i])));
-        for (size_t c = 0; c < 3; c++) {
-            int v = image->type == ORL_PIXEL_U8 ? image->u8[at + c] : 0;
-            value[c] = image->type == ORL_PIXEL_U8 ? d->linear[c][v] : image->f32[at + c];
-            slope[c] = image->type == ORL_PIXEL_U8 ? d->step[c][v] : exact[c];
-        }
-        float trust = orl_trust(response, value, slope, peak);
-        float dx = (float)x + 0.5f - response->centre[0];
-        float share = trust / light_at(response->vignette, (dx * dx + dy * dy) * scale);
-        for (size_t c = 0; c < 3; c++)
-            out[4 * (size_t)x + c] = value[c] * share;
-        out[4 * (size_t)x + 3] = trust;
+    float x = image->type == ORL_PIXEL_U8 ? d->linear[channel][image->u8[at]] : image->f32[at];
+    return x > 0 ? x : 0; // also NaN
+}
+
+static void init_decoder(const struct orl_photo_response *response, const struct orl_image *image,
+                         struct decoder *d)
+{
+    d->response = response;
+    for (size_t c = 0; c < 3; c++)
+        for (int v = 0; v < 256; v++)
+            d->linear[c][v] = response->linear ? response->linear[c][v]
+                                               : orl_srgb_decode((float)v / 255);
+    size_t values = 3 * (size_t)image->width * (size_t)image->height;
+    d->white = 1;
+    for (size_t i = 0; i < values && image->type == ORL_PIXEL_F32; i++)
+        if (isfinite(image->f32[i]))
+            d->white = fmaxf(d->white, image->f32[i]);
+    // Interpolation and sharpening overshoot a little where files clip at 1.
+    d->clips = d->white < 1.5f;
+}
+
+static void decode_pixel(const struct decoder *d, const struct orl_image *image, int x, int y,
+                         float out[4])
+{
+    const struct orl_photo_response *r = d->response;
+    size_t at = 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+    float value[3], peak = 0;
+    for (size_t c = 0; c < 3; c++) {
+        value[c] = exposure_at(d, image, at + c, c);
+        peak = fmaxf(peak, value[c]);
     }
+    float half[2] = {0.5f * (float)image->width, 0.5f * (float)image->height};
+    float dx = (float)x + 0.5f - r->centre[0], dy = (float)y + 0.5f - r->centre[1];
+    float light = light_at(r->vignette, (dx * dx + dy * dy) /
+                                            (half[0] * half[0] + half[1] * half[1]));
+    float trust = isfinite(peak) ? d->clips ? orl_clip_trust(r->sensor, peak, r->ev_above) : 1 : 0;
+    for (int c = 0; c < 3; c++)
+        out[c] = trust > 0 ? trust * value[c] / (light * d->white) : 0;
+    out[3] = trust;
 }
 
 enum orl_result orl_radiance_decode(const struct orl_log *log,
                                     const struct orl_photo_response *response,
-                                    const struct orl_image *image, struct orl_image *out)
+                                    const struct orl_image *image, struct orl_image *out,
+                                    float *white)
 {
     memset(out, 0, sizeof *out);
     ORL_REQUIRE(log, image->channels == 3);
-    size_t width = (size_t)image->width;
-    struct decoder *decoder = orl_array(log, 1, sizeof *decoder);
-    float *rows = orl_array(log, 3 * width, sizeof *rows);
-    enum orl_result result = decoder && rows ? orl_image_init(log, out, image->width,
-                                                              image->height, 4, ORL_PIXEL_F32)
-                                             : ORL_ERR_MEMORY;
+    struct decoder *d = orl_array(log, 1, sizeof *d);
+    enum orl_result result = d ? orl_image_init(log, out, image->width, image->height, 4,
+                                                ORL_PIXEL_F32)
+                               : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
-        make_decoder(response, decoder);
-        float *peaks[3] = {rows, rows + width, rows + 2 * width};
-        row_peaks(image, decoder, 0, peaks[1]);
-        memcpy(peaks[0], peaks[1], width * sizeof *rows);
-        for (int y = 0; y < image->height; y++) {
-            row_peaks(image, decoder, y + 1 < image->height ? y + 1 : y, peaks[2]);
-            decode_row(response, decoder, image, y, peaks, out->f32 + 4 * width * (size_t)y);
-            float *above = peaks[0];
-            peaks[0] = peaks[1];
-            peaks[1] = peaks[2];
-            peaks[2] = above;
-        }
+        init_decoder(response, image, d);
+        *white = d->white;
+        for (int y = 0; y < image->height; y++)
+            for (int x = 0; x < image->width; x++)
+                decode_pixel(d, image, x, y,
+                             out->f32 + 4 * ((size_t)y * (size_t)image->width + (size_t)x));
     }
-    free(decoder);
-    free(rows);
+    free(d);
     return result;
 }

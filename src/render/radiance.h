@@ -7,8 +7,8 @@
 
 // How a photograph's pixels came about.
 struct orl_sensor {
-    // Variance of a channel at linear exposure x, white being 1: shot * x + read^2, and
-    // that of rounding to 8 bits.
+    // Variance of a channel at linear exposure x, white being 1: shot * x + read^2; that of
+    // rounding to 8 bits comes on top.
     double shot, read;
     // Relative error of every sample of a photograph that exposure does not explain:
     // geometry, resampling, gloss. Samples much better than this are equally good.
@@ -19,8 +19,22 @@ struct orl_sensor {
 };
 #define ORL_SENSOR_DEFAULTS .shot = 1e-4, .read = 2e-4, .model = 0.05, .soft = 0.75, .hard = 0.96
 
-// Trust of samples that say little more than "at least white" or "at most black".
+// Least trust in a pixel that says no more than "at least white".
 #define ORL_TRUST_MIN 0x1p-22f
+
+// Trust of one pixel as far as clipping goes, (0, 1]; peak: its largest channel's linear
+// exposure; ev_above: its exposure in stops above the scene's darkest photograph. What clips
+// keeps a trace of trust, most in the darkest photograph: where all clip, that says most.
+float orl_clip_trust(const struct orl_sensor *sensor, float peak, float ev_above);
+// Expected squared relative error of a pixel with these linear exposures, mean of its
+// channels; rounded: to 8 bits. Trust as far as noise goes is m^2 / (m^2 + this), m being
+// sensor->model: in proportion to the inverse of the expected squared error, as is best for
+// a mean.
+float orl_relative_variance(const struct orl_sensor *sensor, const float exposure[3],
+                            bool rounded);
+// Least radiance that differs from darkness, by one standard deviation, in a photograph
+// `ev` stops brighter than the scene's middle.
+float orl_least_radiance(const struct orl_sensor *sensor, float ev, bool rounded);
 
 // One photograph's way from pixels to radiance.
 struct orl_photo_response {
@@ -29,26 +43,15 @@ struct orl_photo_response {
                                 // NULL: sRGB
     float vignette[3];          // as of struct orl_photo
     float centre[2];            // of vignetting: the principal point, pixels of the image
-    bool clips;                 // false: values above 1 are as good as any (linear files)
-    float ev;                   // exposure in stops, relative to the scene's middle
-    float ev_darkest, ev_brightest; // of all photographs of the scene
+    float ev_above;             // exposure in stops above the scene's darkest photograph
 };
 
-// Trust in (0, 1] of one pixel, x being its three linear exposures before vignetting is
-// undone, `slope` the linear step between neighbouring 8-bit values there (0: not rounded),
-// `peak` the largest exposure in its neighbourhood. Proportional to 1 / (expected squared
-// relative error), which is what makes a mean of samples best. Samples without
-// information keep a small trust, largest for the darkest photograph when they clip and for
-// the brightest when they are black, so that a pixel that nothing else has seen takes the
-// best bound there is.
-float orl_trust(const struct orl_photo_response *response, const float x[3],
-                const float slope[3], float peak);
-
-// RGBA, F32: linear exposure with vignetting undone times trust, and trust. image: U8 x3 as
-// in the file, or F32 x3, linear. Exposures are not divided out yet.
+// RGBA, F32: linear exposure, vignetting undone, times trust; and trust, as far as clipping
+// goes. image: U8 x3 as in the file, or F32 x3, linear, which clips at 1 unless it holds
+// larger values. Colour is divided by *white, the largest exposure, at least 1.
 enum orl_result orl_radiance_decode(const struct orl_log *log,
                                     const struct orl_photo_response *response,
-                                    const struct orl_image *image,
-                                    struct orl_image *out) ORL_CHECK_RESULT;
+                                    const struct orl_image *image, struct orl_image *out,
+                                    float *white) ORL_CHECK_RESULT;
 
 #endif
