@@ -1,7 +1,7 @@
 # Writes OUTPUT, a C table of all shader files below SHADER_DIR (see
 # src/gpu/shader_table.h). Run as: cmake -DSHADER_DIR=... -DOUTPUT=... -P this.
 file(GLOB_RECURSE files RELATIVE "${SHADER_DIR}" "${SHADER_DIR}/*.comp" "${SHADER_DIR}/*.glsl"
-     "${SHADER_DIR}/*.h")
+     "${SHADER_DIR}/*.vert" "${SHADER_DIR}/*.frag" "${SHADER_DIR}/*.h")
 list(SORT files)
 set(arrays "")
 set(rows "")

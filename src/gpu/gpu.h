@@ -39,6 +39,14 @@ const struct orl_log *orl_gpu_log(const struct orl_gpu *gpu);
 enum orl_result orl_gpu_finish(struct orl_gpu *gpu) ORL_CHECK_RESULT;
 // Bytes in live buffers and textures.
 size_t orl_gpu_bytes(const struct orl_gpu *gpu);
+// The same by tag: fills up to `capacity` rows in order of first use and returns how many
+// there are.
+struct orl_gpu_memory {
+    const char *tag;
+    size_t bytes;
+    unsigned objects;
+};
+size_t orl_gpu_memory(const struct orl_gpu *gpu, struct orl_gpu_memory *rows, size_t capacity);
 
 // --- buffers ---
 
@@ -153,5 +161,20 @@ void orl_pass_end(struct orl_gpu *gpu);
 // Waits for pending timers, fills up to `capacity` rows in order of first use,
 // returns how many passes there are, and resets the sums.
 size_t orl_gpu_take_times(struct orl_gpu *gpu, struct orl_pass_time *times, size_t capacity);
+
+// One pass as it was: when the CPU asked for it, when the device did it. Seconds of
+// orl_time_s; on a software renderer the device's end is where the pipeline had drained.
+struct orl_pass_span {
+    const char *name;
+    double cpu_start_s, cpu_end_s, gpu_start_s, gpu_end_s;
+};
+struct orl_pass_trace {
+    struct orl_pass_span *spans; // the caller's
+    size_t capacity, count;
+    size_t dropped;              // for want of room
+};
+// Notes every timed pass in `trace`, which must outlive it, until called with NULL; that
+// waits for what is pending. Needs orl_gpu_time_passes.
+void orl_gpu_trace_passes(struct orl_gpu *gpu, struct orl_pass_trace *trace);
 
 #endif

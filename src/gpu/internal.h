@@ -6,11 +6,12 @@
 
 #include "gpu/gpu.h"
 
-enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256 };
+enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256, ORL_MEMORY_ROWS_MAX = 64 };
 
 struct pass_query {
     GLuint begin, end;
     int pass;
+    struct orl_pass_span *span; // of the trace; NULL: none
 };
 
 struct orl_gpu {
@@ -22,6 +23,8 @@ struct orl_gpu {
     bool failed;      // sticky: a GL error or a high-severity message
     bool current;     // the context could be made current
     size_t live_bufs, live_texs, live_progs, live_bytes;
+    struct orl_gpu_memory memory[ORL_MEMORY_ROWS_MAX];
+    size_t memory_count;
 
     bool timing;
     int pass; // the open one; -1: none
@@ -30,6 +33,8 @@ struct orl_gpu {
     size_t pass_count;
     struct pass_query queries[ORL_QUERIES_MAX]; // names made on first use
     size_t query_count;                         // pending
+    struct orl_pass_trace *trace;               // NULL: none
+    double clock_offset_s; // from the device's clock to orl_time_s's
 };
 
 // Expanded source of shaders/`file`: version, defines, includes, #line. Owned by
@@ -47,5 +52,8 @@ void orl_shader_source_finish(struct shader_source *source);
 // Logs every pending GL error as made by `where`; true if there were none.
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);
 void orl_gpu_free_queries(struct orl_gpu *gpu);
+// Adds an object to its tag's bytes, and takes it away.
+void orl_gpu_count_bytes(struct orl_gpu *gpu, const char *tag, size_t bytes);
+void orl_gpu_uncount_bytes(struct orl_gpu *gpu, const char *tag, size_t bytes);
 
 #endif

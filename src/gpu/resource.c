@@ -17,7 +17,7 @@ enum orl_result orl_buf_create(struct orl_gpu *gpu, const char *tag, size_t size
                          GL_DYNAMIC_STORAGE_BIT);
     glObjectLabel(GL_BUFFER, buf->id, -1, tag);
     gpu->live_bufs++;
-    gpu->live_bytes += buf->size;
+    orl_gpu_count_bytes(gpu, tag, buf->size);
     if (!orl_gpu_check_errors(gpu, tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no buffer of %zu bytes on the device", tag, size);
         orl_buf_destroy(gpu, &buf);
@@ -36,7 +36,7 @@ void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **handle)
         return;
     glDeleteBuffers(1, &buf->id);
     gpu->live_bufs--;
-    gpu->live_bytes -= buf->size;
+    orl_gpu_uncount_bytes(gpu, buf->tag, buf->size);
     free(buf);
     *handle = NULL;
 }
@@ -74,6 +74,7 @@ static size_t texel_bytes(GLenum format)
         {GL_R16F, 2},     {GL_RG16F, 4},    {GL_RGBA16F, 8},  {GL_R32F, 4},
         {GL_RG32F, 8},    {GL_RGBA32F, 16}, {GL_R32UI, 4},    {GL_RG32UI, 8},
         {GL_RGBA32UI, 16}, {GL_R16, 2},     {GL_R8UI, 1},     {GL_R16UI, 2},
+        {GL_DEPTH_COMPONENT32F, 4},
     };
     for (size_t i = 0; i < ORL_COUNT(table); i++)
         if (table[i].format == format)
@@ -122,7 +123,7 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     set_sampling(tex->id, p->linear, p->levels);
     glObjectLabel(GL_TEXTURE, tex->id, -1, p->tag);
     gpu->live_texs++;
-    gpu->live_bytes += tex->bytes;
+    orl_gpu_count_bytes(gpu, tex->params.tag, tex->bytes);
     if (!orl_gpu_check_errors(gpu, p->tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device",
                  p->tag, p->width, p->height, tex->bytes);
@@ -140,7 +141,7 @@ void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
         return;
     glDeleteTextures(1, &tex->id);
     gpu->live_texs--;
-    gpu->live_bytes -= tex->bytes;
+    orl_gpu_uncount_bytes(gpu, tex->params.tag, tex->bytes);
     free(tex);
     *handle = NULL;
 }

@@ -28,6 +28,10 @@ static void resolve_queries(struct orl_gpu *gpu)
         glGetQueryObjectui64v(gpu->queries[i].begin, GL_QUERY_RESULT, &begin);
         glGetQueryObjectui64v(gpu->queries[i].end, GL_QUERY_RESULT, &end);
         gpu->passes[gpu->queries[i].pass].ms += 1e-6 * (double)(end - begin);
+        if (gpu->queries[i].span) {
+            gpu->queries[i].span->gpu_start_s = 1e-9 * (double)begin + gpu->clock_offset_s;
+            gpu->queries[i].span->gpu_end_s = 1e-9 * (double)end + gpu->clock_offset_s;
+        }
     }
     gpu->query_count = 0;
 }
@@ -38,11 +42,11 @@ void orl_pass_begin(struct orl_gpu *gpu, const char *name)
     gpu->pass = gpu->timing ? find_pass(gpu, name) : -1;
     if (gpu->pass < 0)
         return;
-    if (gpu->caps.software) {
+    if (gpu->caps.software)
         glFinish();
-        gpu->pass_start_s = orl_time_s();
+    gpu->pass_start_s = orl_time_s();
+    if (gpu->caps.software)
         return;
-    }
     if (gpu->query_count == ORL_QUERIES_MAX)
         resolve_queries(gpu);
     struct pass_query *query = &gpu->queries[gpu->query_count];
@@ -54,20 +58,54 @@ void orl_pass_begin(struct orl_gpu *gpu, const char *name)
     glQueryCounter(query->begin, GL_TIMESTAMP);
 }
 
+// The trace's next span, the CPU's part of it set; NULL without trace or room.
+static struct orl_pass_span *add_span(struct orl_gpu *gpu, const char *name)
+{
+    struct orl_pass_trace *trace = gpu->trace;
+    if (!trace)
+        return NULL;
+    if (trace->count == trace->capacity) {
+        trace->dropped++;
+        return NULL;
+    }
+    struct orl_pass_span *span = &trace->spans[trace->count++];
+    *span = (struct orl_pass_span){.name = name, .cpu_start_s = gpu->pass_start_s,
+                                   .cpu_end_s = orl_time_s()};
+    return span;
+}
+
 void orl_pass_end(struct orl_gpu *gpu)
 {
     glPopDebugGroup();
     if (gpu->pass < 0)
         return;
     struct orl_pass_time *pass = &gpu->passes[gpu->pass];
+    struct orl_pass_span *span = add_span(gpu, pass->name);
     pass->count++;
     if (gpu->caps.software) {
         glFinish();
-        pass->ms += 1e3 * (orl_time_s() - gpu->pass_start_s);
+        double end_s = orl_time_s();
+        pass->ms += 1e3 * (end_s - gpu->pass_start_s);
+        if (span) {
+            span->gpu_start_s = gpu->pass_start_s;
+            span->gpu_end_s = end_s;
+        }
     } else {
+        gpu->queries[gpu->query_count].span = span;
         glQueryCounter(gpu->queries[gpu->query_count++].end, GL_TIMESTAMP);
     }
     gpu->pass = -1;
+}
+
+void orl_gpu_trace_passes(struct orl_gpu *gpu, struct orl_pass_trace *trace)
+{
+    resolve_queries(gpu);
+    gpu->trace = trace;
+    if (!trace)
+        return;
+    GLint64 now = 0;
+    glGetInteger64v(GL_TIMESTAMP, &now);
+    gpu->clock_offset_s = orl_time_s() - 1e-9 * (double)now;
 }
 
 size_t orl_gpu_take_times(struct orl_gpu *gpu, struct orl_pass_time *times, size_t capacity)

@@ -1,0 +1,129 @@
+// What benchmarks read from the device: memory by owner, spans of passes, and the
+// graphics pipeline's points.
+#include <string.h>
+
+#include "gpu/point_raster.h"
+#include "gpu_test.h"
+
+static struct orl_gpu *gpu;
+
+static const struct orl_gpu_memory *find(const struct orl_gpu_memory *rows, size_t count,
+                                         const char *tag)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(rows[i].tag, tag) == 0)
+            return &rows[i];
+    return NULL;
+}
+
+static void counts_memory_by_tag(void **state)
+{
+    (void)state;
+    struct orl_gpu_memory rows[16];
+    size_t before = orl_gpu_bytes(gpu), known = orl_gpu_memory(gpu, rows, 16);
+    struct orl_buf *a, *b;
+    struct orl_tex *tex;
+    const struct orl_tex_params params = {.width = 8, .height = 4, .levels = 2, .format = GL_RGBA8,
+                                          .tag = "bench pictures"};
+    assert_int_equal(orl_buf_create(gpu, "bench words", 400, NULL, &a), ORL_OK);
+    assert_int_equal(orl_buf_create(gpu, "bench words", 80, NULL, &b), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
+    size_t count = orl_gpu_memory(gpu, rows, 16);
+    assert_int_equal(count, known + 2);
+    assert_int_equal(find(rows, count, "bench words")->bytes, 480);
+    assert_int_equal(find(rows, count, "bench words")->objects, 2);
+    assert_int_equal(find(rows, count, "bench pictures")->bytes, 4 * (8 * 4 + 4 * 2));
+    assert_int_equal(orl_gpu_bytes(gpu), before + 480 + 160);
+    orl_buf_destroy(gpu, &a);
+    count = orl_gpu_memory(gpu, rows, 16);
+    assert_int_equal(find(rows, count, "bench words")->bytes, 80);
+    orl_buf_destroy(gpu, &b);
+    orl_tex_destroy(gpu, &tex);
+    assert_int_equal(orl_gpu_memory(gpu, rows, 16), known);
+    assert_int_equal(orl_gpu_bytes(gpu), before);
+}
+
+static void one_pass(const char *name, struct orl_buf *buf)
+{
+    orl_pass_begin(gpu, name);
+    orl_buf_fill(buf, 7);
+    orl_pass_end(gpu);
+}
+
+static void traces_passes(void **state)
+{
+    (void)state;
+    struct orl_buf *buf;
+    struct orl_pass_span spans[3];
+    struct orl_pass_trace trace = {.spans = spans, .capacity = 3};
+    assert_int_equal(orl_buf_create(gpu, "bench words", 1 << 16, NULL, &buf), ORL_OK);
+    one_pass("untimed", buf);
+    orl_gpu_time_passes(gpu, true);
+    orl_gpu_trace_passes(gpu, &trace);
+    static const char *const names[] = {"one", "two", "one", "one"};
+    for (size_t i = 0; i < 4; i++)
+        one_pass(names[i], buf);
+    orl_gpu_trace_passes(gpu, NULL);
+    one_pass("untraced", buf);
+    orl_gpu_time_passes(gpu, false);
+    assert_int_equal(trace.count, 3);
+    assert_int_equal(trace.dropped, 1);
+    for (size_t i = 0; i < 3; i++) {
+        assert_string_equal(spans[i].name, names[i]);
+        assert_true(spans[i].cpu_start_s <= spans[i].cpu_end_s);
+        assert_true(spans[i].gpu_start_s <= spans[i].gpu_end_s);
+        assert_true(i == 0 || spans[i - 1].gpu_end_s <= spans[i].gpu_start_s);
+        assert_true(i == 0 || spans[i - 1].cpu_end_s <= spans[i].cpu_start_s);
+    }
+    struct orl_pass_time times[8];
+    assert_int_equal(orl_gpu_take_times(gpu, times, 8), 3);
+    assert_int_equal(times[0].count, 3);
+    orl_buf_destroy(gpu, &buf);
+}
+
+// Three points: two in one pixel, the nearer one given first; one behind the viewer.
+static void rasters_nearest_points(void **state)
+{
+    (void)state;
+    enum { W = 8, H = 6 };
+    static const float positions[][3] = {{0.1f, 0.1f, 2}, {0.2f, 0.2f, 4}, {0.9f, 0.9f, 2},
+                                         {0, 0, -2}};
+    static const uint8_t colors[][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {9, 9, 9}};
+    // Focal lengths W / 2 and H / 2; depth from 1 to 100.
+    const float near = 1, far = 100;
+    const float matrix[16] = {1, 0, 0, 0,
+                              0, 1, 0, 0,
+                              0, 0, (far + near) / (far - near), 1,
+                              0, 0, -2 * far * near / (far - near), 0};
+    struct orl_point_raster *raster;
+    assert_int_equal(orl_point_raster_create(gpu, positions, colors, 4, W, H, &raster), ORL_OK);
+    for (int again = 0; again < 2; again++) {
+        orl_point_raster_draw(raster, matrix);
+        uint8_t pixels[H][W][4];
+        orl_tex_read(orl_point_raster_color(raster), 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof pixels,
+                     pixels);
+        size_t covered = 0;
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++)
+                covered += pixels[y][x][3] > 0;
+        assert_int_equal(covered, 2);
+        static const uint8_t red[] = {255, 0, 0, 255}, blue[] = {0, 0, 255, 255};
+        assert_memory_equal(pixels[3][4], red, 4);
+        assert_memory_equal(pixels[4][5], blue, 4); // at 5.8 and 4.35, y downwards
+    }
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+    orl_point_raster_destroy(&raster);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(counts_memory_by_tag),
+        cmocka_unit_test(traces_passes),
+        cmocka_unit_test(rasters_nearest_points),
+    };
+    gpu = gpu_test_device();
+    int failures = cmocka_run_group_tests(tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failures;
+}
