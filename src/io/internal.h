@@ -48,6 +48,16 @@ enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
 enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *path,
                                       struct orl_image *image);
 
+// A colour profile (ICC) of RGB samples, to linear light of Rec. 709 primaries.
+struct orl_profile;
+// NULL, with a warning, for one that cannot be used: colours count as sRGB then.
+struct orl_profile *orl_profile_create(const struct orl_log *log, const char *path,
+                                       const void *icc, size_t size);
+void orl_profile_destroy(struct orl_profile **profile);
+// F32 x3: samples in [0, 1] as stored become light. Colours that Rec. 709 has not are
+// brought to its border.
+void orl_profile_apply(const struct orl_profile *profile, struct orl_image *image);
+
 // From a block "Exif\0\0...". Damaged blocks say nothing, with a warning.
 enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                 size_t size, struct orl_exif *exif);

@@ -21,10 +21,10 @@ enum orl_result orl_picture_size(const struct orl_log *log, const char *path, in
 // truncated file is an error.
 enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
                                  struct orl_image *image) ORL_CHECK_RESULT;
-// Linear light, F32 x3, Rec. 709 primaries assumed; colour profiles are not applied. 8 and
-// 16-bit samples are taken as sRGB (PNG's with a gamma of 1 as linear), white being 1; float
-// TIFF and EXR (R, G, B, or Y) as they are; RAW with the camera's white balance, 1 where
-// the sensor saturates.
+// Linear light, F32 x3, Rec. 709 primaries. 8 and 16-bit samples are taken as sRGB (TIFF's
+// as its colour profile says, PNG's with a gamma of 1 as linear), white being 1; float TIFF
+// and EXR (R, G, B, or Y) as they are; RAW with the camera's white balance, 1 where the
+// sensor saturates.
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image) ORL_CHECK_RESULT;
 // Camera RAW by its extension?

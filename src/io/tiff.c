@@ -1,4 +1,5 @@
-// TIFF through libtiff: 8 or 16 bits of sRGB, or 32-bit floats of linear light.
+// TIFF through libtiff: 8 or 16 bits of sRGB or of the colour space of a profile inside,
+// or 32-bit floats of linear light.
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -21,6 +22,7 @@ struct tiff_job {
     TIFF *tiff;
     uint32_t width, height;
     uint16_t bits, samples, format, photometric, planar;
+    bool encoded; // samples stay as stored, in [0, 1], for a profile to make light of
     char message[512]; // the first error of libtiff
 };
 
@@ -169,12 +171,12 @@ enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
 
 static float light(const struct tiff_job *job, const uint8_t *sample)
 {
-    if (job->bits == 8)
-        return orl_srgb_decode((float)*sample / 255);
-    if (job->bits == 16) {
-        uint16_t value;
-        memcpy(&value, sample, sizeof value);
-        return orl_srgb_decode((float)value / 65535);
+    if (job->bits <= 16) {
+        uint16_t wide = *sample;
+        if (job->bits == 16)
+            memcpy(&wide, sample, sizeof wide);
+        float encoded = (float)wide / (job->bits == 16 ? 65535 : 255);
+        return job->encoded ? encoded : orl_srgb_decode(encoded);
     }
     float value;
     memcpy(&value, sample, sizeof value);
@@ -254,17 +256,36 @@ static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
     return result;
 }
 
+// The colour profile of a file of integer RGB samples, NULL when there is none: what
+// converters of RAW files write is often in a wider space than sRGB.
+static const void *find_profile(const struct tiff_job *job, uint32_t *size)
+{
+    const void *profile = NULL;
+    bool rgb = job->photometric == PHOTOMETRIC_RGB && job->format == SAMPLEFORMAT_UINT;
+    return rgb && TIFFGetField(job->tiff, TIFFTAG_ICCPROFILE, size, &profile) && *size ? profile
+                                                                                      : NULL;
+}
+
 enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *path,
                                        struct orl_image *image)
 {
     struct tiff_job job = {.log = log, .path = path};
+    struct orl_profile *profile = NULL;
+    uint32_t size = 0;
     enum orl_result result = open_tiff(&job);
     if (result == ORL_OK)
         result = read_header(&job);
+    const void *icc = result == ORL_OK ? find_profile(&job, &size) : NULL;
+    if (icc)
+        profile = orl_profile_create(log, path, icc, size);
+    job.encoded = profile != NULL;
     if (result == ORL_OK)
         result = orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32);
     if (result == ORL_OK)
         result = TIFFIsTiled(job.tiff) ? read_tiles(&job, image) : read_rows(&job, image);
+    if (result == ORL_OK && profile)
+        orl_profile_apply(profile, image);
+    orl_profile_destroy(&profile);
     if (job.tiff)
         TIFFClose(job.tiff);
     if (result != ORL_OK)

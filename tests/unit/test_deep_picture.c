@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include <lcms2.h>
 #include <tiffio.h>
 
 #include "core/color.h"
@@ -215,6 +216,48 @@ static void floats_are_light_as_it_is(void **state)
     orl_image_finish(&from);
 }
 
+// Adobe RGB (1998), whose matrix to Rec. 709 is well known: both have D65 and the same red
+// and blue.
+static void tiff_profiles_are_applied(void **state)
+{
+    (void)state;
+    const cmsCIExyY white = {0.3127, 0.3290, 1};
+    const cmsCIExyYTRIPLE primaries = {{0.64, 0.33, 1}, {0.21, 0.71, 1}, {0.15, 0.06, 1}};
+    const double gamma = 563.0 / 256;
+    cmsToneCurve *curve = cmsBuildGamma(NULL, gamma), *const curves[3] = {curve, curve, curve};
+    cmsHPROFILE adobe = cmsCreateRGBProfile(&white, &primaries, curves);
+    static uint8_t icc[8192];
+    cmsUInt32Number size = sizeof icc;
+    assert_true(cmsSaveProfileToMem(adobe, icc, &size));
+    cmsCloseProfile(adobe);
+    cmsFreeToneCurve(curve);
+
+    const struct variety v = {16, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"};
+    const double stored[3] = {0.5, 0.6, 0.3};
+    const char *path = in_dir("p.tif");
+    struct said said;
+    struct orl_log log = log_to(&said);
+    for (int broken = 0; broken < 2; broken++) {
+        uint16_t row[W * 3];
+        for (int i = 0; i < W * 3; i++)
+            row[i] = (uint16_t)lround(65535 * stored[i % 3]);
+        TIFF *t = begin_tiff(path, &v, PHOTOMETRIC_RGB);
+        TIFFSetField(t, TIFFTAG_ICCPROFILE, broken ? 200 : size, icc);
+        for (uint32_t y = 0; y < H; y++)
+            assert_int_equal(TIFFWriteScanline(t, row, y, 0), 1);
+        TIFFClose(t);
+        struct orl_image image;
+        assert_int_equal(orl_picture_read_linear(&log, path, &image), ORL_OK);
+        double r = pow(0.5, gamma), g = pow(0.6, gamma), b = pow(0.3, gamma);
+        const double want[3] = {1.39836 * r - 0.39836 * g, g, -0.04293 * g + 1.04293 * b};
+        for (int c = 0; c < 3; c++)
+            assert_float_equal(image.f32[3 * 1000 + c],
+                               broken ? (double)orl_srgb_decode((float)stored[c]) : want[c], 1e-3);
+        assert_int_equal(strstr(said.text, "its colour profile cannot be used") != NULL, broken);
+        orl_image_finish(&image);
+    }
+}
+
 static void damaged_tiff_is_an_error(void **state)
 {
     (void)state;
@@ -360,6 +403,7 @@ int main(void)
         cmocka_unit_test(sixteen_bits_of_srgb),
         cmocka_unit_test(floats_are_light_as_it_is),
         cmocka_unit_test(tiff_varieties),
+        cmocka_unit_test(tiff_profiles_are_applied),
         cmocka_unit_test(damaged_tiff_is_an_error),
         cmocka_unit_test(unusual_tiff_is_refused_with_advice),
         cmocka_unit_test(raw_is_linear_with_the_cameras_white_balance),
