@@ -57,8 +57,16 @@ ORL_BLOCK(gather_block)
     VEC4(radiance);   // x: stops that samples of one surface may differ, 0: any;
                       // y: variance of relative error at full exposure; z: least radiance
                       // that can be told from darkness
+    VEC4(choice);     // x: photographs per pixel, y: sharpness, z: trust in photographs
+                      // without depth, w: sharpness on guessed depth
 };
 #endif
+
+// Choice of photographs per tile.
+#define CHOICE_TILE 16 // pixels
+#define CANDIDATES 8   // photographs listed per tile
+#define KEPT_MAX 7     // blended per pixel, at most
+#define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 
 // Image-space filling, and pixels from splat colours.
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)

@@ -219,8 +219,8 @@ static enum orl_result run(const struct options *options, const struct arg_commo
 
 int cmd_render(int argc, char **argv)
 {
-    struct options o = {.method = "airieau", .frames = 120, .fps = 30, .tone = "srgb",
-                        .white = 8, .compression = "zip"};
+    struct options o = {.method = "oriel", .frames = 120, .fps = 30, .tone = "srgb", .white = 8,
+                        .compression = "zip"};
     const struct arg_option table[] = {
         {"at", ARG_STRING, &o.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.camera, "FILE", "from the camera in FILE", 0, 0},
@@ -229,7 +229,7 @@ int cmd_render(int argc, char **argv)
         {"out", ARG_STRING, &o.out, "FILE|DIR",
          ".png or .exr; for a path a folder or .mp4", 0, 0},
         {"size", ARG_SIZE, &o.size, "WxH", "picture size; default: the camera's", 0, 0},
-        {"method", ARG_STRING, &o.method, "NAME", "airieau (default) or points", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME", "oriel (default), airieau or points", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
         {"layers", ARG_LIST, &o.layers, "A,B", "also write depth, normal, coverage", 0, 0},

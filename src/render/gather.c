@@ -22,6 +22,12 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
     if (result == ORL_OK)
         result = orl_prog_create(gpu, radiance ? "gather_radiance.comp" : "gather.comp", NULL,
                                  sizeof(struct gather_block), &gather->all);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "choose.comp", NULL, sizeof(struct gather_block),
+                                 &gather->choose);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "gather_best.comp", NULL, sizeof(struct gather_block),
+                                 &gather->best);
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
     return result;
@@ -30,7 +36,10 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
 {
     orl_prog_destroy(gpu, &gather->all);
+    orl_prog_destroy(gpu, &gather->choose);
+    orl_prog_destroy(gpu, &gather->best);
     orl_buf_destroy(gpu, &gather->photos);
+    orl_buf_destroy(gpu, &gather->tile_lists);
     free(gather->list);
     free(gather->chosen);
     memset(gather, 0, sizeof *gather);
@@ -95,8 +104,14 @@ static void describe_photo(const struct photos *photos, size_t index, const stru
     data->noise[2] = state->rounded;
 }
 
-static void gather_batch(struct orl_renderer *r, const struct orl_view *view,
-                         const struct orl_render_params *params, size_t count)
+static int tiles(int side)
+{
+    return (side + CHOICE_TILE - 1) / CHOICE_TILE;
+}
+
+// What every gather pass is told; writes the photographs of this dispatch.
+static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl_view *view,
+                                        const struct orl_render_params *params, size_t count)
 {
     struct gather *g = &r->gather;
     for (size_t i = 0; i < count; i++)
@@ -107,13 +122,22 @@ static void gather_batch(struct orl_renderer *r, const struct orl_view *view,
                     params->border_px / (float)r->photos.divide},
         .flags = {params->visibility == ORL_VISIBILITY_HARD,
                   params->sampling == ORL_SAMPLING_BICUBIC},
-        .area = {view->camera.width, view->camera.height, (int)count},
         .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model),
                      orl_least_radiance(&r->photos.sensor, r->photos.ev_brightest, true)},
+        .area = {view->camera.width, view->camera.height, (int)count, tiles(view->camera.width)},
+        .choice = {floorf(params->photos_per_pixel + 0.5f), params->sharpness,
+                   params->unknown_trust, params->guess_sharpness},
     };
     set_focal(block.view_focal, &view->camera);
-    struct orl_dispatch d = {.prog = g->all, .params = &block,
-                             .bufs = {{.buf = g->photos}},
+    return block;
+}
+
+static void gather_all(struct orl_renderer *r, const struct orl_view *view,
+                       const struct orl_render_params *params, size_t count)
+{
+    struct gather_block block = prepare_pass(r, view, params, count);
+    struct orl_dispatch d = {.prog = r->gather.all, .params = &block,
+                             .bufs = {{.buf = r->gather.photos}},
                              .textures = {r->photos.color, r->photos.depth},
                              .images = {{r->target.depth, 0, GL_READ_ONLY},
                                         {r->accumulated, 0, GL_READ_WRITE},
@@ -125,11 +149,44 @@ static void gather_batch(struct orl_renderer *r, const struct orl_view *view,
     orl_pass_end(r->gpu);
 }
 
-enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip)
+static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view *view,
+                                   const struct orl_render_params *params, size_t count)
 {
-    struct proxy_options options = orl_proxy_options(params);
-    bool test = params->visibility == ORL_VISIBILITY_HARD;
+    struct gather *g = &r->gather;
+    int across = tiles(view->camera.width), down = tiles(view->camera.height);
+    size_t bytes = (size_t)across * (size_t)down * CANDIDATES * sizeof(int);
+    if (!g->tile_lists || g->tile_lists->size < bytes) {
+        orl_buf_destroy(r->gpu, &g->tile_lists);
+        enum orl_result result =
+            orl_buf_create(r->gpu, "photographs of tiles", bytes, NULL, &g->tile_lists);
+        if (result != ORL_OK)
+            return result;
+    }
+    struct gather_block block = prepare_pass(r, view, params, count);
+    struct orl_dispatch d = {.prog = g->choose, .params = &block,
+                             .bufs = {{.buf = g->photos}, {.buf = g->tile_lists}},
+                             .textures = {r->photos.color, r->photos.depth},
+                             .images = {{r->target.depth, 0, GL_READ_ONLY}},
+                             .groups = {orl_groups((size_t)across, 8), orl_groups((size_t)down, 8)},
+                             .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
+    orl_pass_begin(r->gpu, "choose");
+    orl_gpu_dispatch(r->gpu, &d);
+    orl_pass_end(r->gpu);
+    d.prog = g->best;
+    d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
+    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
+    orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
+    orl_pass_begin(r->gpu, "gather");
+    orl_gpu_dispatch(r->gpu, &d);
+    orl_pass_end(r->gpu);
+    return ORL_OK;
+}
+
+// Paints from all usable photographs, as many at once as are resident together.
+static enum orl_result blend_all(struct orl_renderer *r, const struct orl_view *view,
+                                 const struct orl_render_params *params,
+                                 const struct proxy_options *depth_options, const bool *skip)
+{
     size_t count = 0;
     for (size_t i = 0; i < r->scene->photo_count; i++) {
         if (!r->photos.states[i].usable || (skip && skip[i]))
@@ -137,16 +194,43 @@ enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
         // As many at once as are resident together, and as the shader takes.
         if (count == (size_t)r->photos.slot_count ||
             (r->photos.radiance && count == ORL_RADIANCE_PHOTOS)) {
-            gather_batch(r, view, params, count);
+            gather_all(r, view, params, count);
             count = 0;
         }
-        enum orl_result result = orl_photos_require(r->gpu, &r->photos, &r->proxy, i,
-                                                    test ? &options : NULL);
+        enum orl_result result =
+            orl_photos_require(r->gpu, &r->photos, &r->proxy, i, depth_options);
         if (result != ORL_OK)
             return result;
         r->gather.chosen[count++] = i;
     }
     if (count)
-        gather_batch(r, view, params, count);
+        gather_all(r, view, params, count);
     return ORL_OK;
+}
+
+// Paints from the photographs that this view can use best; the rest need not be resident.
+static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view *view,
+                                  const struct orl_render_params *params,
+                                  const struct proxy_options *depth_options, const bool *skip)
+{
+    size_t most = (size_t)r->photos.slot_count, count = 0;
+    most = most < PHOTOS_PER_FRAME_MAX ? most : PHOTOS_PER_FRAME_MAX;
+    enum orl_result result = orl_preselect(orl_gpu_log(r->gpu), &r->photos, view, skip, most,
+                                           r->gather.chosen, &count);
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        result = orl_photos_require(r->gpu, &r->photos, &r->proxy, r->gather.chosen[i],
+                                    depth_options);
+    return result == ORL_OK && count ? gather_best(r, view, params, count) : result;
+}
+
+enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
+                           const struct orl_render_params *params, const bool *skip)
+{
+    struct proxy_options options = orl_proxy_options(params);
+    // The choice of the best asks what hides the surface even when pixels do not. Radiance
+    // needs every exposure: the best by angle alone may all be clipped.
+    if (params->blend == ORL_BLEND_BEST && !r->photos.radiance)
+        return blend_best(r, view, params, &options, skip);
+    bool test = params->visibility == ORL_VISIBILITY_HARD;
+    return blend_all(r, view, params, test ? &options : NULL, skip);
 }

@@ -120,15 +120,23 @@ void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accu
 
 // --- blending (gather.c) ---
 
+enum { PHOTOS_PER_FRAME_MAX = 48 }; // of blend=best
+
 struct gather {
-    struct orl_prog *all;
+    struct orl_prog *all, *choose, *best;
     struct photo_data *list; // of the photographs of one dispatch
     size_t *chosen;          // their indices in the scene
     struct orl_buf *photos;  // struct photo_data
+    struct orl_buf *tile_lists; // choose.comp
 };
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
                                 struct gather *gather);
+// The at most `most` usable photographs that can paint this view best, ascending (preselect.c).
+enum orl_result orl_preselect(const struct orl_log *log, const struct photos *photos,
+                              const struct orl_view *view, const bool *skip, size_t most,
+                              size_t *chosen, size_t *count) ORL_CHECK_RESULT;
+
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
 // Adds every usable photograph's weighted colour to r->accumulated.
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,

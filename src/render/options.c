@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "include/render_blocks.h"
 #include "render/render.h"
 
 // distance_floor, front_layer and min_support: best of a few values when each training photograph of
@@ -11,9 +12,15 @@
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
     .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f,                      \
-    .ghosts = 1.0f
+    .ghosts = 1.0f,                                                                        \
+    .photos_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 2.0f,                 \
+    .unknown_trust = 0.05f
 
 const struct orl_method orl_methods[] = {
+    {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
+     "Buehler 2001's penalty, weights of our own",
+     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
+      .sampling = ORL_SAMPLING_BICUBIC, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
       .sampling = ORL_SAMPLING_BICUBIC, COMMON_DEFAULTS}},
@@ -26,6 +33,7 @@ const struct orl_method orl_methods[] = {
 static const char *const color_names[] = {"points", "photos", NULL};
 static const char *const visibility_names[] = {"none", "hard", NULL};
 static const char *const sampling_names[] = {"bilinear", "bicubic", NULL};
+static const char *const blend_names[] = {"all", "best", NULL};
 static const char *const fill_names[] = {"none", "color", "depth", NULL};
 
 #define FIELD(name) offsetof(struct orl_render_params, name)
@@ -39,6 +47,16 @@ const struct orl_render_option orl_render_options[] = {
      "pixels without splats: black, neighbours' colour, or photographs at a guessed depth"},
     {"sampling", FIELD(sampling), sampling_names, 0, 0, "",
      "of photographs; bicubic is sharper and takes five fetches instead of one"},
+    {"blend", FIELD(blend), blend_names, 0, 0, "",
+     "all photographs that see a pixel, or the best few, chosen per tile"},
+    {"photos_per_pixel", FIELD(photos_per_pixel), NULL, 1, KEPT_MAX, "photographs",
+     "blended into a pixel by blend=best"},
+    {"sharpness", FIELD(sharpness), NULL, 0, 64, "",
+     "how fast blend=best prefers the better photograph; 0: equal weights"},
+    {"guess_sharpness", FIELD(guess_sharpness), NULL, 0, 64, "",
+     "the same where only a guessed depth is known"},
+    {"unknown_trust", FIELD(unknown_trust), NULL, 0, 1, "share",
+     "of a photograph that has no depth where the surface would be"},
     {"depth_tolerance", FIELD(depth_tolerance), NULL, 1e-5, 0.5, "fraction of depth",
      "how far depths may differ on the same surface"},
     {"splat_scale", FIELD(splat_scale), NULL, 0.01, 16, "",

@@ -12,6 +12,7 @@ enum orl_visibility { ORL_VISIBILITY_NONE, ORL_VISIBILITY_HARD, ORL_VISIBILITY_C
 enum orl_fill { ORL_FILL_NONE, ORL_FILL_COLOR, ORL_FILL_DEPTH, ORL_FILL_COUNT };
 enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COUNT };
 
+enum orl_blend { ORL_BLEND_ALL, ORL_BLEND_BEST, ORL_BLEND_COUNT };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC, ORL_SAMPLING_COUNT };
 
 // Every key of --set; the table in options.c gives range, unit, cost and help.
@@ -20,6 +21,7 @@ struct orl_render_params {
     enum orl_visibility visibility; // of surface points in photographs
     enum orl_fill fill;             // of pixels that no splat covers
     enum orl_sampling sampling;     // of photographs
+    enum orl_blend blend;           // all that see a pixel, or the best few
     float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
     float splat_scale;              // multiplies splat radii, (0, 16]
     float front_layer;              // splats this close behind the nearest one are averaged
@@ -31,6 +33,10 @@ struct orl_render_params {
     float ghosts;                   // of a radiance renderer: samples that differ from the
                                     // others by this many stops beyond noise count half,
                                     // [0, 16]; 0: all count
+    float photos_per_pixel;         // blended by `best`, [1, 7]
+    float sharpness;                // of `best`: weight = (least penalty / penalty)^sharpness
+    float guess_sharpness;          // the same where depth is guessed
+    float unknown_trust;            // share of trust in photographs without depth there, [0, 1]
 };
 
 // One row of the option table.

@@ -83,6 +83,15 @@ static void airieau_color_and_depth(void **state)
     assert_true(depth);
 }
 
+static void oriel_color(void **state)
+{
+    (void)state;
+    struct orl_frame frame;
+    draw("oriel", &frame);
+    assert_true(check("oriel_color", &frame.color, &color_tolerance));
+    orl_frame_finish(&frame);
+}
+
 // Not a golden: the truth. Depth within a splat's tilt of the traced one nearly everywhere.
 static void depth_is_true(void **state)
 {
@@ -119,6 +128,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_color),
         cmocka_unit_test(airieau_color_and_depth),
+        cmocka_unit_test(oriel_color),
         cmocka_unit_test(depth_is_true),
         cmocka_unit_test(goldens_differ),
     };
