@@ -4,10 +4,9 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/views.h"
 #include "core/memory.h"
 #include "io/video.h"
-#include "render/output.h"
-#include "scene/path.h"
 
 struct job {
     const struct orl_log *log;
@@ -22,111 +21,13 @@ struct job {
 };
 
 struct options {
-    const char *at, *camera, *path, *out, *method, *tone, *compression;
-    struct orl_names settings, exclude, layers;
-    struct arg_size size;
-    int frames, max_vram_mib;
-    double fps, exposure_ev, white;
-    bool float_color;
+    struct view_options views;
+    struct output_options output;
+    const char *out, *method;
+    struct orl_names settings, exclude;
+    int max_vram_mib;
+    double fps;
 };
-
-static enum orl_result choose_layers(const struct orl_log *log, const struct orl_names *names,
-                                     struct orl_frame_layers *layers)
-{
-    for (size_t i = 0; i < names->count; i++) {
-        const char *name = names->items[i];
-        if (strcmp(name, "depth") == 0)
-            layers->depth = true;
-        else if (strcmp(name, "normal") == 0)
-            layers->normal = true;
-        else if (strcmp(name, "coverage") == 0)
-            layers->coverage = true;
-        else
-            return orl_fail(log, ORL_ERR_ARGUMENT, "--layers %s: must be of depth, normal, coverage",
-                            name);
-    }
-    return ORL_OK;
-}
-
-static enum orl_result choose_output(const struct options *options, struct job *job)
-{
-    struct orl_frame_output *output = &job->output;
-    output->float_color = options->float_color;
-    output->tone.exposure_ev = options->exposure_ev;
-    output->tone.white = options->white;
-    if (strcmp(options->compression, "piz") == 0)
-        output->compression = ORL_EXR_PIZ;
-    else if (strcmp(options->compression, "zip") != 0)
-        return orl_fail(job->log, ORL_ERR_ARGUMENT, "--compression %s: must be zip or piz",
-                        options->compression);
-    return orl_tone_find(job->log, options->tone, &output->tone.curve);
-}
-
-static enum orl_result choose_method(const struct options *options, struct job *job)
-{
-    const struct orl_method *method = orl_method_find(job->log, options->method);
-    if (!method)
-        return ORL_ERR_ARGUMENT;
-    job->params = method->params;
-    enum orl_result result = choose_layers(job->log, &options->layers, &job->output.layers);
-    if (result == ORL_OK)
-        result = choose_output(options, job);
-    for (size_t i = 0; result == ORL_OK && i < options->settings.count; i++)
-        result = orl_render_params_set(job->log, &job->params, options->settings.items[i]);
-    return result;
-}
-
-static enum orl_result single_view(struct job *job, const struct orl_view *view)
-{
-    job->path.views = orl_array(job->log, 1, sizeof *job->path.views);
-    if (!job->path.views)
-        return ORL_ERR_MEMORY;
-    job->path.views[0] = *view;
-    job->path.count = 1;
-    return ORL_OK;
-}
-
-static enum orl_result choose_views(const struct options *options, struct job *job)
-{
-    enum orl_result result;
-    if (options->at) {
-        int index = orl_scene_find_photo(job->scene, options->at);
-        if (index < 0)
-            return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no photograph %s",
-                            job->scene->dir, options->at);
-        result = single_view(job, &job->scene->photos[index].view);
-    } else if (options->path && strcmp(options->path, "photos") == 0) {
-        result = orl_path_through_photos(job->log, job->scene, (size_t)options->frames,
-                                         &job->path);
-    } else {
-        const char *file = options->camera ? options->camera : options->path;
-        result = orl_path_read(job->log, job->scene, file, &job->path);
-        if (result == ORL_OK && options->camera && job->path.count != 1)
-            result = orl_fail(job->log, ORL_ERR_ARGUMENT,
-                              "%s holds %zu cameras; use --path to render them all", file,
-                              job->path.count);
-    }
-    for (size_t i = 0; result == ORL_OK && options->size.width && i < job->path.count; i++) {
-        struct orl_camera *camera = &job->path.views[i].camera;
-        *camera = orl_camera_reframed(camera, options->size.width, options->size.height);
-    }
-    return result;
-}
-
-static enum orl_result exclude_photos(const struct orl_names *names, struct job *job)
-{
-    job->skip = orl_array(job->log, job->scene->photo_count, sizeof *job->skip);
-    if (!job->skip)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < names->count; i++) {
-        int index = orl_scene_find_photo(job->scene, names->items[i]);
-        if (index < 0)
-            return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no photograph %s",
-                            job->scene->dir, names->items[i]);
-        job->skip[index] = true;
-    }
-    return ORL_OK;
-}
 
 static enum orl_result draw_to(struct job *job, size_t view, const char *file)
 {
@@ -176,7 +77,7 @@ static enum orl_result draw_video(struct job *job, const char *file, double fps)
 static enum orl_result draw_all(const struct options *options, struct job *job)
 {
     const char *out = options->out, *extension = strrchr(out, '.');
-    bool is_path = options->path != NULL;
+    bool is_path = options->views.path != NULL;
     if (!is_path)
         return draw_to(job, 0, out);
     if (extension && strcmp(extension, ".mp4") == 0)
@@ -195,18 +96,20 @@ static enum orl_result run(const struct options *options, const struct arg_commo
     const struct orl_log *log = job->log;
     if (!options->out)
         return orl_fail(log, ORL_ERR_ARGUMENT, "render: --out FILE|DIR is needed");
-    if (!!options->at + !!options->camera + !!options->path != 1)
+    if (!!options->views.at + !!options->views.camera + !!options->views.path != 1)
         return orl_fail(log, ORL_ERR_ARGUMENT,
                         "render: one of --at PHOTO, --camera FILE, --path FILE is needed");
-    if (!options->path && !orl_frame_can_write(options->out))
+    if (!options->views.path && !orl_frame_can_write(options->out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .png or .exr", options->out);
-    enum orl_result result = choose_method(options, job);
+    enum orl_result result = method_choose(log, options->method, &options->settings, &job->params);
+    if (result == ORL_OK)
+        result = output_choose(log, &options->output, false, &job->output);
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
     if (result == ORL_OK)
-        result = choose_views(options, job);
+        result = views_choose(log, job->scene, &options->views, &job->path);
     if (result == ORL_OK)
-        result = exclude_photos(&options->exclude, job);
+        result = views_exclude(log, job->scene, &options->exclude, &job->skip);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose},
@@ -219,29 +122,21 @@ static enum orl_result run(const struct options *options, const struct arg_commo
 
 int cmd_render(int argc, char **argv)
 {
-    struct options o = {.method = "oriel", .frames = 120, .fps = 30, .tone = "srgb", .white = 8,
-                        .compression = "zip"};
+    struct options o = {.views = {.frames = 120}, .output = {OUTPUT_OPTIONS_DEFAULTS},
+                        .method = "oriel", .fps = 30};
     const struct arg_option table[] = {
-        {"at", ARG_STRING, &o.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
-        {"camera", ARG_STRING, &o.camera, "FILE", "from the camera in FILE", 0, 0},
-        {"path", ARG_STRING, &o.path, "FILE",
+        {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
+        {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
+        {"path", ARG_STRING, &o.views.path, "FILE",
          "along the cameras in FILE; \"photos\": past all photographs", 0, 0},
         {"out", ARG_STRING, &o.out, "FILE|DIR",
          ".png or .exr; for a path a folder or .mp4", 0, 0},
-        {"size", ARG_SIZE, &o.size, "WxH", "picture size; default: the camera's", 0, 0},
+        {"size", ARG_SIZE, &o.views.size, "WxH", "picture size; default: the camera's", 0, 0},
         {"method", ARG_STRING, &o.method, "NAME", "oriel (default), airieau or points", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
-        {"layers", ARG_LIST, &o.layers, "A,B", "also write depth, normal, coverage", 0, 0},
-        {"exposure", ARG_NUMBER, &o.exposure_ev, "EV", "of .png and .mp4, in stops; default 0",
-         -32, 32},
-        {"tone", ARG_STRING, &o.tone, "NAME",
-         "of .png and .mp4: srgb (default), reinhard, filmic, drago, mantiuk", 0, 0},
-        {"white", ARG_NUMBER, &o.white, "L",
-         "of reinhard: the luminance that becomes white; default 8", 1e-3, 1e6},
-        {"float", ARG_FLAG, &o.float_color, NULL, "of .exr: 32-bit colour; default: 16-bit", 0, 0},
-        {"compression", ARG_STRING, &o.compression, "NAME", "of .exr: zip (default) or piz", 0, 0},
-        {"frames", ARG_INT, &o.frames, "N", "of --path photos; default 120", 2, 100000},
+        OUTPUT_OPTION_ROWS(&o.output, "also write depth, normal, coverage"),
+        {"frames", ARG_INT, &o.views.frames, "N", "of --path photos; default 120", 2, 100000},
         {"fps", ARG_NUMBER, &o.fps, "N", "of .mp4; default 30", 1, 240},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
@@ -267,6 +162,6 @@ int cmd_render(int argc, char **argv)
     }
     orl_names_finish(&o.settings);
     orl_names_finish(&o.exclude);
-    orl_names_finish(&o.layers);
+    orl_names_finish(&o.output.layers);
     return status;
 }

@@ -6,6 +6,7 @@
 static const struct command commands[] = {
     {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},
+    {"hdr", "radiance views from photographs of several exposures", cmd_hdr},
     {"info", "say what is in a scene", cmd_info},
     {"prepare", "make a scene from photographs", cmd_prepare},
     {"render", "render new views", cmd_render},

@@ -55,6 +55,9 @@ struct orl_panorama {
 // with coverage and confidence 0.
 enum orl_result orl_hdr_draw_panorama(struct orl_hdr *hdr, const struct orl_panorama *panorama,
                                       const bool *skip, struct orl_frame *frame) ORL_CHECK_RESULT;
+// Its place and orientation as a view looking at the centre, with a stand-in camera of its
+// size. False when `up` has no length.
+bool orl_panorama_view(const struct orl_panorama *panorama, struct orl_view *view);
 // The mean upward direction of the photographs, unit length: people hold cameras level.
 void orl_scene_up(const struct orl_scene *scene, double up[3]);
 

@@ -88,6 +88,24 @@ void orl_scene_up(const struct orl_scene *scene, double up[3])
     }
 }
 
+static void place(const struct orl_panorama *p, struct orl_pose *pose)
+{
+    for (int i = 0; i < 3; i++)
+        pose->t[i] = -dot(pose->r[i], p->position);
+}
+
+bool orl_panorama_view(const struct orl_panorama *p, struct orl_view *view)
+{
+    double focal = p->width / (2 * PI);
+    memset(view, 0, sizeof *view);
+    view->camera = (struct orl_camera){p->width, p->height, focal, focal, 0.5 * p->width,
+                                       0.5 * p->height};
+    if (!panorama_axes(p, view->cam_from_world.r))
+        return false;
+    place(p, &view->cam_from_world);
+    return true;
+}
+
 static struct orl_view face_view(const struct orl_panorama *p, const double axes[3][3], int face)
 {
     double focal = ceil(OVERSAMPLE * p->width / (2 * PI));
@@ -98,8 +116,7 @@ static struct orl_view face_view(const struct orl_panorama *p, const double axes
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
                 pose->r[i][j] += faces[face][i][k] * axes[k][j];
-    for (int i = 0; i < 3; i++)
-        pose->t[i] = -dot(pose->r[i], p->position);
+    place(p, pose);
     return view;
 }
 

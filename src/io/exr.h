@@ -22,6 +22,8 @@ struct orl_exr_view_attributes {
     double exposure_s, iso, aperture; // expTime in seconds, isoSpeed, aperture as f-number
     double white_luminance;           // whiteLuminance: cd/m2 of RGB (1, 1, 1)
     bool srgb_primaries;              // chromaticities of Rec. 709 / sRGB
+    bool latlong; // envmap: all directions, as OpenEXR's latitude-longitude map has them;
+                  // of `view` only its pose counts
     const char *comments;
 };
 

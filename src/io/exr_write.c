@@ -89,9 +89,11 @@ static exr_result_t set_attributes(exr_context_t context,
         exr_attr_m44f_t camera = world_to_camera(&params->view->cam_from_world);
         exr_attr_m44f_t ndc = world_to_ndc(params->view);
         code = exr_attr_set_m44f(context, 0, "worldToCamera", &camera);
-        if (code == EXR_ERR_SUCCESS)
+        if (code == EXR_ERR_SUCCESS && !params->latlong)
             code = exr_attr_set_m44f(context, 0, "worldToNDC", &ndc);
     }
+    if (code == EXR_ERR_SUCCESS && params->latlong)
+        code = exr_attr_set_envmap(context, 0, "envmap", EXR_ENVMAP_LATLONG);
     const struct {
         const char *name;
         double value;

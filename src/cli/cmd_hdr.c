@@ -1,0 +1,292 @@
+// oriel hdr: radiance views, replacements of a series, panoramas.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/views.h"
+#include "core/memory.h"
+#include "hdr/hdr.h"
+
+struct options {
+    struct view_options views;
+    struct output_options output;
+    const char *out, *method, *merge;
+    struct orl_names settings, exclude, position, up;
+    struct arg_size panorama;
+    int replace_series, samples, max_vram_mib;
+    bool half;
+};
+
+struct job {
+    const struct orl_log *log;
+    const struct orl_progress *progress;
+    struct orl_gpu *gpu;
+    struct orl_scene *scene;
+    struct orl_hdr *hdr;
+    struct orl_path path;
+    struct orl_hdr_params params;
+    struct orl_frame_output output;
+    bool *skip; // per photograph
+};
+
+static bool has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcmp(dot, extension) == 0;
+}
+
+// --- output ---
+
+static enum orl_result write_frame(struct job *job, const struct orl_view *view,
+                                   const char *file, struct orl_frame *frame)
+{
+    enum orl_result result = orl_frame_write(job->log, file, view, frame, &job->output);
+    orl_frame_finish(frame);
+    return result;
+}
+
+static enum orl_result draw_to(struct job *job, const struct orl_view *view, const char *file)
+{
+    struct orl_frame frame;
+    enum orl_result result = orl_hdr_draw(job->hdr, view, job->skip, &frame);
+    return result == ORL_OK ? write_frame(job, view, file, &frame) : result;
+}
+
+static enum orl_result draw_path(struct job *job, const char *dir)
+{
+    enum orl_result result = orl_dir_make(job->log, dir);
+    for (size_t i = 0; result == ORL_OK && i < job->path.count; i++) {
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        char *file = orl_format(job->log, "%s/%05zu.exr", dir, i);
+        result = file ? draw_to(job, &job->path.views[i], file) : ORL_ERR_MEMORY;
+        free(file);
+        orl_progress_report(job->progress, "hdr", (double)(i + 1), (double)job->path.count, NULL);
+    }
+    return result;
+}
+
+// Airieau 2012, section 4: each photograph of one series becomes what it would have been
+// with all the range of the scene.
+static enum orl_result replace_series(struct job *job, int series, const char *dir)
+{
+    const struct orl_scene *scene = job->scene;
+    size_t count = 0, done = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        count += scene->photos[i].series == series;
+    if (!count)
+        return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no series %d; see oriel info",
+                        scene->dir, series);
+    enum orl_result result = orl_dir_make(job->log, dir);
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        const struct orl_photo *photo = &scene->photos[i];
+        if (photo->series != series)
+            continue;
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        const char *dot = strrchr(photo->name, '.');
+        size_t stem = dot ? (size_t)(dot - photo->name) : strlen(photo->name);
+        char *file = orl_format(job->log, "%s/%.*s.exr", dir, (int)stem, photo->name);
+        char *slash = file ? strrchr(file, '/') : NULL;
+        // Photographs may lie in folders.
+        if (slash) {
+            *slash = '\0';
+            result = orl_dir_make(job->log, file);
+            *slash = '/';
+        }
+        if (result == ORL_OK)
+            result = file ? draw_to(job, &photo->view, file) : ORL_ERR_MEMORY;
+        free(file);
+        orl_progress_report(job->progress, "hdr", (double)++done, (double)count, photo->name);
+    }
+    return result;
+}
+
+// --- panorama ---
+
+static enum orl_result parse_vector(const struct orl_log *log, const char *option,
+                                    const struct orl_names *names, double v[3])
+{
+    for (size_t i = 0; i < 3; i++) {
+        char *end = NULL;
+        v[i] = i < names->count ? strtod(names->items[i], &end) : NAN;
+        if (names->count != 3 || end == names->items[i] || *end || !isfinite(v[i]))
+            return orl_fail(log, ORL_ERR_ARGUMENT, "--%s: must be three numbers: X,Y,Z", option);
+    }
+    return ORL_OK;
+}
+
+static enum orl_result place_panorama(const struct options *options, struct job *job,
+                                      struct orl_panorama *p)
+{
+    enum orl_result result = ORL_OK;
+    orl_scene_up(job->scene, p->up);
+    if (options->views.at) {
+        int index = orl_scene_find_photo(job->scene, options->views.at);
+        if (index < 0)
+            return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no photograph %s",
+                            job->scene->dir, options->views.at);
+        const struct orl_pose *pose = &job->scene->photos[index].view.cam_from_world;
+        orl_pose_centre(pose, p->position);
+        memcpy(p->forward, pose->r[2], sizeof p->forward);
+    } else {
+        for (size_t k = 0; k < job->scene->photo_count; k++)
+            for (int i = 0; i < 3; i++)
+                p->forward[i] += job->scene->photos[k].view.cam_from_world.r[2][i];
+        result = parse_vector(job->log, "position", &options->position, p->position);
+    }
+    if (result == ORL_OK && options->up.count)
+        result = parse_vector(job->log, "up", &options->up, p->up);
+    return result;
+}
+
+static enum orl_result draw_panorama(const struct options *options, struct job *job)
+{
+    struct orl_panorama p = {.width = options->panorama.width, .height = options->panorama.height};
+    struct orl_frame frame;
+    struct orl_view view;
+    enum orl_result result = place_panorama(options, job, &p);
+    if (result == ORL_OK)
+        result = orl_hdr_draw_panorama(job->hdr, &p, job->skip, &frame);
+    if (result != ORL_OK)
+        return result;
+    job->output.attributes.latlong = orl_panorama_view(&p, &view);
+    return write_frame(job, &view, options->out, &frame);
+}
+
+// --- the command ---
+
+static enum orl_result check(const struct options *o, const struct orl_log *log)
+{
+    bool panorama = o->panorama.width, replace = o->replace_series >= 0;
+    int views = !!o->views.at + !!o->views.camera + !!o->views.path + replace;
+    if (!o->out)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --out FILE|DIR is needed");
+    if (panorama && (!!o->views.at + !!o->position.count != 1 || o->views.camera ||
+                     o->views.path || replace))
+        return orl_fail(log, ORL_ERR_ARGUMENT,
+                        "hdr: --panorama needs --at PHOTO or --position X,Y,Z, and no other view");
+    if (!panorama && views != 1)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: one of --at PHOTO, --camera FILE, "
+                        "--path FILE, --replace-series N, --panorama WxH is needed");
+    if (!panorama && (o->position.count || o->up.count))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --position and --up are of --panorama");
+    if (panorama && o->views.size.width)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --panorama has its own size");
+    if (o->half && o->output.float_color)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --half and --float exclude each other");
+    bool many = o->views.path || replace, file = orl_frame_can_write(o->out);
+    if (many && file)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: several views need a folder", o->out);
+    if (!many && !file)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .exr or .png", o->out);
+    return ORL_OK;
+}
+
+// Everything there is, unless the user says what; a picture to look at has colour alone.
+static void default_layers(const struct options *o, struct orl_frame_layers *layers)
+{
+    if (!o->output.layers.count && !has_extension(o->out, ".png"))
+        *layers = (struct orl_frame_layers){true, true, true, true};
+}
+
+static enum orl_result run(const struct options *o, const struct arg_common *common,
+                           const char *scene_dir, struct job *job)
+{
+    const struct orl_log *log = job->log;
+    enum orl_result result = check(o, log);
+    if (result == ORL_OK)
+        result = method_choose(log, o->method, &o->settings, &job->params.render);
+    if (result == ORL_OK)
+        result = orl_hdr_merge_find(log, o->merge, &job->params.merge);
+    if (result == ORL_OK)
+        result = output_choose(log, &o->output, true, &job->output);
+    default_layers(o, &job->output.layers);
+    job->params.samples = o->samples;
+    job->params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
+    if (result == ORL_OK)
+        result = orl_scene_open(log, scene_dir, &job->scene);
+    if (result == ORL_OK && !o->panorama.width && o->replace_series < 0)
+        result = views_choose(log, job->scene, &o->views, &job->path);
+    if (result == ORL_OK)
+        result = views_exclude(log, job->scene, &o->exclude, &job->skip);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose},
+                                &job->gpu);
+    if (result == ORL_OK)
+        result = orl_hdr_create(job->gpu, job->scene, &job->params, &job->hdr);
+    if (result != ORL_OK)
+        return result;
+    if (o->panorama.width)
+        return draw_panorama(o, job);
+    if (o->replace_series >= 0)
+        return replace_series(job, o->replace_series, o->out);
+    return o->views.path ? draw_path(job, o->out) : draw_to(job, &job->path.views[0], o->out);
+}
+
+static void finish(struct options *o, struct job *job)
+{
+    orl_hdr_destroy(&job->hdr);
+    orl_gpu_destroy(&job->gpu);
+    orl_scene_destroy(&job->scene);
+    orl_path_finish(&job->path);
+    free(job->skip);
+    orl_names_finish(&o->settings);
+    orl_names_finish(&o->exclude);
+    orl_names_finish(&o->position);
+    orl_names_finish(&o->up);
+    orl_names_finish(&o->output.layers);
+}
+
+int cmd_hdr(int argc, char **argv)
+{
+    struct options o = {.views = {.frames = 120}, .output = {OUTPUT_OPTIONS_DEFAULTS},
+                        .method = "airieau", .merge = "fused", .replace_series = -1, .samples = 1};
+    const struct arg_option table[] = {
+        {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
+        {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
+        {"path", ARG_STRING, &o.views.path, "FILE",
+         "along the cameras in FILE; \"photos\": past all photographs", 0, 0},
+        {"replace-series", ARG_INT, &o.replace_series, "N",
+         "from every photograph of this series, as NAME.exr", 0, 65535},
+        {"panorama", ARG_SIZE, &o.panorama, "WxH",
+         "all directions, from --at PHOTO or --position", 0, 0},
+        {"position", ARG_LIST, &o.position, "X,Y,Z", "of the panorama, in the scene's units", 0, 0},
+        {"up", ARG_LIST, &o.up, "X,Y,Z",
+         "of the panorama; default: the photographs' mean upward direction", 0, 0},
+        {"out", ARG_STRING, &o.out, "FILE|DIR", ".exr or .png; for several views a folder", 0, 0},
+        {"size", ARG_SIZE, &o.views.size, "WxH", "picture size; default: the camera's", 0, 0},
+        {"samples", ARG_INT, &o.samples, "N", "N x N samples a pixel, from 1 to 4; default 1", 1, 4},
+        {"merge", ARG_STRING, &o.merge, "NAME",
+         "fused (default): one gather in radiance; series: a picture of each series, merged", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME", "of rendering; default airieau", 0, 0},
+        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
+        {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
+        OUTPUT_OPTION_ROWS(&o.output, "depth, normal, coverage, confidence; default: all in .exr"),
+        {"half", ARG_FLAG, &o.half, NULL, "of .exr: 16-bit colour, the default", 0, 0},
+        {"frames", ARG_INT, &o.views.frames, "N", "of --path photos; default 120", 2, 100000},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
+        {0},
+    };
+    const struct arg_command command = {
+        "hdr", "SCENE (--at PHOTO | --camera FILE | --path FILE | --replace-series N |\n"
+        "                  --panorama WxH) --out FILE|DIR [options]",
+        "Radiance views: photographs of several exposures, merged.", table, 1, 1};
+    struct arg_common common = {0};
+    struct terminal terminal;
+    const char *scene_dir;
+    size_t count;
+    int status;
+    struct job job = {.params = {ORL_HDR_DEFAULTS}, .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
+    if (command_begin(&command, argc, argv, &common, &terminal, &scene_dir, &count, &status)) {
+        job.log = &terminal.log;
+        job.progress = &terminal.progress;
+        status = command_status(run(&o, &common, scene_dir, &job));
+        terminal_finish(&terminal);
+    }
+    finish(&o, &job);
+    return status;
+}
