@@ -154,16 +154,57 @@ static void keep_source(struct orl_job *job, struct orl_source *source, size_t *
     ++*kept;
 }
 
+// For messages of a decoder, which become the reason in our own.
+struct reason {
+    char text[512];
+};
+
+static void keep_reason(void *priv, enum orl_log_level level, const char *message)
+{
+    struct reason *reason = priv;
+    if (level == ORL_LOG_ERROR)
+        snprintf(reason->text, sizeof reason->text, "%s", message);
+}
+
 static size_t stem_length(const char *name)
 {
     const char *dot = strrchr(name, '.');
     return dot ? (size_t)(dot - name) : strlen(name);
 }
 
+static void skip_for(struct orl_job *job, struct orl_source *source, const struct reason *reason)
+{
+    // Decoders name the file first; it is named already.
+    size_t length = strlen(source->path);
+    bool named = strncmp(reason->text, source->path, length) == 0;
+    const char *why = reason->text + (named ? length : 0);
+    skip(job, source->path, why + strspn(why, ": "));
+    finish_source(source);
+}
+
+// Of those that stand for a JPEG of the same name, so that it can be used after all.
+static void drop_unreadable(struct orl_job *job)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        struct reason reason = {"cannot be read"};
+        struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
+        struct orl_picture_info info;
+        if (orl_develop_wanted(source->given) &&
+            orl_picture_inspect(&log, source->path, &info) != ORL_OK)
+            skip_for(job, source, &reason);
+        else
+            keep_source(job, source, &kept);
+    }
+    job->source_count = kept;
+}
+
 // Cameras write a JPEG beside a RAW file: the same moment, and two photographs from one
 // place would only mislead COLMAP.
-static enum orl_result drop_twins(struct orl_job *job)
+static void drop_twins(struct orl_job *job)
 {
+    drop_unreadable(job);
     size_t kept = 0;
     for (size_t i = 0; i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
@@ -188,7 +229,6 @@ static enum orl_result drop_twins(struct orl_job *job)
         }
     }
     job->source_count = kept;
-    return ORL_OK;
 }
 
 // The same file given twice counts once; two files of one name cannot be told apart.
@@ -224,18 +264,6 @@ static bool known_good(const struct orl_job *job, const struct orl_source *sourc
     char text[32];
     snprintf(text, sizeof text, "%016" PRIx64, source->hash);
     return hash && strcmp(hash, text) == 0;
-}
-
-// For messages of a decoder, which become the reason in our own.
-struct reason {
-    char text[512];
-};
-
-static void keep_reason(void *priv, enum orl_log_level level, const char *message)
-{
-    struct reason *reason = priv;
-    if (level == ORL_LOG_ERROR)
-        snprintf(reason->text, sizeof reason->text, "%s", message);
 }
 
 // False, with the reason, when the file cannot be used. Decodes the whole picture,
@@ -276,12 +304,7 @@ static enum orl_result inspect_all(struct orl_job *job)
                             source->name);
         struct reason reason = {"cannot be read"};
         if (!inspect(job, source, &reason)) {
-            // Decoders name the file first; it is named already.
-            size_t length = strlen(source->path);
-            bool named = strncmp(reason.text, source->path, length) == 0;
-            const char *why = reason.text + (named ? length : 0);
-            skip(job, source->path, why + strspn(why, ": "));
-            finish_source(source);
+            skip_for(job, source, &reason);
             continue;
         }
         keep_source(job, source, &kept);
@@ -397,9 +420,10 @@ static enum orl_result too_few(const struct orl_job *job)
 enum orl_result orl_stage_collect(struct orl_job *job)
 {
     enum orl_result result;
-    if ((result = list_inputs(job)) != ORL_OK || (result = drop_twins(job)) != ORL_OK ||
-        (result = drop_duplicates(job)) != ORL_OK ||
-        (result = inspect_all(job)) != ORL_OK)
+    if ((result = list_inputs(job)) != ORL_OK)
+        return result;
+    drop_twins(job);
+    if ((result = drop_duplicates(job)) != ORL_OK || (result = inspect_all(job)) != ORL_OK)
         return result;
     if (job->source_count < 3)
         return too_few(job);

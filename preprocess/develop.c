@@ -15,6 +15,8 @@
 
 enum { TWIN_QUALITY = 98 };
 
+static const float light_max = 65504; // of half floats; infinities would spread
+
 bool orl_develop_wanted(const char *name)
 {
     static const char *const known[] = {".tif", ".tiff", ".exr"};
@@ -113,8 +115,10 @@ static enum orl_result read_scaled(const struct orl_job *job, const struct orl_s
     enum orl_result result = orl_picture_read_linear(job->log, path, image);
     size_t count = result == ORL_OK ? orl_image_bytes(image) / sizeof(float) : 0;
     float scale = source->unbounded ? (float)job->linear_scale : 1;
-    for (size_t i = 0; i < count; i++)
-        image->f32[i] *= scale;
+    for (size_t i = 0; i < count; i++) { // NaN and negative light are none
+        float value = scale * image->f32[i];
+        image->f32[i] = value > 0 ? fminf(value, light_max) : 0;
+    }
     return result;
 }
 

@@ -36,10 +36,23 @@ at_least "airieau above points, dB on covered pixels" \
     "$(awk -v a="$(mean airieau.json psnr_covered_db)" -v p="$(mean points.json psnr_covered_db)" \
         'BEGIN { print a - p }')" 1
 
+"$oriel" eval scene --merge fused --truth photos-truth --json radiance.json
+at_least "radiance pu21_psnr_db" "$(mean radiance.json pu21_psnr_db)" 16
+at_least "radiance mu_psnr_db" "$(mean radiance.json mu_psnr_db)" 20
+at_least "stops below 1" "$(awk -v e="$(mean radiance.json log2_rmse)" 'BEGIN { print 1 - e }')" 0
+
 "$oriel" render scene --at 0004.jpg --out a.exr --layers depth,normal,coverage
 "$oriel" render scene --at 0004.jpg --out b.exr --layers depth,normal,coverage
 cmp a.exr b.exr
 "$oriel" render scene --at 0004.jpg --out a.png --layers depth,normal,coverage
+"$oriel" render scene --at 0004.jpg --out b.png
+"$oriel" render scene --at 0004.jpg --out c.png --exposure 0 --tone srgb
+cmp b.png c.png
+"$oriel" render scene --at 0004.jpg --out c.png --exposure 1 --tone filmic
+if cmp -s b.png c.png; then
+    echo "--exposure and --tone change nothing" >&2
+    exit 1
+fi
 [ -s a.depth.png ] && [ -s a.normal.png ] && [ -s a.coverage.png ]
 cat >walk.json <<'END'
 {"keyframes": [{"photo": "0003.jpg"}, {"photo": "0005.jpg"}, {"photo": "0006.jpg"}], "frames": 4}

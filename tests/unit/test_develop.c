@@ -141,10 +141,15 @@ static void deep_photographs_get_twins_and_linear_light(void **state)
     write_sixteen("e.png");
     write_eight("f.jpg", 120);
     write_eight("a.JPG", 90); // the camera's own of a.exr
+    write_eight("g.jpg", 100);
+    char path[4096];
+    path_of(path, photos, "g.dng"); // cannot be read: g.jpg serves
+    assert_int_equal(orl_file_write(NULL, path, "II*", 4), ORL_OK);
     prepare(&said, false);
+    assert_non_null(strstr(said.text, "g.dng: "));
     assert_non_null(strstr(said.text, "a.JPG: a.exr holds more of the same photograph"));
     assert_int_equal(orl_scene_open(NULL, scene_dir, &scene), ORL_OK);
-    assert_int_equal(scene->photo_count, 6);
+    assert_int_equal(scene->photo_count, 7);
     // The median picture's average, about 3.3, becomes about 0.18 by a power of two.
     check_photo(scene, "a", 0.0625f, false);
     check_photo(scene, "b", 0.03125f, false);
@@ -214,7 +219,6 @@ static void without_deep_photographs_the_folder_goes(void **state)
         path_of(path, photos, deep[i]);
         assert_int_equal(remove(path), 0);
     }
-    write_eight("g.jpg", 100);
     prepare(&said, true);
     path_of(path, scene_dir, "images_linear");
     assert_false(orl_path_is_dir(path));
