@@ -13,6 +13,7 @@ layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
 layout(rgba32ui, binding = 4) uniform uimage2D splats;
 layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
 layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
+layout(r32ui, binding = 7) readonly uniform uimageBuffer drawn; // points of each block
 
 surfel splat(ivec2 at, int point)
 {
@@ -26,7 +27,10 @@ surfel splat(ivec2 at, int point)
     p *= 1.0 + behind * options.y;
     vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
     n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
-    float radius = position.w * options.x;
+    // The points that are drawn cover what the others would have.
+    int block = point / ORL_BLOCK_POINTS;
+    float all = float(min(size.z - block * ORL_BLOCK_POINTS, ORL_BLOCK_POINTS));
+    float radius = position.w * options.x * sqrt(all / float(imageLoad(drawn, block).x));
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
 }
@@ -40,10 +44,11 @@ void main()
     for (int i = 0; i < 4; i++) {
         ivec2 at = 2 * parent + ivec2(i & 1, i >> 1);
         uint point = imageLoad(splat_index, at).x - uint(size.w);
-        // What an earlier chunk won.
-        child[i] = size.w > 0 ? surfel_unpack_splat(imageLoad(splats, at)) : NO_SURFEL;
-        if (point < uint(size.z) && at.x < size.x && at.y < size.y)
-            child[i] = splat(at, int(point));
+        bool mine = point < uint(size.z) && at.x < size.x && at.y < size.y;
+        // No branch: the view's parameters are then loaded once for all four pixels.
+        child[i] = splat(at, mine ? int(point) : 0);
+        if (!mine) // empty, or what an earlier chunk won
+            child[i] = surfel_unpack_splat(size.w > 0 ? imageLoad(splats, at) : uvec4(0u));
         imageStore(splats, at, surfel_pack_splat(child[i]));
     }
     surfel merged = surfel_merge(child, 0);

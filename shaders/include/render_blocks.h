@@ -4,6 +4,12 @@
 
 #include "interop.h"
 
+// Points that are culled and thinned together, and that are listed together for drawing.
+#define ORL_BLOCK_POINTS 128
+#define ORL_ITEM_POINTS 8
+// Points that one invocation draws.
+#define ORL_SPLAT_POINTS 4
+
 // The view that points are splatted into.
 #if defined(__STDC_VERSION__) || defined(BLOCK_SPLAT)
 ORL_BLOCK(splat_block)
@@ -11,7 +17,8 @@ ORL_BLOCK(splat_block)
     VEC4S(rotation, 3); // rows of cam_from_world's rotation
     VEC4(eye);          // camera centre, world; w: nearest depth drawn
     VEC4(focal);        // fx fy cx cy, pixels
-    VEC4(options);      // x: radius scale, y: front layer's thickness, fraction of depth
+    VEC4(options);      // x: radius scale, y: front layer's thickness, fraction of depth,
+                        // z: points per pixel above which blocks are thinned, 0: never
     IVEC4(size);        // width, height, points in this chunk, index of its first point
 };
 #endif

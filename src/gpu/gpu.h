@@ -137,6 +137,7 @@ struct orl_dispatch {
     const struct orl_tex *textures[ORL_BINDINGS_MAX];
     struct orl_image_binding images[ORL_BINDINGS_MAX];
     unsigned groups[3];        // work groups; 0 counts as 1
+    const struct orl_buf *indirect; // not NULL: its first three words are the work groups
     GLbitfield barrier;        // glMemoryBarrier bits after it
 };
 void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *dispatch);

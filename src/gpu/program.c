@@ -118,8 +118,13 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
             glBindImageTexture(i, image->tex->id, image->level, image->tex->params.layers > 0, 0,
                                image->access, image->tex->params.format);
     }
-    glDispatchCompute(d->groups[0] ? d->groups[0] : 1, d->groups[1] ? d->groups[1] : 1,
-                      d->groups[2] ? d->groups[2] : 1);
+    if (d->indirect) {
+        glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, d->indirect->id);
+        glDispatchComputeIndirect(0);
+    } else {
+        glDispatchCompute(d->groups[0] ? d->groups[0] : 1, d->groups[1] ? d->groups[1] : 1,
+                          d->groups[2] ? d->groups[2] : 1);
+    }
     if (d->barrier)
         glMemoryBarrier(d->barrier);
     if (glGetError() != GL_NO_ERROR) {

@@ -6,15 +6,33 @@
 #include "render/radiance.h"
 #include "render/render.h"
 
-// --- the point cloud on the device (proxy.c) ---
+// --- the point cloud on the device (cloud.c) ---
 
-// Points in chunks, so that no storage binding exceeds the device's limit.
+// Points in chunks, so that no storage binding exceeds the device's limit. A chunk is blocks
+// of ORL_BLOCK_POINTS points that are near one another. Each buffer has a view as texels.
 struct point_chunk {
-    struct orl_buf *positions, *attributes;
+    struct orl_buf *positions, *attributes, *blocks, *drawn, *items, *args;
     struct orl_tex *position_texels;  // RGBA32F: world xyz, radius
     struct orl_tex *attribute_texels; // RG32UI: octahedral normal, colour
-    int first, count;
+    struct orl_tex *block_texels;     // RGBA32F, two a block: shaders/splat_cull.comp
+    struct orl_tex *drawn_texels, *item_texels, *arg_texels; // R32UI, of the last cull
+    int first, count, block_count;
 };
+
+struct cloud {
+    struct orl_prog *cull;
+    struct point_chunk *chunks;
+    size_t chunk_count;
+};
+
+// Sorts and uploads; points that are not finite are left out.
+enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
+                               struct cloud *cloud);
+void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);
+// Lists what to draw of each chunk; sizes in `block` are overwritten.
+void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block);
+
+// --- depth from points (proxy.c) ---
 
 enum { PYRAMID_LEVELS_MAX = 9 };
 
@@ -22,8 +40,7 @@ enum { PYRAMID_LEVELS_MAX = 9 };
 struct proxy {
     struct orl_prog *splat_depth, *splat_index, *splat_resolve, *pull, *push, *push_last, *support;
     struct orl_prog *color;
-    struct point_chunk *chunks;
-    size_t chunk_count;
+    struct cloud cloud;
 };
 
 // What the proxy writes for one picture size.
@@ -51,7 +68,7 @@ void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
 size_t orl_proxy_target_bytes(int width, int height);
 // How the proxy is made, from the method's parameters.
 struct proxy_options {
-    float splat_scale, front_layer, min_support;
+    float splat_scale, front_layer, min_support, points_per_pixel;
 };
 void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
                     const struct proxy_options *options, struct proxy_target *target);

@@ -7,12 +7,13 @@
 #include "include/render_blocks.h"
 #include "render/render.h"
 
+// points_per_pixel: as few as cost under 0.02 dB (docs/performance.md).
 // distance_floor, front_layer and min_support: best of a few values when each training photograph of
 // fountain-P11 is rendered from the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
     .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f,                      \
-    .ghosts = 1.0f,                                                                        \
+    .ghosts = 1.0f, .points_per_pixel = 4.0f,                                              \
     .photos_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 2.0f,                 \
     .unknown_trust = 0.05f
 
@@ -65,6 +66,8 @@ const struct orl_render_option orl_render_options[] = {
      "splats this close behind the nearest one are averaged with it; 0: the nearest alone"},
     {"min_support", FIELD(min_support), NULL, 0, 25, "pixels of 5x5",
      "with a surface at the same depth that a pixel needs, else it is a stray point"},
+    {"points_per_pixel", FIELD(points_per_pixel), NULL, 0, 64, "points",
+     "above which splats are thinned and enlarged; 0: all are drawn"},
     {"distance_floor", FIELD(distance_floor), NULL, 1e-4, 1, "fraction of viewing distance",
      "keeps Airieau's distance difference from zero"},
     {"border_px", FIELD(border_px), NULL, 0, 1024, "pixels of the photograph",

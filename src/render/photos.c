@@ -329,7 +329,7 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
 static bool same_options(const struct proxy_options *a, const struct proxy_options *b)
 {
     return a->splat_scale == b->splat_scale && a->front_layer == b->front_layer &&
-           a->min_support == b->min_support;
+           a->min_support == b->min_support && a->points_per_pixel == b->points_per_pixel;
 }
 
 enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,

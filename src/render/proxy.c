@@ -1,94 +1,15 @@
 // Depth from points: compute splatting, then pull-push (Airieau 2012, 5.1).
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "render/internal.h"
-
-// 4 Mi points are 64 MiB of positions: half of what the smallest device binds, and
-// within the 65535 work groups that one dispatch may have.
-enum { CHUNK_POINTS = 4 << 20 };
 
 void orl_pixel_groups(int width, int height, unsigned groups[3])
 {
     groups[0] = orl_groups((size_t)width, ORL_PIXEL_GROUP_X);
     groups[1] = orl_groups((size_t)height, ORL_PIXEL_GROUP_Y);
     groups[2] = 1;
-}
-
-static uint32_t pack_snorm(double value)
-{
-    return (uint32_t)(uint16_t)(int16_t)lrint(fmin(1, fmax(-1, value)) * 32767);
-}
-
-// As shaders/include/octahedron.glsl; two 16-bit snorm.
-static uint32_t pack_normal(const float n[3])
-{
-    double x = n[0], y = n[1], z = n[2];
-    double sum = fabs(x) + fabs(y) + fabs(z);
-    if (!(sum > 0))
-        return pack_snorm(0) | pack_snorm(0) << 16;
-    x /= sum, y /= sum;
-    if (z < 0) {
-        double wrapped = (1 - fabs(y)) * (x >= 0 ? 1 : -1);
-        y = (1 - fabs(x)) * (y >= 0 ? 1 : -1);
-        x = wrapped;
-    }
-    return pack_snorm(x) | pack_snorm(y) << 16;
-}
-
-static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *points,
-                                    struct point_chunk *chunk)
-{
-    size_t count = (size_t)chunk->count, first = (size_t)chunk->first;
-    float(*positions)[4] = orl_array(orl_gpu_log(gpu), count, sizeof *positions);
-    uint32_t(*attributes)[2] = orl_array(orl_gpu_log(gpu), count, sizeof *attributes);
-    enum orl_result result = positions && attributes ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        memcpy(positions[i], points->position[first + i], 3 * sizeof(float));
-        positions[i][3] = points->radius[first + i];
-        const uint8_t *c = points->color[first + i];
-        attributes[i][0] = pack_normal(points->normal[first + i]);
-        attributes[i][1] = (uint32_t)c[0] | (uint32_t)c[1] << 8 | (uint32_t)c[2] << 16 |
-                           0xff000000u;
-    }
-    if (result == ORL_OK)
-        result = orl_buf_create(gpu, "point positions", count * sizeof *positions, positions,
-                                &chunk->positions);
-    if (result == ORL_OK)
-        result = orl_buf_create(gpu, "point attributes", count * sizeof *attributes, attributes,
-                                &chunk->attributes);
-    if (result == ORL_OK)
-        result = orl_tex_view_buffer(gpu, chunk->positions, GL_RGBA32F, &chunk->position_texels);
-    if (result == ORL_OK)
-        result = orl_tex_view_buffer(gpu, chunk->attributes, GL_RG32UI, &chunk->attribute_texels);
-    free(positions);
-    free(attributes);
-    return result;
-}
-
-static enum orl_result upload_points(struct orl_gpu *gpu, const struct orl_points *points,
-                                     struct proxy *proxy)
-{
-    if (points->count > INT32_MAX)
-        return orl_fail(orl_gpu_log(gpu), ORL_ERR_UNSUPPORTED, "%zu points are too many",
-                        points->count);
-    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels;
-    most = most < CHUNK_POINTS ? most : CHUNK_POINTS;
-    size_t chunks = (points->count + most - 1) / most;
-    proxy->chunks = orl_array(orl_gpu_log(gpu), chunks, sizeof *proxy->chunks);
-    if (!proxy->chunks)
-        return ORL_ERR_MEMORY;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < chunks; i++) {
-        struct point_chunk *chunk = &proxy->chunks[proxy->chunk_count++];
-        size_t first = i * most, rest = points->count - first;
-        chunk->first = (int)first;
-        chunk->count = (int)(rest < most ? rest : most);
-        result = upload_chunk(gpu, points, chunk);
-    }
-    return result;
 }
 
 enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
@@ -114,7 +35,7 @@ enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *poi
         result = orl_prog_create(gpu, programs[i].file, programs[i].defines,
                                  programs[i].params_size, programs[i].prog);
     if (result == ORL_OK)
-        result = upload_points(gpu, points, proxy);
+        result = orl_cloud_init(gpu, points, &proxy->cloud);
     if (result != ORL_OK)
         orl_proxy_finish(gpu, proxy);
     return result;
@@ -122,13 +43,7 @@ enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *poi
 
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
 {
-    for (size_t i = 0; i < proxy->chunk_count; i++) {
-        orl_tex_destroy(gpu, &proxy->chunks[i].position_texels);
-        orl_tex_destroy(gpu, &proxy->chunks[i].attribute_texels);
-        orl_buf_destroy(gpu, &proxy->chunks[i].positions);
-        orl_buf_destroy(gpu, &proxy->chunks[i].attributes);
-    }
-    free(proxy->chunks);
+    orl_cloud_finish(gpu, &proxy->cloud);
     struct orl_prog **const programs[] = {
         &proxy->splat_depth, &proxy->splat_index, &proxy->splat_resolve, &proxy->color,
         &proxy->pull, &proxy->push, &proxy->push_last, &proxy->support,
@@ -224,7 +139,8 @@ void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target)
 static struct splat_block splat_params(const struct orl_view *view,
                                        const struct proxy_options *options)
 {
-    struct splat_block block = {.options = {options->splat_scale, options->front_layer}};
+    struct splat_block block = {.options = {options->splat_scale, options->front_layer,
+                                             options->points_per_pixel}};
     double eye[3];
     orl_pose_centre(&view->cam_from_world, eye);
     for (int i = 0; i < 3; i++) {
@@ -247,18 +163,21 @@ static void splat(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_b
     orl_tex_fill(t->splat_depth, UINT32_MAX);
     orl_tex_fill(t->splat_index, UINT32_MAX);
     orl_tex_fill(t->splat_layer, 0);
+    orl_cloud_cull(gpu, &proxy->cloud, block);
     struct orl_prog *const passes[] = {proxy->splat_depth, proxy->splat_index};
     for (size_t pass = 0; pass < ORL_COUNT(passes); pass++)
-        for (size_t i = 0; i < proxy->chunk_count; i++) {
-            const struct point_chunk *chunk = &proxy->chunks[i];
+        for (size_t i = 0; i < proxy->cloud.chunk_count; i++) {
+            const struct point_chunk *chunk = &proxy->cloud.chunks[i];
             block->size[2] = chunk->count;
             block->size[3] = chunk->first;
             struct orl_dispatch d = {.prog = passes[pass], .params = block,
                                      .images = {{chunk->position_texels, 0, GL_READ_ONLY},
+                                                {chunk->item_texels, 0, GL_READ_ONLY},
+                                                {chunk->arg_texels, 0, GL_READ_ONLY},
                                                 {t->splat_depth, 0, GL_READ_WRITE},
                                                 {t->splat_index, 0, GL_READ_WRITE},
                                                 {t->splat_layer, 0, GL_READ_WRITE}},
-                                     .groups = {orl_groups((size_t)chunk->count, ORL_POINT_GROUP)},
+                                     .indirect = chunk->args,
                                      .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
             orl_gpu_dispatch(gpu, &d);
         }
@@ -267,8 +186,8 @@ static void splat(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_b
 static void resolve(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_block *block,
                     struct proxy_target *t)
 {
-    for (size_t i = 0; i < proxy->chunk_count; i++) {
-        const struct point_chunk *chunk = &proxy->chunks[i];
+    for (size_t i = 0; i < proxy->cloud.chunk_count; i++) {
+        const struct point_chunk *chunk = &proxy->cloud.chunks[i];
         block->size[2] = chunk->count;
         block->size[3] = chunk->first;
         struct orl_dispatch d = {.prog = proxy->splat_resolve, .params = block,
@@ -278,7 +197,8 @@ static void resolve(struct orl_gpu *gpu, const struct proxy *proxy, struct splat
                                             {t->splat_layer, 0, GL_READ_ONLY},
                                             {t->splats, 0, GL_READ_WRITE},
                                             {t->surfel_a[1], 0, GL_WRITE_ONLY},
-                                            {t->surfel_b[1], 0, GL_WRITE_ONLY}},
+                                            {t->surfel_b[1], 0, GL_WRITE_ONLY},
+                                            {chunk->drawn_texels, 0, GL_READ_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
         orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
         orl_gpu_dispatch(gpu, &d);
@@ -377,8 +297,8 @@ void orl_proxy_color(struct orl_gpu *gpu, const struct proxy *proxy, const struc
                      const struct proxy_target *t, struct orl_tex *color)
 {
     struct splat_block block = splat_params(view, &(struct proxy_options){0});
-    for (size_t i = 0; i < proxy->chunk_count; i++) {
-        const struct point_chunk *chunk = &proxy->chunks[i];
+    for (size_t i = 0; i < proxy->cloud.chunk_count; i++) {
+        const struct point_chunk *chunk = &proxy->cloud.chunks[i];
         block.size[2] = chunk->count;
         block.size[3] = chunk->first;
         struct orl_dispatch d = {.prog = proxy->color, .params = &block,

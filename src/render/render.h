@@ -28,6 +28,7 @@ struct orl_render_params {
                                     // with it, fraction of depth, [0, 0.1]
     float min_support;              // pixels of the 5x5 around with a surface at this depth
                                     // that a pixel needs to count as surface, [0, 25]
+    float points_per_pixel;         // above which splats are thinned, [0, 64]; 0: never
     float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
     float border_px;                // photographs fade out over this width, [0, 1024] pixels
     float ghosts;                   // of a radiance renderer: samples that differ from the

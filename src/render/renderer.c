@@ -100,7 +100,8 @@ struct proxy_options orl_proxy_options(const struct orl_render_params *params)
 {
     return (struct proxy_options){.splat_scale = params->splat_scale,
                                   .front_layer = params->front_layer,
-                                  .min_support = params->min_support};
+                                  .min_support = params->min_support,
+                                  .points_per_pixel = params->points_per_pixel};
 }
 
 static void compose(struct orl_renderer *r, const struct orl_render_params *params)

@@ -20,13 +20,25 @@ static struct orl_view front_view(void)
 struct point {
     float x, y, z, radius;
     float normal[3];
-    uint8_t color[3];
 };
+
+enum { POINTS_MAX = 2000 };
 
 struct drawn {
     float depth[SIDE * SIDE], normal[SIDE * SIDE][4];
     uint32_t bits[SIDE * SIDE], index[SIDE * SIDE];
+    uint32_t listed[POINTS_MAX]; // by the index a point is drawn with: its place in the list
 };
+
+static void read_order(const struct proxy *proxy, struct drawn *out)
+{
+    static uint32_t attributes[POINTS_MAX][2];
+    const struct point_chunk *chunk = &proxy->cloud.chunks[0];
+    assert_true(chunk->count <= POINTS_MAX);
+    orl_buf_read(chunk->attributes, 0, (size_t)chunk->count * sizeof *attributes, attributes);
+    for (int i = 0; i < chunk->count; i++)
+        out->listed[i] = attributes[i][1] & 0xffffff;
+}
 
 static void draw(const struct point *list, size_t count, const struct orl_view *view,
                  struct drawn *out)
@@ -36,7 +48,8 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     for (size_t i = 0; i < count; i++) {
         memcpy(points.position[i], &list[i].x, sizeof points.position[i]);
         memcpy(points.normal[i], list[i].normal, sizeof points.normal[i]);
-        memcpy(points.color[i], list[i].color, sizeof points.color[i]);
+        points.color[i][0] = (uint8_t)i; // for read_order
+        points.color[i][1] = (uint8_t)(i >> 8);
         points.radius[i] = list[i].radius;
     }
     struct proxy proxy;
@@ -50,6 +63,7 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
                  out->bits);
     orl_tex_read(target.splat_index, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->index,
                  out->index);
+    read_order(&proxy, out);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     orl_proxy_target_finish(gpu, &target);
     orl_proxy_finish(gpu, &proxy);
@@ -111,8 +125,11 @@ static void nearest_wins_and_ties_go_to_the_lowest_index(void **state)
                         seen_at(5.5, 5.5, 5, 0.001)};
     static struct drawn d;
     draw(p, ORL_COUNT(p), &view, &d);
-    assert_int_equal(d.index[at(5, 5)], 1);
-    assert_int_equal(d.index[at(9, 5)], 2);
+    assert_int_equal(d.listed[d.index[at(5, 5)]], 1);
+    uint32_t lowest = 0;
+    while (d.listed[lowest] != 2 && d.listed[lowest] != 3)
+        lowest++;
+    assert_int_equal(d.index[at(9, 5)], lowest);
     assert_float_equal(d.depth[at(5, 5)], 3, 1e-5);
 }
 
@@ -196,7 +213,7 @@ static void occluded_points_are_replaced(void **state)
 {
     (void)state;
     struct orl_view view = front_view();
-    static struct point p[2000];
+    static struct point p[POINTS_MAX];
     size_t count = 0;
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++)

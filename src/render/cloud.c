@@ -1,0 +1,363 @@
+// The point cloud on the device: Morton order, in blocks that can be skipped or thinned.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/internal.h"
+
+enum {
+    // 4 Mi points are 64 MiB of positions: half of what the smallest device binds, and
+    // within the 65535 work groups that one dispatch may have.
+    CHUNK_POINTS = 4 << 20,
+    BLOCK = ORL_BLOCK_POINTS,
+    SORT_BITS = 11, // of a radix pass
+    SORT_RANGE = 1 << SORT_BITS,
+    BOUNDS_SAMPLES = 4096,
+    DENSITY_SAMPLES = 16, // points of a block
+    NEIGHBOUR = 4,
+};
+
+struct key {
+    uint64_t code;
+    uint32_t point;
+};
+
+// --- order ---
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+// A cube around nearly all points, with room: a stray point far away must not make the cells
+// of all others one. What lies outside goes to the outermost cells. A cube, so that cells are
+// cubes and blocks are as wide one way as another.
+struct cube {
+    double low[3], side;
+};
+
+static enum orl_result find_cube(const struct orl_log *log, const struct orl_points *points,
+                                 struct cube *cube)
+{
+    size_t count = points->count < BOUNDS_SAMPLES ? points->count : BOUNDS_SAMPLES;
+    float *values = orl_array(log, count + 1, sizeof *values);
+    if (!values)
+        return ORL_ERR_MEMORY;
+    cube->side = 1e-30;
+    for (int k = 0; k < 3; k++) {
+        size_t finite = 0;
+        for (size_t i = 0; i < count; i++) {
+            float v = points->position[i * (points->count / count)][k];
+            if (isfinite(v))
+                values[finite++] = v;
+        }
+        if (finite == 0)
+            values[finite++] = 0;
+        qsort(values, finite, sizeof *values, compare_floats);
+        double a = values[finite / 64], b = values[finite - 1 - finite / 64];
+        cube->low[k] = 0.5 * (a + b);
+        cube->side = fmax(cube->side, 2 * (b - a) + 1e-6 * fabs(a + b));
+    }
+    // Off the middle, where a flat cloud would be split into two layers of half its density.
+    for (int k = 0; k < 3; k++)
+        cube->low[k] -= 0.437 * cube->side;
+    free(values);
+    return ORL_OK;
+}
+
+// Every third bit of the result from the 21 bits of x.
+static uint64_t spread_bits(uint64_t x)
+{
+    x = (x | x << 32) & 0x1f00000000ffffu;
+    x = (x | x << 16) & 0x1f0000ff0000ffu;
+    x = (x | x << 8) & 0x100f00f00f00f00fu;
+    x = (x | x << 4) & 0x10c30c30c30c30c3u;
+    return (x | x << 2) & 0x1249249249249249u;
+}
+
+static uint64_t morton_code(const float p[3], const struct cube *cube)
+{
+    uint64_t code = 0;
+    for (int k = 0; k < 3; k++) {
+        double cell = ((double)p[k] - cube->low[k]) / cube->side * 0x1p21;
+        cell = fmin(fmax(cell, 0), 0x1p21 - 1);
+        code |= spread_bits((uint64_t)cell) << k;
+    }
+    return code;
+}
+
+// Least significant digit first: stable, thus the same order on every machine.
+static void sort_keys(struct key **keys, struct key **spare, size_t count)
+{
+    for (int shift = 0; shift < 63; shift += SORT_BITS) {
+        size_t starts[SORT_RANGE] = {0}, sum = 0;
+        for (size_t i = 0; i < count; i++)
+            starts[(*keys)[i].code >> shift & (SORT_RANGE - 1)]++;
+        for (size_t d = 0; d < SORT_RANGE; d++) {
+            size_t here = starts[d];
+            starts[d] = sum;
+            sum += here;
+        }
+        for (size_t i = 0; i < count; i++)
+            (*spare)[starts[(*keys)[i].code >> shift & (SORT_RANGE - 1)]++] = (*keys)[i];
+        struct key *swap = *keys;
+        *keys = *spare;
+        *spare = swap;
+    }
+}
+
+// Within a block in bit-reversed order, so that any first part of it is spread evenly.
+static void shuffle_block(struct key *keys, size_t count)
+{
+    struct key sorted[BLOCK];
+    size_t next = 0;
+    memcpy(sorted, keys, count * sizeof *keys);
+    for (unsigned i = 0; i < BLOCK; i++) {
+        unsigned from = 0;
+        for (unsigned bit = 1; bit < BLOCK; bit *= 2)
+            from = 2 * from + (i & bit ? 1 : 0);
+        if (from < count)
+            keys[next++] = sorted[from];
+    }
+}
+
+// Points of `points` in the order they are drawn in; points that are not finite are left
+// out. *order is owned by the caller (free).
+static enum orl_result find_order(const struct orl_log *log, const struct orl_points *points,
+                                  struct key **order, size_t *count)
+{
+    struct cube cube;
+    struct key *keys = orl_array(log, points->count, sizeof *keys);
+    struct key *spare = orl_array(log, points->count, sizeof *spare);
+    *order = NULL;
+    *count = 0;
+    enum orl_result result = keys && spare ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = find_cube(log, points, &cube);
+    if (result == ORL_OK) {
+        for (size_t i = 0; i < points->count; i++) {
+            const float *p = points->position[i];
+            if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
+                keys[(*count)++] = (struct key){morton_code(p, &cube), (uint32_t)i};
+        }
+        sort_keys(&keys, &spare, *count);
+        for (size_t first = 0; first < *count; first += BLOCK)
+            shuffle_block(keys + first, *count - first < BLOCK ? *count - first : BLOCK);
+        *order = keys;
+        keys = NULL;
+    }
+    free(keys);
+    free(spare);
+    return result;
+}
+
+// --- blocks ---
+
+// Points per unit of area, from the distances of a few points to their fourth neighbour in
+// the block: a disc of that radius holds four points. Distances are within the point's
+// tangent plane, since depth noise does not make a surface larger. 0: not known.
+static float density(float (*const p)[4], const struct orl_points *points,
+                     const struct key *order, size_t count)
+{
+    float distances[DENSITY_SAMPLES];
+    size_t samples = count < DENSITY_SAMPLES ? count : DENSITY_SAMPLES;
+    if (count <= NEIGHBOUR)
+        return 0;
+    for (size_t s = 0; s < samples; s++) {
+        float nearest[NEIGHBOUR] = {INFINITY, INFINITY, INFINITY, INFINITY};
+        const float *n = points->normal[order[s].point];
+        for (size_t i = 0; i < count; i++) {
+            float x = p[i][0] - p[s][0], y = p[i][1] - p[s][1], z = p[i][2] - p[s][2];
+            float along = x * n[0] + y * n[1] + z * n[2];
+            float d2 = fmaxf(x * x + y * y + z * z - along * along, 0);
+            for (int k = 0; i != s && k < NEIGHBOUR; k++) {
+                float larger = fmaxf(nearest[k], d2);
+                nearest[k] = fminf(nearest[k], d2);
+                d2 = larger;
+            }
+        }
+        distances[s] = nearest[NEIGHBOUR - 1];
+    }
+    qsort(distances, samples, sizeof *distances, compare_floats);
+    float d2 = distances[samples / 2];
+    return d2 > 0 ? NEIGHBOUR / (3.14159265f * d2) : 0;
+}
+
+// Bounds and density of one block.
+static void describe_block(float (*const positions)[4], const struct orl_points *points,
+                           const struct key *order, size_t count, float block[2][4])
+{
+    for (int k = 0; k < 3; k++) {
+        float low = positions[0][k], high = low;
+        for (size_t i = 1; i < count; i++) {
+            low = fminf(low, positions[i][k]);
+            high = fmaxf(high, positions[i][k]);
+        }
+        block[0][k] = 0.5f * low + 0.5f * high;
+        // Rounding of the middle must not leave a point outside.
+        block[1][k] = fmaxf(high - block[0][k], block[0][k] - low);
+    }
+    block[0][3] = density(positions, points, order, count);
+    block[1][3] = 0;
+}
+
+// --- upload ---
+
+static uint32_t pack_snorm(double value)
+{
+    return (uint32_t)(uint16_t)(int16_t)lrint(fmin(1, fmax(-1, value)) * 32767);
+}
+
+// As shaders/include/octahedron.glsl; two 16-bit snorm.
+static uint32_t pack_normal(const float n[3])
+{
+    double x = n[0], y = n[1], z = n[2];
+    double sum = fabs(x) + fabs(y) + fabs(z);
+    if (!(sum > 0))
+        return pack_snorm(0) | pack_snorm(0) << 16;
+    x /= sum, y /= sum;
+    if (z < 0) {
+        double wrapped = (1 - fabs(y)) * (x >= 0 ? 1 : -1);
+        y = (1 - fabs(x)) * (y >= 0 ? 1 : -1);
+        x = wrapped;
+    }
+    return pack_snorm(x) | pack_snorm(y) << 16;
+}
+
+static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk,
+                                    const void *positions, const void *attributes,
+                                    const void *blocks)
+{
+    size_t count = (size_t)chunk->count, block_count = (size_t)chunk->block_count;
+    const struct {
+        const char *tag;
+        size_t size;
+        const void *data;
+        struct orl_buf **buf;
+        GLenum format;
+        struct orl_tex **texels;
+    } rows[] = {
+        {"point positions", count * 16, positions, &chunk->positions, GL_RGBA32F,
+         &chunk->position_texels},
+        {"point attributes", count * 8, attributes, &chunk->attributes, GL_RG32UI,
+         &chunk->attribute_texels},
+        {"point blocks", block_count * 32, blocks, &chunk->blocks, GL_RGBA32F,
+         &chunk->block_texels},
+        {"drawn points of blocks", block_count * 4, NULL, &chunk->drawn, GL_R32UI,
+         &chunk->drawn_texels},
+        {"drawn points", orl_groups(count, ORL_ITEM_POINTS) * 4u, NULL, &chunk->items, GL_R32UI,
+         &chunk->item_texels},
+        {"draw arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
+    };
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
+        result = orl_buf_create(gpu, rows[i].tag, rows[i].size, rows[i].data, rows[i].buf);
+        if (result == ORL_OK)
+            result = orl_tex_view_buffer(gpu, *rows[i].buf, rows[i].format, rows[i].texels);
+    }
+    return result;
+}
+
+static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *points,
+                                    const struct key *order, struct point_chunk *chunk)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    size_t count = (size_t)chunk->count, block_count = (size_t)chunk->block_count;
+    float(*positions)[4] = orl_array(log, count, sizeof *positions);
+    uint32_t(*attributes)[2] = orl_array(log, count, sizeof *attributes);
+    float(*blocks)[2][4] = orl_array(log, block_count, sizeof *blocks);
+    enum orl_result result = positions && attributes && blocks ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        size_t from = order[i].point;
+        memcpy(positions[i], points->position[from], 3 * sizeof(float));
+        positions[i][3] = points->radius[from];
+        const uint8_t *c = points->color[from];
+        attributes[i][0] = pack_normal(points->normal[from]);
+        attributes[i][1] = (uint32_t)c[0] | (uint32_t)c[1] << 8 | (uint32_t)c[2] << 16;
+    }
+    for (size_t b = 0; result == ORL_OK && b < block_count; b++) {
+        size_t first = b * BLOCK, here = count - first < BLOCK ? count - first : BLOCK;
+        describe_block(positions + first, points, order + first, here, blocks[b]);
+    }
+    if (result == ORL_OK)
+        result = make_buffers(gpu, chunk, positions, attributes, blocks);
+    free(positions);
+    free(attributes);
+    free(blocks);
+    return result;
+}
+
+enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
+                               struct cloud *cloud)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    memset(cloud, 0, sizeof *cloud);
+    if (points->count > INT32_MAX)
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
+    // Whole blocks, within what the device sees of a buffer.
+    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / BLOCK * BLOCK;
+    most = most < CHUNK_POINTS ? most : CHUNK_POINTS;
+    struct key *order = NULL;
+    size_t count = 0;
+    enum orl_result result = find_order(log, points, &order, &count);
+    if (result == ORL_OK) {
+        cloud->chunks = orl_array(log, count / most + 1, sizeof *cloud->chunks);
+        result = cloud->chunks ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    // An empty cloud is one empty chunk: the passes that run per chunk still run.
+    for (size_t first = 0; result == ORL_OK && (first < count || first == 0); first += most) {
+        struct point_chunk *chunk = &cloud->chunks[cloud->chunk_count++];
+        chunk->first = (int)first;
+        chunk->count = (int)(count - first < most ? count - first : most);
+        chunk->block_count = (int)orl_groups((size_t)chunk->count, BLOCK);
+        result = upload_chunk(gpu, points, order + first, chunk);
+    }
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "splat_cull.comp", NULL, sizeof(struct splat_block),
+                                 &cloud->cull);
+    free(order);
+    if (result != ORL_OK)
+        orl_cloud_finish(gpu, cloud);
+    return result;
+}
+
+void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
+{
+    for (size_t i = 0; i < cloud->chunk_count; i++) {
+        struct point_chunk *c = &cloud->chunks[i];
+        struct orl_tex **const views[] = {&c->position_texels, &c->attribute_texels,
+                                          &c->block_texels, &c->drawn_texels, &c->item_texels,
+                                          &c->arg_texels};
+        struct orl_buf **const bufs[] = {&c->positions, &c->attributes, &c->blocks, &c->drawn,
+                                         &c->items, &c->args};
+        for (size_t k = 0; k < ORL_COUNT(views); k++)
+            orl_tex_destroy(gpu, views[k]);
+        for (size_t k = 0; k < ORL_COUNT(bufs); k++)
+            orl_buf_destroy(gpu, bufs[k]);
+    }
+    free(cloud->chunks);
+    orl_prog_destroy(gpu, &cloud->cull);
+    memset(cloud, 0, sizeof *cloud);
+}
+
+void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block)
+{
+    static const uint32_t nothing[4] = {0, 1, 1, 0};
+    for (size_t i = 0; i < cloud->chunk_count; i++) {
+        const struct point_chunk *chunk = &cloud->chunks[i];
+        block->size[2] = chunk->count;
+        block->size[3] = chunk->first;
+        orl_buf_write(chunk->args, 0, sizeof nothing, nothing);
+        struct orl_dispatch d = {.prog = cloud->cull, .params = block,
+                                 .bufs = {{.buf = chunk->args}, {.buf = chunk->items},
+                                          {.buf = chunk->drawn}},
+                                 .images = {{chunk->block_texels, 0, GL_READ_ONLY}},
+                                 .groups = {orl_groups((size_t)chunk->block_count,
+                                                       ORL_POINT_GROUP)},
+                                 .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                            GL_COMMAND_BARRIER_BIT};
+        orl_gpu_dispatch(gpu, &d);
+    }
+}

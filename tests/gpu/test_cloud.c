@@ -1,0 +1,191 @@
+// Which points of a cloud are drawn: culling and thinning by blocks.
+#include <math.h>
+#include <string.h>
+
+#include "gpu_test.h"
+#include "render/internal.h"
+
+static struct orl_gpu *gpu;
+
+enum { SIDE = 64, COUNT = 50000 };
+
+// Looks along +z from the origin, 90 degrees wide.
+static const struct orl_view front_view = {
+    .camera = {.width = SIDE, .height = SIDE, .fx = SIDE / 2, .fy = SIDE / 2, .cx = SIDE / 2,
+               .cy = SIDE / 2},
+    .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+
+static double random_value(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (*state >> 8) * (1.0 / 16777216);
+}
+
+struct scene {
+    struct orl_points points;
+    struct proxy proxy;
+    struct proxy_target target;
+};
+
+static void open_scene(struct scene *s)
+{
+    assert_int_equal(orl_proxy_init(gpu, &s->points, &s->proxy), ORL_OK);
+    assert_int_equal(orl_proxy_target_resize(gpu, &s->target, SIDE, SIDE), ORL_OK);
+}
+
+static void close_scene(struct scene *s)
+{
+    orl_proxy_target_finish(gpu, &s->target);
+    orl_proxy_finish(gpu, &s->proxy);
+    orl_points_finish(&s->points);
+}
+
+static void draw(struct scene *s, float points_per_pixel)
+{
+    orl_proxy_draw(gpu, &s->proxy, &front_view,
+                   &(struct proxy_options){.splat_scale = 1, .front_layer = 0.01f,
+                                           .points_per_pixel = points_per_pixel}, &s->target);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+}
+
+// Items listed by the last draw; marks them.
+static size_t read_list(const struct scene *s, bool *listed, size_t capacity)
+{
+    const struct point_chunk *chunk = &s->proxy.cloud.chunks[0];
+    uint32_t args[4];
+    static uint32_t items[COUNT];
+    orl_buf_read(chunk->args, 0, sizeof args, args);
+    assert_in_range(args[3], 0, COUNT);
+    assert_true(args[0] * (size_t)(ORL_POINT_GROUP * ORL_SPLAT_POINTS) >=
+                args[3] * (size_t)ORL_ITEM_POINTS);
+    orl_buf_read(chunk->items, 0, args[3] * sizeof *items, items);
+    memset(listed, 0, capacity);
+    for (uint32_t i = 0; i < args[3]; i++) {
+        assert_true(items[i] < capacity);
+        assert_false(listed[items[i]]);
+        listed[items[i]] = true;
+    }
+    return args[3];
+}
+
+// Points all around the viewer: all of those in the picture are listed, and far from all of
+// the others.
+static void blocks_outside_are_skipped(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    uint32_t seed = 1;
+    assert_int_equal(orl_points_init(NULL, &s.points, COUNT), ORL_OK);
+    for (size_t i = 0; i < COUNT; i++) {
+        for (int k = 0; k < 3; k++)
+            s.points.position[i][k] = (float)(10 * random_value(&seed) - 5);
+        s.points.radius[i] = 0.01f;
+    }
+    s.points.position[7][0] = NAN; // dropped
+    s.points.position[9][2] = 1e30f;
+    open_scene(&s);
+    draw(&s, 0);
+    const struct point_chunk *chunk = &s.proxy.cloud.chunks[0];
+    assert_int_equal(chunk->count, COUNT - 1);
+    static bool listed[COUNT];
+    size_t items = read_list(&s, listed, COUNT);
+    static float positions[COUNT][4];
+    orl_buf_read(chunk->positions, 0, (size_t)chunk->count * sizeof *positions, positions);
+    size_t seen = 0;
+    for (int i = 0; i < chunk->count; i++) {
+        const float *p = positions[i];
+        if (p[2] > 0 && fabsf(p[0]) < p[2] && fabsf(p[1]) < p[2]) {
+            seen++;
+            assert_true(listed[i / ORL_ITEM_POINTS]);
+        }
+    }
+    assert_true(seen > COUNT / 8);
+    assert_true(items * ORL_ITEM_POINTS < 2 * seen);
+    close_scene(&s);
+}
+
+// A wall of 64 points to a pixel, with some depth noise.
+static void make_wall(struct scene *s)
+{
+    enum { ROW = 8 * SIDE };
+    uint32_t seed = 1;
+    assert_int_equal(orl_points_init(NULL, &s->points, ROW * ROW), ORL_OK);
+    for (size_t i = 0; i < ROW * ROW; i++) {
+        double z = 2 + 0.001 * random_value(&seed);
+        s->points.position[i][0] = (float)(((double)(i % ROW) + 0.5) / ROW * 2 * z - z);
+        s->points.position[i][1] = (float)(((double)(i / ROW) + 0.5) / ROW * 2 * z - z);
+        s->points.position[i][2] = (float)z;
+        s->points.normal[i][2] = -1;
+        s->points.radius[i] = 4.0f / ROW;
+    }
+}
+
+static void dense_blocks_are_thinned_without_holes(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    static bool listed[8 * COUNT];
+    static float depth[SIDE * SIDE];
+    make_wall(&s);
+    open_scene(&s);
+    draw(&s, 0);
+    assert_int_equal(read_list(&s, listed, sizeof listed) * ORL_ITEM_POINTS, 64 * SIDE * SIDE);
+    draw(&s, 4);
+    double share = (double)read_list(&s, listed, sizeof listed) * ORL_ITEM_POINTS / (SIDE * SIDE);
+    print_message("%.2f points a pixel for 4\n", share);
+    assert_true(share >= 4 && share < 9);
+    orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        assert_float_equal(depth[i], 2.0005, 0.001);
+    close_scene(&s);
+}
+
+// The list is made in any order; the frame is the same to the bit.
+static void runs_are_the_same(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    static float depth[2][SIDE * SIDE], normal[2][SIDE * SIDE * 4];
+    make_wall(&s);
+    open_scene(&s);
+    for (int run = 0; run < 5; run++) {
+        int to = run > 0 ? 1 : 0;
+        draw(&s, 3);
+        orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth[to], depth[to]);
+        orl_tex_read(s.target.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[to], normal[to]);
+        if (run == 0)
+            continue;
+        assert_memory_equal(depth[0], depth[1], sizeof depth[0]);
+        assert_memory_equal(normal[0], normal[1], sizeof normal[0]);
+    }
+    close_scene(&s);
+}
+
+static void no_points_are_no_depth(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    static float depth[SIDE * SIDE];
+    assert_int_equal(orl_points_init(NULL, &s.points, 1), ORL_OK);
+    s.points.position[0][1] = INFINITY;
+    open_scene(&s);
+    draw(&s, 4);
+    orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        assert_float_equal(depth[i], 0, 0);
+    close_scene(&s);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(blocks_outside_are_skipped),
+        cmocka_unit_test(dense_blocks_are_thinned_without_holes),
+        cmocka_unit_test(runs_are_the_same),
+        cmocka_unit_test(no_points_are_no_depth),
+    };
+    int failed = cmocka_run_group_tests_name("cloud", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
