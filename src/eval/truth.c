@@ -67,12 +67,11 @@ enum orl_result orl_truth_open(const struct orl_log *log, const struct orl_scene
     char *model = orl_path_join(log, scene->dir, ".oriel/calibrate/model");
     enum orl_result result = truth->dir && truth->ev && model ? read_summary(log, truth)
                                                               : ORL_ERR_MEMORY;
-    if (result == ORL_OK && !orl_path_is_dir(model))
-        result = orl_fail(log, ORL_ERR_NOT_FOUND,
-                          "%s: no such folder; without it true radiance cannot be brought to the "
-                          "photographs' pixels", model);
-    if (result == ORL_OK)
+    if (result == ORL_OK && orl_path_is_dir(model))
         result = orl_colmap_read(log, model, &truth->model);
+    else if (result == ORL_OK)
+        orl_logf(log, ORL_LOG_WARNING, "%s: no such folder; photographs are taken to have had no "
+                 "distortion", model);
     free(model);
     if (result != ORL_OK)
         orl_truth_finish(truth);
@@ -96,21 +95,37 @@ static const struct orl_colmap_camera *find_camera(const struct orl_truth *truth
     return NULL;
 }
 
+// From the pixels as they were taken to the scene's.
+static enum orl_result bring_to_pixels(const struct orl_log *log, const struct orl_truth *truth,
+                                       const struct orl_photo *photo, const char *path,
+                                       struct orl_image *seen, struct orl_image *radiance)
+{
+    const struct orl_camera *to = &photo->view.camera;
+    if (truth->model.image_count) {
+        const struct orl_colmap_camera *from = find_camera(truth, photo->name);
+        return from ? orl_undistort(log, from, to, seen, radiance)
+                    : orl_fail(log, ORL_ERR_DATA, "%s: not in the calibrated model", photo->name);
+    }
+    if (seen->width != to->width || seen->height != to->height)
+        return orl_fail(log, ORL_ERR_DATA, "%s: %dx%d pixels, but the photograph has %dx%d", path,
+                        seen->width, seen->height, to->width, to->height);
+    *radiance = *seen;
+    memset(seen, 0, sizeof *seen);
+    return ORL_OK;
+}
+
 enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth *truth,
                                size_t index, struct orl_image *radiance)
 {
     static const char *const rgb[] = {"R", "G", "B"};
     memset(radiance, 0, sizeof *radiance);
     const struct orl_photo *photo = &truth->scene->photos[index];
-    const struct orl_colmap_camera *camera = find_camera(truth, photo->name);
     struct orl_image seen = {0};
-    if (!camera)
-        return orl_fail(log, ORL_ERR_DATA, "%s: not in the calibrated model", photo->name);
     char *path = orl_format(log, "%s/radiance/%.*s.exr", truth->dir,
                             (int)stem_length(photo->name), photo->name);
     enum orl_result result = path ? orl_exr_read(log, path, rgb, 3, &seen) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_undistort(log, camera, &photo->view.camera, &seen, radiance);
+        result = bring_to_pixels(log, truth, photo, path, &seen, radiance);
     // A photograph of exposure e takes radiance times 2^e, and so does the scene's unit
     // for its middle exposure, exposure_ev below it.
     float scale = (float)exp2(truth->ev[index] - photo->exposure_ev);

@@ -10,12 +10,12 @@ struct orl_truth {
     const struct orl_scene *scene;  // not owned
     char *dir;                      // owned
     double *ev;                     // owned; per photograph of the scene: its true exposure
-    struct orl_colmap_model model;  // the calibrated cameras, with their distortion
+    struct orl_colmap_model model;  // the calibrated cameras, with their distortion; or empty
 };
 
 // dir: what `oriel synth` wrote beside the photographs, with synth.json and radiance/.
-// ORL_ERR_NOT_FOUND when the scene has lost .oriel/calibrate, which says how its
-// photographs were undistorted.
+// Without SCENE/.oriel/calibrate, which says how photographs were undistorted, they count
+// as they were taken, with a warning, if their sizes agree.
 enum orl_result orl_truth_open(const struct orl_log *log, const struct orl_scene *scene,
                                const char *dir, struct orl_truth *truth) ORL_CHECK_RESULT;
 void orl_truth_finish(struct orl_truth *truth);

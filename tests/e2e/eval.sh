@@ -72,6 +72,18 @@ runs 2 "$oriel" eval nowhere
 runs 2 "$oriel" eval
 runs 0 "$oriel" eval --help
 
+# Radiance: the truth's own photographs are the scene's, so undistortion is none.
+runs 0 "$oriel" eval ws --truth photos-truth --merge fused --json out.json
+grep -q 'no distortion' stderr.txt || fail "does not say what it assumes"
+for field in pu21_psnr_db mu_psnr_db log2_rmse log2_rmse_fitted psnr_db; do
+    [ "$(grep -c "\"$field\"" out.json)" -eq 2 ] || fail "no field $field in view and mean"
+done
+grep -q '^radiance' stdout.txt || fail "no table of radiance"
+runs 2 "$oriel" eval ws --merge added
+grep -q 'fused series' stderr.txt || fail "does not list the merges"
+runs 2 "$oriel" eval ws --truth nowhere
+grep -q 'nowhere/synth.json' stderr.txt || fail "does not name the missing truth"
+
 # A held-out photograph that is damaged: no figures, no report.
 head -c 700 "ws/images/${names[1]}" >cut && mv cut "ws/images/${names[1]}"
 rm -f out.json
