@@ -13,7 +13,7 @@ layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
 layout(rgba32ui, binding = 4) uniform uimage2D splats;
 layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
 layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
-layout(r32ui, binding = 7) readonly uniform uimageBuffer drawn; // points of each block
+layout(r32f, binding = 7) readonly uniform imageBuffer enlarged; // radii of each block
 
 surfel splat(ivec2 at, int point)
 {
@@ -27,10 +27,8 @@ surfel splat(ivec2 at, int point)
     p *= 1.0 + behind * options.y;
     vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
     n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
-    // The points that are drawn cover what the others would have.
-    int block = point / ORL_BLOCK_POINTS;
-    float all = float(min(size.z - block * ORL_BLOCK_POINTS, ORL_BLOCK_POINTS));
-    float radius = position.w * options.x * sqrt(all / float(imageLoad(drawn, block).x));
+    int block = point / ORL_ITEM_POINTS % (size.z / ORL_BLOCK_POINTS);
+    float radius = position.w * options.x * imageLoad(enlarged, block).x;
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
 }

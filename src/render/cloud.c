@@ -7,13 +7,15 @@
 #include "render/internal.h"
 
 enum {
-    // 4 Mi points are 64 MiB of positions: half of what the smallest device binds, and
-    // within the 65535 work groups that one dispatch may have.
-    CHUNK_POINTS = 4 << 20,
+    // 256 MiB of positions, a half of the 65535 work groups that one dispatch may have. More
+    // chunks would cost a resolve each.
+    CHUNK_POINTS = 16 << 20,
     BLOCK = ORL_BLOCK_POINTS,
     SORT_BITS = 11, // of a radix pass
     SORT_RANGE = 1 << SORT_BITS,
     BOUNDS_SAMPLES = 4096,
+    PARTS = BLOCK / ORL_ITEM_POINTS,
+    BLOCK_TEXELS = 3,
     DENSITY_SAMPLES = 16, // points of a block
     NEIGHBOUR = 4,
 };
@@ -185,22 +187,25 @@ static float density(float (*const p)[4], const struct orl_points *points,
     return d2 > 0 ? NEIGHBOUR / (3.14159265f * d2) : 0;
 }
 
-// Bounds and density of one block.
+// shaders/splat_cull.comp says what the texels are.
 static void describe_block(float (*const positions)[4], const struct orl_points *points,
-                           const struct key *order, size_t count, float block[2][4])
+                           const struct key *order, size_t count, float block[BLOCK_TEXELS][4])
 {
     for (int k = 0; k < 3; k++) {
         float low = positions[0][k], high = low;
-        for (size_t i = 1; i < count; i++) {
+        double normal = 0;
+        for (size_t i = 0; i < count; i++) {
             low = fminf(low, positions[i][k]);
             high = fmaxf(high, positions[i][k]);
+            normal += points->normal[order[i].point][k];
         }
         block[0][k] = 0.5f * low + 0.5f * high;
         // Rounding of the middle must not leave a point outside.
         block[1][k] = fmaxf(high - block[0][k], block[0][k] - low);
+        block[2][k] = (float)(normal / (double)count);
     }
     block[0][3] = density(positions, points, order, count);
-    block[1][3] = 0;
+    block[1][3] = (float)count;
 }
 
 // --- upload ---
@@ -226,11 +231,19 @@ static uint32_t pack_normal(const float n[3])
     return pack_snorm(x) | pack_snorm(y) << 16;
 }
 
+// A chunk in host memory. Points are stored by parts, all blocks' first parts first: where
+// blocks are thinned, what is read lies together.
+struct host_chunk {
+    float (*positions)[4];
+    uint32_t (*attributes)[2];
+    float (*blocks)[BLOCK_TEXELS][4];
+    size_t block_count;
+};
+
 static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk,
-                                    const void *positions, const void *attributes,
-                                    const void *blocks)
+                                    const struct host_chunk *host)
 {
-    size_t count = (size_t)chunk->count, block_count = (size_t)chunk->block_count;
+    size_t blocks = host->block_count, points = blocks * BLOCK;
     const struct {
         const char *tag;
         size_t size;
@@ -239,16 +252,15 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
         GLenum format;
         struct orl_tex **texels;
     } rows[] = {
-        {"point positions", count * 16, positions, &chunk->positions, GL_RGBA32F,
+        {"point positions", points * 16, host->positions, &chunk->positions, GL_RGBA32F,
          &chunk->position_texels},
-        {"point attributes", count * 8, attributes, &chunk->attributes, GL_RG32UI,
+        {"point attributes", points * 8, host->attributes, &chunk->attributes, GL_RG32UI,
          &chunk->attribute_texels},
-        {"point blocks", block_count * 32, blocks, &chunk->blocks, GL_RGBA32F,
+        {"point blocks", blocks * sizeof *host->blocks, host->blocks, &chunk->blocks, GL_RGBA32F,
          &chunk->block_texels},
-        {"drawn points of blocks", block_count * 4, NULL, &chunk->drawn, GL_R32UI,
-         &chunk->drawn_texels},
-        {"drawn points", orl_groups(count, ORL_ITEM_POINTS) * 4u, NULL, &chunk->items, GL_R32UI,
-         &chunk->item_texels},
+        {"enlargement of blocks", blocks * 4, NULL, &chunk->enlarged, GL_R32F,
+         &chunk->enlarged_texels},
+        {"drawn points", blocks * PARTS * 4, NULL, &chunk->items, GL_R32UI, &chunk->item_texels},
         {"draw arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
     };
     enum orl_result result = ORL_OK;
@@ -260,32 +272,50 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
     return result;
 }
 
-static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *points,
-                                    const struct key *order, struct point_chunk *chunk)
+static void fill_block(const struct orl_points *points, const struct key *order, size_t count,
+                       size_t block, struct host_chunk *host)
 {
-    const struct orl_log *log = orl_gpu_log(gpu);
-    size_t count = (size_t)chunk->count, block_count = (size_t)chunk->block_count;
-    float(*positions)[4] = orl_array(log, count, sizeof *positions);
-    uint32_t(*attributes)[2] = orl_array(log, count, sizeof *attributes);
-    float(*blocks)[2][4] = orl_array(log, block_count, sizeof *blocks);
-    enum orl_result result = positions && attributes && blocks ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+    float positions[BLOCK][4];
+    for (size_t i = 0; i < BLOCK; i++) {
+        size_t to = (i / ORL_ITEM_POINTS * host->block_count + block) * ORL_ITEM_POINTS +
+                    i % ORL_ITEM_POINTS;
+        if (i >= count) { // nowhere: falls into no pixel
+            for (int k = 0; k < 4; k++)
+                host->positions[to][k] = NAN;
+            host->attributes[to][1] = UINT32_MAX;
+            continue;
+        }
         size_t from = order[i].point;
         memcpy(positions[i], points->position[from], 3 * sizeof(float));
         positions[i][3] = points->radius[from];
+        memcpy(host->positions[to], positions[i], sizeof positions[i]);
         const uint8_t *c = points->color[from];
-        attributes[i][0] = pack_normal(points->normal[from]);
-        attributes[i][1] = (uint32_t)c[0] | (uint32_t)c[1] << 8 | (uint32_t)c[2] << 16;
+        host->attributes[to][0] = pack_normal(points->normal[from]);
+        host->attributes[to][1] = (uint32_t)c[0] | (uint32_t)c[1] << 8 | (uint32_t)c[2] << 16;
     }
-    for (size_t b = 0; result == ORL_OK && b < block_count; b++) {
+    describe_block(positions, points, order, count, host->blocks[block]);
+}
+
+static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *points,
+                                    const struct key *order, size_t count,
+                                    struct point_chunk *chunk)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    struct host_chunk host = {.block_count = (size_t)chunk->block_count};
+    host.positions = orl_array(log, host.block_count * BLOCK, sizeof *host.positions);
+    host.attributes = orl_array(log, host.block_count * BLOCK, sizeof *host.attributes);
+    host.blocks = orl_array(log, host.block_count, sizeof *host.blocks);
+    enum orl_result result =
+        host.positions && host.attributes && host.blocks ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t b = 0; result == ORL_OK && b < host.block_count; b++) {
         size_t first = b * BLOCK, here = count - first < BLOCK ? count - first : BLOCK;
-        describe_block(positions + first, points, order + first, here, blocks[b]);
+        fill_block(points, order + first, here, b, &host);
     }
     if (result == ORL_OK)
-        result = make_buffers(gpu, chunk, positions, attributes, blocks);
-    free(positions);
-    free(attributes);
-    free(blocks);
+        result = make_buffers(gpu, chunk, &host);
+    free(host.positions);
+    free(host.attributes);
+    free(host.blocks);
     return result;
 }
 
@@ -294,7 +324,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     memset(cloud, 0, sizeof *cloud);
-    if (points->count > INT32_MAX)
+    if (points->count > INT32_MAX - BLOCK)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
     // Whole blocks, within what the device sees of a buffer.
     size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / BLOCK * BLOCK;
@@ -309,10 +339,11 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     // An empty cloud is one empty chunk: the passes that run per chunk still run.
     for (size_t first = 0; result == ORL_OK && (first < count || first == 0); first += most) {
         struct point_chunk *chunk = &cloud->chunks[cloud->chunk_count++];
+        size_t here = count - first < most ? count - first : most;
+        chunk->block_count = (int)orl_groups(here, BLOCK);
         chunk->first = (int)first;
-        chunk->count = (int)(count - first < most ? count - first : most);
-        chunk->block_count = (int)orl_groups((size_t)chunk->count, BLOCK);
-        result = upload_chunk(gpu, points, order + first, chunk);
+        chunk->count = chunk->block_count * BLOCK;
+        result = upload_chunk(gpu, points, order + first, here, chunk);
     }
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "splat_cull.comp", NULL, sizeof(struct splat_block),
@@ -328,9 +359,9 @@ void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
     for (size_t i = 0; i < cloud->chunk_count; i++) {
         struct point_chunk *c = &cloud->chunks[i];
         struct orl_tex **const views[] = {&c->position_texels, &c->attribute_texels,
-                                          &c->block_texels, &c->drawn_texels, &c->item_texels,
+                                          &c->block_texels, &c->enlarged_texels, &c->item_texels,
                                           &c->arg_texels};
-        struct orl_buf **const bufs[] = {&c->positions, &c->attributes, &c->blocks, &c->drawn,
+        struct orl_buf **const bufs[] = {&c->positions, &c->attributes, &c->blocks, &c->enlarged,
                                          &c->items, &c->args};
         for (size_t k = 0; k < ORL_COUNT(views); k++)
             orl_tex_destroy(gpu, views[k]);
@@ -352,7 +383,7 @@ void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         orl_buf_write(chunk->args, 0, sizeof nothing, nothing);
         struct orl_dispatch d = {.prog = cloud->cull, .params = block,
                                  .bufs = {{.buf = chunk->args}, {.buf = chunk->items},
-                                          {.buf = chunk->drawn}},
+                                          {.buf = chunk->enlarged}},
                                  .images = {{chunk->block_texels, 0, GL_READ_ONLY}},
                                  .groups = {orl_groups((size_t)chunk->block_count,
                                                        ORL_POINT_GROUP)},

@@ -8,15 +8,16 @@
 
 // --- the point cloud on the device (cloud.c) ---
 
-// Points in chunks, so that no storage binding exceeds the device's limit. A chunk is blocks
-// of ORL_BLOCK_POINTS points that are near one another. Each buffer has a view as texels.
+// Points in chunks, so that no buffer is larger than a device takes. A chunk is blocks of
+// ORL_BLOCK_POINTS points that are near one another. Each buffer has a view as texels.
 struct point_chunk {
-    struct orl_buf *positions, *attributes, *blocks, *drawn, *items, *args;
+    struct orl_buf *positions, *attributes, *blocks, *enlarged, *items, *args;
     struct orl_tex *position_texels;  // RGBA32F: world xyz, radius
     struct orl_tex *attribute_texels; // RG32UI: octahedral normal, colour
-    struct orl_tex *block_texels;     // RGBA32F, two a block: shaders/splat_cull.comp
-    struct orl_tex *drawn_texels, *item_texels, *arg_texels; // R32UI, of the last cull
-    int first, count, block_count;
+    struct orl_tex *block_texels;     // RGBA32F: shaders/splat_cull.comp
+    // Of the last cull; floats, then words:
+    struct orl_tex *enlarged_texels, *item_texels, *arg_texels;
+    int first, count, block_count;    // count: padded to whole blocks
 };
 
 struct cloud {

@@ -198,7 +198,7 @@ static void resolve(struct orl_gpu *gpu, const struct proxy *proxy, struct splat
                                             {t->splats, 0, GL_READ_WRITE},
                                             {t->surfel_a[1], 0, GL_WRITE_ONLY},
                                             {t->surfel_b[1], 0, GL_WRITE_ONLY},
-                                            {chunk->drawn_texels, 0, GL_READ_ONLY}},
+                                            {chunk->enlarged_texels, 0, GL_READ_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
         orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
         orl_gpu_dispatch(gpu, &d);

@@ -22,7 +22,7 @@ struct point {
     float normal[3];
 };
 
-enum { POINTS_MAX = 2000 };
+enum { POINTS_MAX = 2048 }; // whole blocks
 
 struct drawn {
     float depth[SIDE * SIDE], normal[SIDE * SIDE][4];
