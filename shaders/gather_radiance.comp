@@ -2,6 +2,7 @@
 // times its trust, so that clipped and noisy samples lose to better ones pixel by pixel.
 #define RADIANCE
 #include "include/airieau.glsl"
+#include "include/photo_choice.glsl"
 #include "include/trust.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -14,7 +15,7 @@ const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Sample {
     vec3 color;   // radiance
-    float clip;   // trust as far as clipping goes
+    float clip;   // trust as far as clipping goes; in the end, all trust
     float weight; // geometric
     vec2 pixel;
     float mip;
@@ -36,15 +37,21 @@ float noise_trust(int i, vec3 color)
 // times as bright. 0: hidden.
 float seen_share(vec4 seen, float z, bool guessed)
 {
-    if (!photo_sees(seen, z, guessed))
-        return 0.0;
-    vec4 same = vec4(lessThanEqual(abs(seen - z), vec4(options.x * z)));
-    same = max(same, vec4(equal(seen, vec4(0.0))));
     if (guessed)
-        same = vec4(greaterThanEqual(seen, vec4(z * (1.0 - options.x)))) +
-               vec4(equal(seen, vec4(0.0)));
-    float share = dot(min(same, 1.0), vec4(0.25));
+        return photo_unhidden_share(seen, z);
+    vec4 same = clamp(2.0 - abs(seen - z) / (z * options.x), 0.0, 1.0);
+    float share = dot(mix(same, vec4(choice.z), equal(seen, vec4(0.0))), vec4(0.25));
     return share * share;
+}
+
+// What the method makes of a photograph that sees the point.
+float geometric_weight(int i, vec3 p, bool guessed)
+{
+    if (flags.z == 1)
+        return pow(1.0 / photo_penalty(i, p), guessed ? choice.w : choice.y);
+    float weight = airieau_weight(p, photos[i].eye.xyz);
+    // Where depth is only guessed, photographs disagree: let the best one dominate.
+    return guessed ? pow(weight * options.y, 8.0) : weight;
 }
 
 // What photograph `i` says of a point; false when it does not see it.
@@ -54,11 +61,7 @@ bool ask(int i, vec3 p, bool guessed, out Sample s)
     s.weight = 0.0;
     if (!photo_project(i, p, s.pixel, z))
         return false;
-    s.weight = airieau_weight(p, photos[i].eye.xyz);
-    // Where depth is only guessed, photographs disagree: let the best one dominate.
-    if (guessed)
-        s.weight = pow(s.weight * options.y, 8.0);
-    s.weight *= photo_border(i, s.pixel);
+    s.weight = geometric_weight(i, p, guessed) * photo_border(i, s.pixel);
     if (!(s.weight > 0.0))
         return false;
     if (flags.x == 1)
@@ -179,28 +182,45 @@ float stops2(vec3 a, vec3 b, float floor_level)
     return dot(d, d) / 3.0;
 }
 
+// Largest weight that a method of the best few leaves out.
+float left_out()
+{
+    int kept = flags.z == 1 ? int(choice.x) : ORL_RADIANCE_KEPT;
+    float limit = 0.0;
+    for (int k = 0; k < sample_count; k++) {
+        int above = 0;
+        for (int j = 0; j < sample_count; j++)
+            above += int(weights[j] > weights[k] || (weights[j] == weights[k] && j < k));
+        limit = above == kept ? weights[k] : limit;
+    }
+    return limit;
+}
+
 void blend(ivec2 at)
 {
     // How far each sample is to be trusted depends on how much light there was, which its
     // own noise must not decide: the median says.
     vec3 level = max(median_color(), radiance.z);
-    vec4 sum = vec4(0.0);
-    float total = 0.0, trust = 0.0;
+    float noise[ORL_RADIANCE_KEPT];
     for (int k = 0; k < sample_count; k++) {
         int i = sample_photo[k];
-        float noise = relative_variance(exposure_of(i, level), photos[i].noise);
-        float believed = samples[k].clip * MODEL / (MODEL + noise);
-        float w = samples[k].weight * believed;
+        noise[k] = relative_variance(exposure_of(i, level), photos[i].noise);
+        samples[k].clip *= MODEL / (MODEL + noise[k]);
+        weights[k] = samples[k].weight * samples[k].clip;
+    }
+    float limit = left_out(), total = 0.0, trust = 0.0;
+    for (int k = 0; k < sample_count; k++) {
+        weights[k] = max(weights[k] - limit, 0.0); // so that none appears at once
         // Things that moved between the photographs. 1 / ln(2)^2 makes relative error stops.
         if (radiance.x > 0.0) {
             float excess = stops2(samples[k].color, level, radiance.z) /
-                           (radiance.x * radiance.x + 2.0814 * noise);
-            w /= 1.0 + excess * excess;
+                           (radiance.x * radiance.x + 2.0814 * noise[k]);
+            weights[k] /= 1.0 + excess * excess;
         }
-        weights[k] = w;
-        total += w;
-        trust += w * believed;
+        total += weights[k];
+        trust += weights[k] * samples[k].clip;
     }
+    vec4 sum = vec4(0.0);
     for (int k = 0; k < sample_count; k++) {
         vec3 color = samples[k].color;
         if (flags.y == 1 && weights[k] > 0.02 * total)

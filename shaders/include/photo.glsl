@@ -1,4 +1,6 @@
 // Asking a photograph about a surface point, shared by the gather passes.
+#ifndef PHOTO_GLSL
+#define PHOTO_GLSL
 #define BLOCK_GATHER
 #include "include/render_blocks.h"
 
@@ -133,3 +135,5 @@ bool photo_unhidden(vec4 seen, float z, float tolerance)
                       seen.z > 0.0 && seen.z < z - tolerance,
                       seen.w > 0.0 && seen.w < z - tolerance));
 }
+
+#endif

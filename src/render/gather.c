@@ -121,7 +121,7 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
         .options = {params->depth_tolerance, params->distance_floor,
                     params->border_px / (float)r->photos.divide},
         .flags = {params->visibility == ORL_VISIBILITY_HARD,
-                  params->sampling == ORL_SAMPLING_BICUBIC},
+                  params->sampling == ORL_SAMPLING_BICUBIC, params->blend == ORL_BLEND_BEST},
         .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model),
                      orl_least_radiance(&r->photos.sensor, r->photos.ev_brightest, true)},
         .area = {view->camera.width, view->camera.height, (int)count, tiles(view->camera.width)},
