@@ -128,6 +128,8 @@ enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_p
         goto fail;
     }
     query_caps(&gpu->caps);
+    if (!params || !params->debug)
+        orl_program_cache_open(gpu, params ? params->cache_dir : NULL);
     if (params && params->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -157,6 +159,7 @@ void orl_gpu_destroy(struct orl_gpu **handle)
         eglDestroyContext(gpu->display, gpu->context);
         eglTerminate(gpu->display);
     }
+    orl_program_cache_close(gpu);
     free(gpu->shader_dir);
     free(gpu);
     *handle = NULL;

@@ -14,7 +14,11 @@ struct orl_gpu;
 
 struct orl_gpu_params {
     const char *shader_dir; // read shaders from this folder; NULL: the embedded ones
-    bool debug;             // GL debug output to the log; errors become sticky failures
+    bool debug;             // GL debug output to the log; errors become sticky failures;
+                            // programs are always compiled, so that all warnings are seen
+    // Where linked programs are kept between runs; NULL: oriel in $XDG_CACHE_HOME or ~/.cache;
+    // "": nowhere, as with ORIEL_CACHE=off in the environment.
+    const char *cache_dir;
 };
 
 struct orl_gpu_caps {
@@ -117,6 +121,8 @@ struct orl_prog;
 // binding 0, 0 if it has none.
 enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const char *defines,
                                 size_t params_size, struct orl_prog **out) ORL_CHECK_RESULT;
+// Programs so far that an earlier run had compiled.
+size_t orl_gpu_cached_programs(const struct orl_gpu *gpu);
 void orl_prog_destroy(struct orl_gpu *gpu, struct orl_prog **prog);
 
 enum { ORL_BINDINGS_MAX = 8 };

@@ -20,6 +20,8 @@ struct orl_gpu {
     EGLContext context;
     struct orl_gpu_caps caps;
     char *shader_dir; // owned; NULL: embedded
+    char *program_cache; // owned; NULL: none
+    size_t cached_progs; // taken from it
     bool failed;      // sticky: a GL error or a high-severity message
     bool current;     // the context could be made current
     size_t live_bufs, live_texs, live_progs, live_bytes;
@@ -48,6 +50,15 @@ struct shader_source {
 enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
                                        struct shader_source *source);
 void orl_shader_source_finish(struct shader_source *source);
+
+// Linked programs of earlier runs (program_cache.c). dir: of struct orl_gpu_params.
+void orl_program_cache_open(struct orl_gpu *gpu, const char *dir);
+void orl_program_cache_close(struct orl_gpu *gpu);
+// True: `program` is linked.
+bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *source,
+                            GLuint program);
+void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *source,
+                             GLuint program);
 
 // Logs every pending GL error as made by `where`; true if there were none.
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);

@@ -31,6 +31,8 @@ static enum orl_result compile(struct orl_gpu *gpu, const char *file,
         glGetShaderInfoLog(shader, sizeof message, NULL, message);
     } else {
         glAttachShader(program, shader);
+        glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT,
+                            gpu->program_cache != NULL);
         glLinkProgram(program);
         glGetProgramiv(program, GL_LINK_STATUS, &ok);
         if (!ok)
@@ -63,9 +65,13 @@ enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const cha
     prog->file = source.files[0];
     prog->params_size = params_size;
     prog->id = glCreateProgram();
-    result = compile(gpu, file, &source, prog->id);
-    if (result != ORL_OK)
-        goto end;
+    bool cached = orl_program_cache_load(gpu, &source, prog->id);
+    if (!cached) {
+        result = compile(gpu, file, &source, prog->id);
+        if (result != ORL_OK)
+            goto end;
+        orl_program_cache_store(gpu, &source, prog->id);
+    }
     glObjectLabel(GL_PROGRAM, prog->id, -1, prog->file);
     if (params_size) {
         glCreateBuffers(1, &prog->params_buf);
@@ -76,14 +82,19 @@ enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const cha
         result = ORL_ERR_GPU;
         goto end;
     }
-    orl_logf(gpu->log, ORL_LOG_DEBUG, "shaders/%s compiled in %.0f ms", file,
-             1e3 * (orl_time_s() - start));
+    orl_logf(gpu->log, ORL_LOG_DEBUG, "shaders/%s %s in %.0f ms", file,
+             cached ? "loaded" : "compiled", 1e3 * (orl_time_s() - start));
     *out = prog;
     prog = NULL;
 end:
     orl_prog_destroy(gpu, &prog);
     orl_shader_source_finish(&source);
     return result;
+}
+
+size_t orl_gpu_cached_programs(const struct orl_gpu *gpu)
+{
+    return gpu->cached_progs;
 }
 
 void orl_prog_destroy(struct orl_gpu *gpu, struct orl_prog **handle)

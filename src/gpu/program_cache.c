@@ -1,0 +1,159 @@
+// Linked programs kept between runs. Every failure here only means that a program is
+// compiled again: nothing is reported above debug level.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "gpu/internal.h"
+
+enum {
+    FORMATS_MAX = 64,
+    BINARY_MAX_BYTES = 64 << 20,
+    ENTRIES_MAX = 512, // old drivers' and shaders' entries are never asked for again
+};
+
+// What a file starts with; the rest is the driver's.
+struct header {
+    char magic[8];
+    uint64_t hash; // of the rest
+    uint32_t size, format;
+};
+static const char magic[8] = "ORLPRG1";
+
+// The folder: `asked`, else $XDG_CACHE_HOME/oriel, else ~/.cache/oriel; NULL: none.
+static char *cache_dir(const char *asked)
+{
+    const char *setting = getenv("ORIEL_CACHE"), *xdg = getenv("XDG_CACHE_HOME");
+    const char *home = getenv("HOME");
+    if (setting && strcmp(setting, "off") == 0)
+        return NULL;
+    if (asked)
+        return *asked ? orl_strdup(NULL, asked) : NULL;
+    if (xdg && *xdg == '/') // relative paths are to be ignored (XDG base directories)
+        return orl_path_join(NULL, xdg, "oriel");
+    return home && *home ? orl_path_join(NULL, home, ".cache/oriel") : NULL;
+}
+
+void orl_program_cache_open(struct orl_gpu *gpu, const char *dir)
+{
+    GLint count = 0;
+    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
+    if (count > 0)
+        gpu->program_cache = cache_dir(dir);
+}
+
+void orl_program_cache_close(struct orl_gpu *gpu)
+{
+    free(gpu->program_cache);
+    gpu->program_cache = NULL;
+}
+
+// Names the entry after all that the linked program follows from.
+static char *entry_path(const struct orl_gpu *gpu, const struct shader_source *source)
+{
+    const struct orl_gpu_caps *caps = &gpu->caps;
+    const char *const parts[] = {source->text, caps->vendor, caps->renderer, caps->version,
+                                 ORL_VERSION};
+    XXH3_state_t *state = XXH3_createState();
+    if (!state)
+        return NULL;
+    XXH3_128bits_reset(state);
+    for (size_t i = 0; i < ORL_COUNT(parts); i++)
+        XXH3_128bits_update(state, parts[i], strlen(parts[i]) + 1); // with its end
+    XXH128_hash_t hash = XXH3_128bits_digest(state);
+    XXH3_freeState(state);
+    return orl_format(NULL, "%s/programs/%016llx%016llx", gpu->program_cache,
+                      (unsigned long long)hash.high64, (unsigned long long)hash.low64);
+}
+
+static bool format_known(GLenum format)
+{
+    GLint count = 0, formats[FORMATS_MAX];
+    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
+    if (count > FORMATS_MAX)
+        return false;
+    glGetIntegerv(GL_PROGRAM_BINARY_FORMATS, formats);
+    for (GLint i = 0; i < count; i++)
+        if ((GLenum)formats[i] == format)
+            return true;
+    return false;
+}
+
+// The program of a whole and undamaged file.
+static bool load_binary(const uint8_t *data, size_t size, GLuint program)
+{
+    struct header header;
+    if (size <= sizeof header)
+        return false;
+    memcpy(&header, data, sizeof header);
+    const uint8_t *binary = data + sizeof header;
+    if (memcmp(header.magic, magic, sizeof magic) != 0 || header.size != size - sizeof header ||
+        header.hash != XXH3_64bits(binary, header.size) || !format_known(header.format))
+        return false;
+    GLint ok = 0;
+    glProgramBinary(program, header.format, binary, (GLsizei)header.size);
+    while (glGetError() != GL_NO_ERROR)
+        ; // refused: compiled instead
+    glGetProgramiv(program, GL_LINK_STATUS, &ok);
+    return ok;
+}
+
+bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *source,
+                            GLuint program)
+{
+    uint8_t *data = NULL;
+    size_t size;
+    char *path = gpu->program_cache ? entry_path(gpu, source) : NULL;
+    bool hit = path && orl_path_is_file(path) &&
+               orl_file_read(NULL, path, BINARY_MAX_BYTES, &data, &size) == ORL_OK &&
+               load_binary(data, size, program);
+    gpu->cached_progs += hit;
+    free(data);
+    free(path);
+    return hit;
+}
+
+// An empty folder for entries, if it is not there or overfull.
+static bool prepare_folder(const char *dir)
+{
+    struct orl_names names = {0};
+    char *programs = orl_path_join(NULL, dir, "programs");
+    bool ok = programs && orl_dir_make(NULL, programs) == ORL_OK &&
+              orl_dir_list(NULL, programs, &names) == ORL_OK;
+    if (ok && names.count >= ENTRIES_MAX)
+        ok = orl_dir_remove(NULL, programs) == ORL_OK && orl_dir_make(NULL, programs) == ORL_OK;
+    orl_names_finish(&names);
+    free(programs);
+    return ok;
+}
+
+void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *source,
+                             GLuint program)
+{
+    GLint length = 0;
+    if (!gpu->program_cache)
+        return;
+    glGetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &length);
+    if (length <= 0 || length > BINARY_MAX_BYTES - (GLint)sizeof(struct header))
+        return;
+    struct header header = {0};
+    GLenum format = 0;
+    char *path = entry_path(gpu, source);
+    uint8_t *data = orl_array(NULL, sizeof header + (size_t)length, 1);
+    if (!path || !data || !prepare_folder(gpu->program_cache))
+        goto end;
+    glGetProgramBinary(program, length, &length, &format, data + sizeof header);
+    memcpy(header.magic, magic, sizeof magic);
+    header.size = (uint32_t)length;
+    header.format = format;
+    header.hash = XXH3_64bits(data + sizeof header, header.size);
+    memcpy(data, &header, sizeof header);
+    if (orl_file_write(NULL, path, data, sizeof header + header.size) != ORL_OK)
+        orl_logf(gpu->log, ORL_LOG_DEBUG, "%s cannot be written: programs are not kept", path);
+end:
+    free(data);
+    free(path);
+}

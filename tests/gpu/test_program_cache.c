@@ -1,0 +1,180 @@
+// Linked programs kept between devices: found again, and compiled anew when damaged.
+#include "gpu_test.h"
+#include "render/internal.h"
+
+static char *dir;
+
+static struct orl_gpu *open_device(const char *cache_dir)
+{
+    static struct orl_log log;
+    log = orl_log_stderr(ORL_LOG_WARNING);
+    struct orl_gpu *gpu = NULL;
+    struct orl_gpu_params params = {.cache_dir = cache_dir};
+    assert_int_equal(orl_gpu_create(&log, &params, &gpu), ORL_OK);
+    return gpu;
+}
+
+// Whether a device finds support.comp in the cache; what it has must work: a flat wall of 8x8
+// pixels with one pixel sticking out, which is dropped.
+static size_t create_and_run(const char *defines)
+{
+    enum { SIDE = 8 };
+    struct orl_gpu *gpu = open_device(dir);
+    struct orl_prog *prog = NULL;
+    struct orl_tex *in = NULL, *out = NULL, *normal = NULL;
+    float depth[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++)
+        depth[i] = i == 20 ? 1 : 2;
+    struct orl_tex_params params = {.width = SIDE, .height = SIDE, .format = GL_R32F, .tag = "t"};
+    assert_int_equal(orl_prog_create(gpu, "support.comp", defines, sizeof(struct pyramid_block),
+                                     &prog), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
+    params.format = GL_RGBA16F;
+    assert_int_equal(orl_tex_create(gpu, &params, &normal), ORL_OK);
+    orl_tex_write(in, 0, 0, GL_RED, GL_FLOAT, depth);
+    struct pyramid_block block = {.level = {SIDE, SIDE, 0, 8}};
+    struct orl_dispatch d = {.prog = prog, .params = &block, .groups = {1, 1, 1},
+                             .images = {{in, 0, GL_READ_ONLY}, {out, 0, GL_WRITE_ONLY},
+                                        {normal, 0, GL_WRITE_ONLY}},
+                             .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
+    orl_gpu_dispatch(gpu, &d);
+    orl_tex_read(out, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        assert_float_equal(depth[i], i == 20 ? 0 : 2, 0);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+    size_t cached = orl_gpu_cached_programs(gpu);
+    orl_prog_destroy(gpu, &prog);
+    orl_tex_destroy(gpu, &in);
+    orl_tex_destroy(gpu, &out);
+    orl_tex_destroy(gpu, &normal);
+    orl_gpu_destroy(&gpu);
+    return cached;
+}
+
+static void list_entries(struct orl_names *names)
+{
+    char *programs = orl_path_join(NULL, dir, "programs");
+    *names = (struct orl_names){0};
+    if (orl_path_is_dir(programs))
+        assert_int_equal(orl_dir_list(NULL, programs, names), ORL_OK);
+    free(programs);
+}
+
+static size_t count_entries(void)
+{
+    struct orl_names names;
+    list_entries(&names);
+    size_t count = names.count;
+    orl_names_finish(&names);
+    return count;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    dir = test_dir_make();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    test_dir_remove(dir);
+    return 0;
+}
+
+static void the_second_device_finds_it(void **state)
+{
+    (void)state;
+    assert_int_equal(create_and_run(NULL), 0);
+    assert_int_equal(count_entries(), 1);
+    assert_int_equal(create_and_run(NULL), 1);
+    assert_int_equal(count_entries(), 1);
+}
+
+static void other_sources_are_other_entries(void **state)
+{
+    (void)state;
+    assert_int_equal(create_and_run(NULL), 0);
+    assert_int_equal(create_and_run("SOMETHING"), 0);
+    assert_int_equal(count_entries(), 2);
+}
+
+// Keeps `keep` bytes of the one entry, one of them changed.
+static void damage(size_t keep, size_t changed)
+{
+    struct orl_names names;
+    list_entries(&names);
+    assert_int_equal(names.count, 1);
+    char *programs = orl_path_join(NULL, dir, "programs");
+    char *path = orl_path_join(NULL, programs, names.items[0]);
+    uint8_t *data;
+    size_t size;
+    assert_int_equal(orl_file_read(NULL, path, 1 << 26, &data, &size), ORL_OK);
+    if (changed < size)
+        data[changed] ^= 0x10;
+    assert_int_equal(orl_file_write(NULL, path, data, keep < size ? keep : size), ORL_OK);
+    free(data);
+    free(path);
+    free(programs);
+    orl_names_finish(&names);
+}
+
+static void damaged_entries_are_made_again(void **state)
+{
+    (void)state;
+    // The magic, the hash, the size, the format, the binary; then cut short, then empty.
+    static const struct {
+        size_t keep, changed;
+    } cases[] = {{SIZE_MAX, 0}, {SIZE_MAX, 9}, {SIZE_MAX, 17}, {SIZE_MAX, 21}, {SIZE_MAX, 100},
+                 {200, SIZE_MAX}, {10, SIZE_MAX}, {0, SIZE_MAX}};
+    assert_int_equal(create_and_run(NULL), 0);
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        damage(cases[i].keep, cases[i].changed);
+        assert_int_equal(create_and_run(NULL), 0);
+        assert_int_equal(create_and_run(NULL), 1);
+    }
+}
+
+static void it_can_be_switched_off(void **state)
+{
+    (void)state;
+    setenv("ORIEL_CACHE", "off", 1);
+    assert_int_equal(create_and_run(NULL), 0);
+    unsetenv("ORIEL_CACHE");
+    assert_int_equal(count_entries(), 0);
+}
+
+static void a_folder_that_cannot_be_made_is_no_error(void **state)
+{
+    (void)state;
+    char *plain = dir;
+    dir = orl_path_join(NULL, plain, "file");
+    assert_int_equal(orl_file_write(NULL, dir, "x", 1), ORL_OK);
+    assert_int_equal(create_and_run(NULL), 0);
+    free(dir);
+    dir = plain;
+}
+
+int main(void)
+{
+    struct orl_gpu *gpu = gpu_test_device();
+    GLint formats = 0;
+    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
+    orl_gpu_destroy(&gpu);
+    if (formats == 0) {
+        fprintf(stderr, "skipped: this driver has no program binaries\n");
+        return 77;
+    }
+    unsetenv("ORIEL_CACHE");
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_second_device_finds_it, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(other_sources_are_other_entries, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(damaged_entries_are_made_again, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(it_can_be_switched_off, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_folder_that_cannot_be_made_is_no_error, set_up,
+                                        tear_down),
+    };
+    return cmocka_run_group_tests_name("program cache", tests, NULL, NULL);
+}
