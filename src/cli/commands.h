@@ -14,6 +14,7 @@ struct command {
 int cmd_prepare(int argc, char **argv);
 int cmd_densify(int argc, char **argv);
 int cmd_hdr(int argc, char **argv);
+int cmd_bench(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_eval(int argc, char **argv);

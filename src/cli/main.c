@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 
 static const struct command commands[] = {
+    {"bench", "time and memory of frames, pass by pass", cmd_bench},
     {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},
     {"hdr", "radiance views from photographs of several exposures", cmd_hdr},

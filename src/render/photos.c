@@ -78,11 +78,10 @@ static size_t slot_bytes(const struct photos *photos, const struct slot_size *si
 static struct slot_size plan(const struct orl_log *log, size_t budget, int layers_max,
                              struct photos *photos)
 {
-    int count = 0;
+    int count = 0, asked = photos->divide;
     for (size_t i = 0; i < photos->scene->photo_count; i++)
         count += photos->states[i].usable;
-    struct slot_size size = slot_size(photos, 1);
-    photos->divide = 1;
+    struct slot_size size = slot_size(photos, photos->divide);
     while (budget && photos->divide < DIVIDE_MAX &&
            slot_bytes(photos, &size) * (size_t)count > budget) {
         photos->divide *= 2;
@@ -94,7 +93,7 @@ static struct slot_size plan(const struct orl_log *log, size_t budget, int layer
     fits = fits < (size_t)layers_max ? fits : (size_t)layers_max;
     fits = fits < (size_t)count ? fits : (size_t)count;
     photos->slot_count = fits > 1 ? (int)fits : 1;
-    if (photos->divide > 1)
+    if (photos->divide > asked)
         orl_logf(log, ORL_LOG_WARNING,
                  "photographs do not fit in %zu MiB of device memory: using them at 1/%d size",
                  budget >> 20, photos->divide);
@@ -152,6 +151,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         photos->states[i].slot = -1;
     }
     find_exposures(photos);
+    photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
     struct slot_size size =
         plan(log, budget_bytes, orl_gpu_caps(gpu)->max_texture_layers, photos);
     for (size_t i = 0; i < scene->photo_count; i++) {

@@ -71,6 +71,8 @@ struct orl_sensor;
 struct orl_renderer_params {
     const bool *use;       // per photograph: may it be used? NULL: all that are not held out
     size_t max_vram_bytes; // plan for this much device memory; 0: no limit
+    int photo_divide;      // photographs at 1/n of their size at most, n a power of two up
+                           // to 8; 0: as 1
     // Photographs as radiance: their response, vignetting and exposure undone, each pixel
     // weighing by how well exposed it is (radiance.h). For scenes of several exposures.
     bool radiance;
@@ -97,7 +99,7 @@ struct orl_frame {
 };
 void orl_frame_finish(struct orl_frame *frame);
 
-// Renders and reads back; the same input gives the same bits. `skip[i]` leaves a
+// Renders and reads back, unless `frame` is NULL; the device is done then, too. The same input gives the same bits. `skip[i]` leaves a
 // photograph out of this view; NULL: none.
 enum orl_result orl_renderer_draw(struct orl_renderer *renderer, const struct orl_view *view,
                                   const struct orl_render_params *params, const bool *skip,

@@ -219,7 +219,8 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
                                   struct orl_frame *frame)
 {
     const struct orl_log *log = orl_gpu_log(r->gpu);
-    memset(frame, 0, sizeof *frame);
+    if (frame)
+        memset(frame, 0, sizeof *frame);
     if (!orl_camera_valid(&view->camera))
         return orl_fail(log, ORL_ERR_ARGUMENT, "this camera cannot be rendered: %dx%d, focal %g %g",
                         view->camera.width, view->camera.height, view->camera.fx, view->camera.fy);
@@ -227,8 +228,8 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
     if (result == ORL_OK)
         result = draw(r, view, params, skip);
     if (result == ORL_OK)
-        result = read_back(r, frame);
-    if (result != ORL_OK)
+        result = frame ? read_back(r, frame) : orl_gpu_finish(r->gpu);
+    if (result != ORL_OK && frame)
         orl_frame_finish(frame);
     return result;
 }

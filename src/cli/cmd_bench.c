@@ -1,0 +1,288 @@
+// oriel bench: what a frame costs, pass by pass and byte by byte.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "core/memory.h"
+#include "eval/bench.h"
+
+enum { SIZES_MAX = 8, POINTS_MAX = 16 };
+
+struct options {
+    struct orl_names methods, sizes, points, settings;
+    const char *json, *trace, *out;
+    double seconds;
+    int frames, max_vram_mib;
+    bool quick;
+};
+
+// What the options say, in the library's words.
+struct plan {
+    const char **names;
+    struct orl_render_params *render;
+    size_t method_count;
+    int sizes[SIZES_MAX][2];
+    size_t size_count;
+    size_t points[POINTS_MAX + 1];
+};
+
+static enum orl_result add_method(const struct orl_log *log, const struct options *o,
+                                  const struct orl_method *method, struct plan *plan)
+{
+    struct orl_render_params *render = &plan->render[plan->method_count];
+    enum orl_result result = ORL_OK;
+    *render = method->params;
+    for (size_t i = 0; result == ORL_OK && i < o->settings.count; i++)
+        result = orl_render_params_set(log, render, o->settings.items[i]);
+    plan->names[plan->method_count++] = method->name;
+    return result;
+}
+
+static enum orl_result plan_methods(const struct orl_log *log, const struct options *o,
+                                    struct plan *plan)
+{
+    size_t known = 0;
+    while (orl_methods[known].name)
+        known++;
+    size_t room = known + o->methods.count;
+    plan->names = orl_array(log, room, sizeof *plan->names);
+    plan->render = orl_array(log, room, sizeof *plan->render);
+    enum orl_result result = plan->names && plan->render ? ORL_OK : ORL_ERR_MEMORY;
+    bool all = orl_names_contain(&o->methods, "all");
+    if (result == ORL_OK && !all && o->methods.count == 0)
+        return add_method(log, o, &orl_methods[0], plan);
+    for (size_t i = 0; result == ORL_OK && all && i < known; i++)
+        result = add_method(log, o, &orl_methods[i], plan);
+    for (size_t i = 0; result == ORL_OK && !all && i < o->methods.count; i++) {
+        const struct orl_method *method = orl_method_find(log, o->methods.items[i]);
+        result = method ? add_method(log, o, method, plan) : ORL_ERR_ARGUMENT;
+    }
+    return result;
+}
+
+static enum orl_result plan_sizes(const struct orl_log *log, const struct options *o,
+                                  struct plan *plan)
+{
+    static const char *const usual[] = {"512x512", "1024x1024"};
+    size_t count = o->sizes.count ? o->sizes.count : ORL_COUNT(usual);
+    if (count > SIZES_MAX)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--size: at most %d", SIZES_MAX);
+    for (size_t i = 0; i < count; i++) {
+        const char *text = o->sizes.count ? o->sizes.items[i] : usual[i];
+        int *size = plan->sizes[plan->size_count++], used = 0;
+        if (sscanf(text, "%5dx%5d%n", &size[0], &size[1], &used) != 2 || text[used] ||
+            size[0] < 16 || size[1] < 16 || size[0] > 16384 || size[1] > 16384)
+            return orl_fail(log, ORL_ERR_ARGUMENT,
+                            "--size %s: must be WxH, each from 16 to 16384", text);
+    }
+    return ORL_OK;
+}
+
+static enum orl_result plan_points(const struct orl_log *log, const struct options *o,
+                                   struct plan *plan)
+{
+    if (o->points.count > POINTS_MAX)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--points: at most %d", POINTS_MAX);
+    for (size_t i = 0; i < o->points.count; i++) {
+        char *end;
+        double value = strtod(o->points.items[i], &end);
+        if (*end || !(value >= 1 && value <= 1e9))
+            return orl_fail(log, ORL_ERR_ARGUMENT, "--points %s: must be a number from 1 to 1e9",
+                            o->points.items[i]);
+        plan->points[i] = (size_t)value;
+    }
+    return ORL_OK;
+}
+
+// --- tables on stdout ---
+
+static double mib(size_t bytes)
+{
+    return (double)bytes / (1 << 20);
+}
+
+static void print_memory(const struct orl_bench *bench)
+{
+    static const char *const owners[] = {"points", "photographs", "frame"};
+    size_t all = 0;
+    printf("\n%-14s %10s   %s\n", "memory", "MiB", "of");
+    for (size_t k = 0; k < ORL_COUNT(owners); k++) {
+        size_t sum = 0;
+        for (size_t i = 0; i < bench->memory_count; i++)
+            if (strcmp(orl_bench_owner(bench->memory[i].tag), owners[k]) == 0)
+                sum += bench->memory[i].bytes;
+        printf("%-14s %10.1f  ", owners[k], mib(sum));
+        for (size_t i = 0, first = 1; i < bench->memory_count; i++)
+            if (strcmp(orl_bench_owner(bench->memory[i].tag), owners[k]) == 0 &&
+                bench->memory[i].bytes > 1 << 16) {
+                printf("%s %s %.1f", first ? "" : ",", bench->memory[i].tag,
+                       mib(bench->memory[i].bytes));
+                first = 0;
+            }
+        printf("\n");
+        all += sum;
+    }
+    printf("%-14s %10.1f\n%-14s %10.1f   at most\n", "device", mib(all), "host",
+           mib(bench->host_peak_bytes));
+}
+
+static void print_run(const struct orl_bench_run *run, const char *what)
+{
+    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, what, run->frame_ms,
+           run->slowest_ms, run->frame_ms > 0 ? 1e3 / run->frame_ms : 0.0, run->frames,
+           mib(run->device_bytes));
+    for (size_t i = 0; i < run->pass_count; i++)
+        printf("%s %s %.2f", i ? "," : "", run->passes[i].name, run->passes[i].ms);
+    if (run->psnr_db > 0)
+        printf("; %.1f dB to full size", run->psnr_db);
+    printf("\n");
+}
+
+static void print_runs(const struct orl_bench *bench, enum orl_bench_kind kind)
+{
+    static const char *const titles[] = {"picture", "photographs", "points",
+                                         "photographs' size"};
+    bool any = false;
+    for (size_t i = 0; i < bench->run_count; i++) {
+        const struct orl_bench_run *run = &bench->runs[i];
+        char what[64];
+        if (run->kind != kind)
+            continue;
+        if (!any)
+            printf("\n%-12s %-22s %9s %9s %8s %7s %9s  %s\n", "method", titles[kind], "frame ms",
+                   "slowest", "fps", "frames", "MiB", "ms by pass");
+        any = true;
+        if (kind == ORL_BENCH_SIZES)
+            snprintf(what, sizeof what, "%dx%d", run->width, run->height);
+        else if (kind == ORL_BENCH_RESOLUTION)
+            snprintf(what, sizeof what, "1/%d", run->photo_divide);
+        else
+            snprintf(what, sizeof what, "%zu",
+                     kind == ORL_BENCH_POINTS ? run->points : run->photographs);
+        print_run(run, what);
+    }
+}
+
+static void print_rasters(const struct orl_bench *bench)
+{
+    if (bench->raster_count)
+        printf("\n%-12s %12s %12s %8s\n", "points", "splat ms", "GL_POINTS ms", "ratio");
+    for (size_t i = 0; i < bench->raster_count; i++) {
+        const struct orl_bench_raster *r = &bench->rasters[i];
+        printf("%-12zu %12.2f %12.2f %8.1f\n", r->points, r->splat_ms, r->raster_ms,
+               r->splat_ms > 0 ? r->raster_ms / r->splat_ms : 0.0);
+    }
+}
+
+static void print_tables(const struct orl_bench *bench)
+{
+    printf("scene        %s\npoints       %zu\nphotographs  %zu of up to %dx%d\n"
+           "device       %s%s, OpenGL %s\n", bench->scene->dir, bench->scene->points.count,
+           bench->photographs, bench->photo_width, bench->photo_height, bench->device,
+           bench->software ? " (software)" : "", bench->driver);
+    print_memory(bench);
+    for (int kind = 0; kind < ORL_BENCH_KIND_COUNT; kind++)
+        print_runs(bench, (enum orl_bench_kind)kind);
+    print_rasters(bench);
+}
+
+// --- the command ---
+
+static enum orl_result report(const struct orl_log *log, const struct options *o,
+                              const struct orl_bench *bench)
+{
+    bool to_stdout = o->json && strcmp(o->json, "-") == 0;
+    enum orl_result result = ORL_OK;
+    if (!to_stdout)
+        print_tables(bench);
+    char *text = o->json ? orl_bench_to_json(log, bench) : NULL;
+    if (o->json && !text)
+        result = ORL_ERR_MEMORY;
+    else if (to_stdout)
+        puts(text);
+    else if (o->json)
+        result = orl_file_write(log, o->json, text, strlen(text));
+    free(text);
+    if (result == ORL_OK && o->out)
+        result = orl_bench_plot(log, bench, o->out);
+    if (fflush(stdout) != 0 && result == ORL_OK)
+        result = orl_fail(log, ORL_ERR_IO, "standard output: cannot write");
+    return result;
+}
+
+static enum orl_result run(const struct terminal *terminal, const struct options *o,
+                           const struct arg_common *common, const char *dir)
+{
+    const struct orl_log *log = &terminal->log;
+    struct plan plan = {0};
+    struct orl_scene *scene = NULL;
+    struct orl_gpu *gpu = NULL;
+    struct orl_bench bench = {0};
+    enum orl_result result = plan_methods(log, o, &plan);
+    if (result == ORL_OK)
+        result = plan_sizes(log, o, &plan);
+    if (result == ORL_OK)
+        result = plan_points(log, o, &plan);
+    if (result == ORL_OK)
+        result = orl_scene_open(log, dir, &scene);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
+    const struct orl_bench_params params = {
+        .methods = plan.names, .render = plan.render, .method_count = plan.method_count,
+        .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
+        .point_counts = o->points.count ? plan.points : NULL, .seconds = o->seconds,
+        .frames_max = (size_t)o->frames, .growth = !o->quick,
+        .max_vram_bytes = (size_t)o->max_vram_mib << 20, .image_dir = o->out, .trace = o->trace,
+        .progress = &terminal->progress};
+    if (result == ORL_OK)
+        result = orl_bench_run(gpu, scene, &params, &bench);
+    if (result == ORL_OK)
+        result = report(log, o, &bench);
+    orl_bench_finish(&bench);
+    orl_gpu_destroy(&gpu);
+    orl_scene_destroy(&scene);
+    free(plan.names);
+    free(plan.render);
+    return result;
+}
+
+int cmd_bench(int argc, char **argv)
+{
+    struct options o = {.seconds = 1, .frames = 100};
+    const struct arg_option table[] = {
+        {"method", ARG_LIST, &o.methods, "NAME", "methods, or all; default: the first", 0, 0},
+        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the methods", 0, 0},
+        {"size", ARG_LIST, &o.sizes, "WxH", "of the picture; default: 512x512 and 1024x1024", 0, 0},
+        {"points", ARG_LIST, &o.points, "N,N,..",
+         "numbers of points to try; beyond the scene's, points are split", 0, 0},
+        {"seconds", ARG_NUMBER, &o.seconds, "S", "for each median, about; default 1", 0, 3600},
+        {"frames", ARG_INT, &o.frames, "N", "for each median, at most; default 100", 3, 100000},
+        {"quick", ARG_FLAG, &o.quick, NULL, "sizes only: no growth, no GL_POINTS", 0, 0},
+        {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
+        {"trace", ARG_STRING, &o.trace, "FILE",
+         "write a few frames for chrome://tracing or ui.perfetto.dev", 0, 0},
+        {"out", ARG_STRING, &o.out, "DIR", "write plots (SVG) and pictures", 0, 0},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
+        {0},
+    };
+    const struct arg_command command = {
+        "bench", "SCENE [options]",
+        "Measures frames: time pass by pass, memory by owner, and how both grow with points,\n"
+        "photographs and their resolution. Medians; the device is named.", table, 1, 1};
+    struct arg_common common = {0};
+    struct terminal terminal;
+    const char *dir;
+    size_t count;
+    int status;
+    if (command_begin(&command, argc, argv, &common, &terminal, &dir, &count, &status)) {
+        status = command_status(run(&terminal, &o, &common, dir));
+        terminal_finish(&terminal);
+    }
+    orl_names_finish(&o.methods);
+    orl_names_finish(&o.sizes);
+    orl_names_finish(&o.points);
+    orl_names_finish(&o.settings);
+    return status;
+}

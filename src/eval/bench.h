@@ -1,0 +1,94 @@
+// What a frame costs: time pass by pass, memory by owner, and how both grow (the tables 1
+// and 2 and figures 13 and 15 of Airieau 2012, for any scene).
+#ifndef ORL_EVAL_BENCH_H
+#define ORL_EVAL_BENCH_H
+
+#include "core/progress.h"
+#include "render/render.h"
+
+enum { ORL_BENCH_PASSES_MAX = 32, ORL_BENCH_MEMORY_MAX = 64 };
+
+enum orl_bench_kind {
+    ORL_BENCH_SIZES,       // of the picture: table 2
+    ORL_BENCH_PHOTOGRAPHS, // how many: figure 13
+    ORL_BENCH_POINTS,      // how many
+    ORL_BENCH_RESOLUTION,  // of the photographs: figure 15
+    ORL_BENCH_KIND_COUNT
+};
+
+// One configuration. Times are medians over frames, in milliseconds.
+struct orl_bench_run {
+    enum orl_bench_kind kind;
+    const char *method;
+    int width, height;          // of the picture
+    size_t photographs, points;
+    int photo_divide;           // photographs at 1/n of their size
+    size_t frames;              // behind each median
+    double frame_ms;            // from the call until the device is done, no reading back
+    double slowest_ms;          // of those frames
+    size_t device_bytes;
+    double psnr_db;             // RESOLUTION, first method: against full size; else 0
+    struct {
+        const char *name;
+        double ms;
+    } passes[ORL_BENCH_PASSES_MAX]; // timed in frames of their own
+    size_t pass_count;
+};
+
+// Compute splatting beside the graphics pipeline's GL_POINTS with depth test.
+struct orl_bench_raster {
+    size_t points, frames;
+    int width, height;
+    double splat_ms, raster_ms;
+};
+
+struct orl_bench_params {
+    const char *const *methods; // names
+    const struct orl_render_params *render; // of each method
+    size_t method_count;
+    const int (*sizes)[2]; // width, height; growth is measured at the first
+    size_t size_count;
+    const size_t *point_counts; // of the growth with points, ended by 0; NULL: an eighth, a
+                                // quarter, half and all of the scene's, and a million
+    double seconds;        // for each median, about
+    size_t frames_max;     // and at most so many frames
+    bool growth;           // photographs, points, resolution, GL_POINTS too
+    size_t max_vram_bytes;
+    const char *image_dir; // views at each resolution of the photographs; NULL: none
+    const char *trace;     // file for a trace of some frames; NULL: none
+    const struct orl_progress *progress;
+};
+
+struct orl_bench {
+    const struct orl_scene *scene; // not owned
+    char device[128], driver[128];
+    bool software;
+    size_t photographs;      // that may be used
+    int photo_width, photo_height; // largest
+    size_t host_peak_bytes;
+    struct orl_bench_run *runs; // owned
+    size_t run_count, run_capacity;
+    struct orl_bench_raster *rasters; // owned
+    size_t raster_count, raster_capacity;
+    struct orl_gpu_memory memory[ORL_BENCH_MEMORY_MAX]; // of the first run
+    size_t memory_count;
+};
+
+// Renders fixed views between neighbouring photographs; held-out photographs are not
+// used. Renderers of its own, one after another.
+enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
+                              const struct orl_bench_params *params,
+                              struct orl_bench *bench) ORL_CHECK_RESULT;
+void orl_bench_finish(struct orl_bench *bench);
+
+// points, photographs or frame, by the object's tag.
+const char *orl_bench_owner(const char *tag);
+
+// The JSON of docs/performance.md, released with free().
+char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench);
+// Writes passes.svg, memory.svg and, with growth, photographs.svg, points.svg,
+// resolution.svg into `dir`, made if need be.
+enum orl_result orl_bench_plot(const struct orl_log *log, const struct orl_bench *bench,
+                               const char *dir) ORL_CHECK_RESULT;
+
+#endif

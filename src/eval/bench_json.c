@@ -1,0 +1,78 @@
+// The benchmark's report (docs/performance.md). Field names are fixed.
+#include <jansson.h>
+
+#include "eval/bench.h"
+
+static json_t *passes_json(const struct orl_bench_run *run)
+{
+    json_t *passes = json_object();
+    for (size_t i = 0; i < run->pass_count; i++)
+        json_object_set_new(passes, run->passes[i].name, json_real(run->passes[i].ms));
+    return passes;
+}
+
+static json_t *run_json(const struct orl_bench_run *run)
+{
+    json_t *object = json_pack(
+        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:I, s:o}", "method", run->method,
+        "size", run->width, run->height, "photographs", (json_int_t)run->photographs, "points",
+        (json_int_t)run->points, "photo_divide", run->photo_divide, "frames",
+        (json_int_t)run->frames, "frame_ms", run->frame_ms, "slowest_ms", run->slowest_ms, "fps",
+        run->frame_ms > 0 ? 1e3 / run->frame_ms : 0.0, "device_bytes",
+        (json_int_t)run->device_bytes, "passes_ms", passes_json(run));
+    if (run->psnr_db > 0)
+        json_object_set_new(object, "psnr_db", json_real(run->psnr_db));
+    return object;
+}
+
+static json_t *runs_json(const struct orl_bench *bench, enum orl_bench_kind kind)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < bench->run_count; i++)
+        if (bench->runs[i].kind == kind)
+            json_array_append_new(array, run_json(&bench->runs[i]));
+    return array;
+}
+
+static json_t *rasters_json(const struct orl_bench *bench)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < bench->raster_count; i++) {
+        const struct orl_bench_raster *r = &bench->rasters[i];
+        json_array_append_new(array, json_pack(
+            "{s:I, s:[i,i], s:I, s:f, s:f}", "points", (json_int_t)r->points, "size", r->width,
+            r->height, "frames", (json_int_t)r->frames, "splat_ms", r->splat_ms, "gl_points_ms",
+            r->raster_ms));
+    }
+    return array;
+}
+
+static json_t *memory_json(const struct orl_bench *bench)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < bench->memory_count; i++)
+        json_array_append_new(array, json_pack(
+            "{s:s, s:s, s:I, s:I}", "owner", orl_bench_owner(bench->memory[i].tag), "tag",
+            bench->memory[i].tag, "bytes", (json_int_t)bench->memory[i].bytes, "objects",
+            (json_int_t)bench->memory[i].objects));
+    return array;
+}
+
+char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench)
+{
+    json_t *root = json_pack(
+        "{s:s, s:s, s:s, s:b, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+        bench->scene->dir, "device", bench->device, "driver", bench->driver, "software",
+        bench->software, "points", (json_int_t)bench->scene->points.count, "photographs",
+        (json_int_t)bench->photographs, "photo_size", bench->photo_width, bench->photo_height,
+        "host_peak_bytes", (json_int_t)bench->host_peak_bytes, "memory", memory_json(bench),
+        "sizes", runs_json(bench, ORL_BENCH_SIZES), "by_photographs",
+        runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),
+        "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION), "gl_points",
+        rasters_json(bench));
+    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6)) : NULL;
+    if (!text)
+        orl_logf(log, ORL_LOG_ERROR, "no memory for the JSON text");
+    json_decref(root);
+    return text;
+}

@@ -1,0 +1,38 @@
+// Plots as SVG text: lines or dots over two axes, and stacked bars.
+#ifndef ORL_IO_SVG_PLOT_H
+#define ORL_IO_SVG_PLOT_H
+
+#include "core/log.h"
+
+struct orl_plot_series {
+    const char *name;
+    const double *x, *y;
+    const char *const *labels; // beside each dot; NULL: none
+    size_t count;
+    bool line;                 // dots are joined in their order
+};
+
+struct orl_plot {
+    const char *title, *subtitle, *x_label, *y_label; // labels with units
+    bool x_log, y_log; // values must be positive; else the axis starts at 0, or below
+    bool y_fit;        // a linear y axis need not start at 0
+    const struct orl_plot_series *series;
+    size_t series_count;
+};
+
+// Rows of bars, each of the same parts one after another.
+struct orl_bars {
+    const char *title, *subtitle, *x_label;
+    const char *const *parts;
+    size_t part_count;
+    const char *const *rows;
+    const double *values; // row_count * part_count, row by row, not negative
+    size_t row_count;
+};
+
+// SVG, released with free(). NULL, logged: no memory. Dots that are not finite, or not
+// positive on a logarithmic axis, are left out.
+char *orl_plot_svg(const struct orl_log *log, const struct orl_plot *plot);
+char *orl_bars_svg(const struct orl_log *log, const struct orl_bars *bars);
+
+#endif

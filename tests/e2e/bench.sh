@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# oriel bench on a workspace made by hand: figures that are sane, files, refusals. Never
+# how long anything takes.
+set -u
+oriel=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+
+fail() {
+    echo "FAILED: $*" >&2
+    tail -n 20 stdout.txt stderr.txt >&2
+    failed=1
+}
+
+runs() {
+    local status=$1 got
+    shift
+    "$@" >stdout.txt 2>stderr.txt
+    got=$?
+    [ $got -eq "$status" ] || fail "$got instead of $status: $*"
+}
+
+# Numbers of all fields of this name in FILE, one a line.
+numbers() {
+    sed -n "s/^ *\"$1\": \\([-0-9.e+]*\\),*\$/\\1/p" "$2"
+}
+
+"$oriel" synth monument --out photos --size 96x64 --count 4 --quiet || exit 77
+mkdir -p ws
+cp -r photos ws/images
+cp -r photos-truth/sparse ws/sparse
+{
+    printf 'ply\nformat ascii 1.0\nelement vertex 2500\n'
+    for p in x y z nx ny nz; do echo "property float $p"; done
+    for p in red green blue; do echo "property uchar $p"; done
+    echo end_header
+    for ((i = 0; i < 2500; i++)); do
+        echo "$((i % 50 - 25)).5 $((i / 50 - 25)).5 0 0 0 1 $((i % 256)) 90 120"
+    done
+} >ws/fused.ply
+cp ws/fused.ply ws/points.ply
+mapfile -t names < <(cd photos && ls)
+{
+    echo '{"version": 1, "photographs": ['
+    for n in 0 1 2; do echo " {\"name\": \"${names[$n]}\", \"split\": \"train\"},"; done
+    echo " {\"name\": \"${names[3]}\", \"split\": \"test\"}]}"
+} >ws/scene.json
+# A held-out photograph is not even read.
+head -c 700 "ws/images/${names[3]}" >cut && mv cut "ws/images/${names[3]}"
+
+bench=("$oriel" bench ws --quiet --seconds 0 --frames 3)
+runs 0 "${bench[@]}" --size 64x48 --size 32x32 --method all --points 500,5000 --json out.json \
+    --trace trace.json --out plots
+[ -s stderr.txt ] && fail "--quiet is not quiet"
+for word in airieau points 64x48 32x32 5000 GL_POINTS photographs device host splat gather; do
+    grep -q -- "$word" stdout.txt || fail "the tables lack $word"
+done
+for field in scene device driver software points photographs photo_size host_peak_bytes memory \
+    sizes by_photographs by_points by_resolution gl_points method size photo_divide frames \
+    frame_ms slowest_ms fps device_bytes passes_ms splat_ms gl_points_ms owner tag bytes psnr_db; do
+    grep -q "\"$field\"" out.json || fail "no field $field"
+done
+for field in frame_ms slowest_ms splat_ms gl_points_ms device_bytes host_peak_bytes fps; do
+    numbers $field out.json | awk '!($1 > 0 && $1 < 1e12) { exit 1 }' ||
+        fail "$field is not a positive number"
+done
+# Three photographs may be used; 1, 2, 3 were tried, and full size to an eighth.
+methods=$("$oriel" eval ws --method nonsense 2>&1 | sed -n 's/.*there are: *//p' | wc -w)
+for count in 1 2 3; do
+    grep -q "\"photographs\": $count," out.json || fail "$count photographs were not tried"
+done
+grep -q '"photographs": 4,' out.json && fail "the held-out photograph was used"
+[ "$(grep -c '"photo_divide": 8,' out.json)" = "$methods" ] || fail "not each method at 1/8"
+numbers frames out.json | grep -qvx 3 && fail "other than three frames"
+# Halved photographs are not the full ones, but look like them.
+numbers psnr_db out.json | awk '!($1 > 5 && $1 < 99) { exit 1 } END { exit NR != 3 }' ||
+    fail "not three closenesses to full size"
+
+[ "$(head -c1 trace.json)" = "{" ] || fail "the trace is no object"
+for word in traceEvents '"ph": "X"' '"frame"' '"splat"' thread_name; do
+    grep -q "$word" trace.json || fail "the trace lacks $word"
+done
+numbers dur trace.json | awk '$1 < 0 { exit 1 }' || fail "a span that ends before it starts"
+for plot in passes memory photographs points resolution; do
+    head -c4 plots/$plot.svg | grep -q '<svg' || fail "no plot of $plot"
+    tail -n1 plots/$plot.svg | grep -q '</svg>' || fail "the plot of $plot is cut"
+    grep -q "nan\|inf" plots/$plot.svg && fail "the plot of $plot has no numbers"
+done
+[ "$(ls plots/photographs_1of*.png | wc -l)" = 4 ] || fail "no pictures of each resolution"
+
+runs 0 "${bench[@]}" --size 32x32 --json - --quick
+head -c1 stdout.txt | grep -q '{' || fail "--json - writes something else, too"
+grep -q '"by_points": \[\]' stdout.txt || fail "--quick is not quick"
+
+runs 2 "${bench[@]}" --method nonsense
+grep -q airieau stderr.txt || fail "does not list the methods"
+runs 2 "${bench[@]}" --size 12
+runs 2 "${bench[@]}" --size 64x48x2
+runs 2 "${bench[@]}" --points 0
+runs 2 "${bench[@]}" --set nonsense=1
+runs 2 "$oriel" bench nowhere
+runs 0 "$oriel" bench --help
+exit $failed
