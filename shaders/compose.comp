@@ -8,6 +8,9 @@ layout(rgba32f, binding = 0) uniform image2D accumulated; // in: colour * weight
 layout(rgba32f, binding = 1) readonly uniform image2D filled;
 layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 
+#define FILL_LEVEL filled
+#include "include/fill.glsl"
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -21,7 +24,7 @@ void main()
         result.a = surface ? 1.0 : 0.0;
     } else {
         if (area.w == 1) { // fill
-            vec4 value = imageLoad(filled, at);
+            vec4 value = fill_finer(at);
             result.rgb = value.a > 0.0 ? value.rgb / value.a : vec3(0.0);
         }
         // Splat colours between splats count as covered by them.

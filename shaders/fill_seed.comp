@@ -1,4 +1,5 @@
-// Level 0 of the filling pyramid: what is known, times its weight.
+// Finest level of the filling pyramid, at half the picture's size: what 2x2 pixels know,
+// times its weight.
 // SEED_DEPTH: inverse depth, weighted so steeply towards far surfaces that a hole takes
 // the farther one of its rim, which it shows, and nothing between the two. Otherwise: colour.
 #define BLOCK_IMAGE
@@ -12,18 +13,24 @@ layout(rgba32f, binding = 0) readonly uniform image2D known; // colour * weight,
 #endif
 layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
 
+vec4 seed(ivec2 at)
+{
+    vec4 value = imageLoad(known, at); // 0 outside
+#ifdef SEED_DEPTH
+    float z = value.r;
+    float weight = clamp(pow(z / scale.x, 14.0), 1e-15, 1e15); // sums stay floats
+    return z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
+#else
+    return value.a > 0.0 ? value / value.a : vec4(0.0);
+#endif
+}
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= area.x || at.y >= area.y)
         return;
-    vec4 value = imageLoad(known, at);
-#ifdef SEED_DEPTH
-    float z = value.r;
-    float weight = clamp(pow(z / scale.x, 14.0), 1e-15, 1e15); // sums stay floats
-    vec4 seed = z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
-#else
-    vec4 seed = value.a > 0.0 ? value / value.a : vec4(0.0);
-#endif
-    imageStore(seeded, at, seed);
+    ivec2 f = 2 * at;
+    imageStore(seeded, at, seed(f) + seed(f + ivec2(1, 0)) + seed(f + ivec2(0, 1)) +
+                               seed(f + ivec2(1, 1)));
 }

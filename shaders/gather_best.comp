@@ -20,42 +20,82 @@ float photo_sees(vec4 seen, float z)
     return unknown ? choice.z : agrees;
 }
 
+// The best photographs of a pixel, ascending by penalty, and the penalty of the one after
+// the fourth. Components, not arrays: those are slow where registers cannot be indexed.
 struct ranking {
-    float penalty[CANDIDATES];
-    float least, limit; // the least penalty, and that of the first photograph left out
+    vec4 penalty;
+    ivec4 photo;
+    float next;
 };
 
-void rank(int list, vec3 p, bool guessed, out ranking r)
+// Puts (penalty, photo) in place k and hands on what was there, if that is worse.
+#define SWAP_IN(k)                                   \
+    if (penalty < r.penalty.k) {                     \
+        float worse = r.penalty.k;                   \
+        int other = r.photo.k;                       \
+        r.penalty.k = penalty;                       \
+        r.photo.k = photo;                           \
+        penalty = worse;                             \
+        photo = other;                               \
+    }
+
+void insert(float penalty, int photo, inout ranking r)
 {
-    int kept = int(choice.x);
-    float limits[KEPT_MAX + 1]; // the least penalties, ascending
-    for (int k = 0; k <= KEPT_MAX; k++)
-        limits[k] = NOT_SEEN;
-    for (int c = 0; c < CANDIDATES; c++) {
-        r.penalty[c] = NOT_SEEN;
+    SWAP_IN(x)
+    SWAP_IN(y)
+    SWAP_IN(z)
+    SWAP_IN(w)
+    r.next = min(r.next, penalty);
+}
+
+// The least penalty that is left out.
+float limit_of(ranking r)
+{
+    return choice.x < 1.5 ? r.penalty.y
+         : choice.x < 2.5 ? r.penalty.z
+         : choice.x < 3.5 ? r.penalty.w
+                          : r.next;
+}
+
+ranking rank(int list, vec3 p, bool guessed)
+{
+    ranking r = ranking(vec4(NOT_SEEN), ivec4(-1), NOT_SEEN);
+    int count = int(choice_more.x);
+    for (int c = 0; c < count; c++) {
         int i = chosen[list + c];
+        if (i < 0)
+            break;
         vec2 pixel;
         float z;
-        if (i < 0 || !photo_project(i, p, pixel, z))
-            continue;
-        vec4 seen = photo_depths(i, pixel);
-        float sure = photo_border(i, pixel);
-        if (guessed)
-            sure *= photo_unhidden_share(seen, z);
-        else if (flags.x == 1)
-            sure *= photo_sees(seen, z);
-        if (!(sure > 1e-4))
-            continue;
-        float value = photo_penalty(i, p) / sure;
-        r.penalty[c] = value;
-        for (int k = 0; k <= kept; k++) {
-            float larger = max(value, limits[k]);
-            limits[k] = min(value, limits[k]);
-            value = larger;
+        bool inside = photo_project(i, p, pixel, z);
+        float penalty = photo_penalty(i, p);
+        // Not worse than the limit even if it saw the surface for sure.
+        if (inside && penalty < limit_of(r)) {
+            vec4 seen = photo_depths(i, pixel);
+            float sure = photo_border(i, pixel);
+            if (guessed)
+                sure *= photo_unhidden_share(seen, z);
+            else if (flags.x == 1)
+                sure *= photo_sees(seen, z);
+            if (sure > 1e-4)
+                insert(penalty / sure, i, r);
         }
     }
-    r.least = limits[0];
-    r.limit = limits[kept];
+    return r;
+}
+
+// Adds one photograph's colour times weight.
+void paint(int i, float penalty, float least, float limit, float sharpness, vec3 p,
+           inout vec4 sum)
+{
+    if (penalty < limit) {
+        float fade = limit == NOT_SEEN ? 1.0 : 1.0 - penalty / limit;
+        vec2 pixel;
+        float z;
+        photo_project(i, p, pixel, z);
+        sum += vec4(photo_sample(i, pixel, photo_mip(i, z, p.z)).rgb, 1.0) *
+               (pow(least / penalty, sharpness) * fade);
+    }
 }
 
 void main()
@@ -65,28 +105,19 @@ void main()
         return;
     float stored = imageLoad(view_depth, at).r;
     bool guessed = stored < 0.0;
-    float depth = abs(stored);
-    if (!(depth > 0.0))
-        return;
-    vec3 p = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
-    int list = ((at.y / CHOICE_TILE) * area.w + at.x / CHOICE_TILE) * CANDIDATES;
-    ranking r;
-    rank(list, p, guessed, r);
-    if (r.least == NOT_SEEN)
-        return;
-    float sharpness = guessed ? choice.w : choice.y;
-    vec4 sum = vec4(0.0);
-    for (int c = 0; c < CANDIDATES; c++) {
-        if (!(r.penalty[c] < r.limit))
-            continue;
-        float fade = r.limit == NOT_SEEN ? 1.0 : 1.0 - r.penalty[c] / r.limit;
-        float weight = pow(r.least / r.penalty[c], sharpness) * fade;
-        int i = chosen[list + c];
-        vec2 pixel;
-        float z;
-        photo_project(i, p, pixel, z);
-        sum += vec4(photo_sample(i, pixel, photo_mip(i, z, depth)).rgb, 1.0) * weight;
+    vec3 p = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored);
+    if (p.z > 0.0) {
+        // A group lies within one tile, so that each photograph's data are the same for all of it.
+        ivec2 corner = ivec2(gl_WorkGroupID.xy) * ivec2(ORL_PIXEL_GROUP_X, ORL_PIXEL_GROUP_Y);
+        ivec2 tile = corner / CHOICE_TILE;
+        ranking r = rank((tile.y * area.w + tile.x) * CANDIDATES, p, guessed);
+        float sharpness = guessed ? choice.w : choice.y, limit = limit_of(r), least = r.penalty.x;
+        vec4 sum = vec4(0.0);
+        paint(r.photo.x, r.penalty.x, least, limit, sharpness, p, sum);
+        paint(r.photo.y, r.penalty.y, least, limit, sharpness, p, sum);
+        paint(r.photo.z, r.penalty.z, least, limit, sharpness, p, sum);
+        paint(r.photo.w, r.penalty.w, least, limit, sharpness, p, sum);
+        if (sum.a > 0.0)
+            imageStore(accumulated, at, sum);
     }
-    if (sum.a > 0.0)
-        imageStore(accumulated, at, sum);
 }

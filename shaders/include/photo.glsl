@@ -121,8 +121,12 @@ vec4 photo_sample(int i, vec2 pixel, float mip)
 #else
 vec4 photo_sample(int i, vec2 pixel, float mip)
 {
-    vec3 color = flags.y == 1 ? photo_bicubic(i, pixel, mip).rgb
-                              : photo_bilinear(i, pixel, mip).rgb;
+    // A program for each: software renderers run both sides of a condition.
+#ifdef BICUBIC
+    vec3 color = photo_bicubic(i, pixel, mip).rgb;
+#else
+    vec3 color = photo_bilinear(i, pixel, mip).rgb;
+#endif
     return vec4(color * photos[i].gain.rgb, 1.0);
 }
 #endif

@@ -66,13 +66,14 @@ ORL_BLOCK(gather_block)
                       // that can be told from darkness
     VEC4(choice);     // x: photographs per pixel, y: sharpness, z: trust in photographs
                       // without depth, w: sharpness on guessed depth
+    VEC4(choice_more); // x: photographs of the tile's list that a pixel asks
 };
 #endif
 
 // Choice of photographs per tile.
 #define CHOICE_TILE 16 // pixels
 #define CANDIDATES 8   // photographs listed per tile
-#define KEPT_MAX 7     // blended per pixel, at most
+#define KEPT_MAX 4     // blended per pixel, at most
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 
 // Image-space filling, and pixels from splat colours.

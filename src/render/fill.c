@@ -50,8 +50,8 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
         return ORL_OK;
     free_levels(gpu, fill);
     enum orl_result result = ORL_OK;
-    // Down to one pixel, each level rounded up: image loads outside a level read 0.
-    for (int w = width, h = height; result == ORL_OK; w = (w + 1) / 2, h = (h + 1) / 2) {
+    // From half the size down to one pixel, rounded up: image loads outside a level read 0.
+    for (int w = (width + 1) / 2, h = (height + 1) / 2; result == ORL_OK; w = (w + 1) / 2, h = (h + 1) / 2) {
         struct orl_tex_params params = {.width = w, .height = h, .format = GL_RGBA32F,
                                         .tag = "fill pyramid"};
         result = orl_tex_create(gpu, &params, &fill->level[fill->levels]);
@@ -95,7 +95,8 @@ static void spread(struct orl_gpu *gpu, struct fill *fill)
 
 void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth)
 {
-    run(gpu, fill, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY, depth);
+    run(gpu, fill, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
+        fill->level[0]);
     spread(gpu, fill);
     run(gpu, fill, fill->apply_depth, fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
 }
@@ -103,6 +104,6 @@ void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *dept
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
 {
     run(gpu, fill, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
-        accumulated);
+        fill->level[0]);
     spread(gpu, fill);
 }

@@ -20,14 +20,16 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
         result = orl_buf_create(gpu, "photographs of a frame",
                                 photo_count * sizeof *gather->list, NULL, &gather->photos);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, radiance ? "gather_radiance.comp" : "gather.comp", NULL,
-                                 sizeof(struct gather_block), &gather->all);
-    if (result == ORL_OK)
         result = orl_prog_create(gpu, "choose.comp", NULL, sizeof(struct gather_block),
                                  &gather->choose);
-    if (result == ORL_OK)
-        result = orl_prog_create(gpu, "gather_best.comp", NULL, sizeof(struct gather_block),
-                                 &gather->best);
+    static const char *const defines[ORL_SAMPLING_COUNT] = {[ORL_SAMPLING_BICUBIC] = "BICUBIC 1\n"};
+    for (int i = 0; result == ORL_OK && i < ORL_SAMPLING_COUNT; i++) {
+        result = orl_prog_create(gpu, radiance ? "gather_radiance.comp" : "gather.comp", defines[i],
+                                 sizeof(struct gather_block), &gather->all[i]);
+        if (result == ORL_OK)
+            result = orl_prog_create(gpu, "gather_best.comp", defines[i],
+                                     sizeof(struct gather_block), &gather->best[i]);
+    }
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
     return result;
@@ -35,9 +37,11 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
 {
-    orl_prog_destroy(gpu, &gather->all);
+    for (int i = 0; i < ORL_SAMPLING_COUNT; i++) {
+        orl_prog_destroy(gpu, &gather->all[i]);
+        orl_prog_destroy(gpu, &gather->best[i]);
+    }
     orl_prog_destroy(gpu, &gather->choose);
-    orl_prog_destroy(gpu, &gather->best);
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
     free(gather->list);
@@ -127,6 +131,7 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
         .area = {view->camera.width, view->camera.height, (int)count, tiles(view->camera.width)},
         .choice = {floorf(params->photos_per_pixel + 0.5f), params->sharpness,
                    params->unknown_trust, params->guess_sharpness},
+        .choice_more = {floorf(params->candidates + 0.5f)},
     };
     set_focal(block.view_focal, &view->camera);
     return block;
@@ -136,7 +141,7 @@ static void gather_all(struct orl_renderer *r, const struct orl_view *view,
                        const struct orl_render_params *params, size_t count)
 {
     struct gather_block block = prepare_pass(r, view, params, count);
-    struct orl_dispatch d = {.prog = r->gather.all, .params = &block,
+    struct orl_dispatch d = {.prog = r->gather.all[params->sampling], .params = &block,
                              .bufs = {{.buf = r->gather.photos}},
                              .textures = {r->photos.color, r->photos.depth},
                              .images = {{r->target.depth, 0, GL_READ_ONLY},
@@ -172,7 +177,7 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     orl_pass_begin(r->gpu, "choose");
     orl_gpu_dispatch(r->gpu, &d);
     orl_pass_end(r->gpu);
-    d.prog = g->best;
+    d.prog = g->best[params->sampling];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     orl_pixel_groups(view->camera.width, view->camera.height, d.groups);

@@ -125,7 +125,7 @@ struct fill {
     struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
     int width, height, levels;
     float depth_scale; // a typical depth of the scene
-    struct orl_tex *level[PYRAMID_LEVELS_MAX + 8]; // value * weight, weight
+    struct orl_tex *level[PYRAMID_LEVELS_MAX + 8]; // value * weight, weight; level 0 has half the size
 };
 
 enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill);
@@ -141,7 +141,8 @@ void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accu
 enum { PHOTOS_PER_FRAME_MAX = 48 }; // of blend=best
 
 struct gather {
-    struct orl_prog *all, *choose, *best;
+    struct orl_prog *choose;
+    struct orl_prog *all[ORL_SAMPLING_COUNT], *best[ORL_SAMPLING_COUNT];
     struct photo_data *list; // of the photographs of one dispatch
     size_t *chosen;          // their indices in the scene
     struct orl_buf *photos;  // struct photo_data

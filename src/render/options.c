@@ -13,21 +13,28 @@
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
     .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f,                      \
-    .ghosts = 1.0f, .points_per_pixel = 4.0f,                                              \
-    .photos_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 2.0f,                 \
+    .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 2.0f,  \
     .unknown_trust = 0.05f
+
+// What each pixel of blend=best asks and blends.
+#define BEST_DEFAULTS .candidates = 8.0f, .photos_per_pixel = 4.0f
 
 const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
      "Buehler 2001's penalty, weights of our own",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
-      .sampling = ORL_SAMPLING_BICUBIC, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS}},
+      .sampling = ORL_SAMPLING_BICUBIC, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS, BEST_DEFAULTS}},
+    {"oriel-fast", "oriel from two photographs a pixel, of four, sampled bilinearly",
+     "as oriel",
+     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
+      .sampling = ORL_SAMPLING_BILINEAR, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS,
+      .candidates = 4.0f, .photos_per_pixel = 2.0f}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
-      .sampling = ORL_SAMPLING_BICUBIC, COMMON_DEFAULTS}},
+      .sampling = ORL_SAMPLING_BICUBIC, COMMON_DEFAULTS, BEST_DEFAULTS}},
     {"points", "the splats' own colour: the baseline", "-",
      {.color = ORL_COLOR_POINTS, .visibility = ORL_VISIBILITY_NONE, .fill = ORL_FILL_COLOR,
-      .sampling = ORL_SAMPLING_BILINEAR, COMMON_DEFAULTS}},
+      .sampling = ORL_SAMPLING_BILINEAR, COMMON_DEFAULTS, BEST_DEFAULTS}},
     {0},
 };
 
@@ -52,6 +59,8 @@ const struct orl_render_option orl_render_options[] = {
      "all photographs that see a pixel, or the best few, chosen per tile"},
     {"photos_per_pixel", FIELD(photos_per_pixel), NULL, 1, KEPT_MAX, "photographs",
      "blended into a pixel by blend=best"},
+    {"candidates", FIELD(candidates), NULL, 1, CANDIDATES, "photographs",
+     "of its tile that a pixel asks; fewer are faster, and miss more behind obstacles"},
     {"sharpness", FIELD(sharpness), NULL, 0, 64, "",
      "how fast blend=best prefers the better photograph; 0: equal weights"},
     {"guess_sharpness", FIELD(guess_sharpness), NULL, 0, 64, "",

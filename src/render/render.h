@@ -34,7 +34,8 @@ struct orl_render_params {
     float ghosts;                   // of a radiance renderer: samples that differ from the
                                     // others by this many stops beyond noise count half,
                                     // [0, 16]; 0: all count
-    float photos_per_pixel;         // blended by `best`, [1, 7]
+    float photos_per_pixel;         // blended by `best`, [1, 4]
+    float candidates;               // of a tile, that each pixel asks, [1, 8]
     float sharpness;                // of `best`: weight = (least penalty / penalty)^sharpness
     float guess_sharpness;          // the same where depth is guessed
     float unknown_trust;            // share of trust in photographs without depth there, [0, 1]
