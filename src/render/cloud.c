@@ -173,12 +173,13 @@ static float density(float (*const p)[4], const struct orl_points *points,
         for (size_t i = 0; i < count; i++) {
             float x = p[i][0] - p[s][0], y = p[i][1] - p[s][1], z = p[i][2] - p[s][2];
             float along = x * n[0] + y * n[1] + z * n[2];
-            float d2 = fmaxf(x * x + y * y + z * z - along * along, 0);
-            for (int k = 0; i != s && k < NEIGHBOUR; k++) {
-                float larger = fmaxf(nearest[k], d2);
-                nearest[k] = fminf(nearest[k], d2);
-                d2 = larger;
-            }
+            float d2 = x * x + y * y + z * z - along * along;
+            if (i == s || !(d2 < nearest[NEIGHBOUR - 1]))
+                continue;
+            int at = NEIGHBOUR - 1;
+            for (; at > 0 && d2 < nearest[at - 1]; at--)
+                nearest[at] = nearest[at - 1];
+            nearest[at] = d2;
         }
         distances[s] = nearest[NEIGHBOUR - 1];
     }
