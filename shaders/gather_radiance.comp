@@ -15,8 +15,9 @@ const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 struct Sample {
     vec3 color;   // radiance
-    float clip;   // trust as far as clipping goes; in the end, all trust
+    float clip;   // trust as far as clipping goes
     float weight; // geometric
+    float usual;
     vec2 pixel;
     float mip;
 };
@@ -27,10 +28,10 @@ vec3 exposure_of(int i, vec3 color)
     return color / photos[i].gain.rgb;
 }
 
-// Trust in a photograph where the radiance is about this.
-float noise_trust(int i, vec3 color)
+// Squared relative error of photograph `i` by noise, where the radiance is about this.
+float noise_of(int i, vec3 color)
 {
-    return MODEL / (MODEL + relative_variance(exposure_of(i, color), photos[i].noise));
+    return relative_variance(exposure_of(i, color), photos[i].noise);
 }
 
 // How much of a sample is the surface at z, squared: what lies before it may be a thousand
@@ -54,6 +55,27 @@ float geometric_weight(int i, vec3 p, bool guessed)
     return guessed ? pow(weight * options.y, 8.0) : weight;
 }
 
+// The same of a photograph whose model error is MODEL: a tenth of a radian away, or a tenth
+// of the distance nearer or farther.
+float usual_weight(bool guessed)
+{
+    if (flags.z == 1)
+        return pow(10.0, guessed ? choice.w : choice.y);
+    float weight = 1.0 / (0.1 + options.y);
+    return guessed ? pow(weight * options.y, 8.0) : weight;
+}
+
+// A geometric weight is an inverse variance too, in units of usual_weight / MODEL: errors of
+// the model and of noise add up, and a photograph taken from here has none but its noise.
+// The other way round, noise is never forgiven for bad geometry: its samples stray anyway.
+float total_weight(Sample s, float noise)
+{
+    // Traces of trust in clipped samples must tell them apart whatever their geometry.
+    float trace = min(1024.0 * s.clip, 1.0);
+    return s.clip * trace * trace * s.weight /
+           (1.0 + max(s.weight / s.usual, 1.0) * noise / MODEL);
+}
+
 // What photograph `i` says of a point; false when it does not see it.
 bool ask(int i, vec3 p, bool guessed, out Sample s)
 {
@@ -61,6 +83,7 @@ bool ask(int i, vec3 p, bool guessed, out Sample s)
     s.weight = 0.0;
     if (!photo_project(i, p, s.pixel, z))
         return false;
+    s.usual = usual_weight(guessed);
     s.weight = geometric_weight(i, p, guessed) * photo_border(i, s.pixel);
     if (!(s.weight > 0.0))
         return false;
@@ -101,7 +124,7 @@ void probe(int i, int probe_index)
     float depth = imageLoad(view_depth, at).r;
     Sample s;
     if (depth != 0.0 && ask(i, surface_point(at, abs(depth)), depth < 0.0, s))
-        atomicMax(scores[i], floatBitsToUint(s.weight * s.clip * noise_trust(i, s.color)));
+        atomicMax(scores[i], floatBitsToUint(total_weight(s, noise_of(i, s.color))));
 }
 
 void choose()
@@ -160,7 +183,7 @@ vec3 median_color()
     float total = 0.0;
     for (int k = 0; k < sample_count; k++) {
         Sample s = samples[k];
-        weights[k] = s.weight * s.clip * noise_trust(sample_photo[k], s.color);
+        weights[k] = total_weight(s, noise_of(sample_photo[k], s.color));
         brightness[k] = dot(s.color, LUMINANCE);
         total += weights[k];
     }
@@ -203,10 +226,8 @@ void blend(ivec2 at)
     vec3 level = max(median_color(), radiance.z);
     float noise[ORL_RADIANCE_KEPT];
     for (int k = 0; k < sample_count; k++) {
-        int i = sample_photo[k];
-        noise[k] = relative_variance(exposure_of(i, level), photos[i].noise);
-        samples[k].clip *= MODEL / (MODEL + noise[k]);
-        weights[k] = samples[k].weight * samples[k].clip;
+        noise[k] = noise_of(sample_photo[k], level);
+        weights[k] = total_weight(samples[k], noise[k]);
     }
     float limit = left_out(), total = 0.0, trust = 0.0;
     for (int k = 0; k < sample_count; k++) {
@@ -218,7 +239,7 @@ void blend(ivec2 at)
             weights[k] /= 1.0 + excess * excess;
         }
         total += weights[k];
-        trust += weights[k] * samples[k].clip;
+        trust += weights[k] * samples[k].clip * MODEL / (MODEL + noise[k]);
     }
     vec4 sum = vec4(0.0);
     for (int k = 0; k < sample_count; k++) {

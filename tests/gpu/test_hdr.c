@@ -1,0 +1,522 @@
+// Radiance: known answers on a wall, and a room seen all around.
+#include <math.h>
+#include <string.h>
+
+#include "core/color.h"
+#include "gpu_test.h"
+#include "hdr/hdr.h"
+#include "io/exr.h"
+#include "io/picture.h"
+
+static struct orl_gpu *gpu;
+
+enum { SIDE = 64, PHOTOS_MAX = 24, GRID = 100 };
+
+struct fixture {
+    char *dir;
+    struct orl_scene scene;
+    struct orl_photo photos[PHOTOS_MAX];
+};
+
+// --- scenes ---
+
+static void setup(struct fixture *f, size_t points)
+{
+    memset(f, 0, sizeof *f);
+    f->dir = test_dir_make();
+    f->scene.dir = f->dir;
+    f->scene.photos = f->photos;
+    f->scene.photo_distance = 4;
+    static const char *const folders[] = {"images", "images_linear"};
+    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
+        char *path = orl_path_join(NULL, f->dir, folders[i]);
+        assert_int_equal(orl_dir_make(NULL, path), ORL_OK);
+        free(path);
+    }
+    assert_int_equal(orl_points_init(NULL, &f->scene.points, points), ORL_OK);
+    f->scene.points.count = 0;
+}
+
+static void teardown(struct fixture *f)
+{
+    for (size_t i = 0; i < f->scene.photo_count; i++)
+        free(f->photos[i].name);
+    orl_points_finish(&f->scene.points);
+    test_dir_remove(f->dir);
+}
+
+static void add_point(struct fixture *f, const double p[3], const double n[3], double radius)
+{
+    struct orl_points *points = &f->scene.points;
+    for (int i = 0; i < 3; i++) {
+        points->position[points->count][i] = (float)p[i];
+        points->normal[points->count][i] = (float)n[i];
+    }
+    points->radius[points->count++] = (float)radius;
+}
+
+// A wall at z = 4, 8 units wide.
+static void setup_wall(struct fixture *f)
+{
+    setup(f, GRID * GRID);
+    for (int i = 0; i < GRID * GRID; i++)
+        add_point(f, (double[]){8.0 * (i % GRID + 0.5) / GRID - 4, 8.0 * (i / GRID + 0.5) / GRID - 4, 4},
+                  (double[]){0, 0, -1}, 12.0 / GRID);
+}
+
+static struct orl_view look(double x, double y)
+{
+    return (struct orl_view){.camera = {SIDE, SIDE, 50, 50, 0.5 * SIDE, 0.5 * SIDE},
+                             .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                                .t = {-x, -y, 0}}};
+}
+
+typedef void (*light_fn)(const struct orl_view *view, int x, int y, float light[3]);
+
+// A photograph of `light` taken `ev` above the middle exposure.
+static struct orl_photo *add_photo(struct fixture *f, struct orl_view view, double ev,
+                                   light_fn light)
+{
+    struct orl_photo *photo = &f->photos[f->scene.photo_count];
+    struct orl_image image;
+    *photo = (struct orl_photo){.view = view, .exposure_ev = ev, .has_exposure = true,
+                                .response = -1, .series = (int)lround(ev) + 8};
+    photo->name = malloc(16);
+    snprintf(photo->name, 16, "%zu.png", f->scene.photo_count);
+    assert_int_equal(orl_image_init(NULL, &image, view.camera.width, view.camera.height, 3,
+                                    ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < view.camera.width * view.camera.height; i++) {
+        float l[3];
+        light(&view, i % view.camera.width, i / view.camera.width, l);
+        for (int c = 0; c < 3; c++)
+            image.u8[3 * i + c] =
+                (uint8_t)lrintf(255 * orl_srgb_encode(l[c] * exp2f((float)ev)));
+    }
+    for (int c = 0; c < 3; c++)
+        photo->gain[c] = exp2f((float)-ev);
+    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count++);
+    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+    free(path);
+    orl_image_finish(&image);
+    return photo;
+}
+
+static struct orl_hdr_params params_of(enum orl_hdr_merge merge, const char *method)
+{
+    struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
+    params.merge = merge;
+    params.render = orl_method_find(NULL, method)->params;
+    params.render.border_px = 0;
+    return params;
+}
+
+static struct orl_frame draw(struct fixture *f, const struct orl_hdr_params *params)
+{
+    struct orl_hdr *hdr;
+    struct orl_frame frame;
+    struct orl_view view = look(0, 0);
+    assert_int_equal(orl_hdr_create(gpu, &f->scene, params, &hdr), ORL_OK);
+    assert_int_equal(orl_hdr_draw(hdr, &view, NULL, &frame), ORL_OK);
+    orl_hdr_destroy(&hdr);
+    return frame;
+}
+
+// --- one wall, one colour ---
+
+static const float WALL[3] = {0.5f, 0.25f, 0.125f};
+
+static void wall_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    memcpy(light, WALL, sizeof WALL);
+}
+
+static void white_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    light[0] = light[1] = light[2] = 100;
+}
+
+static void black_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    memset(light, 0, 3 * sizeof *light);
+}
+
+static const size_t MIDDLE = (SIDE / 2) * SIDE + SIDE / 2;
+
+static void assert_color(const struct orl_frame *frame, size_t pixel, const float expected[3],
+                         double share)
+{
+    for (size_t c = 0; c < 3; c++)
+        assert_float_equal(frame->color.f32[3 * pixel + c], expected[c],
+                           (float)share * expected[c]);
+}
+
+static void the_photograph_that_does_not_clip_decides(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"airieau", "oriel"};
+    for (int merge = 0; merge < ORL_HDR_MERGE_COUNT; merge++)
+        for (size_t m = 0; m < ORL_COUNT(methods); m++) {
+            struct fixture f;
+            setup_wall(&f);
+            add_photo(&f, look(-0.2, 0), 0, wall_light);
+            add_photo(&f, look(0, 0), 3, wall_light); // nearest, but all white
+            struct orl_hdr_params params = params_of((enum orl_hdr_merge)merge, methods[m]);
+            struct orl_frame frame = draw(&f, &params);
+            assert_color(&frame, MIDDLE, WALL, 0.01);
+            assert_true(frame.confidence.f32[MIDDLE] > 0.5f);
+            orl_frame_finish(&frame);
+            teardown(&f);
+        }
+}
+
+static void the_darkest_decides_where_all_clip(void **state)
+{
+    (void)state;
+    for (int merge = 0; merge < ORL_HDR_MERGE_COUNT; merge++) {
+        struct fixture f;
+        setup_wall(&f);
+        add_photo(&f, look(0.3, 0), -2, white_light);
+        add_photo(&f, look(0, 0), 1, white_light);
+        struct orl_hdr_params params = params_of((enum orl_hdr_merge)merge, "oriel");
+        struct orl_frame frame = draw(&f, &params);
+        assert_color(&frame, MIDDLE, (float[]){4, 4, 4}, 0.1);
+        assert_true(frame.confidence.f32[MIDDLE] > 0 && frame.confidence.f32[MIDDLE] < 0.01f);
+        orl_frame_finish(&frame);
+        teardown(&f);
+    }
+}
+
+static void where_all_are_black_it_is_dark(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(0.3, 0), -2, black_light);
+    add_photo(&f, look(0, 0), 1, black_light);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_frame frame = draw(&f, &params);
+    for (size_t i = 0; i < 3 * SIDE * SIDE; i++)
+        assert_true(frame.color.f32[i] >= 0 && frame.color.f32[i] < 1e-4f);
+    assert_true(frame.confidence.f32[MIDDLE] < 0.01f);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Nine stops darker than the others it reads 3 of 255 by noise: thirty times the light
+// there is.
+static void noisy_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    light[0] = light[1] = light[2] = 9e-4f * 64;
+}
+
+static void dim_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    light[0] = light[1] = light[2] = 0.002f;
+}
+
+static void noise_does_not_outvote_light(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(0, 0), -6, noisy_light);
+    add_photo(&f, look(0.3, 0), 3, dim_light);
+    add_photo(&f, look(-0.3, 0), 3, dim_light);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    params.render.ghosts = 0; // trust alone
+    struct orl_frame frame = draw(&f, &params);
+    assert_color(&frame, MIDDLE, (float[]){0.002f, 0.002f, 0.002f}, 0.1);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+static void bright_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    for (int c = 0; c < 3; c++)
+        light[c] = 6 * WALL[c];
+}
+
+static void what_moved_does_not_ghost(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(0.02, 0), -2, bright_light); // passed by while this one was taken
+    for (int i = 0; i < 4; i++)
+        add_photo(&f, look(0.3 * cos(1.57 * i), 0.3 * sin(1.57 * i)), -2 + i % 2, wall_light);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "airieau");
+    params.render.ghosts = 0.5f;
+    struct orl_frame frame = draw(&f, &params);
+    assert_color(&frame, MIDDLE, WALL, 0.06);
+    orl_frame_finish(&frame);
+    params.render.ghosts = 0;
+    frame = draw(&f, &params);
+    assert_true(frame.color.f32[3 * MIDDLE] > 1.5f * WALL[0]);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// White right of the middle.
+static void half_white(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)y;
+    for (int c = 0; c < 3; c++)
+        light[c] = x >= SIDE / 2 ? 50 : WALL[c];
+}
+
+static void clipped_pixels_leave_no_mark(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(0, 0), 0, half_white);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_frame frame = draw(&f, &params);
+    // Filtered as they are, the last pixels before the edge would be brighter.
+    assert_color(&frame, MIDDLE - 1, WALL, 0.01);
+    assert_color(&frame, MIDDLE - 2, WALL, 0.01);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// --- cameras that are not sRGB ---
+
+// Linear values, and a third of the light lost in the corners.
+static void vignetted_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    const struct orl_camera *c = &view->camera;
+    double dx = x + 0.5 - c->cx, dy = y + 0.5 - c->cy;
+    double r2 = (dx * dx + dy * dy) / (0.25 * (c->width * c->width + c->height * c->height));
+    for (int i = 0; i < 3; i++)
+        light[i] = orl_srgb_decode(WALL[i] * (float)(1 - r2 / 3));
+}
+
+static void response_and_vignetting_are_undone(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_response response;
+    setup_wall(&f);
+    for (int c = 0; c < 3; c++)
+        for (int v = 0; v < 256; v++)
+            response.linear[c][v] = (float)v / 255;
+    f.scene.responses = &response;
+    f.scene.response_count = 1;
+    struct orl_photo *photo = add_photo(&f, look(0, 0), 0, vignetted_light);
+    photo->response = 0;
+    photo->vignette[0] = -1.0f / 3;
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_frame frame = draw(&f, &params);
+    assert_color(&frame, MIDDLE, WALL, 0.02);
+    assert_color(&frame, 2 * SIDE + 2, WALL, 0.02);
+    assert_color(&frame, 61 * SIDE + 33, WALL, 0.02);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+static void linear_files_keep_their_range(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    struct orl_photo *photo = add_photo(&f, look(0, 0), 0, wall_light);
+    static float light[3 * SIDE * SIDE];
+    for (size_t i = 0; i < ORL_COUNT(light); i++)
+        light[i] = i / 3 % SIDE < SIDE / 2 ? 40 : 0.001f;
+    struct orl_exr_params exr = {.width = SIDE, .height = SIDE, .channel_count = 3};
+    for (int c = 0; c < 3; c++)
+        exr.channels[c] = (struct orl_exr_channel){{"RGB"[c]}, false, light + c, 3};
+    char *path = orl_scene_linear_path(NULL, &f.scene, 0);
+    assert_int_equal(orl_exr_write(NULL, path, &exr), ORL_OK);
+    free(path);
+    photo->linear = true;
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_frame frame = draw(&f, &params);
+    assert_color(&frame, MIDDLE - 8, (float[]){40, 40, 40}, 0.01);
+    assert_color(&frame, MIDDLE + 8, (float[]){0.001f, 0.001f, 0.001f}, 0.01);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// --- a room, all around ---
+
+static const double ROOM = 3; // half its side
+
+static void room_point(const double eye[3], const double ray[3], double p[3])
+{
+    double t = INFINITY;
+    for (int i = 0; i < 3; i++)
+        if (ray[i] != 0)
+            t = fmin(t, ((ray[i] > 0 ? ROOM : -ROOM) - eye[i]) / ray[i]);
+    for (int i = 0; i < 3; i++)
+        p[i] = eye[i] + t * ray[i];
+}
+
+// Eight stops of light from one corner to the other, no two walls alike.
+static void room_radiance(const double p[3], float light[3])
+{
+    double ev = 0.7 * p[0] + 0.5 * p[1] + 0.3 * p[2] + 0.3 * sin(2 * p[0] + p[1] - 3 * p[2]);
+    light[0] = (float)(0.2 * exp2(ev));
+    light[1] = (float)(0.2 * exp2(ev + 0.2 * sin(p[1] + 2 * p[2])));
+    light[2] = (float)(0.2 * exp2(ev - 0.3 * sin(p[0] - p[2])));
+}
+
+static void room_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    const struct orl_camera *c = &view->camera;
+    const struct orl_pose *pose = &view->cam_from_world;
+    double eye[3], ray[3], p[3], u = (x + 0.5 - c->cx) / c->fx, v = (y + 0.5 - c->cy) / c->fy;
+    for (int i = 0; i < 3; i++)
+        ray[i] = pose->r[0][i] * u + pose->r[1][i] * v + pose->r[2][i];
+    orl_pose_centre(pose, eye);
+    room_point(eye, ray, p);
+    room_radiance(p, light);
+}
+
+// World: y down, as photographs are held. One photograph per direction and exposure.
+static void setup_room(struct fixture *f)
+{
+    setup(f, 6 * GRID * GRID);
+    for (int wall = 0; wall < 6; wall++)
+        for (int i = 0; i < GRID * GRID; i++) {
+            double p[3], n[3] = {0};
+            p[(wall + 1) % 3] = 2 * ROOM * (i % GRID + 0.5) / GRID - ROOM;
+            p[(wall + 2) % 3] = 2 * ROOM * (i / GRID + 0.5) / GRID - ROOM;
+            p[wall % 3] = wall < 3 ? ROOM : -ROOM;
+            n[wall % 3] = wall < 3 ? -1 : 1;
+            add_point(f, p, n, 9.0 / GRID);
+        }
+    static const double towards[6][3] = {{0, 0, 1},  {1, 0.05, 0}, {0, 0, -1},
+                                         {-1, 0.02, 0}, {0, -1, 0.02}, {0, 1, 0.02}};
+    for (int i = 0; i < 18; i++) {
+        const double *d = towards[i / 3], ev[] = {-3, 0, 3};
+        double eye[3] = {0.4 * sin(2.1 * i), 0.3 * cos(3.3 * i), 0.4 * sin(1.3 * i + 1)}, target[3];
+        for (int k = 0; k < 3; k++)
+            target[k] = eye[k] + d[k];
+        struct orl_view view = {.camera = {128, 128, 48, 48, 64, 64}};
+        view.cam_from_world = orl_pose_look_at(eye, target, (double[]){0, -1, 0.01});
+        add_photo(f, view, ev[i % 3], room_light);
+    }
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static void panoramas_show_what_is_there(void **state)
+{
+    (void)state;
+    enum { W = 128, H = 64 };
+    struct fixture f;
+    setup_room(&f);
+    struct orl_hdr *hdr;
+    struct orl_frame frame;
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_panorama p = {.position = {0.5, 0.2, -0.3}, .forward = {1, 0.3, 0},
+                             .width = W, .height = H};
+    orl_scene_up(&f.scene, p.up);
+    assert_true(p.up[1] < -0.9);
+    p.up[0] = p.up[2] = 0;
+    assert_int_equal(orl_hdr_create(gpu, &f.scene, &params, &hdr), ORL_OK);
+    assert_int_equal(orl_hdr_draw_panorama(hdr, &p, NULL, &frame), ORL_OK);
+    static float errors[W * H];
+    double border = 0, inner = 0;
+    int borders = 0;
+    for (int i = 0; i < W * H; i++) {
+        // The image's middle looks along +x; its right half towards +z... of a world with y
+        // down: to the right of +x is +z's opposite.
+        double longitude = M_PI - 2 * M_PI * (i % W + 0.5) / W;
+        double latitude = M_PI / 2 - M_PI * (i / W + 0.5) / H;
+        double right[3], down[3] = {0, 1, 0}, forward[3] = {1, 0, 0}, ray[3], hit[3];
+        for (int k = 0; k < 3; k++) // right = down x forward
+            right[k] = down[(k + 1) % 3] * forward[(k + 2) % 3] -
+                       down[(k + 2) % 3] * forward[(k + 1) % 3];
+        for (int k = 0; k < 3; k++)
+            ray[k] = forward[k] * cos(longitude) * cos(latitude) -
+                     right[k] * sin(longitude) * cos(latitude) - down[k] * sin(latitude);
+        float truth[3];
+        room_point(p.position, ray, hit);
+        room_radiance(hit, truth);
+        errors[i] = fabsf(log2f(orl_luminance(frame.color.f32 + 3 * i) / orl_luminance(truth)));
+        assert_true(isfinite(errors[i]));
+        double far = 0;
+        for (int k = 0; k < 3; k++)
+            far += (hit[k] - p.position[k]) * (hit[k] - p.position[k]);
+        if (frame.depth.f32[i] > 0 && errors[i] < 0.05f)
+            assert_float_equal(frame.depth.f32[i], sqrt(far), 0.06 * sqrt(far));
+        // Within 4 degrees of a border between two of the level faces.
+        double off = fabs(remainder(longitude - M_PI / 4, M_PI / 2));
+        bool near_border = off < 0.07 && fabs(latitude) < 0.5;
+        border += near_border ? (double)errors[i] : 0;
+        borders += near_border;
+        inner += near_border ? 0 : (double)errors[i];
+    }
+    qsort(errors, W * H, sizeof *errors, compare_floats);
+    assert_true(errors[W * H / 2] < 0.03f);
+    assert_true(errors[W * H * 95 / 100] < 0.15f);
+    assert_true(border / borders < 1.5 * inner / (W * H - borders) + 0.01);
+    orl_frame_finish(&frame);
+    orl_hdr_destroy(&hdr);
+    teardown(&f);
+}
+
+// Both merges see the same room, and finer samples do not change it.
+static void merges_agree(void **state)
+{
+    (void)state;
+    enum { W = 64, H = 48 };
+    struct fixture f;
+    setup_room(&f);
+    struct orl_view view = {.camera = {W, H, 40, 40, W / 2.0, H / 2.0}};
+    view.cam_from_world = orl_pose_look_at((double[]){0.3, 0, -0.5}, (double[]){2, 0.5, 2},
+                                           (double[]){0, -1, 0});
+    for (int variant = 0; variant < 3; variant++) {
+        struct orl_hdr *hdr;
+        struct orl_frame frame;
+        struct orl_hdr_params params =
+            params_of(variant == 1 ? ORL_HDR_SERIES : ORL_HDR_FUSED, "oriel");
+        params.samples = variant == 2 ? 2 : 1;
+        assert_int_equal(orl_hdr_create(gpu, &f.scene, &params, &hdr), ORL_OK);
+        assert_int_equal(orl_hdr_draw(hdr, &view, NULL, &frame), ORL_OK);
+        static float errors[W * H];
+        for (int i = 0; i < W * H; i++) {
+            float truth[3];
+            room_light(&view, i % W, i / W, truth);
+            errors[i] = fabsf(log2f(orl_luminance(frame.color.f32 + 3 * i) / orl_luminance(truth)));
+        }
+        qsort(errors, W * H, sizeof *errors, compare_floats);
+        assert_true(errors[W * H / 2] < 0.03f);
+        assert_true(errors[W * H * 95 / 100] < 0.12f);
+        orl_frame_finish(&frame);
+        orl_hdr_destroy(&hdr);
+    }
+    teardown(&f);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_photograph_that_does_not_clip_decides),
+        cmocka_unit_test(the_darkest_decides_where_all_clip),
+        cmocka_unit_test(where_all_are_black_it_is_dark),
+        cmocka_unit_test(noise_does_not_outvote_light),
+        cmocka_unit_test(what_moved_does_not_ghost),
+        cmocka_unit_test(clipped_pixels_leave_no_mark),
+        cmocka_unit_test(response_and_vignetting_are_undone),
+        cmocka_unit_test(linear_files_keep_their_range),
+        cmocka_unit_test(panoramas_show_what_is_there),
+        cmocka_unit_test(merges_agree),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
