@@ -172,9 +172,13 @@ struct orl_renderer {
     struct proxy_target target;
     struct orl_tex *accumulated; // colour * weight, weight; composed in place
     struct orl_tex *trusted;     // of radiance: weight * trust, weight
+    struct orl_image staging; // read_back.c
 };
 
 // renderer.c
 struct proxy_options orl_proxy_options(const struct orl_render_params *params);
+
+// read_back.c: the last draw; leave_out as of struct orl_render_params.
+enum orl_result orl_read_back(struct orl_renderer *r, unsigned leave_out, struct orl_frame *frame);
 
 #endif

@@ -15,8 +15,17 @@ enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COU
 enum orl_blend { ORL_BLEND_ALL, ORL_BLEND_BEST, ORL_BLEND_COUNT };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC, ORL_SAMPLING_COUNT };
 
-// Every key of --set; the table in options.c gives range, unit, cost and help.
+// Images of a frame beside its colour, as bits.
+enum orl_layer {
+    ORL_LAYER_DEPTH = 1,
+    ORL_LAYER_NORMAL = 2,
+    ORL_LAYER_COVERAGE = 4,
+    ORL_LAYER_CONFIDENCE = 8,
+};
+
+// Every key of --set; the table in options.c gives range, unit, cost and help. And, no key:
 struct orl_render_params {
+    unsigned leave_out; // layers not to be read back: their images stay empty; 0: all are
     enum orl_color_source color;    // points: the splats' own colour; photos: blended photographs
     enum orl_visibility visibility; // of surface points in photographs
     enum orl_fill fill;             // of pixels that no splat covers
@@ -100,8 +109,8 @@ struct orl_frame {
 };
 void orl_frame_finish(struct orl_frame *frame);
 
-// Renders and reads back, unless `frame` is NULL; the device is done then, too. The same input gives the same bits. `skip[i]` leaves a
-// photograph out of this view; NULL: none.
+// Renders and reads back, unless `frame` is NULL; the device is done then, too. The same input
+// gives the same bits. `skip[i]` leaves a photograph out of this view; NULL: none.
 enum orl_result orl_renderer_draw(struct orl_renderer *renderer, const struct orl_view *view,
                                   const struct orl_render_params *params, const bool *skip,
                                   struct orl_frame *frame) ORL_CHECK_RESULT;

@@ -70,6 +70,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_gather_finish(r->gpu, &r->gather);
     orl_prog_destroy(r->gpu, &r->compose);
     orl_proxy_target_finish(r->gpu, &r->target);
+    orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->accumulated);
     orl_tex_destroy(r->gpu, &r->trusted);
     free(r);
@@ -160,60 +161,6 @@ void orl_frame_finish(struct orl_frame *frame)
     orl_image_finish(&frame->confidence);
 }
 
-static enum orl_result read_confidence(struct orl_renderer *r, struct orl_frame *frame)
-{
-    const struct orl_log *log = orl_gpu_log(r->gpu);
-    struct orl_image sums = {0}; // two channels
-    int width = r->target.width, height = r->target.height;
-    enum orl_result result = orl_image_init(log, &sums, width, height, 2, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->confidence, width, height, 1, ORL_PIXEL_F32);
-    if (result == ORL_OK) {
-        orl_tex_read(r->trusted, 0, GL_RG, GL_FLOAT, orl_image_bytes(&sums), sums.f32);
-        for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
-            frame->confidence.f32[i] =
-                sums.f32[2 * i + 1] > 0 ? sums.f32[2 * i] / sums.f32[2 * i + 1] : 0;
-    }
-    orl_image_finish(&sums);
-    return result;
-}
-
-static enum orl_result read_back(struct orl_renderer *r, struct orl_frame *frame)
-{
-    const struct orl_log *log = orl_gpu_log(r->gpu);
-    int width = r->target.width, height = r->target.height;
-    struct orl_image rgba = {0};
-    enum orl_result result = orl_image_init(log, &rgba, width, height, 4, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->color, width, height, 3, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->depth, width, height, 1, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->normal, width, height, 3, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->coverage, width, height, 1, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        goto end;
-    orl_tex_read(r->accumulated, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(&rgba), rgba.f32);
-    orl_tex_read(r->target.depth, 0, GL_RED, GL_FLOAT, orl_image_bytes(&frame->depth),
-                 frame->depth.f32);
-    orl_tex_read(r->target.normal, 0, GL_RGB, GL_FLOAT, orl_image_bytes(&frame->normal),
-                 frame->normal.f32);
-    for (size_t i = 0; i < (size_t)width * (size_t)height; i++) {
-        memcpy(&frame->color.f32[3 * i], &rgba.f32[4 * i], 3 * sizeof(float));
-        frame->coverage.f32[i] = rgba.f32[4 * i + 3];
-        if (frame->depth.f32[i] < 0) // a guess, not a surface
-            frame->depth.f32[i] = 0;
-    }
-    if (r->trusted)
-        result = read_confidence(r, frame);
-    if (result == ORL_OK)
-        result = orl_gpu_finish(r->gpu);
-end:
-    orl_image_finish(&rgba);
-    return result;
-}
-
 enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view *view,
                                   const struct orl_render_params *params, const bool *skip,
                                   struct orl_frame *frame)
@@ -228,7 +175,9 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
     if (result == ORL_OK)
         result = draw(r, view, params, skip);
     if (result == ORL_OK)
-        result = frame ? read_back(r, frame) : orl_gpu_finish(r->gpu);
+        result = frame ? orl_read_back(r, params->leave_out, frame) : ORL_OK;
+    if (result == ORL_OK)
+        result = orl_gpu_finish(r->gpu);
     if (result != ORL_OK && frame)
         orl_frame_finish(frame);
     return result;

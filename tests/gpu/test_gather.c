@@ -291,6 +291,32 @@ static void unknown_names_and_values_are_refused(void **state)
     assert_int_equal(params.visibility, ORL_VISIBILITY_NONE);
 }
 
+static void layers_can_be_left_out(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    add_photo(&f, look(0, 0, 0, SIDE, 40), red);
+    struct orl_render_params params = airieau();
+    struct orl_frame all = draw(&f, look(0, 0, 0, SIDE, 40), &params, 0);
+    params.leave_out = ORL_LAYER_DEPTH | ORL_LAYER_NORMAL;
+    struct orl_frame some = draw(&f, look(0, 0, 0, SIDE, 40), &params, 0);
+    params.leave_out = ORL_LAYER_COVERAGE;
+    struct orl_frame others = draw(&f, look(0, 0, 0, SIDE, 40), &params, 0);
+    assert_null(some.depth.data);
+    assert_null(some.normal.data);
+    assert_null(others.coverage.data);
+    assert_memory_equal(some.color.f32, all.color.f32, orl_image_bytes(&all.color));
+    assert_memory_equal(some.coverage.f32, all.coverage.f32, orl_image_bytes(&all.coverage));
+    assert_memory_equal(others.color.f32, all.color.f32, orl_image_bytes(&all.color));
+    assert_memory_equal(others.depth.f32, all.depth.f32, orl_image_bytes(&all.depth));
+    assert_memory_equal(others.normal.f32, all.normal.f32, orl_image_bytes(&all.normal));
+    orl_frame_finish(&all);
+    orl_frame_finish(&some);
+    orl_frame_finish(&others);
+    teardown(&f);
+}
+
 static void absurd_cameras_and_wrong_photographs_are_refused(void **state)
 {
     (void)state;
@@ -324,6 +350,7 @@ int main(void)
         cmocka_unit_test(the_same_input_gives_the_same_bits),
         cmocka_unit_test(a_small_budget_plans_instead_of_failing),
         cmocka_unit_test(unknown_names_and_values_are_refused),
+        cmocka_unit_test(layers_can_be_left_out),
         cmocka_unit_test(absurd_cameras_and_wrong_photographs_are_refused),
     };
     int failed = cmocka_run_group_tests_name("gather", tests, NULL, NULL);
