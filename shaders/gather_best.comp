@@ -84,18 +84,36 @@ ranking rank(int list, vec3 p, bool guessed)
     return r;
 }
 
-// Adds one photograph's colour times weight.
-void paint(int i, float penalty, float least, float limit, float sharpness, vec3 p,
-           inout vec4 sum)
+// One photograph's colour and its weight.
+vec4 look(int i, float penalty, float least, float limit, float sharpness, vec3 p)
 {
-    if (penalty < limit) {
-        float fade = limit == NOT_SEEN ? 1.0 : 1.0 - penalty / limit;
-        vec2 pixel;
-        float z;
-        photo_project(i, p, pixel, z);
-        sum += vec4(photo_sample(i, pixel, photo_mip(i, z, p.z)).rgb, 1.0) *
-               (pow(least / penalty, sharpness) * fade);
+    if (!(penalty < limit))
+        return vec4(0.0);
+    float fade = limit == NOT_SEEN ? 1.0 : 1.0 - penalty / limit;
+    vec2 pixel;
+    float z;
+    photo_project(i, p, pixel, z);
+    return vec4(photo_sample(i, pixel, photo_mip(i, z, p.z)).rgb,
+                pow(least / penalty, sharpness) * fade);
+}
+
+// Sum of colour * weight, weight, where samples far from the consensus lose weight: passers-by,
+// leaves, reflections. Roots make the consensus of photographs and not of the best one alone,
+// and differences of light about as the eye sees them.
+vec4 blend(vec4 a, vec4 b, vec4 c, vec4 d, float severity)
+{
+    vec4 weight = vec4(a.a, b.a, c.a, d.a), vote = sqrt(weight);
+    float votes = dot(vote, vec4(1.0));
+    if (severity > 0.0 && votes > 0.0) {
+        mat4x3 root = mat4x3(sqrt(a.rgb), sqrt(b.rgb), sqrt(c.rgb), sqrt(d.rgb));
+        vec3 mean = root * vote / votes;
+        for (int k = 0; k < 4; k++) {
+            vec3 off = root[k] - mean;
+            weight[k] /= 1.0 + dot(off, off) * severity;
+        }
     }
+    return vec4(a.rgb, 1.0) * weight.x + vec4(b.rgb, 1.0) * weight.y +
+           vec4(c.rgb, 1.0) * weight.z + vec4(d.rgb, 1.0) * weight.w;
 }
 
 void main()
@@ -112,11 +130,12 @@ void main()
         ivec2 tile = corner / CHOICE_TILE;
         ranking r = rank((tile.y * area.w + tile.x) * CANDIDATES, p, guessed);
         float sharpness = guessed ? choice.w : choice.y, limit = limit_of(r), least = r.penalty.x;
-        vec4 sum = vec4(0.0);
-        paint(r.photo.x, r.penalty.x, least, limit, sharpness, p, sum);
-        paint(r.photo.y, r.penalty.y, least, limit, sharpness, p, sum);
-        paint(r.photo.z, r.penalty.z, least, limit, sharpness, p, sum);
-        paint(r.photo.w, r.penalty.w, least, limit, sharpness, p, sum);
+        vec4 a = look(r.photo.x, r.penalty.x, least, limit, sharpness, p);
+        vec4 b = look(r.photo.y, r.penalty.y, least, limit, sharpness, p);
+        vec4 c = look(r.photo.z, r.penalty.z, least, limit, sharpness, p);
+        vec4 d = look(r.photo.w, r.penalty.w, least, limit, sharpness, p);
+        // On guessed depth photographs disagree by nature.
+        vec4 sum = blend(a, b, c, d, guessed ? 0.0 : choice_more.y);
         if (sum.a > 0.0)
             imageStore(accumulated, at, sum);
     }

@@ -66,7 +66,8 @@ ORL_BLOCK(gather_block)
                       // that can be told from darkness
     VEC4(choice);     // x: photographs per pixel, y: sharpness, z: trust in photographs
                       // without depth, w: sharpness on guessed depth
-    VEC4(choice_more); // x: photographs of the tile's list that a pixel asks
+    VEC4(choice_more); // x: photographs of the tile's list that a pixel asks,
+                       // y: severity with outliers, 1 / squared root of light; 0: none
 };
 #endif
 

@@ -131,7 +131,8 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
         .area = {view->camera.width, view->camera.height, (int)count, tiles(view->camera.width)},
         .choice = {floorf(params->photos_per_pixel + 0.5f), params->sharpness,
                    params->unknown_trust, params->guess_sharpness},
-        .choice_more = {floorf(params->candidates + 0.5f)},
+        .choice_more = {floorf(params->candidates + 0.5f),
+                        params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0},
     };
     set_focal(block.view_focal, &view->camera);
     return block;

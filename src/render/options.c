@@ -14,7 +14,7 @@
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
     .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f,                      \
     .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 2.0f,  \
-    .unknown_trust = 0.05f
+    .unknown_trust = 0.05f, .outliers = 0.3f
 
 // What each pixel of blend=best asks and blends.
 #define BEST_DEFAULTS .candidates = 8.0f, .photos_per_pixel = 4.0f
@@ -61,6 +61,8 @@ const struct orl_render_option orl_render_options[] = {
      "blended into a pixel by blend=best"},
     {"candidates", FIELD(candidates), NULL, 1, CANDIDATES, "photographs",
      "of its tile that a pixel asks; fewer are faster, and miss more behind obstacles"},
+    {"outliers", FIELD(outliers), NULL, 0, 1, "square root of light",
+     "a sample that differs by this much from the consensus counts half; 0: all count"},
     {"sharpness", FIELD(sharpness), NULL, 0, 64, "",
      "how fast blend=best prefers the better photograph; 0: equal weights"},
     {"guess_sharpness", FIELD(guess_sharpness), NULL, 0, 64, "",

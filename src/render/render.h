@@ -45,6 +45,8 @@ struct orl_render_params {
                                     // [0, 16]; 0: all count
     float photos_per_pixel;         // blended by `best`, [1, 4]
     float candidates;               // of a tile, that each pixel asks, [1, 8]
+    float outliers;                 // of `best`: a sample this far from the consensus counts
+                                    // half, square root of light, [0, 1]; 0: all count
     float sharpness;                // of `best`: weight = (least penalty / penalty)^sharpness
     float guess_sharpness;          // the same where depth is guessed
     float unknown_trust;            // share of trust in photographs without depth there, [0, 1]

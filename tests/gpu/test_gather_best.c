@@ -80,6 +80,7 @@ static struct orl_render_params best(void)
 {
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.border_px = 0;
+    params.outliers = 0; // these photographs disagree on purpose
     return params;
 }
 
@@ -189,6 +190,26 @@ static void a_small_move_changes_little(void **state)
     teardown(&f);
 }
 
+// Two of three agree: the third, though the nearest, loses weight.
+static void outliers_lose(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f);
+    add_photo(&f, look(-0.15, 0, 0), 255, 0, 0);
+    add_photo(&f, look(0.2, 0, 0), 0, 255, 0);
+    add_photo(&f, look(-0.25, 0, 0), 0, 255, 0);
+    struct orl_render_params params = best();
+    struct orl_frame all = draw(&f, look(0, 0, 0), &params, 0);
+    params.outliers = 0.2f;
+    struct orl_frame robust = draw(&f, look(0, 0, 0), &params, 0);
+    assert_true(color_at(&robust, 16, 24)[0] < 0.7f * color_at(&all, 16, 24)[0]);
+    assert_true(color_at(&robust, 16, 24)[1] > color_at(&all, 16, 24)[1]);
+    orl_frame_finish(&all);
+    orl_frame_finish(&robust);
+    teardown(&f);
+}
+
 // More photographs than a frame may use, or than fit: the near ones are taken.
 static void many_photographs_leave_the_best(void **state)
 {
@@ -216,6 +237,7 @@ int main(void)
         cmocka_unit_test(weights_fade_to_zero_at_the_first_left_out),
         cmocka_unit_test(hidden_photographs_do_not_paint),
         cmocka_unit_test(a_small_move_changes_little),
+        cmocka_unit_test(outliers_lose),
         cmocka_unit_test(many_photographs_leave_the_best),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);
