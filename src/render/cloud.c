@@ -259,10 +259,10 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
          &chunk->attribute_texels},
         {"point blocks", blocks * sizeof *host->blocks, host->blocks, &chunk->blocks, GL_RGBA32F,
          &chunk->block_texels},
-        {"enlargement of blocks", blocks * 4, NULL, &chunk->enlarged, GL_R32F,
+        {"point block enlargement", blocks * 4, NULL, &chunk->enlarged, GL_R32F,
          &chunk->enlarged_texels},
-        {"drawn points", blocks * PARTS * 4, NULL, &chunk->items, GL_R32UI, &chunk->item_texels},
-        {"draw arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
+        {"point list", blocks * PARTS * 4, NULL, &chunk->items, GL_R32UI, &chunk->item_texels},
+        {"point list arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
     };
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
