@@ -93,6 +93,20 @@ static json_t *left_out(const struct orl_job *job, const json_t *done)
     return list;
 }
 
+// What oriel tune kept in a scene that is still the same.
+static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
+{
+    json_t *old = NULL;
+    if (!orl_path_is_file(path)) // removed before a stage was done again
+        return ORL_OK;
+    enum orl_result result = orl_json_read(job->log, path, &old);
+    json_t *tuned = json_object_get(old, "tuned");
+    if (tuned && json_object_set(root, "tuned", tuned) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    json_decref(old);
+    return result;
+}
+
 enum orl_result orl_stage_manifest(struct orl_job *job)
 {
     static const char *const files[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
@@ -114,6 +128,8 @@ enum orl_result orl_stage_manifest(struct orl_job *job)
                              "checksums", sums);
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    if (result == ORL_OK)
+        result = keep_tuned(job, path, root);
     if (result == ORL_OK)
         result = orl_json_write(job->log, path, root);
     json_decref(root);

@@ -28,11 +28,11 @@ struct plan {
 };
 
 static enum orl_result add_method(const struct orl_log *log, const struct options *o,
-                                  const struct orl_method *method, struct plan *plan)
+                                  const struct orl_scene *scene, const struct orl_method *method,
+                                  struct plan *plan)
 {
     struct orl_render_params *render = &plan->render[plan->method_count];
-    enum orl_result result = ORL_OK;
-    *render = method->params;
+    enum orl_result result = orl_render_params_tuned(log, method, scene, render);
     for (size_t i = 0; result == ORL_OK && i < o->settings.count; i++)
         result = orl_render_params_set(log, render, o->settings.items[i]);
     plan->names[plan->method_count++] = method->name;
@@ -40,7 +40,7 @@ static enum orl_result add_method(const struct orl_log *log, const struct option
 }
 
 static enum orl_result plan_methods(const struct orl_log *log, const struct options *o,
-                                    struct plan *plan)
+                                    const struct orl_scene *scene, struct plan *plan)
 {
     size_t known = 0;
     while (orl_methods[known].name)
@@ -51,12 +51,12 @@ static enum orl_result plan_methods(const struct orl_log *log, const struct opti
     enum orl_result result = plan->names && plan->render ? ORL_OK : ORL_ERR_MEMORY;
     bool all = orl_names_contain(&o->methods, "all");
     if (result == ORL_OK && !all && o->methods.count == 0)
-        return add_method(log, o, &orl_methods[0], plan);
+        return add_method(log, o, scene, &orl_methods[0], plan);
     for (size_t i = 0; result == ORL_OK && all && i < known; i++)
-        result = add_method(log, o, &orl_methods[i], plan);
+        result = add_method(log, o, scene, &orl_methods[i], plan);
     for (size_t i = 0; result == ORL_OK && !all && i < o->methods.count; i++) {
         const struct orl_method *method = orl_method_find(log, o->methods.items[i]);
-        result = method ? add_method(log, o, method, plan) : ORL_ERR_ARGUMENT;
+        result = method ? add_method(log, o, scene, method, plan) : ORL_ERR_ARGUMENT;
     }
     return result;
 }
@@ -219,13 +219,13 @@ static enum orl_result run(const struct terminal *terminal, const struct options
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
     struct orl_bench bench = {0};
-    enum orl_result result = plan_methods(log, o, &plan);
-    if (result == ORL_OK)
-        result = plan_sizes(log, o, &plan);
+    enum orl_result result = plan_sizes(log, o, &plan);
     if (result == ORL_OK)
         result = plan_points(log, o, &plan);
     if (result == ORL_OK)
         result = orl_scene_open(log, dir, &scene);
+    if (result == ORL_OK)
+        result = plan_methods(log, o, scene, &plan);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);

@@ -103,8 +103,10 @@ static enum orl_result start_hdr(struct job *job, const struct orl_render_params
 
 static enum orl_result evaluate(struct job *job, const struct orl_method *method)
 {
-    struct orl_render_params render = method->params;
-    enum orl_result result = apply_settings(job, &render);
+    struct orl_render_params render;
+    enum orl_result result = orl_render_params_tuned(job->log, method, job->scene, &render);
+    if (result == ORL_OK)
+        result = apply_settings(job, &render);
     if (result != ORL_OK)
         return result;
     struct orl_eval_params params = {.method = method->name, .render = &render,

@@ -198,7 +198,7 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
     const struct orl_log *log = job->log;
     enum orl_result result = check(o, log);
     if (result == ORL_OK)
-        result = method_choose(log, o->method, &o->settings, &job->params.render);
+        result = method_choose(log, NULL, o->method, &o->settings, &job->params.render);
     if (result == ORL_OK)
         result = orl_hdr_merge_find(log, o->merge, &job->params.merge);
     if (result == ORL_OK)
@@ -208,6 +208,8 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
     job->params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
+    if (result == ORL_OK)
+        result = method_choose(log, job->scene, o->method, &o->settings, &job->params.render);
     if (result == ORL_OK && !o->panorama.width && o->replace_series < 0)
         result = views_choose(log, job->scene, &o->views, &job->path);
     if (result == ORL_OK)

@@ -83,13 +83,14 @@ static enum orl_result print_json(const struct orl_log *log, const struct orl_sc
     if (path && orl_path_is_file(path))
         result = orl_json_read(log, path, &manifest);
     json_t *root = json_pack(
-        "{s:s, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*}", "scene",
-        scene->dir, "counts", "photographs", (json_int_t)scene->photo_count, "train",
+        "{s:s, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*}",
+        "scene", scene->dir, "counts", "photographs", (json_int_t)scene->photo_count, "train",
         (json_int_t)(scene->photo_count - test), "test", (json_int_t)test, "points",
         (json_int_t)scene->points.count, "photo_distance", scene->photo_distance, "bounds",
         low[0], low[1], low[2], high[0], high[1], high[2], "photographs", photos, "stages",
         json_object_get(manifest, "stages"), "settings", json_object_get(manifest, "settings"),
-        "left_out", json_object_get(manifest, "left_out"));
+        "left_out", json_object_get(manifest, "left_out"), "tuned",
+        json_object_get(manifest, "tuned"));
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
     if (text)
         printf("%s\n", text);
@@ -119,6 +120,9 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
            high[1], high[2]);
     printf("distance     %.4g from photographs to what they see (median)\n",
            scene->photo_distance);
+    for (size_t i = 0; i < scene->tuned_count; i++)
+        printf("tuned        %s: %s=%.6g\n", scene->tuned[i].method, scene->tuned[i].key,
+               scene->tuned[i].value);
     print_cameras(scene);
     print_photos(scene);
     return result;

@@ -101,11 +101,14 @@ static enum orl_result run(const struct options *options, const struct arg_commo
                         "render: one of --at PHOTO, --camera FILE, --path FILE is needed");
     if (!options->views.path && !orl_frame_can_write(options->out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .png or .exr", options->out);
-    enum orl_result result = method_choose(log, options->method, &options->settings, &job->params);
+    enum orl_result result = method_choose(log, NULL, options->method, &options->settings, &job->params);
     if (result == ORL_OK)
         result = output_choose(log, &options->output, false, &job->output);
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
+    if (result == ORL_OK)
+        result = method_choose(log, job->scene, options->method, &options->settings,
+                               &job->params);
     if (result == ORL_OK)
         result = views_choose(log, job->scene, &options->views, &job->path);
     if (result == ORL_OK)

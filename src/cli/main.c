@@ -12,6 +12,7 @@ static const struct command commands[] = {
     {"prepare", "make a scene from photographs", cmd_prepare},
     {"render", "render new views", cmd_render},
     {"synth", "photographs of a synthetic monument with ground truth", cmd_synth},
+    {"tune", "fit a method's options to a scene", cmd_tune},
     {0},
 };
 

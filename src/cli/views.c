@@ -101,12 +101,15 @@ enum orl_result output_choose(const struct orl_log *log, const struct output_opt
     return result == ORL_OK ? orl_tone_find(log, options->tone, &output->tone.curve) : result;
 }
 
-enum orl_result method_choose(const struct orl_log *log, const char *name,
-                              const struct orl_names *settings, struct orl_render_params *params)
+enum orl_result method_choose(const struct orl_log *log, const struct orl_scene *scene,
+                              const char *name, const struct orl_names *settings,
+                              struct orl_render_params *params)
 {
     const struct orl_method *method = orl_method_find(log, name);
     enum orl_result result = method ? ORL_OK : ORL_ERR_ARGUMENT;
-    if (method)
+    if (method && scene)
+        result = orl_render_params_tuned(log, method, scene, params);
+    else if (method)
         *params = method->params;
     for (size_t i = 0; result == ORL_OK && i < settings->count; i++)
         result = orl_render_params_set(log, params, settings->items[i]);

@@ -41,8 +41,10 @@ struct output_options {
 // confidence: may it be asked for?
 enum orl_result output_choose(const struct orl_log *log, const struct output_options *options,
                               bool confidence, struct orl_frame_output *output) ORL_CHECK_RESULT;
-// A method's parameters, with KEY=VALUE settings applied.
-enum orl_result method_choose(const struct orl_log *log, const char *method,
+// A method's parameters as tuned for the scene (NULL: as they are), with KEY=VALUE settings
+// applied.
+enum orl_result method_choose(const struct orl_log *log, const struct orl_scene *scene,
+                              const char *method,
                               const struct orl_names *settings,
                               struct orl_render_params *params) ORL_CHECK_RESULT;
 

@@ -88,6 +88,20 @@ const struct orl_render_option orl_render_options[] = {
     {0},
 };
 
+// Nothing that is there to trade quality for time, such as photos_per_pixel.
+const struct orl_render_tries orl_render_tries[] = {
+    {"sharpness", 5, {0.5, 1, 2, 4, 8}},
+    {"depth_tolerance", 5, {0.003, 0.005, 0.01, 0.02, 0.04}},
+    {"min_support", 5, {0, 4, 8, 12, 16}},
+    {"front_layer", 4, {0, 0.005, 0.01, 0.02}},
+    {"splat_scale", 3, {0.7, 1, 1.4}},
+    {"guess_sharpness", 5, {0.5, 1, 2, 4, 8}},
+    {"unknown_trust", 5, {0, 0.02, 0.05, 0.15, 0.5}},
+    {"distance_floor", 4, {0.01, 0.03, 0.1, 0.3}},
+    {"border_px", 3, {4, 16, 48}},
+    {0},
+};
+
 const struct orl_method *orl_method_find(const struct orl_log *log, const char *name)
 {
     char list[256] = "";

@@ -63,6 +63,15 @@ struct orl_render_option {
 // Ended by a NULL key.
 extern const struct orl_render_option orl_render_options[];
 
+// Values of an option that oriel tune tries, ascending; options without a row are left alone.
+struct orl_render_tries {
+    const char *key;
+    int count;
+    double values[6];
+};
+// Ended by a NULL key.
+extern const struct orl_render_tries orl_render_tries[];
+
 struct orl_method {
     const char *name, *description, *source;
     struct orl_render_params params;
@@ -74,6 +83,12 @@ const struct orl_method *orl_method_find(const struct orl_log *log, const char *
 // "key=value"; ORL_ERR_ARGUMENT lists what is allowed.
 enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_render_params *params,
                                       const char *assignment) ORL_CHECK_RESULT;
+
+// The method's parameters with what oriel tune found for the scene. ORL_ERR_FORMAT: the
+// scene has settings that this program does not know.
+enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
+                                        const struct orl_scene *scene,
+                                        struct orl_render_params *params) ORL_CHECK_RESULT;
 
 // --- the renderer ---
 

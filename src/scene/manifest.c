@@ -223,6 +223,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
     if (result == ORL_OK)
         result = read_photos(log, path, root, scene);
     if (result == ORL_OK)
+        result = orl_manifest_read_tuned(log, path, root, scene);
+    if (result == ORL_OK)
         result = check_points(log, root, points_path);
     json_decref(root);
     return result;

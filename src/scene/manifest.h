@@ -21,6 +21,14 @@ enum orl_result orl_json_write(const struct orl_log *log, const char *path,
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
                                   const char *points_path,
                                   struct orl_scene *scene) ORL_CHECK_RESULT;
+// Its part of "tuned"; called by orl_manifest_read.
+enum orl_result orl_manifest_read_tuned(const struct orl_log *log, const char *path,
+                                        const json_t *root,
+                                        struct orl_scene *scene) ORL_CHECK_RESULT;
+// Sets "tuned" of a method in DIR/scene.json; takes over `record`, whose "settings" has
+// option keys and numbers. ORL_ERR_NOT_FOUND: there is no scene.json.
+enum orl_result orl_manifest_write_tuned(const struct orl_log *log, const char *dir,
+                                         const char *method, json_t *record) ORL_CHECK_RESULT;
 // ORL_OK when prepare never worked on this folder; else ORL_ERR_DATA, logged with
 // the first stage that is missing.
 enum orl_result orl_manifest_check_unfinished(const struct orl_log *log,

@@ -276,6 +276,11 @@ void orl_scene_destroy(struct orl_scene **handle)
         free(scene->photos[i].name);
     free(scene->photos);
     free(scene->responses);
+    for (size_t i = 0; i < scene->tuned_count; i++) {
+        free(scene->tuned[i].method);
+        free(scene->tuned[i].key);
+    }
+    free(scene->tuned);
     orl_points_finish(&scene->points);
     free(scene->dir);
     free(scene);

@@ -25,6 +25,12 @@ struct orl_response {
     float linear[3][256]; // per channel and value: linear exposure, increasing, 255 is 1
 };
 
+// A method's option as oriel tune found it best for the scene.
+struct orl_tuned {
+    char *method, *key; // owned
+    double value;
+};
+
 struct orl_scene {
     char *dir; // owned
     struct orl_photo *photos;
@@ -32,6 +38,8 @@ struct orl_scene {
     struct orl_points points;
     struct orl_response *responses; // one per camera model that has a measured one
     size_t response_count;
+    struct orl_tuned *tuned;
+    size_t tuned_count;
     double photo_distance; // median distance from photographs to the points they see
 };
 

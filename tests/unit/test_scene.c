@@ -278,6 +278,32 @@ static void warns_of_other_points(void **state)
     test_dir_remove(dir);
 }
 
+static void reads_tuned_settings(void **state)
+{
+    (void)state;
+    char *dir = whole(), text[2048];
+    struct orl_scene *scene;
+    snprintf(text, sizeof text, "%.*s, \"tuned\": {\"m\": {\"settings\": {\"a\": 2, \"b\": "
+             "0.5}}, \"n\": {}, \"o\": {\"settings\": {\"a\": -1}}}}",
+             (int)(strrchr(manifest, '}') - manifest), manifest);
+    save(dir, "scene.json", text);
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_int_equal(scene->tuned_count, 3);
+    assert_string_equal(scene->tuned[1].method, "m");
+    assert_string_equal(scene->tuned[1].key, "b");
+    assert_float_equal(scene->tuned[1].value, 0.5, 0);
+    assert_string_equal(scene->tuned[2].method, "o");
+    orl_scene_destroy(&scene);
+    static const char *const bad[] = {"\"x\"", "null", "[1]", "{}"};
+    for (size_t i = 0; i < ORL_COUNT(bad); i++) {
+        snprintf(text, sizeof text, "%.*s, \"tuned\": {\"m\": {\"settings\": {\"a\": %s}}}}",
+                 (int)(strrchr(manifest, '}') - manifest), manifest, bad[i]);
+        save(dir, "scene.json", text);
+        assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_ERR_FORMAT);
+    }
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -288,6 +314,7 @@ int main(void)
         cmocka_unit_test(refuses_what_is_no_scene),
         cmocka_unit_test(reads_optics),
         cmocka_unit_test(warns_of_other_points),
+        cmocka_unit_test(reads_tuned_settings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

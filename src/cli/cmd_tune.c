@@ -1,0 +1,195 @@
+// oriel tune: a method's numbers fitted to a scene's training photographs.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/views.h"
+#include "eval/tune.h"
+#include "scene/manifest.h"
+
+struct options {
+    const char *method, *json;
+    struct orl_names settings, keys;
+    int size_divide, views, max_vram_mib;
+    double budget_s, gain_db;
+    bool apply, fresh;
+};
+
+static void print_trial(void *priv, const struct orl_tune_trial *trial)
+{
+    (void)priv;
+    if (trial->key)
+        printf("%-18s %9.4g", trial->key, trial->value);
+    else
+        printf("%-18s %9s", "start", "");
+    printf(" %9.3f %8.4f  %s\n", trial->psnr_db, trial->ssim, trial->kept ? "kept" : "");
+    fflush(stdout);
+}
+
+// The method's number of this key.
+static double value_of(const struct orl_render_params *params, const char *key)
+{
+    const struct orl_render_option *option = orl_render_options;
+    while (strcmp(option->key, key) != 0)
+        option++;
+    float value;
+    memcpy(&value, (const char *)params + option->offset, sizeof value);
+    return (double)value;
+}
+
+// What differs from the method's own numbers, of all that may be tuned.
+static json_t *settings_json(const struct orl_render_params *best,
+                             const struct orl_render_params *method)
+{
+    json_t *settings = json_object();
+    for (const struct orl_render_tries *t = orl_render_tries; t->key; t++) {
+        double value = value_of(best, t->key);
+        char text[32];
+        if (value == value_of(method, t->key))
+            continue;
+        snprintf(text, sizeof text, "%.6g", value); // 0.1, not the float next to it
+        json_object_set_new(settings, t->key, json_real(atof(text)));
+    }
+    return settings;
+}
+
+static json_t *record_json(const struct options *o, const struct orl_tune *tune, json_t *settings)
+{
+    return json_pack("{s:O, s:f, s:f, s:I, s:i, s:b}", "settings", settings, "before_psnr_db",
+                     tune->start_db, "psnr_db", tune->best_db, "photographs",
+                     (json_int_t)tune->views, "size_divide", o->size_divide, "complete",
+                     tune->complete);
+}
+
+static enum orl_result write_json(const struct orl_log *log, const struct options *o,
+                                  const struct orl_scene *scene, const char *device,
+                                  const struct orl_tune *tune, json_t *settings)
+{
+    json_t *root = record_json(o, tune, settings), *trials = json_array();
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        const struct orl_tune_trial *t = &tune->trials[i];
+        json_array_append_new(trials, json_pack("{s:o, s:o, s:f, s:f, s:b}", "key",
+                                                t->key ? json_string(t->key) : json_null(),
+                                                "value", t->key ? json_real(t->value)
+                                                                : json_null(),
+                                                "psnr_db", t->psnr_db, "ssim", t->ssim, "kept",
+                                                t->kept));
+    }
+    json_object_set_new(root, "scene", json_string(scene->dir));
+    json_object_set_new(root, "method", json_string(o->method));
+    json_object_set_new(root, "device", json_string(device));
+    enum orl_result result = json_object_set_new(root, "trials", trials) == 0
+                                 ? orl_json_write(log, o->json, root)
+                                 : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for it", o->json);
+    json_decref(root);
+    return result;
+}
+
+static enum orl_result report(const struct orl_log *log, const struct options *o,
+                              const struct orl_scene *scene, const char *device,
+                              const struct orl_method *method, const struct orl_tune *tune)
+{
+    json_t *settings = settings_json(&tune->best, &method->params), *value;
+    const char *key;
+    printf("%s: %.3f dB, was %.3f; %zu photographs at 1/%d, each rendered without itself%s\n",
+           method->name, tune->best_db, tune->start_db, tune->views, o->size_divide,
+           tune->complete ? "" : "; the budget ended the search");
+    json_object_foreach(settings, key, value)
+        printf("--set %s=%.6g\n", key, json_number_value(value));
+    enum orl_result result = ORL_OK;
+    if (o->json)
+        result = write_json(log, o, scene, device, tune, settings);
+    if (result == ORL_OK && o->apply)
+        result = orl_manifest_write_tuned(log, scene->dir, method->name,
+                                          record_json(o, tune, settings));
+    json_decref(settings);
+    return result;
+}
+
+// From the scene's tuned numbers on, or from the method's.
+static enum orl_result start_values(const struct orl_log *log, const struct options *o,
+                                    const struct orl_scene *scene,
+                                    struct orl_render_params *start)
+{
+    return method_choose(log, o->fresh ? NULL : scene, o->method, &o->settings, start);
+}
+
+static enum orl_result run(const struct terminal *terminal, const struct options *o,
+                           const struct arg_common *common, const char *dir)
+{
+    const struct orl_log *log = &terminal->log;
+    const struct orl_method *method = orl_method_find(log, o->method);
+    struct orl_scene *scene = NULL;
+    struct orl_gpu *gpu = NULL;
+    struct orl_renderer *renderer = NULL;
+    struct orl_render_params start;
+    struct orl_tune tune = {0};
+    enum orl_result result = method ? orl_scene_open(log, dir, &scene) : ORL_ERR_ARGUMENT;
+    if (result == ORL_OK)
+        result = start_values(log, o, scene, &start);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
+    struct orl_renderer_params limits = {.max_vram_bytes = (size_t)o->max_vram_mib << 20};
+    if (result == ORL_OK)
+        result = orl_renderer_create(gpu, scene, &limits, &renderer);
+    const struct orl_tune_params params = {
+        .method = o->method, .start = &start, .keys = &o->keys, .size_divide = o->size_divide,
+        .views = (size_t)o->views, .gain_db = o->gain_db, .budget_s = o->budget_s,
+        .on_trial = common->quiet ? NULL : print_trial, .progress = &terminal->progress};
+    if (result == ORL_OK && !common->quiet)
+        printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
+    if (result == ORL_OK)
+        result = orl_tune_run(gpu, renderer, scene, &params, &tune);
+    if (result == ORL_OK)
+        result = report(log, o, scene, orl_gpu_caps(gpu)->renderer, method, &tune);
+    if (fflush(stdout) != 0 && result == ORL_OK)
+        result = orl_fail(log, ORL_ERR_IO, "standard output: cannot write");
+    orl_tune_finish(&tune);
+    orl_renderer_destroy(&renderer);
+    orl_gpu_destroy(&gpu);
+    orl_scene_destroy(&scene);
+    return result;
+}
+
+int cmd_tune(int argc, char **argv)
+{
+    struct options o = {.method = orl_methods[0].name, .size_divide = 2, .views = 16,
+                        .gain_db = 0.01};
+    const struct arg_option table[] = {
+        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the first", 0, 0},
+        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "start from another value", 0, 0},
+        {"only", ARG_LIST, &o.keys, "KEY,KEY,..", "tune these options; default: all that can be",
+         0, 0},
+        {"apply", ARG_FLAG, &o.apply, NULL,
+         "keep the result in scene.json: render, eval and others use it", 0, 0},
+        {"fresh", ARG_FLAG, &o.fresh, NULL, "start from the method's values, not the scene's", 0, 0},
+        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS", "start no trial after so long", 0, 1e6},
+        {"views", ARG_INT, &o.views, "N", "photographs to compare with, at most; default 16", 1,
+         100000},
+        {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 2", 1,
+         16},
+        {"gain", ARG_NUMBER, &o.gain_db, "DB", "a change must bring so much; default 0.01", 0, 10},
+        {"json", ARG_STRING, &o.json, "FILE", "write result and trials as JSON", 0, 0},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
+        {0},
+    };
+    const struct arg_command command = {
+        "tune", "SCENE [--method NAME] [--apply]",
+        "Finds the values of a method's options with which training photographs come out best,\n"
+        "each rendered from the others. Held-out photographs take no part.", table, 1, 1};
+    struct arg_common common = {0};
+    struct terminal terminal;
+    const char *dir;
+    size_t count;
+    int status;
+    if (command_begin(&command, argc, argv, &common, &terminal, &dir, &count, &status)) {
+        status = command_status(run(&terminal, &o, &common, dir));
+        terminal_finish(&terminal);
+    }
+    orl_names_finish(&o.settings);
+    orl_names_finish(&o.keys);
+    return status;
+}

@@ -1,0 +1,325 @@
+#include "eval/tune.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/color.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/process.h"
+#include "eval/metrics.h"
+#include "io/picture.h"
+
+enum { ROUNDS_MAX = 8, METRIC_SIDE = 11 }; // SSIM's window
+
+// A training photograph to be compared with, at the size of the trials.
+struct target {
+    size_t photo;
+    struct orl_view view;
+    struct orl_image picture; // U8 x3
+};
+
+struct job {
+    const struct orl_log *log;
+    struct orl_renderer *renderer;
+    const struct orl_scene *scene;
+    const struct orl_tune_params *params;
+    struct orl_tune *tune;
+    struct target *targets; // owned
+    size_t target_count;
+    bool *skip; // owned
+    double start_s;
+    double done, total; // renderings, for the progress report
+};
+
+// --- targets ---
+
+// Averages n x n pixels in linear light; the rest of a row or column is left out.
+static enum orl_result shrink(const struct orl_log *log, const struct orl_image *from, int n,
+                              struct orl_image *to)
+{
+    float linear[256];
+    enum orl_result result =
+        orl_image_init(log, to, from->width / n, from->height / n, 3, ORL_PIXEL_U8);
+    for (int i = 0; i < 256; i++)
+        linear[i] = orl_srgb_decode((float)i / 255);
+    for (int y = 0; result == ORL_OK && y < to->height; y++)
+        for (int x = 0; x < to->width; x++)
+            for (int c = 0; c < 3; c++) {
+                float sum = 0;
+                for (int k = 0; k < n * n; k++) {
+                    size_t row = (size_t)(y * n + k / n), column = (size_t)(x * n + k % n);
+                    sum += linear[from->u8[3 * (row * (size_t)from->width + column) + (size_t)c]];
+                }
+                to->u8[3 * ((size_t)y * (size_t)to->width + (size_t)x) + (size_t)c] =
+                    (uint8_t)(255 * orl_srgb_encode(sum / (float)(n * n)) + 0.5f);
+            }
+    return result;
+}
+
+// The camera of the picture that shrink() makes: what is cut off moves nothing.
+static struct orl_camera shrunk_camera(const struct orl_camera *c, int n)
+{
+    return (struct orl_camera){.width = c->width / n, .height = c->height / n, .fx = c->fx / n,
+                               .fy = c->fy / n, .cx = c->cx / n, .cy = c->cy / n};
+}
+
+static enum orl_result load_target(struct job *job, size_t photo)
+{
+    struct target *target = &job->targets[job->target_count];
+    const struct orl_view *view = &job->scene->photos[photo].view;
+    int n = job->params->size_divide;
+    while (n > 1 && (view->camera.width / n < METRIC_SIDE || view->camera.height / n < METRIC_SIDE))
+        n--;
+    struct orl_image full = {0};
+    char *path = orl_scene_photo_path(job->log, job->scene, photo);
+    enum orl_result result = path ? orl_picture_read(job->log, path, 3, &full) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && (full.width != view->camera.width || full.height != view->camera.height))
+        result = orl_fail(job->log, ORL_ERR_DATA, "%s has %dx%d pixels, its camera %dx%d", path,
+                          full.width, full.height, view->camera.width, view->camera.height);
+    if (result == ORL_OK)
+        result = shrink(job->log, &full, n, &target->picture);
+    target->photo = photo;
+    target->view = (struct orl_view){shrunk_camera(&view->camera, n), view->cam_from_world};
+    if (result == ORL_OK)
+        job->target_count++;
+    orl_image_finish(&full);
+    free(path);
+    return result;
+}
+
+static enum orl_result load_targets(struct job *job)
+{
+    const struct orl_scene *scene = job->scene;
+    size_t train = 0, at = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        train += !scene->photos[i].test;
+    if (train < 3)
+        return orl_fail(job->log, ORL_ERR_DATA,
+                        "%s: %zu photographs that are not held out; three are needed, to render "
+                        "one from two others", scene->dir, train);
+    size_t wanted = job->params->views && job->params->views < train ? job->params->views : train;
+    job->targets = orl_array(job->log, train, sizeof *job->targets);
+    job->skip = orl_array(job->log, scene->photo_count, sizeof *job->skip);
+    enum orl_result result = job->targets && job->skip ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (scene->photos[i].test)
+            continue;
+        if ((at + 1) * wanted / train > at * wanted / train)
+            result = load_target(job, i);
+        at++;
+    }
+    job->tune->views = job->target_count;
+    return result;
+}
+
+// --- one trial ---
+
+static enum orl_result compare(struct job *job, const struct target *target,
+                               const struct orl_render_params *render, struct orl_metrics *metrics)
+{
+    struct orl_frame frame = {0};
+    struct orl_image picture = {0};
+    job->skip[target->photo] = true;
+    enum orl_result result =
+        orl_renderer_draw(job->renderer, &target->view, render, job->skip, &frame);
+    job->skip[target->photo] = false;
+    if (result == ORL_OK) {
+        const float *gain = job->scene->photos[target->photo].gain;
+        size_t pixels = (size_t)frame.color.width * (size_t)frame.color.height;
+        for (size_t i = 0; i < 3 * pixels; i++) // to this photograph's exposure
+            frame.color.f32[i] /= gain[i % 3];
+        result = orl_tone_srgb(job->log, &frame.color, &picture);
+    }
+    if (result == ORL_OK)
+        result = orl_metrics_compare(job->log, &picture, &target->picture, &frame.coverage,
+                                     metrics);
+    orl_image_finish(&picture);
+    orl_frame_finish(&frame);
+    return result;
+}
+
+static enum orl_result run_trial(struct job *job, const struct orl_render_params *render,
+                                 struct orl_tune_trial *trial)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < job->target_count; i++) {
+        struct orl_metrics metrics;
+        if (orl_progress_cancelled(job->params->progress))
+            return ORL_ERR_CANCELLED;
+        orl_progress_report(job->params->progress, "tune", job->done, job->total,
+                            job->scene->photos[job->targets[i].photo].name);
+        result = compare(job, &job->targets[i], render, &metrics);
+        if (result != ORL_OK)
+            break;
+        job->done++;
+        trial->psnr_db += metrics.psnr_db / (double)job->target_count;
+        trial->ssim += metrics.ssim / (double)job->target_count;
+    }
+    return result;
+}
+
+static enum orl_result note_trial(struct job *job, const struct orl_tune_trial *trial)
+{
+    struct orl_tune *tune = job->tune;
+    enum orl_result result = orl_grow(job->log, (void **)&tune->trials, &tune->trial_capacity,
+                                      tune->trial_count + 1, sizeof *tune->trials);
+    if (result != ORL_OK)
+        return result;
+    tune->trials[tune->trial_count++] = *trial;
+    if (job->params->on_trial)
+        job->params->on_trial(job->params->priv, trial);
+    return ORL_OK;
+}
+
+// --- the search ---
+
+static float *field(struct orl_render_params *params, const struct orl_render_tries *tries)
+{
+    const struct orl_render_option *option = orl_render_options;
+    while (strcmp(option->key, tries->key) != 0)
+        option++;
+    return (float *)((char *)params + option->offset);
+}
+
+static bool out_of_time(const struct job *job)
+{
+    return job->params->budget_s > 0 && orl_time_s() - job->start_s >= job->params->budget_s;
+}
+
+// Tries one value; `kept` when it is better, `same` when it changes nothing at all.
+static enum orl_result try_value(struct job *job, const struct orl_render_tries *tries,
+                                 double value, bool *kept, bool *same)
+{
+    struct orl_tune *tune = job->tune;
+    struct orl_render_params render = tune->best;
+    struct orl_tune_trial trial = {.key = tries->key, .value = value};
+    *field(&render, tries) = (float)value;
+    enum orl_result result = run_trial(job, &render, &trial);
+    if (result != ORL_OK)
+        return result;
+    *kept = trial.kept = trial.psnr_db >= tune->best_db + job->params->gain_db;
+    *same = trial.psnr_db == tune->best_db;
+    if (trial.kept) {
+        tune->best = render;
+        tune->best_db = trial.psnr_db;
+    }
+    return note_trial(job, &trial);
+}
+
+// The next of the option's tries beyond its value; NAN: none.
+static double next_try(const struct orl_render_tries *tries, double from, int direction)
+{
+    double next = NAN;
+    for (int i = 0; i < tries->count; i++) {
+        double value = tries->values[i];
+        // What is stored is a float: 0.1 is not beyond itself.
+        if ((value - from) * direction <= 1e-6 * fabs(from))
+            continue;
+        if (isnan(next) || (next - value) * direction > 0)
+            next = value;
+    }
+    return next;
+}
+
+static enum orl_result tune_option(struct job *job, const struct orl_render_tries *tries,
+                                   bool *better)
+{
+    enum orl_result result = ORL_OK;
+    bool moved = false;
+    for (int direction = 1; direction >= -1 && !moved; direction -= 2) {
+        bool kept = true, same = false;
+        while (result == ORL_OK && kept && !out_of_time(job)) {
+            double value = next_try(tries, (double)*field(&job->tune->best, tries), direction);
+            if (isnan(value))
+                break;
+            result = try_value(job, tries, value, &kept, &same);
+            moved = moved || (result == ORL_OK && kept);
+        }
+        if (result != ORL_OK || same) // an option that this method does not use
+            break;
+    }
+    *better = *better || moved;
+    return result;
+}
+
+static bool is_chosen(const struct job *job, const struct orl_render_tries *tries)
+{
+    const struct orl_names *keys = job->params->keys;
+    return !keys || !keys->count || orl_names_contain(keys, tries->key);
+}
+
+static enum orl_result check_keys(const struct job *job)
+{
+    const struct orl_names *keys = job->params->keys;
+    for (size_t i = 0; keys && i < keys->count; i++) {
+        const struct orl_render_tries *t = orl_render_tries;
+        while (t->key && strcmp(t->key, keys->items[i]) != 0)
+            t++;
+        if (!t->key)
+            return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: not an option that can be tuned",
+                            keys->items[i]);
+    }
+    return ORL_OK;
+}
+
+static enum orl_result search(struct job *job)
+{
+    struct orl_tune *tune = job->tune;
+    struct orl_tune_trial start = {.kept = true};
+    enum orl_result result = run_trial(job, &tune->best, &start);
+    tune->start_db = tune->best_db = start.psnr_db;
+    if (result == ORL_OK)
+        result = note_trial(job, &start);
+    bool better = true;
+    for (int round = 0; result == ORL_OK && better && round < ROUNDS_MAX && !out_of_time(job);
+         round++) {
+        better = false;
+        for (const struct orl_render_tries *t = orl_render_tries; result == ORL_OK && t->key; t++)
+            if (is_chosen(job, t))
+                result = tune_option(job, t, &better);
+    }
+    tune->complete = !out_of_time(job);
+    return result;
+}
+
+static void finish(struct job *job)
+{
+    for (size_t i = 0; i < job->target_count; i++)
+        orl_image_finish(&job->targets[i].picture);
+    free(job->targets);
+    free(job->skip);
+}
+
+enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                             const struct orl_scene *scene, const struct orl_tune_params *params,
+                             struct orl_tune *tune)
+{
+    struct job job = {.log = orl_gpu_log(gpu), .renderer = renderer, .scene = scene,
+                      .params = params, .tune = tune, .start_s = orl_time_s()};
+    memset(tune, 0, sizeof *tune);
+    ORL_REQUIRE(job.log, params->size_divide >= 1 && params->size_divide <= 16);
+    tune->best = *params->start;
+    enum orl_result result = check_keys(&job);
+    if (result == ORL_OK)
+        result = load_targets(&job);
+    for (const struct orl_render_tries *t = orl_render_tries; t->key; t++)
+        job.total += is_chosen(&job, t) ? 3.0 * (double)job.target_count : 0; // about
+    if (result == ORL_OK)
+        result = search(&job);
+    if (result == ORL_OK)
+        orl_progress_report(params->progress, "tune", 1, 1, NULL);
+    finish(&job);
+    if (result != ORL_OK)
+        orl_tune_finish(tune);
+    return result;
+}
+
+void orl_tune_finish(struct orl_tune *tune)
+{
+    if (!tune)
+        return;
+    free(tune->trials);
+    memset(tune, 0, sizeof *tune);
+}
