@@ -29,7 +29,8 @@ static json_t *stage_value(const json_t *done, const char *stage, const char *ke
 // The records of the stages, in their order, without what has a place of its own.
 static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
-    static const char *const elsewhere[] = {"photographs", "left_out", "skipped"};
+    static const char *const elsewhere[] = {"photographs", "responses", "left_out",
+                                             "skipped"};
     json_t *stages = json_object();
     for (size_t k = 0; k < json_array_size(plan); k++) {
         const char *name = json_string_value(json_array_get(plan, k));
@@ -120,10 +121,11 @@ enum orl_result orl_stage_manifest(struct orl_job *job)
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
         if (orl_job_has(job, files[i])) // a sparse model may be text
             result = add_checksum(job, sums, files[i]);
-    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "format",
+    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o}", "format",
                              "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                              "oriel " ORL_VERSION, "settings", orl_job_settings(job), "counts",
-                             counts(job, done, photos), "photographs", photos, "left_out",
+                             counts(job, done, photos), "photographs", photos, "responses",
+                             stage_value(done, "expose", "responses"), "left_out",
                              left_out(job, done), "stages", copy_stages(plan, done),
                              "checksums", sums);
     if (result == ORL_OK && !root)

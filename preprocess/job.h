@@ -52,6 +52,7 @@ struct orl_job {
     char colmap_version[64];
     bool colmap_known, colmap_cuda;
     char keys[ORL_STAGE_COUNT][20]; // hexadecimal
+    char exposures_hash[20];        // of the list of exposures; "": none
     // Of the programs run since the stage began.
     double child_cpu_s;
     size_t child_peak_bytes;

@@ -79,7 +79,7 @@ static json_t *densify_settings(const struct orl_job *job)
 
 static json_t *expose_settings(const struct orl_job *job)
 {
-    return json_pack("{s:o}", "test", test_names(job));
+    return json_pack("{s:o, s:s}", "test", test_names(job), "exposures", job->exposures_hash);
 }
 
 static json_t *no_settings(const struct orl_job *job)
@@ -120,7 +120,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
     [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
                         ".oriel/fused.ply"},
     [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii, "points.ply"},
-    [ORL_STAGE_EXPOSE] = {"expose", 1, ORL_STAGE_UNDISTORT, expose_settings, orl_stage_expose,
+    [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose,
                           NULL},
 };
 
@@ -246,12 +246,23 @@ static enum orl_result run_stages(struct orl_job *job)
     return result == ORL_OK ? orl_stage_manifest(job) : result;
 }
 
+static enum orl_result hash_exposures(struct orl_job *job)
+{
+    uint64_t hash = 0;
+    if (!job->params->exposures)
+        return ORL_OK;
+    enum orl_result result = orl_file_hash(job->log, job->params->exposures, &hash);
+    snprintf(job->exposures_hash, sizeof job->exposures_hash, "%016" PRIx64, hash);
+    return result;
+}
+
 // Collect runs always: it is what finds out whether anything has changed.
 static enum orl_result run_collect(struct orl_job *job)
 {
     double start = orl_time_s();
     enum orl_result result = orl_stage_collect(job);
-    if (result != ORL_OK || (result = compute_keys(job)) != ORL_OK)
+    if (result != ORL_OK || (result = hash_exposures(job)) != ORL_OK ||
+        (result = compute_keys(job)) != ORL_OK)
         return result;
     json_object_set_new(done_stages(job), "collect",
                         json_pack("{s:s, s:f, s:o, s:O}", "key", job->keys[ORL_STAGE_COLLECT],

@@ -30,6 +30,7 @@ struct orl_prepare_params {
     enum orl_matching matching;
     enum orl_densifier densifier;
     const char *masks_dir;     // NAME.png or NAME.EXT.png, black = ignore; NULL: none
+    const char *exposures;     // CSV that overrides EXIF (expose.h); NULL: none
     bool resume;               // go on with what is there
     uint32_t seed;
     struct orl_gpu *gpu;       // NULL: opened when densify needs it

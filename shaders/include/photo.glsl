@@ -7,7 +7,7 @@
 // As struct photo_data of render_blocks.h.
 struct photo_data {
     vec4 from_view[3];
-    vec4 eye, focal, size, slot_size, gain, noise;
+    vec4 eye, focal, size, slot_size, gain, lens, noise;
 };
 layout(std430, binding = 0) readonly buffer photo_list {
     photo_data photos[];
@@ -119,6 +119,18 @@ vec4 photo_sample(int i, vec2 pixel, float mip)
     return flags.y == 1 ? vec4(photo_sharper(i, pixel, mip, texel.rgb), texel.a) : texel;
 }
 #else
+// Brings linear colour to the scene's exposure and white balance, the lens's fall-off undone.
+// White that a photograph clipped stays white: it was at least that bright.
+vec3 photo_aligned(int i, vec2 pixel, vec3 color)
+{
+    vec2 off = pixel - photos[i].focal.zw;
+    vec3 lens = photos[i].lens.xyz;
+    float r2 = dot(off, off) * photos[i].lens.w;
+    vec3 gain = photos[i].gain.rgb / max(1.0 + r2 * (lens.x + r2 * (lens.y + r2 * lens.z)), 0.1);
+    float clipped = smoothstep(0.9, 1.0, min(color.r, min(color.g, color.b)));
+    return color * mix(gain, max(gain, vec3(1.0)), clipped);
+}
+
 vec4 photo_sample(int i, vec2 pixel, float mip)
 {
     // A program for each: software renderers run both sides of a condition.
@@ -127,7 +139,7 @@ vec4 photo_sample(int i, vec2 pixel, float mip)
 #else
     vec3 color = photo_bilinear(i, pixel, mip).rgb;
 #endif
-    return vec4(color * photos[i].gain.rgb, 1.0);
+    return vec4(photo_aligned(i, pixel, color), 1.0);
 }
 #endif
 

@@ -40,7 +40,7 @@ ORL_BLOCK(pyramid_block)
 #define ORL_RADIANCE_KEPT 8    // of those, for the pixels of a work group
 
 // A photograph as the gather passes see it; an array of these is a storage buffer.
-#define ORL_PHOTO_VEC4S 9
+#define ORL_PHOTO_VEC4S 10
 #if defined(__STDC_VERSION__)
 struct photo_data {
     VEC4S(from_view, 3); // rows: rotation | translation, photograph's camera from the view's
@@ -49,6 +49,7 @@ struct photo_data {
     VEC4(size);          // width, height of the resident photograph; of its depth map
     VEC4(slot_size);     // width, height of a slot; of a depth slot
     VEC4(gain);          // rgb gain on linear colour; w: largest mip level
+    VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
     VEC4(noise);         // of radiance: variance per light, of reading out; z: 1 if rounded
 };
 #endif
@@ -59,7 +60,7 @@ ORL_BLOCK(gather_block)
 {
     VEC4(view_focal); // fx fy cx cy
     VEC4(options);    // x: depth tolerance, y: distance floor, z: border feather, pixels
-    IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic
+    IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic, z: 1 = the best few
     IVEC4(area);      // width and height of the view, z: photographs, w: tiles per row
     VEC4(radiance);   // x: stops that samples of one surface may differ, 0: any;
                       // y: variance of relative error at full exposure; z: least radiance

@@ -8,7 +8,7 @@
 enum { INPUTS_MAX = 4096 };
 
 struct options {
-    const char *out, *quality, *sharing, *matching, *densifier, *masks;
+    const char *out, *quality, *sharing, *matching, *densifier, *masks, *exposures;
     int test_every, max_size, seed, max_vram_mib;
     struct orl_names test_list;
     bool resume;
@@ -56,6 +56,7 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
     struct orl_prepare_params params = {
         .inputs = inputs, .input_count = input_count, .out = o->out, .test_every = o->test_every,
         .test_list = &o->test_list, .max_size = o->max_size, .masks_dir = o->masks,
+        .exposures = o->exposures,
         .resume = o->resume, .seed = (uint32_t)o->seed,
         .max_vram_bytes = (size_t)o->max_vram_mib << 20, .shader_dir = common->shader_dir};
     if (!o->out)
@@ -82,6 +83,8 @@ int cmd_prepare(int argc, char **argv)
         {"quality", ARG_STRING, &o.quality, "NAME", "draft, standard or high", 0, 0},
         {"masks", ARG_STRING, &o.masks, "DIR", "NAME.png or NAME.EXT.png; black is ignored",
          0, 0},
+        {"exposures", ARG_STRING, &o.exposures, "FILE",
+         "exposures in place of EXIF's: lines NAME,TIME,APERTURE,ISO or NAME,EV", 0, 0},
         {"camera-sharing", ARG_STRING, &o.sharing, "HOW",
          "auto (by size and EXIF), single or each", 0, 0},
         {"matching", ARG_STRING, &o.matching, "HOW",

@@ -88,15 +88,16 @@ static enum orl_result draw(struct job *job, const struct orl_view *view, struct
 
 // --- one view ---
 
-// Photographs are brought to the scene's exposure by their gain (known from EXIF or a
-// list, never from a held-out photograph's pixels); what this one would have shown is
-// the way back.
-static void undo_gain(const float gain[3], struct orl_image *color)
+// Aligned photographs show the scene at its reference exposure. What this one would have
+// shown is the way back: by a gain guessed without its pixels (expose.h) and the vignetting
+// of its lens.
+static bool is_aligned(const struct orl_render_params *params, const struct orl_photo *photo)
 {
-    size_t count = (size_t)color->width * (size_t)color->height;
-    for (size_t i = 0; i < count; i++)
-        for (size_t c = 0; c < 3; c++)
-            color->f32[3 * i + c] /= gain[c];
+    bool changed = false;
+    for (int c = 0; c < 3; c++)
+        changed = changed || photo->gain[c] != 1 || photo->vignette[c] != 0;
+    return changed && params->alignment == ORL_ALIGNMENT_ON &&
+           params->color == ORL_COLOR_PHOTOS;
 }
 
 static enum orl_result read_photograph(const struct job *job, size_t photo,
@@ -120,8 +121,12 @@ static enum orl_result as_photograph(const struct job *job, size_t index,
 {
     if (job->params->draw_radiance)
         return orl_photo_expose(job->log, job->scene, index, color, rendered);
-    undo_gain(job->scene->photos[index].gain, color);
-    return orl_tone_srgb(job->log, color, rendered);
+    struct orl_photo photo = job->scene->photos[index];
+    if (!is_aligned(job->params->render, &photo))
+        return orl_tone_srgb(job->log, color, rendered);
+    photo.response = -1; // these photographs were decoded as sRGB
+    const struct orl_scene alone = {.photos = &photo, .photo_count = 1};
+    return orl_photo_expose(job->log, &alone, 0, color, rendered);
 }
 
 static enum orl_result compare_radiance(const struct job *job, struct orl_eval_view *view,

@@ -80,7 +80,7 @@ static void set_focal(float out[4], const struct orl_camera *c)
 }
 
 static void describe_photo(const struct photos *photos, size_t index, const struct orl_view *view,
-                           struct photo_data *data)
+                           bool aligned, struct photo_data *data)
 {
     const struct orl_photo *photo = &photos->scene->photos[index];
     const struct photo_state *state = &photos->states[index];
@@ -96,7 +96,11 @@ static void describe_photo(const struct photos *photos, size_t index, const stru
     data->slot_size[1] = (float)color->height;
     data->slot_size[2] = (float)depth->width;
     data->slot_size[3] = (float)depth->height;
-    memcpy(data->gain, photo->gain, sizeof photo->gain);
+    for (int c = 0; c < 3; c++) {
+        data->gain[c] = aligned || photos->radiance ? photo->gain[c] : 1;
+        data->lens[c] = aligned ? photo->vignette[c] : 0;
+    }
+    data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
     data->gain[3] = (float)(color->levels - 1);
     if (!photos->radiance)
         return;
@@ -119,7 +123,8 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
 {
     struct gather *g = &r->gather;
     for (size_t i = 0; i < count; i++)
-        describe_photo(&r->photos, g->chosen[i], view, &g->list[i]);
+        describe_photo(&r->photos, g->chosen[i], view, params->alignment == ORL_ALIGNMENT_ON,
+                       &g->list[i]);
     orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
     struct gather_block block = {
         .options = {params->depth_tolerance, params->distance_floor,

@@ -11,6 +11,7 @@
 // distance_floor, front_layer and min_support: best of a few values when each training photograph of
 // fountain-P11 is rendered from the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
+    .alignment = ORL_ALIGNMENT_ON,                                                        \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
     .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f,                      \
     .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 2.0f,  \
@@ -41,6 +42,7 @@ const struct orl_method orl_methods[] = {
 static const char *const color_names[] = {"points", "photos", NULL};
 static const char *const visibility_names[] = {"none", "hard", NULL};
 static const char *const sampling_names[] = {"bilinear", "bicubic", NULL};
+static const char *const alignment_names[] = {"off", "on", NULL};
 static const char *const blend_names[] = {"all", "best", NULL};
 static const char *const fill_names[] = {"none", "color", "depth", NULL};
 
@@ -55,6 +57,8 @@ const struct orl_render_option orl_render_options[] = {
      "pixels without splats: black, neighbours' colour, or photographs at a guessed depth"},
     {"sampling", FIELD(sampling), sampling_names, 0, 0, "",
      "of photographs; bicubic is sharper and takes five fetches instead of one"},
+    {"alignment", FIELD(alignment), alignment_names, 0, 0, "",
+     "photographs are brought to one exposure and white balance, their vignetting undone"},
     {"blend", FIELD(blend), blend_names, 0, 0, "",
      "all photographs that see a pixel, or the best few, chosen per tile"},
     {"photos_per_pixel", FIELD(photos_per_pixel), NULL, 1, KEPT_MAX, "photographs",

@@ -13,6 +13,7 @@ enum orl_fill { ORL_FILL_NONE, ORL_FILL_COLOR, ORL_FILL_DEPTH, ORL_FILL_COUNT };
 enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COUNT };
 
 enum orl_blend { ORL_BLEND_ALL, ORL_BLEND_BEST, ORL_BLEND_COUNT };
+enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON, ORL_ALIGNMENT_COUNT };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC, ORL_SAMPLING_COUNT };
 
 // Images of a frame beside its colour, as bits.
@@ -30,6 +31,8 @@ struct orl_render_params {
     enum orl_visibility visibility; // of surface points in photographs
     enum orl_fill fill;             // of pixels that no splat covers
     enum orl_sampling sampling;     // of photographs
+    enum orl_alignment_use alignment; // gains and vignetting of the scene are undone; a
+                                    // renderer of radiance undoes them always
     enum orl_blend blend;           // all that see a pixel, or the best few
     float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
     float splat_scale;              // multiplies splat radii, (0, 16]

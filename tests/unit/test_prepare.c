@@ -44,7 +44,8 @@ static void groups_exposures(void **state)
         {.known = true, .test = true, .ev = 3},
     };
     int series;
-    assert_int_equal(orl_exposures_group(NULL, e, ORL_COUNT(e), &series), ORL_OK);
+    assert_int_equal(
+        orl_exposures_group(NULL, e, ORL_COUNT(e), ORL_EXPOSURE_STEP_EV, &series), ORL_OK);
     assert_int_equal(series, 2);
     const int expected[] = {1, 0, 1, 1, 1, 0, 1};
     for (size_t i = 0; i < ORL_COUNT(e); i++)
@@ -55,7 +56,7 @@ static void groups_exposures(void **state)
     assert_false(e[3].known);
     assert_float_equal(e[6].ev, 11.05, 1e-12);
     struct orl_exposure none[2] = {{0}, {.known = true, .test = true, .ev = 5}};
-    assert_int_equal(orl_exposures_group(NULL, none, 2, &series), ORL_OK);
+    assert_int_equal(orl_exposures_group(NULL, none, 2, ORL_EXPOSURE_STEP_EV, &series), ORL_OK);
     assert_int_equal(series, 1);
     assert_false(none[1].known);
     assert_float_equal(none[1].ev, 0, 0);
@@ -182,7 +183,7 @@ static void refuses_too_few(void **state)
         }
         assert_int_equal(orl_stage_collect(&w.job), count ? ORL_ERR_DATA : ORL_ERR_NOT_FOUND);
         assert_non_null(strstr(w.said.text, w.photos));
-        assert_non_null(strstr(w.said.text, count ? "three are needed" : ".jpg, .jpeg or .png"));
+        assert_non_null(strstr(w.said.text, count ? "three are needed" : "JPEG, PNG"));
         world_close(&w);
     }
 }

@@ -1,0 +1,11 @@
+// Small symmetric systems.
+#ifndef ORL_PREPROCESS_CHOLESKY_H
+#define ORL_PREPROCESS_CHOLESKY_H
+
+#include "core/common.h"
+
+// Solves a x = b in place by Cholesky's factorisation; a: n x n, row-major, its lower half
+// is used and overwritten. False when a is not positive definite.
+bool orl_cholesky_solve(double *a, double *b, size_t n);
+
+#endif

@@ -1,0 +1,378 @@
+// Aligning photographs, guessing the gain of others, reading lists of exposures: known
+// answers on samples that were made up.
+#include <math.h>
+
+#include "core/color.h"
+#include "preprocess/align.h"
+#include "preprocess/expose.h"
+#include "preprocess/response.h"
+#include "test.h"
+
+enum { PHOTOS = 6, POINTS = 3000, SEEN = 4 };
+
+static uint32_t word(uint32_t *state)
+{
+    *state = *state * 747796405u + 2891336453u;
+    uint32_t w = ((*state >> ((*state >> 28) + 4)) ^ *state) * 277803737u;
+    return (w >> 22) ^ w;
+}
+
+static double uniform(uint32_t *state)
+{
+    return word(state) * 0x1p-32;
+}
+
+// Roughly normal, variance 1.
+static double normal(uint32_t *state)
+{
+    double sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += uniform(state) - 0.5;
+    return sum * sqrt(3.0);
+}
+
+// What the photographs are like.
+struct camera {
+    double exposure[3]; // factor on linear light
+    double vignette;    // light lost in the corners
+    bool film;          // response with more contrast than sRGB
+};
+
+static double encode(bool film, double light)
+{
+    double v = (double)orl_srgb_encode((float)light);
+    return film ? v + 0.5 * (v * v * (3 - 2 * v) - v) : v;
+}
+
+// Points of random colour, each seen by SEEN photographs in a row, as 8-bit values; what
+// would be clipped is left out. A share of `outliers` shows something else.
+static struct orl_samples make_samples(const struct camera *cameras, double outliers,
+                                       double darkest_ev, double brightest_ev)
+{
+    static struct orl_observation items[POINTS * SEEN];
+    static uint32_t points[POINTS * SEEN];
+    struct orl_samples samples;
+    uint32_t state = 1;
+    size_t count = 0;
+    for (uint32_t p = 0; p < POINTS; p++) {
+        double light[3], all = darkest_ev + (brightest_ev - darkest_ev) * uniform(&state);
+        for (int c = 0; c < 3; c++)
+            light[c] = exp2(all + uniform(&state) - 0.5);
+        uint32_t first = word(&state) % (PHOTOS - SEEN + 1);
+        for (uint32_t k = 0; k < SEEN; k++) {
+            const struct camera *camera = &cameras[first + k];
+            struct orl_observation item = {.photo = first + k, .r2 = (float)uniform(&state)};
+            double other = uniform(&state) < outliers ? 3 * uniform(&state) : 1;
+            bool good = true;
+            for (int c = 0; c < 3; c++) {
+                double v = light[c] * camera->exposure[c] * other *
+                           (1 - camera->vignette * (double)item.r2) * exp(0.03 * normal(&state));
+                item.value[c] = (float)round(255 * encode(camera->film, v));
+                good = good && item.value[c] > 1 && item.value[c] < 254;
+            }
+            items[count] = item;
+            points[count] = p;
+            count += good;
+        }
+    }
+    assert_int_equal(orl_samples_collect(NULL, items, points, count, POINTS, &samples), ORL_OK);
+    return samples;
+}
+
+static void samples_keep_points_seen_twice(void **state)
+{
+    (void)state;
+    enum { MANY = 100 };
+    struct orl_observation items[MANY + 4];
+    uint32_t points[MANY + 4];
+    struct orl_samples samples;
+    for (uint32_t i = 0; i < MANY + 4; i++) {
+        items[i] = (struct orl_observation){.photo = i};
+        points[i] = i < MANY ? 2 : i < MANY + 1 ? 0 : 1;
+    }
+    assert_int_equal(orl_samples_collect(NULL, items, points, MANY + 4, 4, &samples), ORL_OK);
+    assert_int_equal(samples.point_count, 2);
+    assert_int_equal(samples.first[1], 3); // of the point seen three times
+    assert_int_equal(samples.count, 3 + 32);
+    for (size_t i = 1; i < samples.count; i++)
+        assert_true(i == 3 || samples.items[i].photo > samples.items[i - 1].photo);
+    // Evenly spread over all that see it.
+    assert_true(samples.items[3].photo < 5 && samples.items[34].photo >= 95);
+    orl_samples_finish(&samples);
+}
+
+static const struct camera uneven[PHOTOS] = {
+    {.exposure = {1, 1, 1}},       {.exposure = {0.7, 0.75, 0.8}}, {.exposure = {1.4, 1.3, 1.2}},
+    {.exposure = {0.5, 0.5, 0.5}}, {.exposure = {1.8, 2, 1.9}},    {.exposure = {1, 0.9, 1.1}}};
+
+// Gains times exposure are the same for all photographs, whatever the reference is.
+static void check_gains(const struct orl_align_photo *photos, const struct camera *cameras,
+                        double tolerance_ev)
+{
+    for (int c = 0; c < 3; c++) {
+        double first = log2((double)photos[0].gain[c] * cameras[0].exposure[c]);
+        for (int i = 1; i < PHOTOS; i++)
+            assert_true(fabs(log2((double)photos[i].gain[c] * cameras[i].exposure[c]) - first) <
+                        tolerance_ev);
+    }
+}
+
+static void gains_undo_exposure_and_colour(void **state)
+{
+    (void)state;
+    struct orl_samples samples = make_samples(uneven, 0.1, -4, -1.5);
+    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_alignment alignment;
+    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
+    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    check_gains(photos, uneven, 0.02);
+    for (int c = 0; c < 3; c++) {
+        double sum = 0;
+        for (int i = 0; i < PHOTOS; i++)
+            sum += log2((double)photos[i].gain[c]);
+        assert_true(fabs(sum) < 1e-4); // the reference: geometric mean 1
+    }
+    assert_true(alignment.spread_before_ev > 0.5 && alignment.spread_after_ev < 0.1);
+    assert_float_equal(alignment.vignette[0][0], 0, 0); // nothing to explain
+    orl_alignment_finish(&alignment);
+    orl_samples_finish(&samples);
+}
+
+static void known_exposures_set_the_reference(void **state)
+{
+    (void)state;
+    struct orl_samples samples = make_samples(uneven, 0, -4, -1.5);
+    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_alignment alignment;
+    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        photos[i].known = true;
+        photos[i].ev = log2(uneven[i].exposure[1]) + 2;
+    }
+    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    check_gains(photos, uneven, 0.03);
+    for (int i = 0; i < 3; i++)
+        sum += log2((double)photos[i].gain[1]) + photos[i].ev;
+    assert_true(fabs(sum) < 1e-4);
+    orl_alignment_finish(&alignment);
+    orl_samples_finish(&samples);
+}
+
+static void vignetting_is_found(void **state)
+{
+    (void)state;
+    struct camera cameras[PHOTOS];
+    memcpy(cameras, uneven, sizeof cameras);
+    for (int i = 0; i < PHOTOS; i++)
+        cameras[i].vignette = 0.4;
+    struct orl_samples samples = make_samples(cameras, 0.05, -4, -1.5);
+    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_alignment alignment;
+    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
+    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    const float *v = alignment.vignette[0];
+    for (int i = 1; i <= 10; i++) {
+        double r2 = 0.1 * i;
+        double light = 1 + r2 * ((double)v[0] + r2 * ((double)v[1] + r2 * (double)v[2]));
+        assert_true(fabs(light - (1 - 0.4 * r2)) < 0.015);
+    }
+    check_gains(photos, cameras, 0.03);
+    orl_alignment_finish(&alignment);
+    orl_samples_finish(&samples);
+}
+
+static void implausible_gains_are_refused(void **state)
+{
+    (void)state;
+    struct orl_samples samples = make_samples(uneven, 0, -4, -1.5);
+    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_alignment alignment;
+    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
+    for (int i = 0; i < PHOTOS; i++) {
+        photos[i].known = true;
+        photos[i].ev = log2(uneven[i].exposure[1]) + (i == 2 ? 6 : 0);
+    }
+    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    for (int i = 0; i < PHOTOS; i++)
+        assert_int_equal(photos[i].refused, i == 2);
+    assert_float_equal(photos[2].gain[0], exp2(-photos[2].ev), 1e-6);
+    assert_true(fabs(log2((double)photos[4].gain[1]) + photos[4].ev) < 0.1);
+    orl_alignment_finish(&alignment);
+    orl_samples_finish(&samples);
+}
+
+// --- response ---
+
+static const struct camera bracket[PHOTOS] = {
+    {.exposure = {0.125, 0.125, 0.125}, .film = true}, {.exposure = {1, 1, 1}, .film = true},
+    {.exposure = {8, 8, 8}, .film = true},             {.exposure = {0.14, 0.14, 0.14}, .film = true},
+    {.exposure = {0.9, 0.9, 0.9}, .film = true},       {.exposure = {8, 8, 8}, .film = true}};
+
+static void tell_exposures(struct orl_response_photo photos[PHOTOS])
+{
+    // As a camera tells them: what differs slightly from series to series stays untold.
+    for (int i = 0; i < PHOTOS; i++)
+        photos[i] = (struct orl_response_photo){.use = true, .ev = 3 * (i % 3 - 1)};
+}
+
+static void response_is_found(void **state)
+{
+    (void)state;
+    struct orl_samples samples = make_samples(bracket, 0.1, -9, 1);
+    struct orl_response_photo photos[PHOTOS];
+    struct orl_response response;
+    struct orl_response_fit fit;
+    tell_exposures(photos);
+    assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(fit.verdict, ORL_RESPONSE_FOUND);
+    for (int c = 0; c < 3; c++) {
+        double squares = 0, scale = 0, norm = 0, truth[256];
+        int v = 0;
+        for (int i = 0; i <= 100000; i++) { // the curve turned round
+            while (v < 256 && 255 * encode(true, i / 100000.0) >= v - 1e-9)
+                truth[v++] = i / 100000.0;
+        }
+        assert_int_equal(v, 256);
+        for (v = 0; v < 256; v++) {
+            assert_true(v == 0 || response.linear[c][v] > response.linear[c][v - 1]);
+            scale += truth[v] * (double)response.linear[c][v];
+            norm += (double)response.linear[c][v] * (double)response.linear[c][v];
+        }
+        for (v = 0; v < 256; v++)
+            squares += pow(scale / norm * (double)response.linear[c][v] - truth[v], 2);
+        if (sqrt(squares / 256) >= 0.01)
+            fail_msg("channel %d: RMS %g", c, sqrt(squares / 256));
+        assert_float_equal(response.linear[c][255], 1, 0);
+    }
+    orl_samples_finish(&samples);
+}
+
+static void response_stays_srgb_without_reason(void **state)
+{
+    (void)state;
+    struct camera cameras[PHOTOS];
+    memcpy(cameras, bracket, sizeof cameras);
+    for (int i = 0; i < PHOTOS; i++) {
+        cameras[i].film = false;
+        for (int c = 0; c < 3; c++)
+            cameras[i].exposure[c] = exp2(3 * (i % 3 - 1));
+    }
+    struct orl_samples samples = make_samples(cameras, 0.1, -9, 1);
+    struct orl_response_photo photos[PHOTOS];
+    struct orl_response response;
+    struct orl_response_fit fit;
+    tell_exposures(photos);
+    assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(fit.verdict, ORL_RESPONSE_SRGB);
+    assert_float_equal(response.linear[1][128], orl_srgb_decode(128 / 255.0f), 1e-6);
+    for (int i = 0; i < PHOTOS; i++)
+        photos[i].ev = 0.1 * i;
+    assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(fit.verdict, ORL_RESPONSE_FEW_SAMPLES);
+    for (int i = 0; i < PHOTOS; i++)
+        photos[i].ev = 0.05 * i;
+    assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(fit.verdict, ORL_RESPONSE_ONE_EXPOSURE);
+    orl_samples_finish(&samples);
+}
+
+// --- guesses ---
+
+// Views in a row, each sharing points with its neighbours.
+static void make_row(struct orl_gain_view views[7], uint32_t shared[7 * 6], uint32_t own[7])
+{
+    memset(views, 0, 7 * sizeof *views);
+    for (int i = 0; i < 7; i++) {
+        double at = i < 6 ? i : 2.5; // the last one is to be guessed
+        views[i].eye[0] = at;
+        own[i] = 100;
+        for (int k = 0; k < 6; k++)
+            shared[6 * i + k] = (uint32_t)fmax(0, 100 - 30 * fabs(at - k));
+    }
+}
+
+static void guesses_follow_what_predicts(void **state)
+{
+    (void)state;
+    struct orl_gain_view views[7];
+    uint32_t shared[7 * 6], own[7];
+    // A trend along the row: neighbours tell.
+    make_row(views, shared, own);
+    for (int i = 0; i < 6; i++)
+        for (int c = 0; c < 3; c++)
+            views[i].gain[c] = (float)exp2(0.3 * (i - 2.5));
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own), ORL_GUESS_NEIGHBOURS);
+    assert_true(fabs(log2((double)views[6].gain[1])) < 0.05);
+    // Without rhyme or reason: the reference.
+    const float odd[6] = {1.5f, 0.6f, 1.6f, 0.5f, 1.4f, 0.7f};
+    for (int i = 0; i < 6; i++)
+        for (int c = 0; c < 3; c++)
+            views[i].gain[c] = odd[i];
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own), ORL_GUESS_REFERENCE);
+    assert_float_equal(views[6].gain[0], 1, 0);
+    // EXIF tells them.
+    for (int i = 0; i < 6; i++) {
+        views[i].known = true;
+        views[i].ev = -log2((double)odd[i]);
+    }
+    views[6].known = true;
+    views[6].ev = 1.5;
+    enum orl_gain_guess guess = orl_gains_guess(views, 6, views + 6, 1, shared, own);
+    assert_true(guess == ORL_GUESS_EXPOSURE || guess == ORL_GUESS_BOTH);
+    assert_float_equal(views[6].gain[2], exp2(-1.5), 1e-5);
+}
+
+// --- lists ---
+
+static void lists_are_read(void **state)
+{
+    (void)state;
+    char *dir, *path;
+    assert_int_equal(test_file_make("list.csv", &dir, &path), 0);
+    const char text[] = "name,time,aperture,iso\na.jpg, 1/250, f/8, 100\r\n\nb,0.5,8,100\n";
+    struct orl_exposure_list list;
+    assert_int_equal(orl_file_write(NULL, path, text, sizeof text - 1), ORL_OK);
+    assert_int_equal(orl_exposure_list_read(NULL, path, &list), ORL_OK);
+    assert_int_equal(list.count, 2);
+    const struct orl_listed_exposure *a = orl_exposure_list_find(&list, "a.jpg");
+    const struct orl_listed_exposure *b = orl_exposure_list_find(&list, "b.png");
+    assert_true(a && b && a->absolute && !orl_exposure_list_find(&list, "c.jpg"));
+    assert_float_equal(a->ev, log2(1.0 / 250 / 64), 1e-9);
+    assert_float_equal(b->ev - a->ev, log2(125), 1e-9);
+    orl_exposure_list_finish(&list);
+    static const struct {
+        const char *text, *why;
+    } bad[] = {{"a.jpg,1,2\n", "line 1"},
+               {"name,ev\na.jpg,one\n", "line 2"},
+               {"a.jpg,1\nb.jpg,1/0\n", "line 2"},
+               {"a.jpg,-1,8,100\n", "line 1"},
+               {"a.jpg,3\nb.jpg,1,8,100\n", "another kind"},
+               {"name,ev\n", "no exposure"}};
+    for (size_t i = 0; i < ORL_COUNT(bad); i++) {
+        struct said said;
+        struct orl_log log = log_to(&said);
+        assert_int_equal(orl_file_write(NULL, path, bad[i].text, strlen(bad[i].text)), ORL_OK);
+        if (orl_exposure_list_read(&log, path, &list) != ORL_ERR_FORMAT ||
+            !strstr(said.text, bad[i].why))
+            fail_msg("case %zu: \"%s\"", i, said.text);
+        assert_null(list.items);
+    }
+    test_file_remove(dir, path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(samples_keep_points_seen_twice),
+        cmocka_unit_test(gains_undo_exposure_and_colour),
+        cmocka_unit_test(known_exposures_set_the_reference),
+        cmocka_unit_test(vignetting_is_found),
+        cmocka_unit_test(implausible_gains_are_refused),
+        cmocka_unit_test(response_is_found),
+        cmocka_unit_test(response_stays_srgb_without_reason),
+        cmocka_unit_test(guesses_follow_what_predicts),
+        cmocka_unit_test(lists_are_read),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
