@@ -162,6 +162,29 @@ static void runs_are_the_same(void **state)
     close_scene(&s);
 }
 
+// Clouds larger than a buffer may be are drawn in chunks: no pixel differs.
+static void chunks_draw_as_one(void **state)
+{
+    (void)state;
+    struct orl_gpu_caps *caps = (struct orl_gpu_caps *)(uintptr_t)orl_gpu_caps(gpu);
+    int texels = caps->max_buffer_texels;
+    static float depth[2][SIDE * SIDE], normal[2][SIDE * SIDE * 4];
+    for (int run = 0; run < 2; run++) {
+        struct scene s = {0};
+        make_wall(&s);
+        caps->max_buffer_texels = run ? 50000 : texels;
+        open_scene(&s);
+        assert_int_equal(s.proxy.cloud.chunk_count, run ? 6 : 1);
+        draw(&s, 3);
+        orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
+        orl_tex_read(s.target.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
+        close_scene(&s);
+    }
+    caps->max_buffer_texels = texels;
+    assert_memory_equal(depth[0], depth[1], sizeof depth[0]);
+    assert_memory_equal(normal[0], normal[1], sizeof normal[0]);
+}
+
 static void no_points_are_no_depth(void **state)
 {
     (void)state;
@@ -184,6 +207,7 @@ int main(void)
         cmocka_unit_test(blocks_outside_are_skipped),
         cmocka_unit_test(dense_blocks_are_thinned_without_holes),
         cmocka_unit_test(runs_are_the_same),
+        cmocka_unit_test(chunks_draw_as_one),
         cmocka_unit_test(no_points_are_no_depth),
     };
     int failed = cmocka_run_group_tests_name("cloud", tests, NULL, NULL);
