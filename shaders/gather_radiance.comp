@@ -109,10 +109,12 @@ const int PROBES_X = 4, PROBES_Y = 2;
 const int PROBES = PROBES_X * PROBES_Y;
 const int LANES = ORL_PIXEL_GROUP_X * ORL_PIXEL_GROUP_Y;
 const float LEAST_SHARE = 0.01; // of the best photograph's weight
+const float LEAST_SHARE_FOUND = 0.02; // with less than that a pixel asks all the others
 
 shared uint scores[ORL_RADIANCE_PHOTOS]; // bits of the largest weight * trust among probes
 shared int chosen[ORL_RADIANCE_KEPT];
 shared int chosen_count;
+shared uint best_score; // of all photographs at all probes
 
 void probe(int i, int probe_index)
 {
@@ -132,8 +134,10 @@ void choose()
     int lane = int(gl_LocalInvocationIndex);
     for (int i = lane; i < area.z; i += LANES)
         scores[i] = 0u;
-    if (lane == 0)
+    if (lane == 0) {
         chosen_count = 0;
+        best_score = 0u;
+    }
     barrier();
     for (int k = lane; k < area.z * PROBES; k += LANES)
         probe(k / PROBES, k % PROBES);
@@ -141,6 +145,7 @@ void choose()
     for (int i = lane; i < area.z; i += LANES) {
         uint mine = scores[i], most = mine;
         int rank = 0;
+        atomicMax(best_score, mine);
         for (int j = 0; j < area.z; j++) {
             rank += int(scores[j] > mine || (scores[j] == mine && j < i));
             most = max(most, scores[j]);
@@ -160,21 +165,50 @@ Sample samples[ORL_RADIANCE_KEPT];
 float brightness[ORL_RADIANCE_KEPT];
 int sample_photo[ORL_RADIANCE_KEPT];
 float weights[ORL_RADIANCE_KEPT];
-int sample_count;
+int sample_count = 0;
+
+// Where a sample goes: behind the others, or in place of the lightest one.
+int place_for(float weight)
+{
+    if (sample_count < ORL_RADIANCE_KEPT)
+        return sample_count++;
+    int least = 0;
+    for (int k = 1; k < ORL_RADIANCE_KEPT; k++)
+        least = weights[k] < weights[least] ? k : least;
+    return weights[least] < weight ? least : -1;
+}
 
 void ask_chosen(vec3 p, bool guessed)
 {
+    float heaviest = 0.0;
     sample_count = 0;
     for (int k = 0; k < chosen_count; k++) {
-        if (ask(chosen[k], p, guessed, samples[sample_count]))
-            sample_photo[sample_count++] = chosen[k];
+        int at = sample_count, i = chosen[k];
+        if (!ask(i, p, guessed, samples[at]))
+            continue;
+        sample_photo[at] = i;
+        weights[at] = total_weight(samples[at], noise_of(i, samples[at].color));
+        heaviest = max(heaviest, weights[at]);
+        sample_count++;
     }
-    // What no probe saw: a small surface that the chosen photographs do not see.
-    for (int i = 0; i < area.z && sample_count == 0; i++)
-        if (ask(i, p, guessed, samples[0])) {
-            sample_photo[0] = i;
-            sample_count = 1;
-        }
+    // What no probe saw: a small surface that the chosen photographs see badly or not.
+    if (heaviest > LEAST_SHARE_FOUND * uintBitsToFloat(best_score))
+        return;
+    for (int i = 0; i < area.z; i++) {
+        Sample s;
+        bool known = false;
+        for (int k = 0; k < chosen_count; k++)
+            known = known || chosen[k] == i;
+        if (known || !ask(i, p, guessed, s))
+            continue;
+        float weight = total_weight(s, noise_of(i, s.color));
+        int at = place_for(weight);
+        if (at < 0)
+            continue;
+        samples[at] = s;
+        sample_photo[at] = i;
+        weights[at] = weight;
+    }
 }
 
 // Radiance of the sample at the weighted median of brightness.
@@ -182,9 +216,7 @@ vec3 median_color()
 {
     float total = 0.0;
     for (int k = 0; k < sample_count; k++) {
-        Sample s = samples[k];
-        weights[k] = total_weight(s, noise_of(sample_photo[k], s.color));
-        brightness[k] = dot(s.color, LUMINANCE);
+        brightness[k] = dot(samples[k].color, LUMINANCE);
         total += weights[k];
     }
     int median = 0;
