@@ -89,7 +89,8 @@ vec4 look(int i, float penalty, float least, float limit, float sharpness, vec3 
 {
     if (!(penalty < limit))
         return vec4(0.0);
-    float fade = limit == NOT_SEEN ? 1.0 : 1.0 - penalty / limit;
+    // Full weight until the penalty comes near that of the first left out.
+    float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.0 - penalty / limit));
     vec2 pixel;
     float z;
     photo_project(i, p, pixel, z);
