@@ -246,7 +246,7 @@ static void finish(struct options *o, struct job *job)
 int cmd_hdr(int argc, char **argv)
 {
     struct options o = {.views = {.frames = 120}, .output = {OUTPUT_OPTIONS_DEFAULTS},
-                        .method = "airieau", .merge = "fused", .replace_series = -1, .samples = 1};
+                        .method = orl_methods[0].name, .merge = "fused", .replace_series = -1, .samples = 1};
     const struct arg_option table[] = {
         {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
@@ -264,7 +264,7 @@ int cmd_hdr(int argc, char **argv)
         {"samples", ARG_INT, &o.samples, "N", "N x N samples a pixel, from 1 to 4; default 1", 1, 4},
         {"merge", ARG_STRING, &o.merge, "NAME",
          "fused (default): one gather in radiance; series: a picture of each series, merged", 0, 0},
-        {"method", ARG_STRING, &o.method, "NAME", "of rendering; default airieau", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME", "of rendering; default oriel", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
         OUTPUT_OPTION_ROWS(&o.output, "depth, normal, coverage, confidence; default: all in .exr"),
