@@ -25,7 +25,7 @@ void main()
             continue;
         if (flags.x == 1 && !photo_sees(photo_depths(i, pixel), z, guessed))
             continue;
-        float weight = airieau_weight(p, photos[i].eye.xyz);
+        float weight = airieau_weight(p, photo_row(i, PHOTO_EYE).xyz);
         // Where depth is only guessed, photographs disagree: let the best one dominate.
         if (guessed)
             weight = pow(weight * options.y, 8.0);

@@ -25,13 +25,13 @@ struct Sample {
 // Exposure at which a photograph would have taken a radiance.
 vec3 exposure_of(int i, vec3 color)
 {
-    return color / photos[i].gain.rgb;
+    return color / photo_row(i, PHOTO_GAIN).rgb;
 }
 
 // Squared relative error of photograph `i` by noise, where the radiance is about this.
 float noise_of(int i, vec3 color)
 {
-    return relative_variance(exposure_of(i, color), photos[i].noise);
+    return relative_variance(exposure_of(i, color), photo_row(i, PHOTO_NOISE));
 }
 
 // How much of a sample is the surface at z, squared: what lies before it may be a thousand
@@ -50,7 +50,7 @@ float geometric_weight(int i, vec3 p, bool guessed)
 {
     if (flags.z == 1)
         return pow(1.0 / photo_penalty(i, p), guessed ? choice.w : choice.y);
-    float weight = airieau_weight(p, photos[i].eye.xyz);
+    float weight = airieau_weight(p, photo_row(i, PHOTO_EYE).xyz);
     // Where depth is only guessed, photographs disagree: let the best one dominate.
     return guessed ? pow(weight * options.y, 8.0) : weight;
 }

@@ -6,6 +6,8 @@
 #include "core/memory.h"
 #include "render/internal.h"
 
+enum { PHOTO_ROWS = 7 }; // image binding of shaders/include/photo.glsl
+
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
@@ -19,6 +21,8 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
     if (result == ORL_OK)
         result = orl_buf_create(gpu, "photographs of a frame",
                                 photo_count * sizeof *gather->list, NULL, &gather->photos);
+    if (result == ORL_OK)
+        result = orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows);
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "choose.comp", NULL, sizeof(struct gather_block),
                                  &gather->choose);
@@ -42,6 +46,7 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
         orl_prog_destroy(gpu, &gather->best[i]);
     }
     orl_prog_destroy(gpu, &gather->choose);
+    orl_tex_destroy(gpu, &gather->photo_rows);
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
     free(gather->list);
@@ -148,11 +153,11 @@ static void gather_all(struct orl_renderer *r, const struct orl_view *view,
 {
     struct gather_block block = prepare_pass(r, view, params, count);
     struct orl_dispatch d = {.prog = r->gather.all[params->sampling], .params = &block,
-                             .bufs = {{.buf = r->gather.photos}},
                              .textures = {r->photos.color, r->photos.depth},
                              .images = {{r->target.depth, 0, GL_READ_ONLY},
                                         {r->accumulated, 0, GL_READ_WRITE},
-                                        {r->trusted, 0, GL_READ_WRITE}},
+                                        {r->trusted, 0, GL_READ_WRITE},
+                                        [PHOTO_ROWS] = {r->gather.photo_rows, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
     orl_pass_begin(r->gpu, "gather");
@@ -175,9 +180,10 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     }
     struct gather_block block = prepare_pass(r, view, params, count);
     struct orl_dispatch d = {.prog = g->choose, .params = &block,
-                             .bufs = {{.buf = g->photos}, {.buf = g->tile_lists}},
+                             .bufs = {[1] = {.buf = g->tile_lists}},
                              .textures = {r->photos.color, r->photos.depth},
-                             .images = {{r->target.depth, 0, GL_READ_ONLY}},
+                             .images = {{r->target.depth, 0, GL_READ_ONLY},
+                                        [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
                              .groups = {orl_groups((size_t)across, 8), orl_groups((size_t)down, 8)},
                              .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
     orl_pass_begin(r->gpu, "choose");

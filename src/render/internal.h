@@ -146,6 +146,7 @@ struct gather {
     struct photo_data *list; // of the photographs of one dispatch
     size_t *chosen;          // their indices in the scene
     struct orl_buf *photos;  // struct photo_data
+    struct orl_tex *photo_rows; // its view, RGBA32F
     struct orl_buf *tile_lists; // choose.comp
 };
 
