@@ -8,6 +8,7 @@
 #include "preprocess/job.h"
 
 #define WORK ".oriel/calibrate.tmp"
+#define NORMALISED WORK "/normalised" // what features are taken from
 #define DONE ".oriel/calibrate"
 
 enum { EXHAUSTIVE_MAX = 120, COSTLY_MAX = 60 };
@@ -113,7 +114,7 @@ static enum orl_result extract(const struct calibration *c, const struct orl_nam
     struct orl_colmap_args args = {0};
     char *list = orl_job_path(job, WORK "/list.txt"), *masks = NULL;
     char *database = orl_job_path(job, WORK "/database.db");
-    char *photos = orl_job_path(job, ".oriel/photos");
+    char *photos = orl_job_path(job, orl_job_has(job, NORMALISED) ? NORMALISED : ".oriel/photos");
     enum orl_result result = list && database && photos ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_job_write_list(job, list, names);
@@ -390,6 +391,17 @@ static bool is_marked(const struct calibration *c)
     return same;
 }
 
+static enum orl_result normalise(const struct calibration *c)
+{
+    size_t copies;
+    enum orl_result result = orl_normalise(c->job, NORMALISED, &copies);
+    if (result == ORL_OK && copies)
+        orl_logf(c->job->log, ORL_LOG_INFO,
+                 "calibrate: exposures differ; features of %zu photographs come from brightened "
+                 "copies", copies);
+    return result;
+}
+
 // Features and matches survive an interruption of the mapper.
 static enum orl_result begin_database(struct calibration *c, bool sequential)
 {
@@ -399,7 +411,7 @@ static enum orl_result begin_database(struct calibration *c, bool sequential)
         return ORL_OK;
     }
     if ((result = orl_job_fresh_dir(c->job, WORK)) != ORL_OK ||
-        (result = extract_all(c, false)) != ORL_OK ||
+        (result = normalise(c)) != ORL_OK || (result = extract_all(c, false)) != ORL_OK ||
         (result = match(c, sequential, false)) != ORL_OK)
         return result;
     return set_mark(c, true);
@@ -419,6 +431,8 @@ static enum orl_result finish(struct calibration *c)
     if (!model)
         return ORL_ERR_MEMORY;
     enum orl_result result = orl_dir_remove(job->log, model);
+    if (result == ORL_OK)
+        result = orl_job_remove(job, NORMALISED);
     if (result == ORL_OK && rename(c->best, model) != 0)
         result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", model, strerror(errno));
     free(model);

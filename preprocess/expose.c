@@ -60,13 +60,11 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposu
 
 // --- what the stage works on ---
 
-enum exposure_source { FROM_NOTHING, FROM_EXIF, FROM_LIST, FROM_SCENE };
-
 struct photo {
     const struct orl_source *source;
     const struct orl_colmap_image *image;
     struct orl_view view;
-    enum exposure_source from;
+    enum orl_exposure_source from;
     int response; // index into the responses, -1: sRGB
     int camera;   // photographs of one number may share a response, -1: none
     float gain[3], vignette[3];
@@ -148,40 +146,13 @@ static enum orl_result find_photos(struct exposing *e)
 
 static enum orl_result set_exposures(struct exposing *e)
 {
-    struct orl_exposure_list list = {0};
-    const char *path = e->job->params->exposures;
-    enum orl_result result = path ? orl_exposure_list_read(e->job->log, path, &list) : ORL_OK;
-    // A list of EV has a scale of its own, which EXIF does not share.
-    bool exif = list.count == 0 || list.items[0].absolute;
-    for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
+    for (size_t i = 0; i < e->count; i++) {
         struct photo *photo = &e->photos[i];
-        struct orl_exposure *exposure = &e->exposures[i];
-        const struct orl_listed_exposure *listed =
-            orl_exposure_list_find(&list, photo->source->name);
-        if (!listed)
-            listed = orl_exposure_list_find(&list, photo->source->given);
-        if (listed)
-            exposure->ev = listed->ev;
-        exposure->known = listed || (exif && orl_exif_exposure_ev(&photo->source->exif,
-                                                                  &exposure->ev));
-        photo->from = listed ? FROM_LIST : exposure->known ? FROM_EXIF : FROM_NOTHING;
+        photo->from = orl_source_exposure(&e->job->exposures, photo->source, &e->exposures[i].ev);
+        e->exposures[i].known = photo->from != ORL_EXPOSURE_UNKNOWN;
     }
-    for (size_t k = 0; result == ORL_OK && k < list.count; k++) {
-        bool found = false;
-        for (size_t i = 0; i < e->job->source_count; i++) {
-            const struct orl_source *source = &e->job->sources[i];
-            found = found || orl_exposure_list_find(&list, source->name) == &list.items[k] ||
-                    orl_exposure_list_find(&list, source->given) == &list.items[k];
-        }
-        if (!found)
-            orl_logf(e->job->log, ORL_LOG_WARNING, "%s: there is no photograph %s", path,
-                     list.items[k].name);
-    }
-    orl_exposure_list_finish(&list);
-    if (result == ORL_OK)
-        result = orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV,
-                                     &e->series_count);
-    return result;
+    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV,
+                               &e->series_count);
 }
 
 // Without EXIF or list, exposures are those that gains undo: relative, and good to the
@@ -198,7 +169,7 @@ static enum orl_result estimate_exposures(struct exposing *e)
             continue;
         exposure->known = true;
         exposure->ev = -log2((double)gain[0] * (double)gain[1] * (double)gain[2]) / 3;
-        e->photos[i].from = FROM_SCENE;
+        e->photos[i].from = ORL_EXPOSURE_SCENE;
         estimated++;
     }
     if (!estimated)
@@ -448,7 +419,7 @@ static enum orl_result guess_held_out(struct exposing *e)
     enum orl_result result = views && shared && own ? count_shared(e, shared, own)
                                                     : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
-        bool told = e->photos[i].from == FROM_EXIF || e->photos[i].from == FROM_LIST;
+        bool told = e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
         views[i].known = told && e->exposures[i].known;
         views[i].ev = e->exposures[i].ev;
         memcpy(views[i].gain, e->photos[i].gain, sizeof views[i].gain);
@@ -471,8 +442,8 @@ static enum orl_result guess_held_out(struct exposing *e)
 
 static json_t *photo_record(const struct photo *p, const struct orl_exposure *e)
 {
-    static const char *const from[] = {[FROM_EXIF] = "exif", [FROM_LIST] = "list",
-                                       [FROM_SCENE] = "scene"};
+    static const char *const from[] = {[ORL_EXPOSURE_EXIF] = "exif", [ORL_EXPOSURE_LIST] = "list",
+                                       [ORL_EXPOSURE_SCENE] = "scene"};
     json_t *entry = json_pack(
         "{s:s, s:s, s:o, s:i, s:[f,f,f]}", "name", p->source->name, "split",
         e->test ? "test" : "train", "exposure_ev", e->known ? json_real(e->ev) : json_null(),
@@ -494,7 +465,7 @@ static void write_record(const struct exposing *e)
     size_t told = 0;
     for (size_t i = 0; i < e->count; i++) {
         json_array_append_new(photos, photo_record(&e->photos[i], &e->exposures[i]));
-        told += e->photos[i].from == FROM_EXIF || e->photos[i].from == FROM_LIST;
+        told += e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
     }
     json_object_set_new(e->record, "photographs", photos);
     json_object_set(e->record, "responses", e->response_list);

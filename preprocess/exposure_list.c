@@ -4,10 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "preprocess/expose.h"
+#include "preprocess/job.h"
 
 enum { LIST_MAX_BYTES = 16 << 20, FIELDS_MAX = 4 };
 
@@ -131,6 +132,21 @@ const struct orl_listed_exposure *orl_exposure_list_find(const struct orl_exposu
             return &list->items[i];
     }
     return NULL;
+}
+
+enum orl_exposure_source orl_source_exposure(const struct orl_exposure_list *list,
+                                             const struct orl_source *source, double *ev)
+{
+    const struct orl_listed_exposure *listed = orl_exposure_list_find(list, source->name);
+    if (!listed && source->given)
+        listed = orl_exposure_list_find(list, source->given);
+    if (listed) {
+        *ev = listed->ev;
+        return ORL_EXPOSURE_LIST;
+    }
+    bool exif = list->count == 0 || list->items[0].absolute;
+    return exif && orl_exif_exposure_ev(&source->exif, ev) ? ORL_EXPOSURE_EXIF
+                                                           : ORL_EXPOSURE_UNKNOWN;
 }
 
 void orl_exposure_list_finish(struct orl_exposure_list *list)

@@ -5,6 +5,7 @@
 #include <jansson.h>
 
 #include "io/picture.h"
+#include "preprocess/expose.h"
 #include "preprocess/prepare.h"
 #include "scene/colmap.h"
 
@@ -53,6 +54,7 @@ struct orl_job {
     bool colmap_known, colmap_cuda;
     char keys[ORL_STAGE_COUNT][20]; // hexadecimal
     char exposures_hash[20];        // of the list of exposures; "": none
+    struct orl_exposure_list exposures; // the list; owned
     // Of the programs run since the stage began.
     double child_cpu_s;
     size_t child_peak_bytes;
@@ -124,6 +126,25 @@ enum orl_result orl_develop(struct orl_job *job) ORL_CHECK_RESULT;
 // Linear light of all deep photographs in the model SCENE/`sparse`, as SCENE/`out`/NAME.exr.
 enum orl_result orl_develop_undistort(const struct orl_job *job, const char *sparse,
                                       const char *out, size_t *written) ORL_CHECK_RESULT;
+
+// --- exposures ---
+
+enum orl_exposure_source {
+    ORL_EXPOSURE_UNKNOWN,
+    ORL_EXPOSURE_EXIF,
+    ORL_EXPOSURE_LIST,
+    ORL_EXPOSURE_SCENE, // estimated
+};
+// log2 of the photograph's exposure from the list or EXIF. A list of EV has a scale of its
+// own, which EXIF does not share: then EXIF says nothing.
+enum orl_exposure_source orl_source_exposure(const struct orl_exposure_list *list,
+                                             const struct orl_source *source, double *ev);
+// normalise.c: do exposures differ so much that features need brightened copies?
+bool orl_normalise_wanted(const struct orl_job *job);
+// Fills SCENE/`dir` with brightened copies of dark photographs, counted, and links to the
+// others; does nothing when they are not wanted.
+enum orl_result orl_normalise(const struct orl_job *job, const char *dir,
+                              size_t *copies) ORL_CHECK_RESULT;
 
 // --- the stages ---
 // Each leaves whole results under their final names or fails. `record` takes what

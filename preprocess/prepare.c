@@ -56,10 +56,11 @@ static json_t *test_names(const struct orl_job *job)
 static json_t *calibrate_settings(const struct orl_job *job)
 {
     const struct orl_prepare_params *p = job->params;
-    return json_pack("{s:s, s:s, s:s, s:i, s:o}", "quality", quality_names[p->quality],
+    return json_pack("{s:s, s:s, s:s, s:i, s:o, s:o*}", "quality", quality_names[p->quality],
                      "sharing", sharing_names[p->sharing], "matching",
                      matching_names[p->matching], "seed", (int)p->seed, "masks",
-                     mask_hashes(job));
+                     mask_hashes(job), "normalised",
+                     orl_normalise_wanted(job) ? json_string(job->exposures_hash) : NULL);
 }
 
 static json_t *undistort_settings(const struct orl_job *job)
@@ -246,13 +247,26 @@ static enum orl_result run_stages(struct orl_job *job)
     return result == ORL_OK ? orl_stage_manifest(job) : result;
 }
 
-static enum orl_result hash_exposures(struct orl_job *job)
+static enum orl_result read_exposures(struct orl_job *job)
 {
+    const char *path = job->params->exposures;
     uint64_t hash = 0;
-    if (!job->params->exposures)
+    if (!path)
         return ORL_OK;
-    enum orl_result result = orl_file_hash(job->log, job->params->exposures, &hash);
+    enum orl_result result = orl_exposure_list_read(job->log, path, &job->exposures);
+    if (result == ORL_OK)
+        result = orl_file_hash(job->log, path, &hash);
     snprintf(job->exposures_hash, sizeof job->exposures_hash, "%016" PRIx64, hash);
+    for (size_t k = 0; result == ORL_OK && k < job->exposures.count; k++) {
+        const struct orl_exposure_list one = {&job->exposures.items[k], 1};
+        bool found = false;
+        for (size_t i = 0; i < job->source_count && !found; i++)
+            found = orl_exposure_list_find(&one, job->sources[i].name) ||
+                    orl_exposure_list_find(&one, job->sources[i].given);
+        if (!found)
+            orl_logf(job->log, ORL_LOG_WARNING, "%s: there is no photograph %s", path,
+                     one.items[0].name);
+    }
     return result;
 }
 
@@ -261,7 +275,7 @@ static enum orl_result run_collect(struct orl_job *job)
 {
     double start = orl_time_s();
     enum orl_result result = orl_stage_collect(job);
-    if (result != ORL_OK || (result = hash_exposures(job)) != ORL_OK ||
+    if (result != ORL_OK || (result = read_exposures(job)) != ORL_OK ||
         (result = compute_keys(job)) != ORL_OK)
         return result;
     json_object_set_new(done_stages(job), "collect",
@@ -372,6 +386,7 @@ static void finish(struct orl_job *job)
         free(job->sources[i].mask);
     }
     free(job->sources);
+    orl_exposure_list_finish(&job->exposures);
     json_decref(job->skipped);
     json_decref(job->stages);
     if (job->lock_fd >= 0)
