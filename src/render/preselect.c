@@ -65,7 +65,7 @@ static double score(const struct orl_photo *photo, const double eye[3], const do
 static void name_best(struct candidate *candidates, const double *scores, size_t count)
 {
     double best[PER_SAMPLE] = {0};
-    size_t index[PER_SAMPLE];
+    size_t index[PER_SAMPLE] = {0};
     for (size_t i = 0; i < count; i++) {
         double value = scores[i];
         size_t at = i;
