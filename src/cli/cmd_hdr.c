@@ -203,7 +203,8 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
         result = orl_hdr_merge_find(log, o->merge, &job->params.merge);
     if (result == ORL_OK)
         result = output_choose(log, &o->output, true, &job->output);
-    default_layers(o, &job->output.layers);
+    if (result == ORL_OK)
+        default_layers(o, &job->output.layers);
     job->params.samples = o->samples;
     job->params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
     if (result == ORL_OK)
