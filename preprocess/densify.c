@@ -1,7 +1,9 @@
-// Densify: every photograph by its own looks, then again with its sources' depths.
+// Densify: every photograph by its own looks, then again with its sources' depths, once or
+// more.
 #include "preprocess/densify.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,9 +12,18 @@
 #include "preprocess/densify_internal.h"
 
 enum {
+    LEVELS_MAX = 9, // of the reference; sources that show the scene finer have more
     COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this
-    EXTRA_LEVELS = 3,    // for sources that show the scene finer
+    GEOMETRIC_PASSES_MAX = 8,
+    PASSES_MAX = GEOMETRIC_PASSES_MAX + 1,
     SPECKLE_SHARE = 2000, // pieces of less than one in so many pixels are dropped
+};
+
+// One walk over the photographs: from the maps of the one before to its own, each in
+// stereo/*_maps/NAME.KIND.bin.
+struct pass {
+    char kind[24];
+    bool geometric; // with the sources' depths of the pass before
 };
 
 struct densifier {
@@ -26,6 +37,9 @@ struct densifier {
     struct densify_photos photos;
     struct densify_plan *plans;
     struct densify_device *device;
+    struct densify_cache *cache;
+    struct pass passes[PASSES_MAX];
+    int pass_count;
     double done, total;
 };
 
@@ -37,7 +51,7 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
     } table[] = {
         {"sources", p->sources, 1, ORL_DENSIFY_SOURCES_MAX},
         {"iterations", p->iterations, 1, 16},
-        {"geometric_passes", p->geometric_passes, 0, 8},
+        {"geometric_passes", p->geometric_passes, 0, GEOMETRIC_PASSES_MAX},
         {"window_radius", p->window_radius, 1, 15},
         {"window_step", p->window_step, 1, 4},
     };
@@ -50,10 +64,11 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
 
 // --- files ---
 
-static char *map_path(const struct densifier *d, const char *dir, size_t photo, bool geometric)
+static char *map_path(const struct densifier *d, const char *dir, size_t photo,
+                      const struct pass *pass)
 {
     return orl_format(d->log, "%s/%s.%s.bin", dir, densify_photo_name(&d->photos, photo),
-                      geometric ? "geometric" : "photometric");
+                      pass->kind);
 }
 
 // Names may have folders.
@@ -69,9 +84,9 @@ static enum orl_result make_folder_of(const struct densifier *d, const char *pat
 }
 
 static enum orl_result write_map(const struct densifier *d, const char *dir, size_t photo,
-                                 bool geometric, const struct orl_image *map)
+                                 const struct pass *pass, const struct orl_image *map)
 {
-    char *path = map_path(d, dir, photo, geometric);
+    char *path = map_path(d, dir, photo, pass);
     enum orl_result result = path ? make_folder_of(d, path) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_colmap_map_write(d->log, path, map);
@@ -80,9 +95,9 @@ static enum orl_result write_map(const struct densifier *d, const char *dir, siz
 }
 
 static enum orl_result read_map(const struct densifier *d, const char *dir, size_t photo,
-                                int channels, struct orl_image *map)
+                                const struct pass *pass, int channels, struct orl_image *map)
 {
-    char *path = map_path(d, dir, photo, false);
+    char *path = map_path(d, dir, photo, pass);
     enum orl_result result = path ? orl_colmap_map_read(d->log, path, map) : ORL_ERR_MEMORY;
     if (result == ORL_OK && map->channels != channels) {
         result = orl_fail(d->log, ORL_ERR_FORMAT, "%s: %d channels where %d are needed", path,
@@ -94,19 +109,20 @@ static enum orl_result read_map(const struct densifier *d, const char *dir, size
 }
 
 // The depth map is written last, so that a photograph with one has both.
-static enum orl_result write_maps(const struct densifier *d, size_t photo, bool geometric,
-                                  const struct densify_maps *maps)
+static enum orl_result write_maps(const struct densifier *d, size_t photo,
+                                  const struct pass *pass, const struct densify_maps *maps)
 {
-    enum orl_result result = write_map(d, d->normal_dir, photo, geometric, &maps->normal);
+    enum orl_result result = write_map(d, d->normal_dir, photo, pass, &maps->normal);
     if (result == ORL_OK)
-        result = write_map(d, d->depth_dir, photo, geometric, &maps->depth);
+        result = write_map(d, d->depth_dir, photo, pass, &maps->depth);
     return result;
 }
 
-static enum orl_result has_maps(const struct densifier *d, size_t photo, bool geometric, bool *has)
+static enum orl_result has_maps(const struct densifier *d, size_t photo,
+                                const struct pass *pass, bool *has)
 {
-    char *depth = map_path(d, d->depth_dir, photo, geometric);
-    char *normal = map_path(d, d->normal_dir, photo, geometric);
+    char *depth = map_path(d, d->depth_dir, photo, pass);
+    char *normal = map_path(d, d->normal_dir, photo, pass);
     enum orl_result result = depth && normal ? ORL_OK : ORL_ERR_MEMORY;
     *has = result == ORL_OK && orl_path_is_file(depth) && orl_path_is_file(normal);
     free(depth);
@@ -114,21 +130,9 @@ static enum orl_result has_maps(const struct densifier *d, size_t photo, bool ge
     return result;
 }
 
-static enum orl_result read_pyramid(const struct densifier *d, size_t photo, int levels,
-                                    struct densify_pyramid *pyramid)
-{
-    char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, photo));
-    enum orl_result result =
-        path ? orl_densify_pyramid_read(d->log, path, &d->photos.views[photo].camera, levels,
-                                        pyramid)
-             : ORL_ERR_MEMORY;
-    free(path);
-    return result;
-}
-
 static enum orl_result read_mask(const struct densifier *d, struct densify_job *job)
 {
-    const struct orl_image *picture = &job->reference.levels[0];
+    const struct orl_image *picture = &job->reference->levels[0];
     if (!d->params.masks_dir)
         return ORL_OK;
     char *path = orl_format(d->log, "%s/%s.png", d->params.masks_dir, job->name);
@@ -150,9 +154,6 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
 
 // --- one photograph ---
 
-#define WRONG_SIZE "%s: its photometric maps are of another size; remove them to have them made " \
-                   "again"
-
 // FNV-1a, so that a photograph's result does not depend on which others take part.
 static uint32_t name_seed(uint32_t seed, const char *name)
 {
@@ -166,10 +167,10 @@ static uint32_t name_seed(uint32_t seed, const char *name)
 // pixels nearest to them.
 static enum orl_result make_seeds(const struct densifier *d, size_t photo, struct densify_job *job)
 {
-    const struct orl_image *luma = &job->reference.levels[job->reference.count - 1];
+    const struct orl_image *luma = &job->reference->levels[job->levels - 1];
     const struct orl_colmap_image *image = &d->model.images[d->photos.images[photo]];
-    struct orl_view view = {.camera = orl_densify_level_camera(&job->reference.camera,
-                                                               job->reference.count - 1),
+    struct orl_view view = {.camera = orl_densify_level_camera(&job->reference->camera,
+                                                               job->levels - 1),
                             .cam_from_world = job->view.cam_from_world};
     enum orl_result result = orl_image_init(d->log, &job->seeds, luma->width, luma->height, 1,
                                             ORL_PIXEL_F32);
@@ -208,35 +209,42 @@ static enum orl_result make_seeds(const struct densifier *d, size_t photo, struc
 
 static void job_finish(struct densify_job *job)
 {
-    orl_densify_pyramid_finish(&job->reference);
     orl_image_finish(&job->mask);
     orl_image_finish(&job->seeds);
-    for (int k = 0; k < ORL_DENSIFY_SOURCES_MAX; k++) {
-        orl_densify_pyramid_finish(&job->sources[k]);
+    for (int k = 0; k < ORL_DENSIFY_SOURCES_MAX; k++)
         orl_image_finish(&job->source_depths[k]);
-    }
 }
 
 static int level_count(int width, int height)
 {
     int side = width < height ? width : height, levels = 1;
-    while (levels < DENSIFY_LEVELS_MAX - EXTRA_LEVELS && side >> levels >= COARSEST_SIDE)
+    while (levels < LEVELS_MAX && side >> levels >= COARSEST_SIDE)
         levels++;
     return levels;
 }
 
-static enum orl_result read_source_depth(const struct densifier *d, size_t photo, int slot,
-                                         struct densify_job *job)
+static enum orl_result check_size(const struct densifier *d, const char *name,
+                                  const struct densify_pyramid *pyramid,
+                                  const struct orl_image *map)
 {
-    const struct orl_image *picture = &job->sources[slot].levels[job->finest];
+    const struct orl_image *picture = &pyramid->levels[d->shrink];
+    if (map->width == picture->width && map->height == picture->height)
+        return ORL_OK;
+    return orl_fail(d->log, ORL_ERR_DATA,
+                    "%s: its maps are of another size; remove them to have them made again", name);
+}
+
+static enum orl_result read_source_depth(const struct densifier *d, const struct pass *before,
+                                         size_t photo, int slot, struct densify_job *job)
+{
     struct orl_image *depth = &job->source_depths[slot];
-    enum orl_result result = read_map(d, d->depth_dir, photo, 1, depth);
-    if (result == ORL_OK && (depth->width != picture->width || depth->height != picture->height))
-        result = orl_fail(d->log, ORL_ERR_DATA, WRONG_SIZE, densify_photo_name(&d->photos, photo));
+    enum orl_result result = read_map(d, d->depth_dir, photo, before, 1, depth);
+    if (result == ORL_OK)
+        result = check_size(d, densify_photo_name(&d->photos, photo), job->sources[slot], depth);
     return result;
 }
 
-static enum orl_result job_open(const struct densifier *d, size_t photo, bool geometric,
+static enum orl_result job_open(const struct densifier *d, size_t photo, const struct pass *pass,
                                 struct densify_job *job)
 {
     const struct densify_plan *plan = &d->plans[photo];
@@ -246,34 +254,36 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, bool ge
         .view = d->photos.views[photo],
         .plan = plan,
         .finest = d->shrink,
+        .draw = (int)(pass - d->passes),
+        .last = pass == &d->passes[d->pass_count - 1],
         .progress = d->progress,
         .done = d->done,
         .total = d->total,
     };
-    enum orl_result result = read_pyramid(d, photo, 1, &job->reference);
+    orl_densify_cache_turn(d->cache);
+    enum orl_result result = orl_densify_cache_get(d->cache, photo, &job->reference);
     if (result != ORL_OK)
         return result;
-    int levels = level_count(job->reference.levels[0].width, job->reference.levels[0].height);
-    if (geometric || levels <= d->shrink)
-        levels = d->shrink + 1;
-    orl_densify_pyramid_finish(&job->reference);
-    result = read_pyramid(d, photo, levels, &job->reference);
+    job->levels = level_count(job->reference->levels[0].width, job->reference->levels[0].height);
+    if (pass->geometric || job->levels <= d->shrink)
+        job->levels = d->shrink + 1;
     for (int k = 0; k < plan->count && result == ORL_OK; k++) {
         size_t source = plan->sources[k].photo;
         job->source_views[k] = d->photos.views[source];
-        result = read_pyramid(d, source, levels + EXTRA_LEVELS, &job->sources[k]);
-        if (result == ORL_OK && geometric)
-            result = read_source_depth(d, source, k, job);
+        result = orl_densify_cache_get(d->cache, source, &job->sources[k]);
+        if (result == ORL_OK && pass->geometric)
+            result = read_source_depth(d, &pass[-1], source, k, job);
     }
     if (result == ORL_OK)
         result = read_mask(d, job);
-    if (result == ORL_OK && !geometric)
+    if (result == ORL_OK && !pass->geometric)
         result = make_seeds(d, photo, job);
     return result;
 }
 
 // Maps without any depth, for a photograph that nothing can be matched with.
-static enum orl_result write_empty(const struct densifier *d, size_t photo, bool geometric)
+static enum orl_result write_empty(const struct densifier *d, size_t photo,
+                                   const struct pass *pass)
 {
     struct densify_maps maps = {0};
     int width, height;
@@ -288,28 +298,34 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo, bool
         result = orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
                                 ORL_PIXEL_F32);
     if (result == ORL_OK)
-        result = write_maps(d, photo, geometric, &maps);
+        result = write_maps(d, photo, pass, &maps);
     orl_densify_maps_finish(&maps);
     return result;
 }
 
-static enum orl_result process(struct densifier *d, size_t photo, bool geometric)
+static enum orl_result read_start(const struct densifier *d, size_t photo,
+                                  const struct pass *before, const struct densify_job *job,
+                                  struct densify_maps *start)
+{
+    enum orl_result result = read_map(d, d->depth_dir, photo, before, 1, &start->depth);
+    if (result == ORL_OK)
+        result = read_map(d, d->normal_dir, photo, before, 3, &start->normal);
+    if (result == ORL_OK)
+        result = check_size(d, job->name, job->reference, &start->depth);
+    if (result == ORL_OK)
+        result = check_size(d, job->name, job->reference, &start->normal);
+    return result;
+}
+
+static enum orl_result process(struct densifier *d, size_t photo, const struct pass *pass)
 {
     struct densify_maps start = {0}, maps = {0};
     struct densify_job job = {0};
-    bool final = geometric || d->params.geometric_passes == 0;
-    enum orl_result result = job_open(d, photo, geometric, &job);
+    enum orl_result result = job_open(d, photo, pass, &job);
     if (result != ORL_OK)
         goto end;
-    if (geometric) {
-        result = read_map(d, d->depth_dir, photo, 1, &start.depth);
-        if (result == ORL_OK)
-            result = read_map(d, d->normal_dir, photo, 3, &start.normal);
-        const struct orl_image *picture = &job.reference.levels[job.finest];
-        if (result == ORL_OK &&
-            (start.depth.width != picture->width || start.depth.height != picture->height ||
-             start.normal.width != picture->width || start.normal.height != picture->height))
-            result = orl_fail(d->log, ORL_ERR_DATA, WRONG_SIZE, job.name);
+    if (pass->geometric) {
+        result = read_start(d, photo, &pass[-1], &job, &start);
         job.start = &start;
         if (result == ORL_OK)
             result = orl_densify_geometric(d->device, &job, &maps);
@@ -317,12 +333,12 @@ static enum orl_result process(struct densifier *d, size_t photo, bool geometric
         result = orl_densify_photometric(d->device, &job, &maps);
     }
     size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
-    struct orl_camera camera = orl_densify_level_camera(&job.reference.camera, job.finest);
-    if (result == ORL_OK && final)
+    struct orl_camera camera = orl_densify_level_camera(&job.reference->camera, job.finest);
+    if (result == ORL_OK && job.last)
         result = orl_densify_remove_speckles(d->log, &camera, &maps, pixels / SPECKLE_SHARE,
                                              0.01f);
     if (result == ORL_OK)
-        result = write_maps(d, photo, geometric, &maps);
+        result = write_maps(d, photo, pass, &maps);
 end:
     orl_densify_maps_finish(&start);
     orl_densify_maps_finish(&maps);
@@ -330,24 +346,24 @@ end:
     return result;
 }
 
-static enum orl_result process_pass(struct densifier *d, bool geometric)
+static enum orl_result process_all(struct densifier *d, const struct pass *pass)
 {
     for (size_t i = 0; i < d->photos.count; i++) {
         const char *name = densify_photo_name(&d->photos, i);
         bool has;
-        enum orl_result result = has_maps(d, i, geometric, &has);
+        enum orl_result result = has_maps(d, i, pass, &has);
         if (result != ORL_OK)
             return result;
         if (orl_progress_cancelled(d->progress))
             return ORL_ERR_CANCELLED;
         orl_progress_report(d->progress, "densify", d->done, d->total, name);
         if (!has && !d->plans[i].count) {
-            if (!geometric)
+            if (!pass->geometric)
                 orl_logf(d->log, ORL_LOG_WARNING,
                          "%s: too little in common with the other photographs; no depth", name);
-            result = write_empty(d, i, geometric);
+            result = write_empty(d, i, pass);
         } else if (!has) {
-            result = process(d, i, geometric);
+            result = process(d, i, pass);
         }
         if (result != ORL_OK)
             return result;
@@ -355,6 +371,54 @@ static enum orl_result process_pass(struct densifier *d, bool geometric)
         orl_progress_report(d->progress, "densify", d->done, d->total, name);
     }
     return ORL_OK;
+}
+
+// --- passes ---
+
+static void plan_passes(struct densifier *d)
+{
+    int agreeing = d->params.geometric_passes;
+    d->pass_count = agreeing + 1;
+    for (int i = 0; i < d->pass_count; i++) {
+        struct pass *pass = &d->passes[i];
+        pass->geometric = i > 0;
+        if (i > 0 && i < agreeing)
+            snprintf(pass->kind, sizeof pass->kind, "agreed-%d", i);
+        else
+            snprintf(pass->kind, sizeof pass->kind, "%s", i ? "geometric" : "photometric");
+    }
+    d->total = (double)d->photos.count * d->pass_count;
+}
+
+// Maps between the first and the last serve nothing once all are made.
+static enum orl_result remove_intermediate(const struct densifier *d)
+{
+    const char *dirs[] = {d->depth_dir, d->normal_dir};
+    for (size_t i = 0; i < d->photos.count; i++)
+        for (int p = 1; p < d->pass_count - 1; p++)
+            for (size_t k = 0; k < ORL_COUNT(dirs); k++) {
+                char *path = map_path(d, dirs[k], i, &d->passes[p]);
+                if (!path)
+                    return ORL_ERR_MEMORY;
+                remove(path);
+                free(path);
+            }
+    return ORL_OK;
+}
+
+static enum orl_result process_passes(struct densifier *d)
+{
+    bool all = true, has;
+    for (size_t i = 0; i < d->photos.count && all; i++) {
+        enum orl_result result = has_maps(d, i, &d->passes[d->pass_count - 1], &has);
+        if (result != ORL_OK)
+            return result;
+        all = has;
+    }
+    enum orl_result result = ORL_OK;
+    for (int p = 0; p < d->pass_count && result == ORL_OK && !all; p++)
+        result = process_all(d, &d->passes[p]);
+    return result == ORL_OK ? remove_intermediate(d) : result;
 }
 
 static enum orl_result check_plans(const struct densifier *d)
@@ -446,11 +510,12 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
         result = open_workspace(&d, workspace, photos);
     if (result == ORL_OK)
         result = orl_densify_device_create(gpu, &d.params, &d.device);
-    d.total = (double)d.photos.count * (params->geometric_passes > 0 ? 2.0 : 1.0);
     if (result == ORL_OK)
-        result = process_pass(&d, false);
-    if (result == ORL_OK && params->geometric_passes > 0)
-        result = process_pass(&d, true);
+        result = orl_densify_cache_create(d.log, &d.photos, d.images_dir, &d.cache);
+    plan_passes(&d);
+    if (result == ORL_OK)
+        result = process_passes(&d);
+    orl_densify_cache_destroy(&d.cache);
     orl_densify_device_destroy(&d.device);
     free(d.plans);
     orl_densify_photos_finish(&d.photos);

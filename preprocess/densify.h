@@ -8,14 +8,16 @@
 #include "gpu/gpu.h"
 
 // Raised when the same photographs and settings give other maps than before.
-enum { ORL_DENSIFY_VERSION = 2 };
+enum { ORL_DENSIFY_VERSION = 3 };
 
 struct orl_densify_params {
     int sources;          // source photographs per reference, [1, 16]; cost grows with it
     int iterations;       // photometric red-black sweeps, [1, 16]: two more at the coarsest of
                           // the scales, half as many at each finer one
-    int geometric_passes; // sweeps with geometric consistency, [0, 8]
-    int window_radius;    // NCC patch radius in pixels, [1, 15]
+    int geometric_passes; // sweeps with geometric consistency, [0, 8], each with the depths that
+                          // the one before found
+    int window_radius;    // NCC patch radius in pixels, [1, 15]; about half of it at the finest
+                          // level, where a coarser one has told the rough shape
     int window_step;      // patch sampling step in pixels, [1, 4]
     uint32_t seed;
     const char *masks_dir; // MASKS/NAME.png, 0 = not the subject; NULL: none
@@ -24,7 +26,7 @@ struct orl_densify_params {
                            // maps of half the size, or a quarter, ...; a warning says so
 };
 #define ORL_DENSIFY_DEFAULTS                                                               \
-    .sources = 8, .iterations = 4, .geometric_passes = 1, .window_radius = 5, .window_step = 2, \
+    .sources = 8, .iterations = 4, .geometric_passes = 2, .window_radius = 5, .window_step = 2, \
     .seed = 1
 
 // Writes WORKSPACE/stereo/{depth_maps,normal_maps}/NAME.{photometric,geometric}.bin

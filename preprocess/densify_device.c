@@ -16,16 +16,20 @@ enum {
 
 // Greatest costs of depth that is kept: without and with other photographs' depths that
 // confirm it.
-static const float COST_MATCHED = 0.7f, COST_AGREED = 1.0f;
+static const float COST_MATCHED = 0.7f, COST_AGREED = 0.9f;
 
 enum program {
     INIT_RANDOM,
     INIT_COARSE,
+    INIT_FINE,
+    SWEEP_FINE,
     INIT_MAPS,
     SWEEP,
     SWEEP_GEOMETRIC,
+    FIT,
     FINISH_MATCHED,
     FINISH_AGREED,
+    FINISH_LAST,
     PROGRAM_COUNT
 };
 static const struct {
@@ -33,11 +37,15 @@ static const struct {
 } program_table[PROGRAM_COUNT] = {
     [INIT_RANDOM] = {"densify_init.comp", "FROM_RANDOM"},
     [INIT_COARSE] = {"densify_init.comp", "FROM_COARSE"},
+    [INIT_FINE] = {"densify_init.comp", "FROM_COARSE"},
+    [SWEEP_FINE] = {"densify_sweep.comp", ""},
     [INIT_MAPS] = {"densify_init.comp", "FROM_MAPS\nGEOMETRIC"},
     [SWEEP] = {"densify_sweep.comp", ""},
     [SWEEP_GEOMETRIC] = {"densify_sweep.comp", "GEOMETRIC"},
+    [FIT] = {"densify_fit.comp", ""},
     [FINISH_MATCHED] = {"densify_finish.comp", ""},
     [FINISH_AGREED] = {"densify_finish.comp", "GEOMETRIC"},
+    [FINISH_LAST] = {"densify_finish.comp", "GEOMETRIC\nSMOOTH"},
 };
 
 struct densify_device {
@@ -103,11 +111,15 @@ static enum orl_result use_program(struct densify_device *device, enum program w
     char defines[256];
     const struct orl_densify_params *p = &device->params;
     if (!device->programs[which]) {
-        // Agreement with other photographs holds planes in place, so that a patch may be
-        // small: it then belongs to one surface up to a pixel or two from its edge.
-        bool small = which == INIT_MAPS || which == SWEEP_GEOMETRIC || which == FINISH_AGREED;
+        // Coarser levels have told the rough shape, and agreement with other photographs holds
+        // planes in place, so that patches may be small: they then belong to one surface up to
+        // a pixel or two from its edge.
+        bool fine = which == INIT_FINE || which == SWEEP_FINE;
+        bool small = which == INIT_MAPS || which == SWEEP_GEOMETRIC || which == FINISH_AGREED ||
+                     which == FINISH_LAST;
+        int radius = fine ? (p->window_radius + 1) / 2 : p->window_radius;
         snprintf(defines, sizeof defines, "RADIUS %d\nSTEP %d\nSOURCES %d\nPADDING %d\n%s",
-                 small ? half(p->window_radius) : p->window_radius,
+                 small ? half(p->window_radius) : radius,
                  small ? half(p->window_step) : p->window_step, p->sources, device->padding,
                  program_table[which].defines);
         enum orl_result result =
@@ -157,7 +169,7 @@ static bool mask_at(const struct orl_image *mask, int level, int x, int y)
 static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densify_job *job,
                                         struct level *level)
 {
-    const struct orl_image *luma = &job->reference.levels[level->number];
+    const struct orl_image *luma = &job->reference->levels[level->number];
     struct orl_tex_params params = {.width = luma->width, .height = luma->height,
                                     .format = GL_RG8, .tag = "densify reference"};
     enum orl_result result = orl_tex_create(gpu, &params, &level->reference);
@@ -180,7 +192,7 @@ static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densif
 static int source_level(const struct densify_job *job, int source, int level)
 {
     int wanted = level + job->plan->sources[source].finer;
-    int most = job->sources[source].count - 1;
+    int most = job->sources[source]->count - 1;
     return wanted < most ? wanted : most;
 }
 
@@ -214,7 +226,8 @@ static enum orl_result upload_sources(struct densify_device *device, const struc
     struct orl_tex_params params = {.layers = count, .format = GL_R32UI,
                                     .tag = "densify sources"};
     for (int k = 0; k < count; k++) {
-        const struct orl_image *luma = &job->sources[k].levels[source_level(job, k, level->number)];
+        const struct orl_image *luma =
+            &job->sources[k]->levels[source_level(job, k, level->number)];
         params.width = luma->width + 2 * pad > params.width ? luma->width + 2 * pad : params.width;
         params.height =
             luma->height + 2 * pad > params.height ? luma->height + 2 * pad : params.height;
@@ -227,7 +240,8 @@ static enum orl_result upload_sources(struct densify_device *device, const struc
     if (!quads)
         return ORL_ERR_MEMORY;
     for (int k = 0; k < count; k++) {
-        const struct orl_image *luma = &job->sources[k].levels[source_level(job, k, level->number)];
+        const struct orl_image *luma =
+            &job->sources[k]->levels[source_level(job, k, level->number)];
         pack_quads(luma, pad, quads);
         orl_tex_write_part(level->sources, 0, k, luma->width + 2 * pad, luma->height + 2 * pad,
                            GL_RED_INTEGER, GL_UNSIGNED_INT, quads);
@@ -329,13 +343,13 @@ static void set_block(const struct densify_device *device, const struct densify_
 {
     struct densify_block *block = &level->block;
     struct orl_view ref = job->view;
-    ref.camera = orl_densify_level_camera(&job->reference.camera, level->number);
+    ref.camera = orl_densify_level_camera(&job->reference->camera, level->number);
     for (int k = 0; k < job->plan->count; k++) {
         int shrunk = source_level(job, k, level->number);
         struct orl_view source = job->source_views[k];
-        source.camera = orl_densify_level_camera(&job->sources[k].camera, job->finest);
+        source.camera = orl_densify_level_camera(&job->sources[k]->camera, job->finest);
         orl_densify_transfer(&ref, &source, &block->backward[3 * k]);
-        source.camera = orl_densify_level_camera(&job->sources[k].camera, shrunk);
+        source.camera = orl_densify_level_camera(&job->sources[k]->camera, shrunk);
         block->extent[k][0] = (float)source.camera.width;
         block->extent[k][1] = (float)source.camera.height;
         block->extent[k][2] = (float)job->plan->sources[k].prior;
@@ -358,7 +372,7 @@ static void set_block(const struct densify_device *device, const struct densify_
     block->limit[0] = COST_AGREED;
     block->limit[1] = 1.5f;
     block->limit[2] = 0.9f;
-    block->limit[3] = 0.35f;
+    block->limit[3] = 0.5f;
     block->run[0] = (int)job->seed;
 }
 
@@ -371,7 +385,7 @@ static enum orl_result run(struct densify_device *device, const struct densify_j
     struct orl_prog *prog;
     enum orl_result result = use_program(device, which, &prog);
     int width = level->block.area[0], height = level->block.area[1];
-    bool half = which == SWEEP || which == SWEEP_GEOMETRIC;
+    bool half = which == SWEEP || which == SWEEP_FINE || which == SWEEP_GEOMETRIC;
     int band = (BAND_PIXELS / width / ORL_PIXEL_GROUP_Y + 1) * ORL_PIXEL_GROUP_Y;
     for (int row = 0; row < height && result == ORL_OK; row += band) {
         if (orl_progress_cancelled(job->progress))
@@ -443,6 +457,8 @@ static enum orl_result finish(struct densify_device *device, const struct densif
                                     .format = GL_RGBA32F, .tag = "densify maps"};
     enum orl_result result = orl_tex_create(device->gpu, &params, &out);
     if (result == ORL_OK)
+        result = run(device, job, level, FIT, NULL, 0.95);
+    if (result == ORL_OK)
         result = run(device, job, level, which, out, 1.0);
     if (result == ORL_OK)
         result = read_maps(device->gpu, out, maps);
@@ -498,14 +514,16 @@ static enum orl_result sweeps_finer(struct densify_device *device, const struct 
                                     double end)
 {
     int count = (device->params.iterations + 1) / 2;
+    bool fine = level->number <= job->finest + 1;
     level->block.run[3] = 1;
-    enum orl_result result = run(device, job, level, INIT_COARSE, coarse, begin);
+    enum orl_result result = run(device, job, level, fine ? INIT_FINE : INIT_COARSE, coarse, begin);
     level->block.tests[0] = 4;
     level->block.tests[1] = 4;
     level->block.tests[2] = least(VIEWS_FINE, device->params.sources);
     for (int i = 0; i < count && result == ORL_OK; i++) {
         set_steps(level, 1.0f, 0.3f, i);
-        result = sweep(device, job, level, SWEEP, begin + (end - begin) * (i + 1) / count);
+        result = sweep(device, job, level, fine ? SWEEP_FINE : SWEEP,
+                       begin + (end - begin) * (i + 1) / count);
     }
     return result;
 }
@@ -516,7 +534,7 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
 {
     struct level level = {0}, coarser = {0};
     enum orl_result result = ORL_OK;
-    int count = job->reference.count;
+    int count = job->levels;
     for (int number = count - 1; number >= job->finest && result == ORL_OK; number--) {
         // Each level has four times the pixels of the one before.
         double end = exp2(2.0 * (job->finest - number)), begin = 0.25 * end;
@@ -545,7 +563,6 @@ enum orl_result orl_densify_geometric(struct densify_device *device, const struc
                                       struct densify_maps *maps)
 {
     struct level level = {.number = job->finest};
-    int count = device->params.geometric_passes;
     enum orl_result result = level_open(device, job, &level);
     if (result == ORL_OK)
         result = upload_source_depths(device->gpu, job, &level);
@@ -553,18 +570,17 @@ enum orl_result orl_densify_geometric(struct densify_device *device, const struc
         result = upload_start(device->gpu, job, &level);
     if (result != ORL_OK)
         goto end;
-    level.block.run[1] = 1000 * DENSIFY_LEVELS_MAX;
+    level.block.run[1] = 1000 * (DENSIFY_LEVELS_MAX + job->draw);
     level.block.run[3] = 1;
     result = run(device, job, &level, INIT_MAPS, level.extra, 0.2);
-    level.block.tests[0] = 4;
-    level.block.tests[1] = 4;
+    level.block.tests[0] = 6;
+    level.block.tests[1] = 1;
     level.block.tests[2] = least(VIEWS_FINE, device->params.sources);
-    for (int i = 0; i < count && result == ORL_OK; i++) {
-        set_steps(&level, 0.5f, 0.15f, i);
-        result = sweep(device, job, &level, SWEEP_GEOMETRIC, 0.2 + 0.8 * (i + 1) / count);
-    }
+    set_steps(&level, 0.5f, 0.15f, 0);
     if (result == ORL_OK)
-        result = finish(device, job, &level, FINISH_AGREED, maps);
+        result = sweep(device, job, &level, SWEEP_GEOMETRIC, 0.9);
+    if (result == ORL_OK)
+        result = finish(device, job, &level, job->last ? FINISH_LAST : FINISH_AGREED, maps);
 end:
     level_finish(device->gpu, &level);
     return result;

@@ -86,10 +86,21 @@ struct densify_pyramid {
     struct orl_camera camera; // of level 0
 };
 enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *path,
-                                         const struct orl_camera *camera, int levels,
+                                         const struct orl_camera *camera,
                                          struct densify_pyramid *pyramid);
 void orl_densify_pyramid_finish(struct densify_pyramid *pyramid);
 struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int level);
+
+// Photographs decoded once while memory lasts. A pyramid stays until the next turn at
+// least. `photos` and `images_dir` must outlive it.
+struct densify_cache;
+enum orl_result orl_densify_cache_create(const struct orl_log *log,
+                                         const struct densify_photos *photos,
+                                         const char *images_dir, struct densify_cache **out);
+void orl_densify_cache_destroy(struct densify_cache **cache);
+void orl_densify_cache_turn(struct densify_cache *cache);
+enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
+                                      const struct densify_pyramid **pyramid) ORL_CHECK_RESULT;
 
 // --- one photograph on the device ---
 
@@ -110,13 +121,15 @@ struct densify_job {
     struct orl_view view;
     const struct densify_plan *plan;
     struct orl_view source_views[ORL_DENSIFY_SOURCES_MAX];
-    struct densify_pyramid reference;
-    struct densify_pyramid sources[ORL_DENSIFY_SOURCES_MAX];
+    const struct densify_pyramid *reference, *sources[ORL_DENSIFY_SOURCES_MAX]; // not owned
+    int levels;                                             // of the reference that are used
     struct orl_image mask;                                  // level 0; no data: none
     struct orl_image seeds;                                 // coarsest level: 1/z or 0
     int finest;                                             // level of the maps: 0 = full size
     const struct densify_maps *start;                       // geometric pass: own maps
     struct orl_image source_depths[ORL_DENSIFY_SOURCES_MAX]; // geometric pass
+    int draw;  // keeps the random numbers of different passes apart
+    bool last; // no pass goes on from these maps
     const struct orl_progress *progress;
     double done, total; // for the progress report; this job counts 1
 };

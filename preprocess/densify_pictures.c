@@ -1,4 +1,5 @@
-// Photographs as luma pyramids, and clean-up of finished maps.
+// Photographs as luma pyramids, decoded once while memory lasts, and clean-up of finished
+// maps.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +26,7 @@ static enum orl_result halve(const struct orl_log *log, const struct orl_image *
 }
 
 enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *path,
-                                         const struct orl_camera *camera, int levels,
+                                         const struct orl_camera *camera,
                                          struct densify_pyramid *pyramid)
 {
     memset(pyramid, 0, sizeof *pyramid);
@@ -35,7 +36,7 @@ enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *
     const struct orl_image *picture = &pyramid->levels[0];
     pyramid->camera = orl_camera_resized(camera, picture->width, picture->height);
     pyramid->count = 1;
-    while (pyramid->count < levels && pyramid->count < DENSIFY_LEVELS_MAX &&
+    while (pyramid->count < DENSIFY_LEVELS_MAX &&
            pyramid->levels[pyramid->count - 1].width >= 4 &&
            pyramid->levels[pyramid->count - 1].height >= 4) {
         result = halve(log, &pyramid->levels[pyramid->count - 1], &pyramid->levels[pyramid->count]);
@@ -70,6 +71,107 @@ void orl_densify_maps_finish(struct densify_maps *maps)
 {
     orl_image_finish(&maps->depth);
     orl_image_finish(&maps->normal);
+}
+
+// --- decoded photographs: each is the source of several, and serves every pass ---
+
+// Beyond this, only those of the photograph at work are held.
+static const size_t BYTES_MAX = (size_t)256 << 20;
+
+struct cache_entry {
+    struct densify_pyramid pyramid; // count 0: not here
+    uint64_t turn;                  // when it was last asked for
+};
+
+struct densify_cache {
+    const struct orl_log *log;
+    const struct densify_photos *photos;
+    const char *images_dir;
+    struct cache_entry *entries; // one per photograph
+    uint64_t turn;
+    size_t bytes;
+};
+
+enum orl_result orl_densify_cache_create(const struct orl_log *log,
+                                         const struct densify_photos *photos,
+                                         const char *images_dir, struct densify_cache **out)
+{
+    struct densify_cache *cache = orl_array(log, 1, sizeof *cache);
+    *out = NULL;
+    if (!cache)
+        return ORL_ERR_MEMORY;
+    *cache = (struct densify_cache){.log = log, .photos = photos, .images_dir = images_dir};
+    cache->entries = orl_array(log, photos->count, sizeof *cache->entries);
+    if (!cache->entries) {
+        free(cache);
+        return ORL_ERR_MEMORY;
+    }
+    *out = cache;
+    return ORL_OK;
+}
+
+void orl_densify_cache_destroy(struct densify_cache **handle)
+{
+    struct densify_cache *cache = *handle;
+    if (!cache)
+        return;
+    for (size_t i = 0; i < cache->photos->count; i++)
+        orl_densify_pyramid_finish(&cache->entries[i].pyramid);
+    free(cache->entries);
+    free(cache);
+    *handle = NULL;
+}
+
+void orl_densify_cache_turn(struct densify_cache *cache)
+{
+    cache->turn++;
+}
+
+static size_t pyramid_bytes(const struct densify_pyramid *pyramid)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < pyramid->count; i++)
+        bytes += (size_t)pyramid->levels[i].width * (size_t)pyramid->levels[i].height;
+    return bytes;
+}
+
+// Drops those not asked for longest until the rest fits; none of this turn.
+static void make_room(struct densify_cache *cache)
+{
+    while (cache->bytes > BYTES_MAX) {
+        struct cache_entry *oldest = NULL;
+        for (size_t i = 0; i < cache->photos->count; i++) {
+            struct cache_entry *entry = &cache->entries[i];
+            if (entry->pyramid.count && entry->turn < cache->turn &&
+                (!oldest || entry->turn < oldest->turn))
+                oldest = entry;
+        }
+        if (!oldest)
+            return;
+        cache->bytes -= pyramid_bytes(&oldest->pyramid);
+        orl_densify_pyramid_finish(&oldest->pyramid);
+    }
+}
+
+enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
+                                      const struct densify_pyramid **pyramid)
+{
+    struct cache_entry *entry = &cache->entries[photo];
+    enum orl_result result = ORL_OK;
+    if (!entry->pyramid.count) {
+        char *path = orl_path_join(cache->log, cache->images_dir,
+                                   densify_photo_name(cache->photos, photo));
+        result = path ? orl_densify_pyramid_read(cache->log, path,
+                                                 &cache->photos->views[photo].camera,
+                                                 &entry->pyramid)
+                      : ORL_ERR_MEMORY;
+        free(path);
+        cache->bytes += pyramid_bytes(&entry->pyramid);
+    }
+    entry->turn = cache->turn;
+    *pyramid = &entry->pyramid;
+    make_room(cache);
+    return result;
 }
 
 // --- speckles ---

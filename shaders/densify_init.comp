@@ -60,6 +60,10 @@ void main()
             vec3 plane = first_plane(at, pixel, attempt);
             if (!plane_valid(plane, pixel))
                 plane = vec3(clamp(plane.x, range.x, range.y), 0.0, 0.0);
+#ifdef GEOMETRIC
+            uvec4 views = uvec4(0u);
+            float cost = agreed_cost(plane, pixel, 1e9);
+#else
             uvec4 views = uvec4(0xffffffffu);
             float sum = 0.0, total = 1e-6;
             for (int view = 0; view < SOURCES; view++) {
@@ -71,6 +75,7 @@ void main()
                 total += weight;
             }
             float cost = (sum + 1e-6 * COST_MAX) / total;
+#endif
             if (cost < best || attempt == 0) {
                 best = cost;
                 best_plane = plane;

@@ -169,8 +169,35 @@ void main()
     random_start(at);
     load_patch(at);
     uvec4 candidates = find_candidates(at);
-    selection chosen = select_views(at);
     vec3 best_plane = imageLoad(planes, at).xyz;
+#ifdef GEOMETRIC
+    float best = imageLoad(costs, at).r;
+    for (int turn = 0; turn < tests.x + tests.y; turn++) {
+        vec3 plane = best_plane;
+        if (turn < tests.x) {
+            uint word = turn < 4 ? (turn < 2 ? candidates.x : candidates.y)
+                                 : (turn < 6 ? candidates.z : candidates.w);
+            uint offset = (word >> (16 * (turn & 1))) & 0xffffu;
+            if (offset == 0u)
+                continue;
+            ivec2 away = ivec2(int(offset & 255u) - 32, int(offset >> 8) - 32);
+            plane = imageLoad(planes, at + away).xyz;
+            plane.x -= dot(plane.yz, vec2(away));
+        } else {
+            plane = varied_plane(at, pixel, best_plane, turn - tests.x);
+        }
+        if (!plane_valid(plane, pixel))
+            continue;
+        float cost = agreed_cost(plane, pixel, best);
+        if (cost < best) {
+            best = cost;
+            best_plane = plane;
+        }
+    }
+    imageStore(planes, at, vec4(best_plane, 0.0));
+    imageStore(costs, at, vec4(best));
+#else
+    selection chosen = select_views(at);
     uvec4 best_views = imageLoad(view_costs, at);
     float best = 0.0, total = 0.0;
     for (int k = 0; k < tests.z; k++) {
@@ -219,4 +246,5 @@ void main()
     imageStore(planes, at, vec4(best_plane, 0.0));
     imageStore(costs, at, vec4(total > 0.0 ? best / total : COST_MAX));
     imageStore(view_costs, at, best_views);
+#endif
 }

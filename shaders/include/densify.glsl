@@ -19,6 +19,10 @@ layout(binding = 1) uniform usampler2DArray sources;
 layout(binding = 2) uniform sampler2DArray source_depths; // 1/z, 0: none
 #endif
 
+// Added to a plane's cost: where few sources agree on it, for each that sees through it,
+// and where none agrees.
+const float LONELY = 0.1, AGAINST = 0.08, NOBODY = 0.4;
+
 // --- random numbers (PCG, Jarzynski and Olano 2020) ---
 
 uint random_state;
@@ -163,19 +167,14 @@ float source_inverse_depth(int view, vec2 texel)
 }
 
 // How far the pixel lands from itself after going to the source and back with the
-// source's own depth (Schoenberger 2016, 4.2), weighted. Where the source has none,
-// half of the worst.
-float geometric_cost(int view, vec2 texel, vec2 pixel)
+// source's own inverse depth there (Schoenberger 2016, 4.2), in pixels, capped.
+float reprojection_error(int view, vec2 texel, float w, vec2 pixel)
 {
     vec2 p = (texel + 0.5 - float(PADDING)) * extent[view].w;
-    float w = source_inverse_depth(view, texel);
-    if (!(w > 0.0))
-        return 0.5 * tune.z * tune.w;
     vec4 q = vec4(p, 1.0, w);
     vec3 c = vec3(dot(backward[3 * view], q), dot(backward[3 * view + 1], q),
                   dot(backward[3 * view + 2], q));
-    float error = c.z > 0.0 ? distance(c.xy / c.z, pixel) : tune.w;
-    return tune.z * min(error, tune.w);
+    return c.z > 0.0 ? min(distance(c.xy / c.z, pixel), tune.w) : tune.w;
 }
 #endif
 
@@ -222,8 +221,79 @@ float view_cost(int view, vec3 plane, vec2 pixel)
     float variance = max(square - mean * mean, 0.0);
     float cost = 1.0 - product * inversesqrt((patch_variance + NOISE_VARIANCE) *
                                              (variance + NOISE_VARIANCE));
-#ifdef GEOMETRIC
-    cost += geometric_cost(view, texel, pixel);
-#endif
     return clamp(cost, 0.0, COST_MAX);
 }
+
+#ifdef GEOMETRIC
+// What the sources' depths say to a plane.
+struct opinion {
+    uvec3 views;  // the three that agree best, best first
+    vec3 weights; // 0: fewer agree
+    vec3 errors;  // pixels
+    int agree;    // sources whose own depth is that of the plane
+    int against;  // sources that see through the place to something clearly farther
+};
+
+opinion ask_sources(vec3 plane, vec2 pixel)
+{
+    opinion o = opinion(uvec3(0u), vec3(0.0), vec3(0.0), 0, 0);
+    for (int view = 0; view < SOURCES; view++) {
+        vec4 q = vec4(pixel, 1.0, plane.x);
+        float depth = dot(forward[3 * view + 2], q);
+        if (!(extent[view].z > 0.0) || !(depth > 0.0))
+            continue;
+        vec2 texel = vec2(dot(forward[3 * view], q), dot(forward[3 * view + 1], q)) / depth;
+        vec2 inside = texel - float(PADDING) + 0.5;
+        if (any(lessThan(inside, vec2(0.0))) || any(greaterThan(inside, extent[view].xy)))
+            continue;
+        float seen = source_inverse_depth(view, texel);
+        if (!(seen > 0.0))
+            continue;
+        float error = reprojection_error(view, texel, seen, pixel);
+        float weight = extent[view].z * (1.0 - error / tune.w);
+        if (error < limit.y)
+            o.agree++;
+        else if (seen * depth < 0.95 * plane.x)
+            o.against++;
+        if (weight > o.weights.x) {
+            o.views = uvec3(uint(view), o.views.xy);
+            o.weights = vec3(weight, o.weights.xy);
+            o.errors = vec3(error, o.errors.xy);
+        } else if (weight > o.weights.y) {
+            o.views.yz = uvec2(uint(view), o.views.y);
+            o.weights.yz = vec2(weight, o.weights.y);
+            o.errors.yz = vec2(error, o.errors.y);
+        } else if (weight > o.weights.z) {
+            o.views.z = uint(view);
+            o.weights.z = weight;
+            o.errors.z = error;
+        }
+    }
+    return o;
+}
+
+// The patch is compared in sources that agree on the depth: those that see the place.
+// Sources that see something nearer have no say, being hidden.
+float agreed_cost(vec3 plane, vec2 pixel, float best)
+{
+    opinion o = ask_sources(plane, pixel);
+    float total = o.weights.x + o.weights.y + o.weights.z;
+    float doubt = LONELY * exp2(-total) + AGAINST * float(min(o.against, 3));
+    if (!(total > 0.0)) {
+        doubt += NOBODY;
+        o.views = uvec3(0u, 1u, 0u);
+        bool second = SOURCES > 1 && extent[min(1, SOURCES - 1)].z > 0.0;
+        o.weights = vec3(1.0, second ? 1.0 : 0.0, 0.0);
+        total = o.weights.x + o.weights.y;
+    }
+    doubt += tune.z * dot(o.weights, o.errors) / total;
+    float cost = doubt;
+    for (int k = 0; k < 3; k++) {
+        float weight = k == 0 ? o.weights.x : k == 1 ? o.weights.y : o.weights.z;
+        int view = int(k == 0 ? o.views.x : k == 1 ? o.views.y : o.views.z);
+        if (weight > 0.0 && cost < best)
+            cost += weight / total * view_cost(view, plane, pixel);
+    }
+    return cost;
+}
+#endif

@@ -64,7 +64,7 @@ int cmd_densify(int argc, char **argv)
         {"sources", ARG_INT, &o.params.sources, "N", "source photographs each; default 8", 1, 16},
         {"iterations", ARG_INT, &o.params.iterations, "N", "photometric sweeps; default 4", 1, 16},
         {"geometric-passes", ARG_INT, &o.params.geometric_passes, "N",
-         "sweeps with geometric consistency; default 1", 0, 8},
+         "sweeps with geometric consistency; default 2", 0, 8},
         {"window-radius", ARG_INT, &o.params.window_radius, "PX", "patch radius; default 5", 1, 15},
         {"window-step", ARG_INT, &o.params.window_step, "PX", "patch sampling; default 2", 1, 4},
         {"seed", ARG_INT, &o.seed, "N", "of the random hypotheses; default 1", 0, 1 << 30},
