@@ -44,7 +44,7 @@ void main()
             float z;
             if (!(points[s].z > 0.0) || !photo_project(i, points[s], pixel, z))
                 continue;
-            float hidden = photo_unhidden_share(photo_depths(i, pixel), z) > 0.0 ? 1.0 : 8.0;
+            float hidden = photo_unhidden_share(photo_depths(i, pixel), z) > 0.9 ? 1.0 : 8.0;
             least = min(least, photo_penalty(i, points[s]) * hidden);
             seen += 1.0 / hidden;
         }
