@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/walk.h"
 #include "core/memory.h"
 #include "eval/eval.h"
 #include "hdr/hdr.h"
@@ -12,6 +13,7 @@ struct options {
     const char *method, *json, *images, *merge, *truth;
     struct orl_names settings;
     int max_vram_mib;
+    int walk, divide; // frames of a walk in place of held-out photographs; 0: none
 };
 
 struct job {
@@ -154,9 +156,33 @@ static enum orl_result write_json(const struct job *job, bool array)
     return result;
 }
 
+// Every method, one after the other, by held-out photographs or along a walk.
+static enum orl_result measure(struct job *job, const struct orl_method *first, size_t methods,
+                               bool all)
+{
+    const struct options *o = job->options;
+    if (o->walk) {
+        const struct walk_options walk = {.json = o->json, .images = o->images,
+                                          .settings = &o->settings, .frames = o->walk,
+                                          .divide = o->divide};
+        return walk_run(job->gpu, job->renderer, job->scene, first, methods, all, &walk,
+                        job->progress);
+    }
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; i < methods && result == ORL_OK; i++)
+        result = evaluate(job, &first[i]);
+    if (result == ORL_OK && o->json)
+        result = write_json(job, all);
+    return result;
+}
+
 static enum orl_result run(struct job *job, const char *scene_dir,
                            const struct arg_common *common)
 {
+    if (job->options->walk && (job->options->merge || job->options->truth))
+        return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                        "eval: --walk compares frames with each other: without --merge and "
+                        "--truth");
     bool all = strcmp(job->options->method, "all") == 0;
     const struct orl_method *first =
         all ? orl_methods : orl_method_find(job->log, job->options->method);
@@ -175,7 +201,7 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         result = orl_hdr_merge_find(job->log, job->options->merge, &merge);
     if (result == ORL_OK)
         result = orl_scene_open(job->log, scene_dir, &job->scene);
-    if (result == ORL_OK)
+    if (result == ORL_OK && !job->options->walk)
         result = orl_eval_check(job->log, job->scene);
     if (result == ORL_OK && job->options->truth)
         result = orl_truth_open(job->log, job->scene, job->options->truth, &job->truth);
@@ -188,11 +214,7 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
     if (result == ORL_OK && !job->options->merge)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
-    for (size_t i = 0; i < methods && result == ORL_OK; i++)
-        result = evaluate(job, &first[i]);
-    if (result == ORL_OK && job->options->json)
-        result = write_json(job, all);
-    return result;
+    return result == ORL_OK ? measure(job, first, methods, all) : result;
 }
 
 static void finish(struct job *job)
@@ -209,7 +231,7 @@ static void finish(struct job *job)
 
 int cmd_eval(int argc, char **argv)
 {
-    struct options o = {.method = orl_methods[0].name};
+    struct options o = {.method = orl_methods[0].name, .divide = 1};
     const struct arg_option table[] = {
         {"method", ARG_STRING, &o.method, "NAME", "a method, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
@@ -220,11 +242,16 @@ int cmd_eval(int argc, char **argv)
          "blend as radiance, as oriel hdr does: fused or series", 0, 0},
         {"truth", ARG_STRING, &o.truth, "DIR",
          "compare with true radiance too; DIR is what oriel synth wrote", 0, 0},
+        {"walk", ARG_INT, &o.walk, "N",
+         "instead: a walk of N frames past the photographs that are not held out; how much "
+         "each frame, warped, differs from the next", 2, 100000},
+        {"divide", ARG_INT, &o.divide, "N", "of --walk: pictures at 1/N of their size; default 1",
+         1, 64},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };
     const struct arg_command command = {
-        "eval", "SCENE [--method NAME|all] [--json FILE] [--images DIR]",
+        "eval", "SCENE [--method NAME|all] [--walk N] [--json FILE] [--images DIR]",
         "Renders the photographs that were held out and says how close the renderings come.",
         table, 1, 1};
     struct arg_common common = {0};

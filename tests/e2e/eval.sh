@@ -72,6 +72,18 @@ runs 2 "$oriel" eval nowhere
 runs 2 "$oriel" eval
 runs 0 "$oriel" eval --help
 
+# A walk.
+runs 0 "$oriel" eval ws --walk 3 --divide 2 --method all --json walk.json --images walk --quiet
+grep -q 'walk of 3 frames of 48x32' stdout.txt || fail "no head of the walk's table"
+grep -q '^oriel ' stdout.txt || fail "no row for a method"
+[ -s walk/oriel.00002.png ] || fail "no frame of the walk"
+for field in scene method device size frames compared mean p99 floor block_mean block_worst \
+    block_at jump steps all; do
+    grep -q "\"$field\"" walk.json || fail "no field $field"
+done
+head -c1 walk.json | grep -q '\[' || fail "the JSON of all methods is no array"
+runs 2 "$oriel" eval ws --walk 3 --merge fused
+
 # Radiance: the truth's own photographs are the scene's, so undistortion is none.
 runs 0 "$oriel" eval ws --truth photos-truth --merge fused --json out.json
 grep -q 'no distortion' stderr.txt || fail "does not say what it assumes"

@@ -1,0 +1,49 @@
+// The report of a walk.
+#include <jansson.h>
+
+#include "eval/stability.h"
+
+static json_t *step_json(const struct orl_stability_step *s)
+{
+    return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:[ii],s:f}", "compared", s->compared, "mean",
+                     s->mean, "p99", s->p99, "floor", s->floor, "block_mean", s->block_mean,
+                     "block_worst", s->block_worst, "block_at", s->block_x, s->block_y, "jump",
+                     s->jump);
+}
+
+static json_t *stability_json(const struct orl_scene *scene, const struct orl_stability *s)
+{
+    json_t *steps = json_array();
+    bool ok = steps != NULL;
+    for (size_t i = 0; ok && i < s->step_count; i++)
+        ok = json_array_append_new(steps, step_json(&s->steps[i])) == 0;
+    json_t *object =
+        json_pack("{s:s,s:s,s:s,s:[ii],s:I,s:f,s:I,s:I,s:o,s:O}", "scene", scene->dir, "method",
+                  s->method, "device", s->device, "size", s->width, s->height, "frames",
+                  (json_int_t)(s->step_count + 1), "render_ms", s->render_ms, "worst_block_step",
+                  (json_int_t)s->worst_block_step, "worst_jump_step",
+                  (json_int_t)s->worst_jump_step, "all", step_json(&s->all), "steps", steps);
+    json_decref(steps);
+    if (ok)
+        return object;
+    json_decref(object);
+    return NULL;
+}
+
+char *orl_stability_to_json(const struct orl_log *log, const struct orl_scene *scene,
+                            const struct orl_stability *all, size_t count, bool array)
+{
+    json_t *root = json_array();
+    bool ok = root != NULL;
+    for (size_t i = 0; ok && i < count; i++)
+        ok = json_array_append_new(root, stability_json(scene, &all[i])) == 0;
+    char *text = NULL;
+    if (ok)
+        text = json_dumps(array ? root : json_array_get(root, 0),
+                          JSON_INDENT(1) | JSON_REAL_PRECISION(6));
+    if (!text)
+        orl_logf(log, ORL_LOG_ERROR, "the report cannot be made: out of memory or a name that is "
+                                     "not UTF-8");
+    json_decref(root);
+    return text;
+}

@@ -1,0 +1,323 @@
+// Steadiness along a walk: known answers, first of made-up frames, then of a painted wall.
+#include <math.h>
+#include <string.h>
+
+#include "eval/stability.h"
+#include "gpu_test.h"
+#include "io/picture.h"
+
+static struct orl_gpu *gpu;
+
+enum { SIDE = 64, WALL = 160, PHOTOS = 3, FRAMES = 8 };
+
+static struct orl_view look(double x)
+{
+    return (struct orl_view){
+        .camera = {.width = SIDE, .height = SIDE, .fx = 60, .fy = 60, .cx = 32, .cy = 32},
+        .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .t = {-x, 0, 0}}};
+}
+
+// --- made-up frames of a wall at z = 4 ---
+
+static double wave(double u, double v)
+{
+    return 120 + 60 * sin(0.5 * u) * cos(0.4 * v);
+}
+
+// `shift`: the wall's pattern, in pixels. At 60/4 pixels a unit, x = 1/15 is a pixel.
+static struct orl_stability_frame wall_frame(double x, double shift, double brighter)
+{
+    struct orl_stability_frame f = {.view = look(x)};
+    assert_int_equal(orl_image_init(NULL, &f.srgb, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    assert_int_equal(orl_image_init(NULL, &f.depth, SIDE, SIDE, 1, ORL_PIXEL_F32), ORL_OK);
+    assert_int_equal(orl_image_init(NULL, &f.coverage, SIDE, SIDE, 1, ORL_PIXEL_F32), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        double value = wave(i % SIDE + 15 * x + shift, i / SIDE) + brighter;
+        for (int c = 0; c < 3; c++)
+            f.srgb.u8[3 * i + c] = (uint8_t)lround(value);
+        f.depth.f32[i] = 4;
+        f.coverage.f32[i] = 1;
+    }
+    return f;
+}
+
+static void release(struct orl_stability_frame *f)
+{
+    orl_image_finish(&f->srgb);
+    orl_image_finish(&f->depth);
+    orl_image_finish(&f->coverage);
+}
+
+static struct orl_stability_step compare(struct orl_stability_frame *a,
+                                         struct orl_stability_frame *b)
+{
+    struct orl_stability_counts counts = {0};
+    struct orl_stability_step step;
+    assert_int_equal(orl_stability_compare(NULL, a, b, &counts, &step), ORL_OK);
+    return step;
+}
+
+static void still_frames(void **state)
+{
+    (void)state;
+    struct orl_stability_frame a = wall_frame(0.3, 0, 0);
+    struct orl_stability_step step = compare(&a, &a);
+    assert_true(step.compared > 0.85); // but for the border that interpolation needs
+    assert_true(step.mean == 0 && step.p99 == 0 && step.floor == 0 && step.jump == 0);
+    assert_true(step.block_worst == 0);
+    release(&a);
+}
+
+static void moved_frames(void **state)
+{
+    (void)state;
+    struct orl_stability_frame a = wall_frame(0, 0, 0), whole = wall_frame(2 / 15.0, 0, 0),
+                               half = wall_frame(1.5 / 15, 0, 0),
+                               slips = wall_frame(2 / 15.0, 1, 0);
+    // By whole pixels nothing is interpolated; the difference is exact. By half a pixel what
+    // remains is rounding and little more, and the floor says so. Bilinear weights would lose
+    // 1 - cos(0.25) = 3 % of the wave: 0.8.
+    struct orl_stability_step step = compare(&a, &whole);
+    assert_true(step.compared > 0.8);
+    assert_true(step.mean < 1e-3 && step.floor < 1e-3);
+    step = compare(&a, &half);
+    assert_true(step.mean < 0.4);
+    assert_true(step.floor > 0.01 && step.floor < 0.4);
+    assert_true(step.block_worst < 0.2);
+    // A pattern that slides over the wall is not steady: mean |60 sin' cos| is about 12.
+    step = compare(&a, &slips);
+    assert_true(step.mean > 8 && step.mean < 16);
+    assert_true(step.p99 > step.mean && step.p99 < 31);
+    release(&a);
+    release(&whole);
+    release(&half);
+    release(&slips);
+}
+
+static void brighter_frame(void **state)
+{
+    (void)state;
+    struct orl_stability_frame a = wall_frame(0, 0, 0), b = wall_frame(2 / 15.0, 0, 7);
+    struct orl_stability_step step = compare(&a, &b);
+    assert_float_equal(step.mean, 7, 0.05);
+    assert_float_equal(step.jump, 7, 0.05);
+    assert_float_equal(step.block_worst, 7, 0.1);
+    release(&b);
+    b = wall_frame(2 / 15.0, 0, 0); // one block alone, by 40
+    for (int y = 16; y < 32; y++)
+        for (int x = 32; x < 48; x++)
+            for (int c = 0; c < 3; c++)
+                b.srgb.u8[3 * (y * SIDE + x) + c] += 40;
+    step = compare(&a, &b);
+    assert_float_equal(step.block_worst, 40, 0.1);
+    assert_int_equal(step.block_x, 32);
+    assert_int_equal(step.block_y, 16);
+    assert_float_equal(step.p99, 40, 0.5);
+    assert_true(step.mean > 2 && step.mean < 4);
+    release(&a);
+    release(&b);
+}
+
+// What only one frame sees is not compared: a plate at z = 2 before half of the wall.
+static void other_surface(void **state)
+{
+    (void)state;
+    struct orl_stability_frame a = wall_frame(0, 0, 0), b = wall_frame(0, 0, 0);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        if (i % SIDE < SIDE / 2) {
+            b.depth.f32[i] = 2;
+            b.srgb.u8[3 * i] = 255;
+        }
+    struct orl_stability_step step = compare(&a, &b);
+    assert_true(step.mean == 0);
+    assert_true(step.compared > 0.4 && step.compared < 0.5);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        a.coverage.f32[i] = 0;
+    step = compare(&a, &b);
+    assert_true(step.compared == 0 && step.mean == 0 && step.jump == 0);
+    release(&a);
+    release(&b);
+}
+
+static void wrong_size(void **state)
+{
+    (void)state;
+    struct orl_stability_frame a = wall_frame(0, 0, 0), b = wall_frame(0, 0, 0);
+    struct orl_stability_counts counts = {0};
+    struct orl_stability_step step;
+    b.view.camera.width = SIDE / 2;
+    assert_int_equal(orl_stability_compare(NULL, &a, &b, &counts, &step), ORL_ERR_ARGUMENT);
+    release(&a);
+    release(&b);
+}
+
+// --- rendered: a wall at z = 4, photographs of one colour each ---
+
+struct fixture {
+    char *dir;
+    struct orl_scene scene;
+    struct orl_photo photos[PHOTOS];
+    bool skip[PHOTOS];
+};
+
+static void add_photo(struct fixture *f, double x, uint8_t value)
+{
+    size_t index = f->scene.photo_count++;
+    struct orl_photo *photo = &f->photos[index];
+    *photo = (struct orl_photo){.view = look(x), .gain = {1, 1, 1}, .response = -1};
+    photo->name = malloc(16);
+    snprintf(photo->name, 16, "%zu.png", index);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    memset(image.u8, value, orl_image_bytes(&image));
+    char *path = orl_scene_photo_path(NULL, &f->scene, index);
+    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+    orl_image_finish(&image);
+    free(path);
+}
+
+static void setup(struct fixture *f, const uint8_t values[PHOTOS])
+{
+    memset(f, 0, sizeof *f);
+    f->dir = test_dir_make();
+    f->scene.dir = f->dir;
+    f->scene.photos = f->photos;
+    f->scene.photo_distance = 4;
+    char *images = orl_path_join(NULL, f->dir, "images");
+    assert_int_equal(orl_dir_make(NULL, images), ORL_OK);
+    free(images);
+    struct orl_points *p = &f->scene.points;
+    assert_int_equal(orl_points_init(NULL, p, WALL * WALL), ORL_OK);
+    for (size_t i = 0; i < WALL * WALL; i++) {
+        p->position[i][0] = (float)(((double)(i % WALL) + 0.5) / WALL * 8 - 4);
+        p->position[i][1] = (float)(((double)(i / WALL) + 0.5) / WALL * 8 - 4);
+        p->position[i][2] = 4;
+        p->normal[i][2] = -1;
+        p->radius[i] = 1.5f * 8 / WALL;
+    }
+    for (int i = 0; i < PHOTOS; i++)
+        add_photo(f, 0.5 * (i - 1), values[i]);
+}
+
+static void teardown(struct fixture *f)
+{
+    for (size_t i = 0; i < f->scene.photo_count; i++)
+        free(f->photos[i].name);
+    orl_points_finish(&f->scene.points);
+    test_dir_remove(f->dir);
+}
+
+static const bool *half_way(void *priv, size_t frame)
+{
+    struct fixture *f = priv;
+    f->skip[1] = frame >= FRAMES / 2;
+    return f->skip;
+}
+
+static struct orl_stability walk(struct fixture *f, const char *method, bool still, bool pops)
+{
+    struct orl_renderer *renderer;
+    struct orl_path path;
+    struct orl_stability s;
+    const struct orl_method *row = orl_method_find(NULL, method);
+    assert_non_null(row);
+    assert_int_equal(orl_stability_walk(NULL, &f->scene, FRAMES, 1, &path), ORL_OK);
+    assert_int_equal(path.count, FRAMES);
+    for (size_t i = 0; still && i < FRAMES; i++)
+        path.views[i] = look(0.02);
+    assert_int_equal(orl_renderer_create(gpu, &f->scene, NULL, &renderer), ORL_OK);
+    const struct orl_stability_params params = {
+        .method = method, .render = &row->params, .views = path.views, .view_count = FRAMES,
+        .skip = pops ? half_way : NULL, .skip_priv = f};
+    assert_int_equal(orl_stability_run(gpu, renderer, &params, &s), ORL_OK);
+    assert_int_equal(s.step_count, FRAMES - 1);
+    assert_true(s.all.compared > 0.6);
+    orl_renderer_destroy(&renderer);
+    orl_path_finish(&path);
+    return s;
+}
+
+static void one_colour_is_steady(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, (uint8_t[]){140, 140, 140});
+    for (const struct orl_method *m = orl_methods; m->name; m++) {
+        struct orl_stability s = walk(&f, m->name, false, false);
+        assert_true(s.all.mean < 0.01 && s.all.jump < 0.01);
+        orl_stability_finish(&s);
+    }
+    teardown(&f);
+}
+
+static void standing_still_is_steady(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, (uint8_t[]){100, 140, 180});
+    struct orl_stability s = walk(&f, "oriel", true, false);
+    assert_true(s.all.mean == 0 && s.all.p99 == 0 && s.all.block_worst == 0);
+    orl_stability_finish(&s);
+    teardown(&f);
+}
+
+static void a_pop_is_found(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, (uint8_t[]){100, 180, 100});
+    struct orl_stability s = walk(&f, "oriel", true, true);
+    for (size_t i = 0; i < s.step_count; i++) {
+        bool pops = i == FRAMES / 2 - 1;
+        assert_true(pops ? s.steps[i].jump > 40 : s.steps[i].jump == 0);
+        assert_true(pops ? s.steps[i].mean > 40 : s.steps[i].mean == 0);
+    }
+    assert_int_equal(s.worst_jump_step, FRAMES / 2 - 1);
+    assert_int_equal(s.worst_block_step, FRAMES / 2 - 1);
+    assert_true(s.all.jump == s.steps[FRAMES / 2 - 1].jump);
+    assert_true(s.all.block_worst > 40);
+    orl_stability_finish(&s);
+    teardown(&f);
+}
+
+// The walk keeps away from photographs that are held out.
+static void walks_past_training_photographs(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_path path;
+    setup(&f, (uint8_t[]){100, 100, 100});
+    f.photos[1].test = true;
+    f.photos[1].view = look(50);
+    assert_int_equal(orl_stability_walk(NULL, &f.scene, 5, 2, &path), ORL_OK);
+    for (size_t i = 0; i < path.count; i++) {
+        double centre[3];
+        orl_pose_centre(&path.views[i].cam_from_world, centre);
+        assert_float_equal(centre[0], 0.25 * (double)i - 0.5, 0.1);
+        assert_int_equal(path.views[i].camera.width, SIDE / 2);
+        assert_float_equal(path.views[i].camera.fx, 30, 1e-9);
+    }
+    orl_path_finish(&path);
+    f.photos[0].test = true;
+    assert_int_equal(orl_stability_walk(NULL, &f.scene, 5, 1, &path), ORL_ERR_ARGUMENT);
+    teardown(&f);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(still_frames),
+        cmocka_unit_test(moved_frames),
+        cmocka_unit_test(brighter_frame),
+        cmocka_unit_test(other_surface),
+        cmocka_unit_test(wrong_size),
+        cmocka_unit_test(one_colour_is_steady),
+        cmocka_unit_test(standing_still_is_steady),
+        cmocka_unit_test(a_pop_is_found),
+        cmocka_unit_test(walks_past_training_photographs),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
