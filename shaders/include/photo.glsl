@@ -124,7 +124,8 @@ vec4 photo_sample(int i, vec2 pixel, float mip)
 }
 #else
 // Brings linear colour to the scene's exposure and white balance, the lens's fall-off undone.
-// White that a photograph clipped stays white: it was at least that bright.
+// Linear for all but the brightest; white stays white, as a photograph that clipped was at
+// least that bright, and cameras compress what is near. src/render/reexpose.c undoes it.
 vec3 photo_aligned(int i, vec2 pixel, vec3 color)
 {
     vec2 off = pixel - photo_row(i, PHOTO_FOCAL).zw;
@@ -132,8 +133,10 @@ vec3 photo_aligned(int i, vec2 pixel, vec3 color)
     float r2 = dot(off, off) * photo_row(i, PHOTO_LENS).w;
     float light = 1.0 + r2 * (lens.x + r2 * (lens.y + r2 * lens.z));
     vec3 gain = photo_row(i, PHOTO_GAIN).rgb / max(light, 0.1);
-    float clipped = smoothstep(0.9, 1.0, min(color.r, min(color.g, color.b)));
-    return color * mix(gain, max(gain, vec3(1.0)), clipped);
+    // The largest power of color with which brighter stays brighter.
+    vec3 power = mix(vec3(3.0), min(gain / max(gain - 1.0, 1e-6), vec3(3.0)),
+                     greaterThan(gain, vec3(1.0)));
+    return gain * color / (1.0 + (gain - 1.0) * pow(min(color, vec3(1.0)), power));
 }
 
 vec4 photo_sample(int i, vec2 pixel, float mip)

@@ -121,12 +121,10 @@ static enum orl_result as_photograph(const struct job *job, size_t index,
 {
     if (job->params->draw_radiance)
         return orl_photo_expose(job->log, job->scene, index, color, rendered);
-    struct orl_photo photo = job->scene->photos[index];
-    if (!is_aligned(job->params->render, &photo))
-        return orl_tone_srgb(job->log, color, rendered);
-    photo.response = -1; // these photographs were decoded as sRGB
-    const struct orl_scene alone = {.photos = &photo, .photo_count = 1};
-    return orl_photo_expose(job->log, &alone, 0, color, rendered);
+    const struct orl_photo *photo = &job->scene->photos[index];
+    if (is_aligned(job->params->render, photo))
+        orl_photo_unalign(photo, color);
+    return orl_tone_srgb(job->log, color, rendered);
 }
 
 static enum orl_result compare_radiance(const struct job *job, struct orl_eval_view *view,

@@ -64,3 +64,33 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
         }
     return result;
 }
+
+// Solves y = gain x / (1 + (gain - 1) min(x, 1)^power) for x by bisection: the right side
+// rises.
+static float unaligned(float gain, float y)
+{
+    float power = gain > 1 ? fminf(gain / fmaxf(gain - 1, 1e-6f), 3) : 3;
+    float low = 0, high = 1;
+    if (y >= 1)
+        return y;
+    for (int i = 0; i < 20; i++) {
+        float x = 0.5f * (low + high);
+        if (gain * x / (1 + (gain - 1) * powf(x, power)) < y)
+            low = x;
+        else
+            high = x;
+    }
+    return 0.5f * (low + high);
+}
+
+void orl_photo_unalign(const struct orl_photo *photo, struct orl_image *color)
+{
+    for (int y = 0; y < color->height; y++)
+        for (int x = 0; x < color->width; x++) {
+            float dimmed = fmaxf(illumination(photo, color, x, y), 0.1f);
+            float *pixel =
+                color->f32 + 3 * ((size_t)y * (size_t)color->width + (size_t)x);
+            for (int c = 0; c < 3; c++)
+                pixel[c] = unaligned(photo->gain[c] / dimmed, pixel[c]);
+        }
+}

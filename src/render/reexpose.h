@@ -14,4 +14,8 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
                                  size_t photo, const struct orl_image *light,
                                  struct orl_image *picture) ORL_CHECK_RESULT;
 
+// From the colours of aligned photographs (F32 x3, not radiance) to what this photograph
+// would have shown of them, in place: the inverse of photo_aligned in photo.glsl.
+void orl_photo_unalign(const struct orl_photo *photo, struct orl_image *color);
+
 #endif

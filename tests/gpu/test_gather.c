@@ -2,7 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/color.h"
 #include "gpu_test.h"
+#include "render/reexpose.h"
 #include "io/picture.h"
 #include "render/render.h"
 
@@ -181,6 +183,56 @@ static void occluded_photographs_are_rejected(void **state)
     teardown(&f);
 }
 
+static void check_colors(const struct orl_image *image, const uint8_t color[3])
+{
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 3; c++)
+            assert_float_equal(image->f32[3 * i + c], orl_srgb_decode(color[c] / 255.0f), 5e-3);
+}
+
+// Gains and vignetting are undone by the shader, and that again for a photograph's own look.
+static void photographs_are_aligned(void **state)
+{
+    (void)state;
+    static const uint8_t color[3] = {60, 120, 230}, white[3] = {255, 255, 255};
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look(0, 0, 0, SIDE, 40);
+    add_photo(&f, view, color);
+    memcpy(f.photos[0].gain, (float[3]){0.5f, 1.2f, 1.6f}, sizeof f.photos[0].gain);
+    memcpy(f.photos[0].vignette, (float[3]){-0.3f, 0.1f, 0}, sizeof f.photos[0].vignette);
+    struct orl_render_params params = airieau();
+    params.alignment = ORL_ALIGNMENT_ON;
+    struct orl_frame frame = draw(&f, view, &params, 0);
+    double r2 = 0.5 * 0.5 * 2 / (0.5 * SIDE * SIDE), light = 1 - 0.3 * r2 + 0.1 * r2 * r2;
+    for (int c = 0; c < 3; c++) {
+        double x = (double)orl_srgb_decode(color[c] / 255.0f);
+        double gain = (double)f.photos[0].gain[c] / light;
+        double power = gain > 1.5 ? gain / (gain - 1) : 3;
+        assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[c],
+                           gain * x / (1 + (gain - 1) * pow(x, power)), 2e-3);
+    }
+    // In the corner 0.8 of the light, and so more gain.
+    assert_true(color_at(&frame, 0, 0)[0] > 1.15f * color_at(&frame, SIDE / 2, SIDE / 2)[0]);
+    orl_photo_unalign(&f.photos[0], &frame.color);
+    check_colors(&frame.color, color);
+    orl_frame_finish(&frame);
+    params.alignment = ORL_ALIGNMENT_OFF;
+    frame = draw(&f, view, &params, 0);
+    check_colors(&frame.color, color);
+    orl_frame_finish(&frame);
+    teardown(&f);
+    // White stays white, whatever the gain.
+    setup(&f, false);
+    add_photo(&f, view, white);
+    memcpy(f.photos[0].gain, (float[3]){0.5f, 1.2f, 1.6f}, sizeof f.photos[0].gain);
+    params.alignment = ORL_ALIGNMENT_ON;
+    frame = draw(&f, view, &params, 0);
+    check_colors(&frame.color, white);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 static void held_out_photographs_are_never_used(void **state)
 {
     (void)state;
@@ -344,6 +396,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(weights_are_cosine_over_distance_difference),
         cmocka_unit_test(occluded_photographs_are_rejected),
+        cmocka_unit_test(photographs_are_aligned),
         cmocka_unit_test(held_out_photographs_are_never_used),
         cmocka_unit_test(holes_are_filled_but_not_covered),
         cmocka_unit_test(points_show_their_own_color),
