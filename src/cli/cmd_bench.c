@@ -11,7 +11,7 @@ enum { SIZES_MAX = 8, POINTS_MAX = 16 };
 
 struct options {
     struct orl_names methods, sizes, points, settings;
-    const char *json, *trace, *out;
+    const char *json, *trace, *out, *textures;
     double seconds;
     int frames, max_vram_mib;
     bool quick;
@@ -219,7 +219,10 @@ static enum orl_result run(const struct terminal *terminal, const struct options
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
     struct orl_bench bench = {0};
-    enum orl_result result = plan_sizes(log, o, &plan);
+    enum orl_textures textures = ORL_TEXTURES_AUTO;
+    enum orl_result result = orl_textures_find(log, o->textures, &textures);
+    if (result == ORL_OK)
+        result = plan_sizes(log, o, &plan);
     if (result == ORL_OK)
         result = plan_points(log, o, &plan);
     if (result == ORL_OK)
@@ -234,7 +237,8 @@ static enum orl_result run(const struct terminal *terminal, const struct options
         .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
         .point_counts = o->points.count ? plan.points : NULL, .seconds = o->seconds,
         .frames_max = (size_t)o->frames, .growth = !o->quick,
-        .max_vram_bytes = (size_t)o->max_vram_mib << 20, .image_dir = o->out, .trace = o->trace,
+        .max_vram_bytes = (size_t)o->max_vram_mib << 20, .textures = textures,
+        .image_dir = o->out, .trace = o->trace,
         .progress = &terminal->progress};
     if (result == ORL_OK)
         result = orl_bench_run(gpu, scene, &params, &bench);
@@ -250,7 +254,7 @@ static enum orl_result run(const struct terminal *terminal, const struct options
 
 int cmd_bench(int argc, char **argv)
 {
-    struct options o = {.seconds = 1, .frames = 100};
+    struct options o = {.textures = "auto", .seconds = 1, .frames = 100};
     const struct arg_option table[] = {
         {"method", ARG_LIST, &o.methods, "NAME", "methods, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the methods", 0, 0},
@@ -264,6 +268,8 @@ int cmd_bench(int argc, char **argv)
         {"trace", ARG_STRING, &o.trace, "FILE",
          "write a few frames for chrome://tracing or ui.perfetto.dev", 0, 0},
         {"out", ARG_STRING, &o.out, "DIR", "write plots (SVG) and pictures", 0, 0},
+        {"textures", ARG_STRING, &o.textures, "KIND",
+         "photographs on the device: auto (default), full, bc7, bc1", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

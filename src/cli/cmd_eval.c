@@ -10,7 +10,7 @@
 #include "hdr/hdr.h"
 
 struct options {
-    const char *method, *json, *images, *merge, *truth;
+    const char *method, *json, *images, *merge, *truth, *textures;
     struct orl_names settings;
     int max_vram_mib;
     int walk, divide; // frames of a walk in place of held-out photographs; 0: none
@@ -196,6 +196,10 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         return ORL_ERR_MEMORY;
     struct orl_render_params tried = first->params; // wrong settings are found before the work
     enum orl_result result = apply_settings(job, &tried);
+    struct orl_renderer_params limits = {
+        .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
+    if (result == ORL_OK)
+        result = orl_textures_find(job->log, job->options->textures, &limits.textures);
     enum orl_hdr_merge merge;
     if (result == ORL_OK && job->options->merge)
         result = orl_hdr_merge_find(job->log, job->options->merge, &merge);
@@ -210,8 +214,6 @@ static enum orl_result run(struct job *job, const char *scene_dir,
                                 &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                          .debug = common->verbose},
                                 &job->gpu);
-    struct orl_renderer_params limits = {
-        .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
     if (result == ORL_OK && !job->options->merge)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     return result == ORL_OK ? measure(job, first, methods, all) : result;
@@ -231,7 +233,7 @@ static void finish(struct job *job)
 
 int cmd_eval(int argc, char **argv)
 {
-    struct options o = {.method = orl_methods[0].name, .divide = 1};
+    struct options o = {.method = orl_methods[0].name, .textures = "auto", .divide = 1};
     const struct arg_option table[] = {
         {"method", ARG_STRING, &o.method, "NAME", "a method, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
@@ -247,6 +249,8 @@ int cmd_eval(int argc, char **argv)
          "each frame, warped, differs from the next", 2, 100000},
         {"divide", ARG_INT, &o.divide, "N", "of --walk: pictures at 1/N of their size; default 1",
          1, 64},
+        {"textures", ARG_STRING, &o.textures, "KIND",
+         "photographs on the device: auto (default), full, bc7, bc1", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

@@ -23,7 +23,7 @@ struct job {
 struct options {
     struct view_options views;
     struct output_options output;
-    const char *out, *method;
+    const char *out, *method, *textures;
     struct orl_names settings, exclude;
     int max_vram_mib;
     double fps;
@@ -101,7 +101,11 @@ static enum orl_result run(const struct options *options, const struct arg_commo
                         "render: one of --at PHOTO, --camera FILE, --path FILE is needed");
     if (!options->views.path && !orl_frame_can_write(options->out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .png or .exr", options->out);
-    enum orl_result result = method_choose(log, NULL, options->method, &options->settings, &job->params);
+    struct orl_renderer_params limits = {.max_vram_bytes = (size_t)options->max_vram_mib << 20};
+    enum orl_result result = orl_textures_find(log, options->textures, &limits.textures);
+    if (result == ORL_OK)
+        result = method_choose(log, NULL, options->method, &options->settings,
+                               &job->params);
     if (result == ORL_OK)
         result = output_choose(log, &options->output, false, &job->output);
     if (result == ORL_OK)
@@ -117,7 +121,6 @@ static enum orl_result run(const struct options *options, const struct arg_commo
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose},
                                 &job->gpu);
-    struct orl_renderer_params limits = {.max_vram_bytes = (size_t)options->max_vram_mib << 20};
     if (result == ORL_OK)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     return result == ORL_OK ? draw_all(options, job) : result;
@@ -126,7 +129,7 @@ static enum orl_result run(const struct options *options, const struct arg_commo
 int cmd_render(int argc, char **argv)
 {
     struct options o = {.views = {.frames = 120}, .output = {OUTPUT_OPTIONS_DEFAULTS},
-                        .method = "oriel", .fps = 30};
+                        .method = "oriel", .textures = "auto", .fps = 30};
     const struct arg_option table[] = {
         {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
@@ -141,6 +144,8 @@ int cmd_render(int argc, char **argv)
         OUTPUT_OPTION_ROWS(&o.output, "also write depth, normal, coverage"),
         {"frames", ARG_INT, &o.views.frames, "N", "of --path photos; default 120", 2, 100000},
         {"fps", ARG_NUMBER, &o.fps, "N", "of .mp4; default 30", 1, 240},
+        {"textures", ARG_STRING, &o.textures, "KIND",
+         "photographs on the device: auto (default), full, bc7, bc1", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

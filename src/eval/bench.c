@@ -66,7 +66,8 @@ static enum orl_result measure_methods(struct bench_job *job, struct orl_rendere
 static enum orl_result measure_sizes(struct bench_job *job)
 {
     struct orl_renderer *renderer = NULL;
-    struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes};
+    struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes,
+                                         .textures = job->params->textures};
     enum orl_result result = orl_renderer_create(job->gpu, job->scene, &params, &renderer);
     for (size_t i = 0; result == ORL_OK && i < job->params->size_count; i++) {
         char what[48];
@@ -98,7 +99,8 @@ static enum orl_result measure_photographs(struct bench_job *job)
         snprintf(what, sizeof what, "%zu photographs", count);
         orl_bench_choose_photos(job->scene, count, use);
         struct orl_renderer_params params = {.use = use,
-                                             .max_vram_bytes = job->params->max_vram_bytes};
+                                             .max_vram_bytes = job->params->max_vram_bytes,
+                                             .textures = job->params->textures};
         struct orl_bench_run like =
             new_run(job, ORL_BENCH_PHOTOGRAPHS, 0, job->params->sizes[0]);
         like.photographs = count;
@@ -150,7 +152,8 @@ static enum orl_result measure_point_count(struct bench_job *job, size_t count)
         orl_bench_resample(job->log, &job->scene->points, count, &scene.points);
     if (result != ORL_OK)
         return result;
-    struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes};
+    struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes,
+                                         .textures = job->params->textures};
     struct orl_bench_run like = new_run(job, ORL_BENCH_POINTS, 0, job->params->sizes[0]);
     like.points = count;
     result = orl_renderer_create(job->gpu, &scene, &params, &renderer);
@@ -232,6 +235,7 @@ static enum orl_result measure_resolutions(struct bench_job *job)
     for (int divide = 1; result == ORL_OK && divide <= 8; divide *= 2) {
         struct orl_renderer *renderer = NULL;
         struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes,
+                                             .textures = job->params->textures,
                                              .photo_divide = divide};
         struct orl_bench_run like = new_run(job, ORL_BENCH_RESOLUTION, 0, job->params->sizes[0]);
         char what[48];

@@ -54,6 +54,7 @@ struct orl_bench_params {
     size_t frames_max;     // and at most so many frames
     bool growth;           // photographs, points, resolution, GL_POINTS too
     size_t max_vram_bytes;
+    enum orl_textures textures;
     const char *image_dir; // views at each resolution of the photographs; NULL: none
     const char *trace;     // file for a trace of some frames; NULL: none
     const struct orl_progress *progress;

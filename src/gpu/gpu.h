@@ -88,6 +88,10 @@ struct orl_tex {
 enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
                                struct orl_tex **out) ORL_CHECK_RESULT;
 void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **tex);
+// Can the device sample textures of this compressed format?
+bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format);
+// Bytes of all levels of one layer.
+size_t orl_tex_layer_bytes(const struct orl_tex_params *params);
 // Tightly packed pixels of client format/type, e.g. GL_RGB, GL_UNSIGNED_BYTE.
 void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
                    const void *pixels);
@@ -100,6 +104,11 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
 // Copies the top left width x height part of a level of `from` to level 0 of a layer of `to`.
 void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,
                         struct orl_tex *to, int layer);
+// Compresses all levels of `from`, 8 bits per channel, to a layer of the array `to`, which has
+// its size and levels: BC7 by Oriel (bc7.h), BC1 by the driver. Alpha is lost. Waits for the
+// device.
+enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
+                                       struct orl_tex *to, int layer) ORL_CHECK_RESULT;
 // Every channel of every layer of one level becomes 0.
 void orl_tex_clear(struct orl_tex *tex, int level);
 // Every texel of level 0 of a GL_R32UI texture becomes `word`.

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "gpu/bc7.h"
 #include "gpu/internal.h"
 
 enum orl_result orl_buf_create(struct orl_gpu *gpu, const char *tag, size_t size,
@@ -82,6 +83,39 @@ static size_t texel_bytes(GLenum format)
     return 16; // for the accounting only: an upper bound
 }
 
+// Bytes of a 4x4 block of a compressed format; 0: not compressed.
+static size_t block_bytes(GLenum format)
+{
+    return format == GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM ? 16
+           : format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT  ? 8
+                                                         : 0;
+}
+
+bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
+{
+    GLint supported = GL_FALSE;
+    (void)gpu;
+    // GL 4.5 has BPTC; S3TC is an extension that GL_EXT_texture_sRGB extends to sRGB.
+    if (format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT &&
+        !(epoxy_has_gl_extension("GL_EXT_texture_compression_s3tc") &&
+          epoxy_has_gl_extension("GL_EXT_texture_sRGB")))
+        return false;
+    glGetInternalformativ(GL_TEXTURE_2D_ARRAY, format, GL_INTERNALFORMAT_SUPPORTED, 1, &supported);
+    return supported == GL_TRUE;
+}
+
+size_t orl_tex_layer_bytes(const struct orl_tex_params *params)
+{
+    size_t bytes = 0, block = block_bytes(params->format);
+    for (int level = 0; level == 0 || level < params->levels; level++) {
+        size_t width = (size_t)level_side(params->width, level);
+        size_t height = (size_t)level_side(params->height, level);
+        bytes += block ? (width + 3) / 4 * ((height + 3) / 4) * block
+                       : width * height * texel_bytes(params->format);
+    }
+    return bytes;
+}
+
 static void set_sampling(GLuint id, bool linear, int levels)
 {
     GLint mag = linear ? GL_LINEAR : GL_NEAREST;
@@ -108,11 +142,7 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     if (tex->params.levels < 1)
         tex->params.levels = 1;
     const struct orl_tex_params *p = &tex->params;
-    size_t layers = p->layers ? (size_t)p->layers : 1;
-    for (int level = 0; level < p->levels; level++) {
-        tex->bytes += (size_t)level_side(p->width, level) * (size_t)level_side(p->height, level) *
-                      layers * texel_bytes(p->format);
-    }
+    tex->bytes = orl_tex_layer_bytes(p) * (p->layers ? (size_t)p->layers : 1);
     if (p->layers) {
         glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &tex->id);
         glTextureStorage3D(tex->id, p->levels, p->format, p->width, p->height, p->layers);
@@ -217,6 +247,33 @@ void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int he
     glCopyImageSubData(from->id, GL_TEXTURE_2D, level, 0, 0, 0, to->id,
                        to->params.layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, 0, 0, 0, layer,
                        width, height, 1);
+}
+
+enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
+                                       struct orl_tex *to, int layer)
+{
+    const struct orl_tex_params *p = &to->params;
+    size_t room = (size_t)p->width * (size_t)p->height * 4;
+    size_t block_room = ((size_t)p->width + 3) * ((size_t)p->height + 3);
+    bool bc7 = p->format == GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM;
+    uint8_t *pixels = orl_array(gpu->log, room, 1);
+    uint8_t *blocks = orl_array(gpu->log, block_room, 1);
+    enum orl_result result = pixels && blocks ? ORL_OK : ORL_ERR_MEMORY;
+    for (int level = 0; result == ORL_OK && level < p->levels; level++) {
+        int width = level_side(p->width, level), height = level_side(p->height, level);
+        orl_tex_read(from, level, GL_RGBA, GL_UNSIGNED_BYTE, room, pixels);
+        if (!bc7) { // the driver compresses
+            orl_tex_write(to, level, layer, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+            continue;
+        }
+        orl_bc7_encode(pixels, width, height, blocks);
+        struct orl_tex_params one = {.width = width, .height = height, .format = p->format};
+        glCompressedTextureSubImage3D(to->id, level, 0, 0, layer, width, height, 1, p->format,
+                                      (GLsizei)orl_tex_layer_bytes(&one), blocks);
+    }
+    free(pixels);
+    free(blocks);
+    return result;
 }
 
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)

@@ -100,6 +100,8 @@ struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
     struct orl_tex *color;      // mipmapped: sRGB, or radiance * trust and trust
+    GLenum format;              // of color
+    struct orl_tex *loading;    // a photograph before it is compressed; NULL: format is not
     struct orl_tex *depth;      // z, 0: none
     int slot_count, divide;     // photographs are loaded at 1/divide of their size
     unsigned clock;
@@ -109,6 +111,8 @@ struct photos {
     float ev_darkest, ev_brightest; // of the photographs in use
 };
 
+// The format that is asked for, if the device and the pixels allow it (textures.c).
+GLenum orl_textures_format(const struct orl_gpu *gpu, bool radiance, enum orl_textures textures);
 enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene,
                                 const struct orl_renderer_params *params, size_t budget_bytes,
                                 struct photos *photos);

@@ -61,11 +61,33 @@ static struct slot_size slot_size(const struct photos *photos, int divide)
     return size;
 }
 
+static int mip_levels(int width, int height)
+{
+    int levels = 1;
+    for (int side = larger(width, height); side > 1; side /= 2)
+        levels++;
+    return levels;
+}
+
 static size_t color_bytes(const struct photos *photos, const struct slot_size *size)
 {
-    size_t pixels = (size_t)size->width * (size_t)size->height;
-    size_t bytes = pixels * (photos->radiance ? 8 : 4);
-    return bytes + bytes / 3;
+    return orl_tex_layer_bytes(
+        &(struct orl_tex_params){.width = size->width, .height = size->height,
+                                 .levels = mip_levels(size->width, size->height),
+                                 .format = photos->format});
+}
+
+static bool is_compressed(const struct photos *photos)
+{
+    return photos->format != GL_SRGB8_ALPHA8 && photos->format != GL_RGBA16F;
+}
+
+// Of the budget, what is left for slots.
+static size_t slot_budget(const struct photos *photos, const struct slot_size *size, size_t budget)
+{
+    struct photos plain = {.format = GL_SRGB8_ALPHA8};
+    size_t loading = is_compressed(photos) ? color_bytes(&plain, size) : 0;
+    return budget > loading ? budget - loading : 1;
 }
 
 static size_t slot_bytes(const struct photos *photos, const struct slot_size *size)
@@ -74,20 +96,39 @@ static size_t slot_bytes(const struct photos *photos, const struct slot_size *si
            (size_t)size->depth_width * (size_t)size->depth_height * 4;
 }
 
-// Photographs smaller first, then fewer at once.
-static struct slot_size plan(const struct orl_log *log, size_t budget, int layers_max,
+static bool fits_all(const struct photos *photos, const struct slot_size *size, int count,
+                     size_t budget)
+{
+    return slot_bytes(photos, size) * (size_t)count <= slot_budget(photos, size, budget);
+}
+
+// Photographs compressed first, then smaller, then fewer at once.
+static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textures textures,
                              struct photos *photos)
 {
+    const struct orl_log *log = orl_gpu_log(gpu);
+    int layers_max = orl_gpu_caps(gpu)->max_texture_layers;
     int count = 0, asked = photos->divide;
     for (size_t i = 0; i < photos->scene->photo_count; i++)
         count += photos->states[i].usable;
     struct slot_size size = slot_size(photos, photos->divide);
-    while (budget && photos->divide < DIVIDE_MAX &&
-           slot_bytes(photos, &size) * (size_t)count > budget) {
+    photos->format = orl_textures_format(gpu, photos->radiance, textures);
+    if (textures == ORL_TEXTURES_AUTO && !photos->radiance && budget &&
+        !fits_all(photos, &size, count, budget)) {
+        // llvmpipe reads BC1 as fast as plain texels, BC7 several times slower.
+        bool software = orl_gpu_caps(gpu)->software;
+        photos->format = orl_textures_format(gpu, false, software ? ORL_TEXTURES_BC1
+                                                                  : ORL_TEXTURES_BC7);
+        if (is_compressed(photos))
+            orl_logf(log, ORL_LOG_WARNING, "photographs do not fit in %zu MiB of device memory: "
+                     "compressing them (%s)", budget >> 20, software ? "BC1" : "BC7");
+    }
+    while (budget && photos->divide < DIVIDE_MAX && !fits_all(photos, &size, count, budget)) {
         photos->divide *= 2;
         size = slot_size(photos, photos->divide);
     }
-    size_t fits = budget ? budget / slot_bytes(photos, &size) : (size_t)count;
+    size_t fits = budget ? slot_budget(photos, &size, budget) / slot_bytes(photos, &size)
+                         : (size_t)count;
     size_t array_fits = ARRAY_BYTES_MAX / color_bytes(photos, &size);
     fits = fits < array_fits ? fits : array_fits;
     fits = fits < (size_t)layers_max ? fits : (size_t)layers_max;
@@ -124,14 +165,6 @@ static void find_exposures(struct photos *photos)
     }
 }
 
-static int mip_levels(int width, int height)
-{
-    int levels = 1;
-    for (int side = larger(width, height); side > 1; side /= 2)
-        levels++;
-    return levels;
-}
-
 enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene,
                                 const struct orl_renderer_params *params, size_t budget_bytes,
                                 struct photos *photos)
@@ -152,8 +185,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     }
     find_exposures(photos);
     photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
-    struct slot_size size =
-        plan(log, budget_bytes, orl_gpu_caps(gpu)->max_texture_layers, photos);
+    struct slot_size size = plan(gpu, budget_bytes, params->textures, photos);
     for (size_t i = 0; i < scene->photo_count; i++) {
         struct photo_state *state = &photos->states[i];
         state->color_camera = camera_of(&scene->photos[i], photos->divide);
@@ -162,14 +194,20 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     struct orl_tex_params color = {.width = size.width, .height = size.height,
                                    .layers = photos->slot_count,
                                    .levels = mip_levels(size.width, size.height),
-                                   .format = photos->radiance ? GL_RGBA16F : GL_SRGB8_ALPHA8,
+                                   .format = photos->format,
                                    .linear = true, .tag = "photographs"};
+    struct orl_tex_params loading = color;
+    loading.layers = 0;
+    loading.format = GL_SRGB8_ALPHA8;
+    loading.tag = "photograph being loaded";
     struct orl_tex_params depth = {.width = size.depth_width, .height = size.depth_height,
                                    .layers = photos->slot_count, .format = GL_R32F,
                                    .tag = "photograph depth"};
     enum orl_result result = orl_tex_create(gpu, &color, &photos->color);
     if (result == ORL_OK)
         result = orl_tex_create(gpu, &depth, &photos->depth);
+    if (result == ORL_OK && is_compressed(photos))
+        result = orl_tex_create(gpu, &loading, &photos->loading);
     if (result != ORL_OK)
         orl_photos_finish(gpu, photos);
     return result;
@@ -179,6 +217,7 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
 {
     orl_tex_destroy(gpu, &photos->color);
     orl_tex_destroy(gpu, &photos->depth);
+    orl_tex_destroy(gpu, &photos->loading);
     free(photos->states);
     orl_proxy_target_finish(gpu, &photos->target);
     memset(photos, 0, sizeof *photos);
@@ -295,11 +334,18 @@ static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, si
     if (result != ORL_OK)
         goto end;
     int slot = take_slot(photos);
+    // Coarser levels are made before compression, so that its errors do not add up.
+    struct orl_tex *to = photos->loading ? photos->loading : photos->color;
+    int layer = photos->loading ? 0 : slot;
+    if (photos->loading) // what an earlier photograph left beside this one would bleed into it
+        orl_tex_clear(photos->loading, 0);
     if (photos->divide > 1)
-        result = upload_smaller(gpu, &image, photos->divide, photos->color, slot);
+        result = upload_smaller(gpu, &image, photos->divide, to, layer);
     else
-        write_pixels(&image, photos->color, slot);
-    orl_tex_make_mipmaps(photos->color, slot);
+        write_pixels(&image, to, layer);
+    orl_tex_make_mipmaps(to, layer);
+    if (result == ORL_OK && photos->loading)
+        result = orl_tex_compress_layer(gpu, photos->loading, photos->color, slot);
     if (result == ORL_OK)
         photos->states[index].slot = slot;
 end:

@@ -98,9 +98,24 @@ enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct 
 struct orl_renderer;
 struct orl_sensor;
 
+// How photographs are kept on the device. AUTO: as FULL, unless they do not fit
+// max_vram_bytes; then as BC7, on software renderers as BC1.
+enum orl_textures {
+    ORL_TEXTURES_AUTO,
+    ORL_TEXTURES_FULL, // 4 bytes per pixel, exact
+    ORL_TEXTURES_BC7,  // 1 byte
+    ORL_TEXTURES_BC1,  // half a byte
+    ORL_TEXTURES_COUNT
+};
+// ORL_ERR_ARGUMENT lists what is allowed: auto, full, bc7, bc1.
+enum orl_result orl_textures_find(const struct orl_log *log, const char *name,
+                                  enum orl_textures *textures) ORL_CHECK_RESULT;
+
 struct orl_renderer_params {
     const bool *use;       // per photograph: may it be used? NULL: all that are not held out
     size_t max_vram_bytes; // plan for this much device memory; 0: no limit
+    // Radiance stays uncompressed, and so does all that the device cannot compress.
+    enum orl_textures textures;
     int photo_divide;      // photographs at 1/n of their size at most, n a power of two up
                            // to 8; 0: as 1
     // Photographs as radiance: their response, vignetting and exposure undone, each pixel
@@ -110,7 +125,8 @@ struct orl_renderer_params {
 };
 
 // Uploads the points and loads photographs. When they do not fit max_vram_bytes it
-// plans with smaller photographs, then with fewer at once, and says so in the log.
+// plans with compressed photographs (of AUTO), then with smaller ones, then with fewer at once,
+// and says so in the log.
 // params may be NULL. The scene and gpu must outlive it.
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                     const struct orl_renderer_params *params,

@@ -1,0 +1,295 @@
+// Compressed photographs, and photographs loaded as the viewer moves past them.
+#include <math.h>
+#include <string.h>
+
+#include "gpu_test.h"
+#include "io/picture.h"
+#include "render/render.h"
+
+static struct orl_gpu *gpu;
+
+enum { SIDE = 64, WALL_WIDE = 480, WALL_HIGH = 32, PHOTOS = 60, SLOTS = 6 };
+
+#define STEP 0.5f // between photographs
+
+struct fixture {
+    char *dir;
+    struct orl_scene scene;
+    struct orl_photo photos[PHOTOS];
+};
+
+// Sees 1.33 units of the wall: at most 6 photographs show any of it.
+static struct orl_view look(double x)
+{
+    return (struct orl_view){
+        .camera = {.width = SIDE, .height = SIDE, .fx = 96, .fy = 96, .cx = 32, .cy = 32},
+        .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .t = {-x, 0, 0}}};
+}
+
+static void paint(size_t index, uint8_t rgb[3])
+{
+    rgb[0] = (uint8_t)(20 + 37 * index % 200);
+    rgb[1] = (uint8_t)(230 - 53 * index % 200);
+    rgb[2] = (uint8_t)(90 + 91 * index % 160);
+}
+
+// A wall at z = 2 along x, and photographs of one colour each along it.
+static void setup(struct fixture *f, size_t count)
+{
+    memset(f, 0, sizeof *f);
+    f->dir = test_dir_make();
+    f->scene.dir = f->dir;
+    f->scene.photos = f->photos;
+    f->scene.photo_distance = 2;
+    char *images = orl_path_join(NULL, f->dir, "images");
+    assert_int_equal(orl_dir_make(NULL, images), ORL_OK);
+    free(images);
+    struct orl_points *p = &f->scene.points;
+    assert_int_equal(orl_points_init(NULL, p, WALL_WIDE * WALL_HIGH), ORL_OK);
+    for (size_t i = 0; i < WALL_WIDE * WALL_HIGH; i++) {
+        p->position[i][0] = ((float)(i % WALL_WIDE) - 20) * STEP * PHOTOS / (WALL_WIDE - 40);
+        p->position[i][1] = ((float)(i / WALL_WIDE) / WALL_HIGH - 0.5f) * 2;
+        p->position[i][2] = 2;
+        p->normal[i][2] = -1;
+        p->radius[i] = 0.08f;
+    }
+    for (size_t k = 0; k < count; k++) {
+        struct orl_photo *photo = &f->photos[f->scene.photo_count];
+        photo->view = look((double)STEP * (double)k);
+        photo->gain[0] = photo->gain[1] = photo->gain[2] = 1;
+        photo->response = -1;
+        photo->name = malloc(24);
+        snprintf(photo->name, 24, "%zu.png", k);
+        uint8_t rgb[3];
+        paint(k, rgb);
+        struct orl_image image;
+        assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+        for (int i = 0; i < SIDE * SIDE; i++)
+            memcpy(&image.u8[3 * i], rgb, 3);
+        char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count++);
+        assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+        orl_image_finish(&image);
+        free(path);
+    }
+}
+
+static void teardown(struct fixture *f)
+{
+    for (size_t i = 0; i < f->scene.photo_count; i++)
+        free(f->photos[i].name);
+    orl_points_finish(&f->scene.points);
+    test_dir_remove(f->dir);
+}
+
+static struct orl_renderer *renderer_of(const struct fixture *f,
+                                        const struct orl_renderer_params *params)
+{
+    struct orl_renderer *renderer;
+    assert_int_equal(orl_renderer_create(gpu, &f->scene, params, &renderer), ORL_OK);
+    return renderer;
+}
+
+static struct orl_frame draw(struct orl_renderer *renderer, double x)
+{
+    struct orl_view view = look(x);
+    struct orl_frame frame;
+    assert_int_equal(orl_renderer_draw(renderer, &view, &orl_method_find(NULL, "oriel")->params,
+                                       NULL, &frame), ORL_OK);
+    return frame;
+}
+
+static size_t bytes_of(const char *tag)
+{
+    struct orl_gpu_memory rows[64];
+    size_t count = orl_gpu_memory(gpu, rows, ORL_COUNT(rows)), bytes = 0;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(rows[i].tag, tag) == 0)
+            bytes += rows[i].bytes;
+    return bytes;
+}
+
+static float largest_difference(const struct orl_frame *a, const struct orl_frame *b)
+{
+    float largest = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        largest = fmaxf(largest, fabsf(a->color.f32[i] - b->color.f32[i]));
+    return largest;
+}
+
+static bool device_has(enum orl_textures textures)
+{
+    return orl_gpu_has_compressed(gpu, textures == ORL_TEXTURES_BC7
+                                           ? GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM
+                                           : GL_COMPRESSED_SRGB_S3TC_DXT1_EXT);
+}
+
+static void check_flat(enum orl_textures textures, size_t block, float tolerance)
+{
+    struct fixture f;
+    setup(&f, 3);
+    struct orl_renderer *full = renderer_of(&f, &(struct orl_renderer_params){0});
+    struct orl_frame plain = draw(full, 0.7);
+    orl_renderer_destroy(&full);
+    assert_true(bytes_of("photographs") == 0);
+    struct orl_renderer *small =
+        renderer_of(&f, &(struct orl_renderer_params){.textures = textures});
+    struct orl_frame frame = draw(small, 0.7);
+    size_t blocks = 0;
+    for (int side = SIDE; side; side /= 2)
+        blocks += (size_t)((side + 3) / 4 * ((side + 3) / 4));
+    assert_int_equal(bytes_of("photographs"), 3 * blocks * block);
+    orl_renderer_destroy(&small);
+    float off = largest_difference(&plain, &frame);
+    assert_true(off > 0 || block == 16); // BC1 has 5 or 6 bits
+    assert_true(off < tolerance);
+    orl_frame_finish(&plain);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// One 8-bit step of sRGB is at most 0.009 of linear light.
+static void bc7_shows_the_same_colours_in_a_quarter(void **state)
+{
+    (void)state;
+    if (!device_has(ORL_TEXTURES_BC7))
+        skip();
+    check_flat(ORL_TEXTURES_BC7, 16, 0.0095f);
+}
+
+static void bc1_shows_like_colours_in_an_eighth(void **state)
+{
+    (void)state;
+    if (!device_has(ORL_TEXTURES_BC1))
+        skip();
+    check_flat(ORL_TEXTURES_BC1, 8, 0.04f);
+}
+
+// `auto` compresses before it halves.
+static void short_of_memory_compresses_first(void **state)
+{
+    (void)state;
+    if (!device_has(ORL_TEXTURES_BC7) || !device_has(ORL_TEXTURES_BC1))
+        skip();
+    struct fixture f;
+    setup(&f, PHOTOS);
+    struct orl_renderer *all = renderer_of(&f, &(struct orl_renderer_params){0});
+    size_t plain = bytes_of("photographs"), depth = bytes_of("photograph depth");
+    orl_renderer_destroy(&all);
+    size_t budget = (size_t)16 << 20, bytes = plain;
+    while (bytes == plain) { // until it binds
+        budget -= (plain + depth) / 8;
+        struct orl_renderer *small =
+            renderer_of(&f, &(struct orl_renderer_params){.max_vram_bytes = budget});
+        bytes = bytes_of("photographs");
+        assert_int_equal(bytes_of("photograph depth"), depth); // neither smaller nor fewer
+        orl_renderer_destroy(&small);
+    }
+    assert_true(bytes <= plain / 3);
+    teardown(&f);
+}
+
+// Noise of 16 colours on a line, which mode 6 is made of: a block's own steps miss them by at
+// most half a step, which is 15 of red.
+static void bc7_keeps_texels_along_a_line(void **state)
+{
+    (void)state;
+    enum { W = 37, H = 22 }; // no multiple of a block
+    if (!device_has(ORL_TEXTURES_BC7))
+        skip();
+    struct orl_tex_params params = {.width = W, .height = H, .levels = 1,
+                                    .format = GL_SRGB8_ALPHA8, .tag = "plain"};
+    struct orl_tex *from, *to;
+    assert_int_equal(orl_tex_create(gpu, &params, &from), ORL_OK);
+    params.format = GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM;
+    params.layers = 2;
+    assert_int_equal(orl_tex_create(gpu, &params, &to), ORL_OK);
+    static uint8_t in[W * H][4], out[2][W * H][4];
+    for (unsigned i = 0; i < W * H; i++) {
+        unsigned t = (i * 2654435761u >> 20) % 16;
+        uint8_t texel[4] = {(uint8_t)(13 + 15 * t), (uint8_t)(240 - 9 * t), (uint8_t)(60 + t), 255};
+        memcpy(in[i], texel, 4);
+    }
+    orl_tex_write(from, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, in);
+    assert_int_equal(orl_tex_compress_layer(gpu, from, to, 1), ORL_OK);
+    orl_tex_read(to, 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof out, out);
+    double squares = 0;
+    for (int i = 0; i < W * H; i++) {
+        for (int c = 0; c < 3; c++)
+            assert_true(abs(out[1][i][c] - in[i][c]) <= 10);
+        assert_true(out[1][i][3] >= 254);
+        squares += (out[1][i][0] - in[i][0]) * (out[1][i][0] - in[i][0]);
+    }
+    assert_true(sqrt(squares / (W * H)) < 4);
+    orl_tex_destroy(gpu, &from);
+    orl_tex_destroy(gpu, &to);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+}
+
+// A renderer that has room for SLOTS photographs, by trying budgets.
+static struct orl_renderer *renderer_of_few(const struct fixture *f, size_t color, size_t depth)
+{
+    size_t low = 0, high = (size_t)16 << 20;
+    for (int i = 0; i < 24; i++) {
+        size_t budget = low + (high - low) / 2;
+        struct orl_renderer *renderer = renderer_of(f, &(struct orl_renderer_params){
+            .textures = ORL_TEXTURES_FULL, .photo_divide = 4, .max_vram_bytes = budget});
+        size_t slots = bytes_of("photographs") / color;
+        if (slots == SLOTS)
+            return renderer;
+        orl_renderer_destroy(&renderer);
+        // Once a budget binds, the one for SLOTS is known.
+        if (slots > 1 && slots < PHOTOS)
+            low = high = slots > SLOTS ? budget - (slots - SLOTS) * (color + depth)
+                                       : budget + (SLOTS - slots) * (color + depth);
+        else if (slots == 1)
+            low = budget;
+        else
+            high = budget;
+    }
+    fail_msg("no budget gives %d slots", SLOTS);
+    return NULL;
+}
+
+// Where no more photographs than slots see the surface, a renderer with few slots makes the
+// same picture as one with room for all. (Elsewhere it paints from fewer.)
+static void photographs_are_loaded_as_the_viewer_moves(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, PHOTOS);
+    struct orl_renderer *all =
+        renderer_of(&f, &(struct orl_renderer_params){.photo_divide = 4});
+    size_t color = bytes_of("photographs") / PHOTOS;
+    size_t depth = bytes_of("photograph depth") / PHOTOS, before = bytes_of("photographs");
+    struct orl_frame frames[9];
+    for (int i = 0; i < 9; i++) // to the end and back to the start
+        frames[i] = draw(all, 0.3 + (i < 5 ? i : 8 - i) * 7.1);
+    assert_true(largest_difference(&frames[0], &frames[1]) > 0.05f); // the views do differ
+    orl_renderer_destroy(&all);
+    assert_int_equal(before, PHOTOS * color);
+    struct orl_renderer *few = renderer_of_few(&f, color, depth);
+    for (int i = 0; i < 9; i++) {
+        struct orl_frame frame = draw(few, 0.3 + (i < 5 ? i : 8 - i) * 7.1);
+        assert_true(largest_difference(&frames[i], &frame) < 1e-6f);
+        assert_int_equal(bytes_of("photographs"), SLOTS * color);
+        orl_frame_finish(&frame);
+        orl_frame_finish(&frames[i]);
+    }
+    orl_renderer_destroy(&few);
+    teardown(&f);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bc7_shows_the_same_colours_in_a_quarter),
+        cmocka_unit_test(bc1_shows_like_colours_in_an_eighth),
+        cmocka_unit_test(short_of_memory_compresses_first),
+        cmocka_unit_test(bc7_keeps_texels_along_a_line),
+        cmocka_unit_test(photographs_are_loaded_as_the_viewer_moves),
+    };
+    int failed = cmocka_run_group_tests_name("textures", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
