@@ -37,7 +37,7 @@ ORL_BLOCK(pyramid_block)
 #define ORL_RADIANCE_SCALE 4096.0
 
 #define ORL_RADIANCE_PHOTOS 128 // of one gather of radiance
-#define ORL_RADIANCE_KEPT 8    // of those, for the pixels of a work group
+#define ORL_RADIANCE_KEPT 6    // of those, for the pixels of a work group
 
 // A photograph as the gather passes see it; an array of these is a storage buffer.
 #define ORL_PHOTO_VEC4S 10
