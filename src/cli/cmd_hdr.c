@@ -247,7 +247,8 @@ static void finish(struct options *o, struct job *job)
 int cmd_hdr(int argc, char **argv)
 {
     struct options o = {.views = {.frames = 120}, .output = {OUTPUT_OPTIONS_DEFAULTS},
-                        .method = orl_methods[0].name, .merge = "fused", .replace_series = -1, .samples = 1};
+                        .method = orl_methods[0].name, .merge = "fused",
+                        .replace_series = -1, .samples = 1};
     const struct arg_option table[] = {
         {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
@@ -262,7 +263,8 @@ int cmd_hdr(int argc, char **argv)
          "of the panorama; default: the photographs' mean upward direction", 0, 0},
         {"out", ARG_STRING, &o.out, "FILE|DIR", ".exr or .png; for several views a folder", 0, 0},
         {"size", ARG_SIZE, &o.views.size, "WxH", "picture size; default: the camera's", 0, 0},
-        {"samples", ARG_INT, &o.samples, "N", "N x N samples a pixel, from 1 to 4; default 1", 1, 4},
+        {"samples", ARG_INT, &o.samples, "N", "N x N samples a pixel, from 1 to 4; default 1", 1,
+         4},
         {"merge", ARG_STRING, &o.merge, "NAME",
          "fused (default): one gather in radiance; series: a picture of each series, merged", 0, 0},
         {"method", ARG_STRING, &o.method, "NAME", "of rendering; default oriel", 0, 0},

@@ -43,8 +43,8 @@ struct orl_hdr {
 
 // Means of factor x factor pixels, each image of `fine` being that many times as large.
 // Depth is the median of those that have one; normals keep their length.
-enum orl_result orl_frame_reduce(const struct orl_log *log, const struct orl_frame *fine, int factor,
-                                 struct orl_frame *frame);
+enum orl_result orl_frame_reduce(const struct orl_log *log, const struct orl_frame *fine,
+                                 int factor, struct orl_frame *frame);
 // Colour of pixels that are not known (known <= 0) from those around them; left and right
 // borders are neighbours (around.c).
 enum orl_result orl_fill_around(const struct orl_log *log, struct orl_image *color,

@@ -60,8 +60,8 @@ static void normalize(struct orl_image *normals)
     }
 }
 
-enum orl_result orl_frame_reduce(const struct orl_log *log, const struct orl_frame *fine, int factor,
-                                 struct orl_frame *frame)
+enum orl_result orl_frame_reduce(const struct orl_log *log, const struct orl_frame *fine,
+                                 int factor, struct orl_frame *frame)
 {
     memset(frame, 0, sizeof *frame);
     ORL_REQUIRE(log, factor >= 1 && factor <= 4);

@@ -60,7 +60,8 @@ static void setup_wall(struct fixture *f)
 {
     setup(f, GRID * GRID);
     for (int i = 0; i < GRID * GRID; i++)
-        add_point(f, (double[]){8.0 * (i % GRID + 0.5) / GRID - 4, 8.0 * (i / GRID + 0.5) / GRID - 4, 4},
+        add_point(f, (double[]){8.0 * (i % GRID + 0.5) / GRID - 4,
+                                8.0 * (i / GRID + 0.5) / GRID - 4, 4},
                   (double[]){0, 0, -1}, 12.0 / GRID);
 }
 
@@ -431,8 +432,7 @@ static void panoramas_show_what_is_there(void **state)
     double border = 0, inner = 0;
     int borders = 0;
     for (int i = 0; i < W * H; i++) {
-        // The image's middle looks along +x; its right half towards +z... of a world with y
-        // down: to the right of +x is +z's opposite.
+        // The image's middle looks along +x, the world's y being down.
         double longitude = M_PI - 2 * M_PI * (i % W + 0.5) / W;
         double latitude = M_PI / 2 - M_PI * (i / W + 0.5) / H;
         double right[3], down[3] = {0, 1, 0}, forward[3] = {1, 0, 0}, ray[3], hit[3];
