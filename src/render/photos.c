@@ -10,6 +10,7 @@
 
 enum {
     DIVIDE_MAX = 4,
+    RESIDENT_ENOUGH = 24,       // photographs that should fit at once before they are made smaller
     DEPTH_SIDE_MAX = 1024,      // occlusion needs no more: depth is smooth between edges
     ARRAY_BYTES_MAX = 1 << 30,  // of one texture array; llvmpipe refuses larger ones
 };
@@ -102,7 +103,8 @@ static bool fits_all(const struct photos *photos, const struct slot_size *size, 
     return slot_bytes(photos, size) * (size_t)count <= slot_budget(photos, size, budget);
 }
 
-// Photographs compressed first, then smaller, then fewer at once.
+// Photographs compressed first, then fewer at once down to RESIDENT_ENOUGH, then smaller,
+// then fewer still.
 static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textures textures,
                              struct photos *photos)
 {
@@ -123,7 +125,9 @@ static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textur
             orl_logf(log, ORL_LOG_WARNING, "photographs do not fit in %zu MiB of device memory: "
                      "compressing them (%s)", budget >> 20, software ? "BC1" : "BC7");
     }
-    while (budget && photos->divide < DIVIDE_MAX && !fits_all(photos, &size, count, budget)) {
+    // A view is painted from a few photographs: many at once are not worth blurred ones.
+    int enough = count < RESIDENT_ENOUGH ? count : RESIDENT_ENOUGH;
+    while (budget && photos->divide < DIVIDE_MAX && !fits_all(photos, &size, enough, budget)) {
         photos->divide *= 2;
         size = slot_size(photos, photos->divide);
     }

@@ -125,7 +125,7 @@ struct orl_renderer_params {
 };
 
 // Uploads the points and loads photographs. When they do not fit max_vram_bytes it
-// plans with compressed photographs (of AUTO), then with smaller ones, then with fewer at once,
+// plans with compressed photographs (of AUTO), then with fewer at once, then with smaller ones,
 // and says so in the log.
 // params may be NULL. The scene and gpu must outlive it.
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
