@@ -303,10 +303,10 @@ static void set_values(struct problem *p)
     for (size_t i = 0; i < p->samples->count; i++) {
         const struct orl_observation *item = &p->samples->items[i];
         const struct orl_align_photo *photo = &p->photos[item->photo];
-        double noise = 0;
+        double noise = item->clipped ? INFINITY : 0;
         p->value[i][3] = 0;
         p->sigma[i] = INFINITY;
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 3 && !item->clipped; c++) {
             const float *curve = photo->linear ? photo->linear[c] : NULL;
             double light = decode(curve, item->value[c]);
             if (!(light > 1e-6)) {

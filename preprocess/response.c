@@ -17,10 +17,14 @@ enum {
     BINS = 16,         // of values, that samples must span
     BINS_MIN = 12,
     PER_BIN_MIN = 20,
+    FLOOR_MAX = 64,    // a floor is below
 };
 static const double LN2 = 0.69314718055994531;
 static const double SAMPLE_SIGMA = 0.1; // of log colour, as in align.c
 static const double PAIR_MIN_EV = 0.4;  // exposures of a point that say something
+// Of a floor: values rise less than by this share of the exposure, which is at most
+// FLOOR_EV_MAX lower in the other photograph.
+static const double FLAT_MAX = 0.3, FLOOR_EV_MAX = 2.1;
 // Weight of the squared second derivative of the curve's logarithm, by what samples weigh.
 static const double SMOOTHNESS = 1e-6;
 static const double PULL = 1e-3;        // on the terms: there is always a solution
@@ -36,10 +40,12 @@ struct problem {
     float *sigma;    // per observation; INFINITY: takes no part
     float *weight, *residual, *scratch;
     float *light;    // log of vignetting times exposure
+    double floor;    // value at which the dark ends: what is there has no weight
     double srgb[NODES], off[NODES]; // log exposure of sRGB; what the curve adds to it
     int channel;
     size_t photo_count;
     double *matrix, *unknown, *offset; // offset: of each photograph's log exposure
+    double *share;   // of each photograph in what samples weigh, times photo_count
 };
 
 static double vignetting(const float v[3], double r2)
@@ -71,10 +77,75 @@ static double weight_of(const struct problem *p, size_t i)
                ? (double)p->weight[i] / ((double)p->sigma[i] * (double)p->sigma[i]) : 0;
 }
 
+static bool is_usable(const struct problem *p, const struct orl_observation *item)
+{
+    double value = (double)item->value[p->channel];
+    return p->photos[item->photo].use && !(item->clipped & 1u << p->channel) && value >= 2 &&
+           value <= 253;
+}
+
+// What the same point shows at the next lower exposure; NULL: nothing that says something.
+static const struct orl_observation *darker(const struct problem *p, size_t begin, size_t end,
+                                            const struct orl_observation *item)
+{
+    const struct orl_observation *best = NULL;
+    double ev = p->photos[item->photo].ev;
+    for (size_t i = begin; i < end; i++) {
+        const struct orl_observation *other = &p->samples->items[i];
+        double less = ev - p->photos[other->photo].ev;
+        if (is_usable(p, other) && less >= PAIR_MIN_EV && less <= FLOOR_EV_MAX &&
+            (!best || p->photos[other->photo].ev > p->photos[best->photo].ev))
+            best = other;
+    }
+    return best;
+}
+
+// Where black is not 0 (scans of film, stray light), dark values hardly follow exposure.
+// Counts them by value, and those that say so.
+static void count_flat(const struct problem *p, size_t flat[NODES], size_t all[NODES])
+{
+    for (size_t point = 0; point < p->samples->point_count; point++) {
+        size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
+        for (size_t i = begin; i < end; i++) {
+            const struct orl_observation *item = &p->samples->items[i], *other = NULL;
+            if (is_usable(p, item) && item->value[p->channel] < FLOOR_MAX)
+                other = darker(p, begin, end, item);
+            if (!other)
+                continue;
+            double value = (double)item->value[p->channel];
+            double ratio = (double)orl_srgb_decode((float)value / 255) /
+                           (double)orl_srgb_decode(other->value[p->channel] / 255);
+            double ev = p->photos[item->photo].ev - p->photos[other->photo].ev;
+            all[(size_t)value]++;
+            flat[(size_t)value] += log2(ratio) < FLAT_MAX * ev;
+        }
+    }
+}
+
+// The darkest value from which on values follow exposure, less 1.
+static double find_floor(const struct problem *p)
+{
+    size_t flat[NODES] = {0}, all[NODES] = {0}, flat_sum = 0, sum = 0;
+    double floor = 0;
+    count_flat(p, flat, all);
+    for (size_t v = 0; v < FLOOR_MAX; v++) {
+        flat_sum += flat[v];
+        sum += all[v];
+        if (sum < PER_BIN_MIN)
+            continue;
+        if (4 * flat_sum < sum)
+            break;
+        floor = (double)v;
+        flat_sum = sum = 0;
+    }
+    return floor;
+}
+
 // Points count when exposures of theirs differ enough to say something. Returns how many do.
 static size_t choose(struct problem *p)
 {
     size_t points = 0;
+    p->floor = find_floor(p);
     for (size_t point = 0; point < p->samples->point_count; point++) {
         size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
         double least = INFINITY, most = -INFINITY;
@@ -91,11 +162,11 @@ static size_t choose(struct problem *p)
         for (size_t i = begin; i < end; i++) {
             const struct orl_observation *item = &p->samples->items[i];
             const struct orl_response_photo *photo = &p->photos[item->photo];
-            double value = (double)item->value[p->channel], slope;
+            double value = (double)item->value[p->channel] - p->floor, slope;
             p->sigma[i] = INFINITY;
             p->light[i] = (float)(LN2 * photo->ev +
                                   log(vignetting(photo->vignette, (double)item->r2)));
-            if (!counts || !photo->use || !(value >= 2 && value <= 253))
+            if (!counts || !is_usable(p, item) || value < 2)
                 continue;
             slope = log((double)orl_srgb_decode((float)(value + 1) / 255) /
                         (double)orl_srgb_decode((float)(value - 1) / 255)) / 2;
@@ -247,22 +318,38 @@ static void add_smoothness(double *a, size_t n, double weight)
 }
 
 // Offsets neither shift nor stretch the exposures that are known: stretching them and the
-// curve's exponent alike would fit as well.
+// curve's exponent alike would fit as well. Photographs count by what they show (`share`,
+// all ones' mean being 1): else nearly black ones would make up for a stretch of the rest.
 static void add_offsets(const struct problem *p, double *a, size_t n)
 {
-    double mean = 0, count = 0;
+    const double *share = p->share;
+    double mean = 0, total = 0;
     for (size_t i = 0; i < p->photo_count; i++) {
-        mean += p->photos[i].use ? p->photos[i].ev : 0;
-        count += p->photos[i].use;
+        mean += share[i] * p->photos[i].ev;
+        total += share[i];
     }
-    mean /= count;
+    mean /= total;
     for (size_t i = 0; i < p->photo_count; i++) {
         a[(TERMS + i) * n + TERMS + i] += p->photos[i].use ? 1 / (OFFSET_SIGMA * OFFSET_SIGMA) : 1;
         for (size_t k = 0; k < p->photo_count; k++)
             if (p->photos[i].use && p->photos[k].use)
                 a[(TERMS + i) * n + TERMS + k] +=
-                    FIRM * (1 + (p->photos[i].ev - mean) * (p->photos[k].ev - mean));
+                    FIRM * share[i] * share[k] *
+                    (1 + (p->photos[i].ev - mean) * (p->photos[k].ev - mean));
     }
+}
+
+static void set_shares(struct problem *p)
+{
+    double *share = p->share;
+    double total = 0;
+    memset(share, 0, p->photo_count * sizeof *share);
+    for (size_t i = 0; i < p->samples->count; i++) {
+        share[p->samples->items[i].photo] += weight_of(p, i);
+        total += weight_of(p, i);
+    }
+    for (size_t i = 0; i < p->photo_count; i++)
+        share[i] *= (double)p->photo_count / total;
 }
 
 // Without `curve` offsets alone are found, for sRGB.
@@ -277,6 +364,7 @@ static bool step(struct problem *p, bool curve)
     for (size_t i = 0; i < p->samples->count; i++)
         information += weight_of(p, i);
     add_smoothness(a, n, SMOOTHNESS * information);
+    set_shares(p);
     add_offsets(p, a, n);
     for (size_t k = 0; k < TERMS; k++)
         a[k * n + k] += curve ? PULL : FIRM * FIRM;
@@ -296,11 +384,13 @@ static bool step(struct problem *p, bool curve)
 static void finish_curve(const struct problem *p, float linear[256])
 {
     double g[NODES];
-    for (size_t v = 1; v < NODES; v++) {
+    for (size_t v = 1; v < NODES; v++)
         g[v] = p->srgb[v] + p->off[v];
-        if (v > 1)
-            g[v] = fmax(g[v], g[v - 1] + RISE_MIN);
-    }
+    // From the middle, which samples know best.
+    for (size_t v = NODES / 2 + 1; v < NODES; v++)
+        g[v] = fmax(g[v], g[v - 1] + RISE_MIN);
+    for (size_t v = NODES / 2 - 1; v > 0; v--)
+        g[v] = fmin(g[v], g[v + 1] - RISE_MIN);
     linear[0] = 0;
     for (size_t v = 1; v < NODES; v++)
         linear[v] = (float)exp(g[v] - g[NODES - 1]);
@@ -387,8 +477,10 @@ enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_sam
     p.matrix = orl_array(log, unknowns, unknowns * sizeof *p.matrix);
     p.unknown = orl_array(log, unknowns, sizeof *p.unknown);
     p.offset = orl_array(log, photo_count, sizeof *p.offset);
+    p.share = orl_array(log, photo_count, sizeof *p.share);
     float *block = orl_array(log, count, 5 * sizeof *block);
-    enum orl_result result = block && p.matrix && p.unknown && p.offset ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = block && p.matrix && p.unknown && p.offset && p.share
+                                 ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
         p.sigma = block;
         p.weight = block + count;
@@ -407,5 +499,6 @@ enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_sam
     free(p.matrix);
     free(p.unknown);
     free(p.offset);
+    free(p.share);
     return result;
 }

@@ -91,8 +91,8 @@ static bool is_visible(const struct depth_buffer *buffer, const double pixel[2],
 // --- a photograph at several scales ---
 
 struct texel {
-    float rgb[3]; // linear
-    float spoilt; // share of pixels with a clipped or black channel
+    float rgb[3];    // linear
+    float spoilt[3]; // share of pixels that are clipped or black, by channel
 };
 
 struct pyramid {
@@ -110,10 +110,9 @@ static struct texel fetch(const struct pyramid *p, int level, int x, int y)
     if (level > 0)
         return p->level[level][at];
     const uint8_t *v = p->image.u8 + 3 * at;
-    struct texel texel = {{p->linear[v[0]], p->linear[v[1]], p->linear[v[2]]}, 0};
+    struct texel texel = {{p->linear[v[0]], p->linear[v[1]], p->linear[v[2]]}, {0}};
     for (int c = 0; c < 3; c++)
-        if (v[c] >= CLIPPED || v[c] <= BLACK)
-            texel.spoilt = 1;
+        texel.spoilt[c] = v[c] >= CLIPPED || v[c] <= BLACK;
     return texel;
 }
 
@@ -130,9 +129,10 @@ static enum orl_result make_level(const struct orl_log *log, struct pyramid *p, 
         for (int x = 0; x < width; x++, out++)
             for (int k = 0; k < 4; k++) {
                 struct texel from = fetch(p, level - 1, 2 * x + (k & 1), 2 * y + (k >> 1));
-                for (int c = 0; c < 3; c++)
+                for (int c = 0; c < 3; c++) {
                     out->rgb[c] += 0.25f * from.rgb[c];
-                out->spoilt += 0.25f * from.spoilt;
+                    out->spoilt[c] += 0.25f * from.spoilt[c];
+                }
             }
     return ORL_OK;
 }
@@ -175,17 +175,19 @@ static struct texel bilinear(const struct pyramid *p, int level, double x, doubl
     for (int k = 0; k < 4; k++) {
         struct texel from = fetch(p, level, left + (k & 1), top + (k >> 1));
         float w = (k & 1 ? u : 1 - u) * (k >> 1 ? v : 1 - v);
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             sum.rgb[c] += w * from.rgb[c];
-        sum.spoilt += w * from.spoilt;
+            sum.spoilt[c] += w * from.spoilt[c];
+        }
     }
     return sum;
 }
 
 // Mean of 3x3 texels that are as far apart as the patch is wide, by thirds. False when the
-// patch is spoilt, or too uneven for its mean to say what another photograph would show.
+// patch is spoilt in every channel, or too uneven for its mean to say what another
+// photograph would show.
 static bool take_patch(const struct pyramid *p, const double pixel[2], double radius,
-                       float contrast_max, float value[3])
+                       float contrast_max, struct orl_observation *item)
 {
     double step = 2 * radius / 3;
     int level = 0;
@@ -193,21 +195,22 @@ static bool take_patch(const struct pyramid *p, const double pixel[2], double ra
         level++;
     double scale = 1.0 / (1 << level), sum[3] = {0};
     float darkest = INFINITY, brightest = 0;
+    item->clipped = 0;
     for (int k = 0; k < 9; k++) {
         struct texel t = bilinear(p, level, (pixel[0] + (k % 3 - 1) * step) * scale,
                                   (pixel[1] + (k / 3 - 1) * step) * scale);
-        if (t.spoilt > SPOILT_MAX)
-            return false;
+        for (int c = 0; c < 3; c++)
+            item->clipped |= (uint8_t)((t.spoilt[c] > SPOILT_MAX) << c);
         float luminance = orl_luminance(t.rgb);
         darkest = fminf(darkest, luminance);
         brightest = fmaxf(brightest, luminance);
         for (int c = 0; c < 3; c++)
             sum[c] += (double)t.rgb[c] / 9;
     }
-    if (brightest - darkest > contrast_max * 0.5f * (brightest + darkest))
+    if (item->clipped == 7 || brightest - darkest > contrast_max * 0.5f * (brightest + darkest))
         return false;
     for (int c = 0; c < 3; c++)
-        value[c] = 255 * orl_srgb_encode((float)sum[c]);
+        item->value[c] = 255 * orl_srgb_encode((float)sum[c]);
     return true;
 }
 
@@ -256,7 +259,7 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
         return ORL_OK;
     // Never less than the pixels that calibration may be off.
     double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 1.5);
-    if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, item.value))
+    if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, &item))
         return ORL_OK;
     enum orl_result result = orl_grow(t->log, (void **)&t->items, &t->item_capacity,
                                       t->count + 1, sizeof *t->items);

@@ -12,11 +12,12 @@ struct orl_sample_photo {
     struct orl_view view;
 };
 
-// What one photograph shows of a point: the mean of a patch that nothing clips and that
-// no edge crosses.
+// What one photograph shows of a point: the mean of a patch that no edge crosses and that
+// does not clip in every channel.
 struct orl_observation {
     uint32_t photo;
-    float value[3]; // 8-bit values, [0, 255]
+    float value[3]; // 8-bit values, [0, 255]; of channels that clip they mean nothing
+    uint8_t clipped; // bit c: channel c has clipped or black pixels
     float r2;       // squared distance from the principal point, in half diagonals
 };
 

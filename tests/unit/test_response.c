@@ -1,0 +1,309 @@
+// Response curves from stacks of photographs from one place: known answers, and what OpenCV
+// makes of the same samples.
+#include <math.h>
+
+#include "core/color.h"
+#include "core/image.h"
+#include "io/picture.h"
+#include "opencv_response.h"
+#include "preprocess/response.h"
+#include "test.h"
+
+enum {
+    SIDE = 64,      // of the made-up photographs
+    FEW_SIDE = 16,  // of what OpenCV's Debevec gets: its matrix is dense
+    PHOTOS_MAX = 16,
+};
+
+// Photographs of one place: side x side pixels of RGB each.
+struct stack {
+    int photos, side;
+    double ev[PHOTOS_MAX];
+    uint8_t *pixels; // owned
+};
+
+static uint8_t *pixel(const struct stack *stack, int photo, int at)
+{
+    return stack->pixels + 3 * ((size_t)photo * (size_t)(stack->side * stack->side) + (size_t)at);
+}
+
+static double uniform(uint32_t *state)
+{
+    *state = *state * 747796405u + 2891336453u;
+    uint32_t w = ((*state >> ((*state >> 28) + 4)) ^ *state) * 277803737u;
+    return ((w >> 22) ^ w) * 0x1p-32;
+}
+
+// Roughly normal, variance 1.
+static double normal(uint32_t *state)
+{
+    double sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += uniform(state) - 0.5;
+    return sum * sqrt(3.0);
+}
+
+// --- made-up stacks, whose curve is known ---
+
+// Light in [0, 1] to value in [0, 1] with more contrast than sRGB.
+static double film(double light)
+{
+    double v = (double)orl_srgb_encode((float)light);
+    return v + 0.5 * (v * v * (3 - 2 * v) - v);
+}
+
+// Light of each value, above a black of `black`.
+static void make_truth(double black, double truth[256])
+{
+    int v = 0;
+    for (int i = 0; i <= 100000; i++)
+        while (v < 256 && black + (255 - black) * film(i / 100000.0) >= v - 1e-9)
+            truth[v++] = i / 100000.0;
+    assert_int_equal(v, 256);
+}
+
+// Radiance over 10 EV, colours up to 2.5 EV apart: channels clip alone.
+static struct stack make_stack(int photos, double step_ev, double black)
+{
+    struct stack stack = {.photos = photos, .side = SIDE};
+    stack.pixels = calloc((size_t)photos, 3 * (size_t)SIDE * SIDE);
+    assert_non_null(stack.pixels);
+    uint32_t state = 7;
+    for (int at = 0; at < SIDE * SIDE; at++) {
+        double all = -8 + 10 * uniform(&state), light[3];
+        for (int c = 0; c < 3; c++)
+            light[c] = exp2(all + 2.5 * (uniform(&state) - 0.5));
+        for (int i = 0; i < photos; i++) {
+            stack.ev[i] = step_ev * (i - photos / 2);
+            for (int c = 0; c < 3; c++) {
+                double value = black + (255 - black) * film(fmin(light[c] * exp2(stack.ev[i]), 1));
+                value += 0.7 * normal(&state);
+                pixel(&stack, i, at)[c] = (uint8_t)lround(fmin(fmax(value, 0), 255));
+            }
+        }
+    }
+    return stack;
+}
+
+// --- fits ---
+
+static struct orl_samples samples_of(const struct stack *stack)
+{
+    size_t count = 0, points = (size_t)(stack->side * stack->side);
+    struct orl_observation *items = calloc(points * (size_t)stack->photos, sizeof *items);
+    uint32_t *owners = calloc(points * (size_t)stack->photos, sizeof *owners);
+    struct orl_samples samples;
+    assert_true(items && owners);
+    for (uint32_t at = 0; at < points; at++)
+        for (int i = 0; i < stack->photos; i++) {
+            struct orl_observation *item = &items[count];
+            *item = (struct orl_observation){.photo = (uint32_t)i};
+            for (int c = 0; c < 3; c++) {
+                uint8_t value = pixel(stack, i, (int)at)[c];
+                item->value[c] = value;
+                item->clipped |= (uint8_t)((value < 1 || value > 253) << c);
+            }
+            owners[count] = at;
+            count += item->clipped != 7;
+        }
+    assert_int_equal(orl_samples_collect(NULL, items, owners, count, points, &samples), ORL_OK);
+    free(items);
+    free(owners);
+    return samples;
+}
+
+static void fit(const struct stack *stack, struct orl_response *response)
+{
+    struct orl_response_photo photos[PHOTOS_MAX] = {0};
+    struct orl_response_fit found;
+    struct orl_samples samples = samples_of(stack);
+    for (int i = 0; i < stack->photos; i++)
+        photos[i] = (struct orl_response_photo){.use = true, .ev = stack->ev[i]};
+    assert_int_equal(orl_response_fit(NULL, &samples, photos, (size_t)stack->photos, response,
+                                      &found), ORL_OK);
+    assert_int_equal(found.verdict, ORL_RESPONSE_FOUND);
+    for (int c = 0; c < 3; c++)
+        for (int v = 1; v < 256; v++)
+            assert_true(response->linear[c][v] > response->linear[c][v - 1]);
+    orl_samples_finish(&samples);
+}
+
+// OpenCV's answer, Debevec's from evenly spaced pixels.
+static void ask_opencv(bool robertson, const struct stack *stack, float curve[3][256])
+{
+    float times[PHOTOS_MAX];
+    struct stack few = {.photos = stack->photos, .side = robertson ? stack->side : FEW_SIDE};
+    size_t count = (size_t)few.side * (size_t)few.side;
+    few.pixels = calloc((size_t)few.photos * count, 3);
+    assert_non_null(few.pixels);
+    for (int i = 0; i < few.photos; i++) {
+        times[i] = (float)exp2(stack->ev[i]);
+        for (int at = 0; at < (int)count; at++)
+            memcpy(pixel(&few, i, at),
+                   pixel(stack, i, (int)((size_t)at * (size_t)(stack->side * stack->side) / count)),
+                   3);
+    }
+    assert_true(opencv_response(robertson, few.pixels, few.photos, few.side, times, curve));
+    free(few.pixels);
+}
+
+// RMS of `curve` from `truth` in [first, last], scaled to fit, by the truth's largest.
+static double rms(const float *curve, const double *truth, int first, int last)
+{
+    double scale = 0, norm = 0, squares = 0;
+    for (int v = first; v <= last; v++) {
+        scale += truth[v] * (double)curve[v];
+        norm += (double)curve[v] * (double)curve[v];
+    }
+    for (int v = first; v <= last; v++)
+        squares += pow(scale / norm * (double)curve[v] - truth[v], 2);
+    return sqrt(squares / (last - first + 1)) / truth[last];
+}
+
+static void channels_clip_alone(void **state)
+{
+    (void)state;
+    struct stack stack = make_stack(5, 2, 0);
+    struct orl_response response;
+    double truth[256];
+    float debevec[3][256], robertson[3][256];
+    make_truth(0, truth);
+    fit(&stack, &response);
+    ask_opencv(false, &stack, debevec);
+    ask_opencv(true, &stack, robertson);
+    // OpenCV gives clipped values weight; the second time the ends are left out for its sake.
+    const int first[] = {1, 16}, last[] = {254, 240};
+    for (int k = 0; k < 2; k++) {
+        double sum[3] = {0}; // of squares: ours, Debevec's, Robertson's
+        for (int c = 0; c < 3; c++) {
+            double ours = rms(response.linear[c], truth, first[k], last[k]);
+            assert_true(ours < 0.01);
+            sum[0] += ours * ours;
+            sum[1] += pow(rms(debevec[c], truth, first[k], last[k]), 2);
+            sum[2] += pow(rms(robertson[c], truth, first[k], last[k]), 2);
+        }
+        print_message("%d to %d: RMS %.4f, OpenCV's Debevec %.4f, Robertson %.4f\n", first[k],
+                      last[k], sqrt(sum[0] / 3), sqrt(sum[1] / 3), sqrt(sum[2] / 3));
+        assert_true(sum[0] <= sum[1] && sum[0] <= sum[2]);
+    }
+    free(stack.pixels);
+}
+
+static void a_floor_has_no_say(void **state)
+{
+    (void)state;
+    enum { BLACK = 14 };
+    struct stack stack = make_stack(7, 1.5, BLACK);
+    struct orl_response response;
+    double truth[256];
+    make_truth(BLACK, truth);
+    fit(&stack, &response);
+    for (int c = 0; c < 3; c++) {
+        double ours = rms(response.linear[c], truth, BLACK + 4, 254);
+        if (!(ours < 0.005))
+            fail_msg("channel %d: RMS %g", c, ours);
+    }
+    free(stack.pixels);
+}
+
+// --- the church of Debevec and Malik ---
+
+static bool read_church(struct stack *stack)
+{
+    const char *base = getenv("ORL_DATASETS");
+    if (!base || !*base)
+        base = SOURCE_DIR "/../shared/datasets";
+    *stack = (struct stack){.photos = 16, .side = 80};
+    stack->pixels = calloc(16, 3 * 80 * 80);
+    assert_non_null(stack->pixels);
+    for (int i = 0; i < 16; i++) {
+        char path[4096];
+        struct orl_image image = {0};
+        snprintf(path, sizeof path, "%s/memorial-exposures/images/memorial%04d.png", base, 61 + i);
+        if (orl_picture_read(NULL, path, 3, &image) != ORL_OK) {
+            free(stack->pixels);
+            return false;
+        }
+        stack->ev[i] = 5 - i;
+        for (int at = 0; at < 80 * 80; at++) {
+            // Borders were made when the photographs were registered.
+            int x = 60 + at % 80 * (image.width - 120) / 80;
+            int y = 60 + at / 80 * (image.height - 120) / 80;
+            size_t from = 3 * ((size_t)y * (size_t)image.width + (size_t)x);
+            memcpy(pixel(stack, i, at), image.u8 + from, 3);
+        }
+        orl_image_finish(&image);
+    }
+    return true;
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// Median error of light's ratio between neighbouring exposures, in EV, of values within
+// [40, 215] in both.
+static double ratio_error(const struct stack *stack, float linear[3][256])
+{
+    size_t count = 0, most = 3 * (size_t)stack->photos * (size_t)(stack->side * stack->side);
+    float *errors = calloc(most, sizeof *errors);
+    assert_non_null(errors);
+    for (int i = 0; i + 1 < stack->photos; i++)
+        for (int at = 0; at < stack->side * stack->side; at++)
+            for (int c = 0; c < 3; c++) {
+                uint8_t a = pixel(stack, i, at)[c], b = pixel(stack, i + 1, at)[c];
+                if (a < 40 || a > 215 || b < 40 || b > 215)
+                    continue;
+                errors[count++] = fabsf(log2f(linear[c][a] / linear[c][b]) -
+                                        (float)(stack->ev[i] - stack->ev[i + 1]));
+            }
+    assert_true(count > 1000);
+    qsort(errors, count, sizeof *errors, compare_floats);
+    double median = (double)errors[count / 2];
+    free(errors);
+    return median;
+}
+
+static void the_church_agrees_with_opencv(void **state)
+{
+    (void)state;
+    struct stack stack;
+    if (!read_church(&stack)) {
+        print_message("no memorial-exposures below ORL_DATASETS: skipped\n");
+        skip();
+    }
+    struct orl_response response;
+    float debevec[3][256], robertson[3][256];
+    double theirs[256];
+    fit(&stack, &response);
+    ask_opencv(false, &stack, debevec);
+    ask_opencv(true, &stack, robertson);
+    double ratio = ratio_error(&stack, response.linear);
+    print_message("ratio: %.3f EV, OpenCV's Debevec %.3f, Robertson %.3f\n", ratio,
+                  ratio_error(&stack, debevec), ratio_error(&stack, robertson));
+    assert_true(ratio < 0.1);
+    for (int c = 0; c < 3; c++) {
+        for (int v = 0; v < 256; v++)
+            theirs[v] = (double)debevec[c][v];
+        double from_debevec = rms(response.linear[c], theirs, 32, 224);
+        for (int v = 0; v < 256; v++)
+            theirs[v] = (double)robertson[c][v];
+        double from_robertson = rms(response.linear[c], theirs, 32, 224);
+        print_message("channel %d: RMS %.4f from OpenCV's Debevec, %.4f from Robertson\n", c,
+                      from_debevec, from_robertson);
+        assert_true(from_debevec < 0.025 && from_robertson < 0.035);
+    }
+    free(stack.pixels);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(channels_clip_alone),
+        cmocka_unit_test(a_floor_has_no_say),
+        cmocka_unit_test(the_church_agrees_with_opencv),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
