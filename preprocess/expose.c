@@ -243,7 +243,7 @@ static void say_response(const struct exposing *e, const struct orl_source *sour
                          const struct orl_response_fit *fit)
 {
     static const char *const why[] = {
-        [ORL_RESPONSE_FOUND] = "", [ORL_RESPONSE_ONE_EXPOSURE] = "only one exposure",
+        [ORL_RESPONSE_FOUND] = "", [ORL_RESPONSE_ONE_EXPOSURE] = "no two known exposures differ",
         [ORL_RESPONSE_FEW_SAMPLES] = "too few points seen at several exposures",
         [ORL_RESPONSE_SRGB] = "it fits"};
     const struct orl_log *log = e->job->log;
