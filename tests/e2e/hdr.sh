@@ -28,7 +28,8 @@ runs() {
     --exposures -3,0,3 --noise 0.005 --quiet || exit 1
 "$truth_scene" photos photos-truth scene 1 9 || exit 1
 
-# Accuracy: the mean of the views, which edges of many stops dominate at this size.
+# Accuracy: the mean of the views, which edges of many stops dominate at this size; 0.92 and
+# 0.95 with llvmpipe.
 mean() {
     awk -F': ' '/"mean"/ {m = 1} m && /"log2_rmse"/ {gsub(/[ ,]/, "", $2); print $2; exit}' "$1"
 }
