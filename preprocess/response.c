@@ -17,6 +17,7 @@ enum {
     BINS = 16,         // of values, that samples must span
     BINS_MIN = 12,
     PER_BIN_MIN = 20,
+    VALUE_MAX = 251,   // of those above, noise clips the brighter ones: what is left is biased
     FLOOR_MAX = 64,    // a floor is below
 };
 static const double LN2 = 0.69314718055994531;
@@ -81,7 +82,7 @@ static bool is_usable(const struct problem *p, const struct orl_observation *ite
 {
     double value = (double)item->value[p->channel];
     return p->photos[item->photo].use && !(item->clipped & 1u << p->channel) && value >= 2 &&
-           value <= 253;
+           value <= VALUE_MAX;
 }
 
 // What the same point shows at the next lower exposure; NULL: nothing that says something.
