@@ -58,8 +58,8 @@ static void setup(struct fixture *f, size_t count)
         photo->view = look((double)STEP * (double)k);
         photo->gain[0] = photo->gain[1] = photo->gain[2] = 1;
         photo->response = -1;
-        photo->name = malloc(24);
-        snprintf(photo->name, 24, "%zu.png", k);
+        photo->name = malloc(32);
+        snprintf(photo->name, 32, "%zu.png", k);
         uint8_t rgb[3];
         paint(k, rgb);
         struct orl_image image;
