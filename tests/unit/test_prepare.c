@@ -116,7 +116,9 @@ static void world_close(struct world *w)
 {
     for (size_t i = 0; i < w->job.source_count; i++) {
         free(w->job.sources[i].name);
+        free(w->job.sources[i].given);
         free(w->job.sources[i].path);
+        free(w->job.sources[i].original);
         free(w->job.sources[i].mask);
     }
     free(w->job.sources);
