@@ -1,0 +1,108 @@
+// A wall and a plate before it, seen by photographs of one colour each.
+#ifndef ORL_TESTS_WALL_SCENE_H
+#define ORL_TESTS_WALL_SCENE_H
+
+#include <string.h>
+
+#include "gpu_test.h"
+#include "io/picture.h"
+#include "render/render.h"
+
+enum { SIDE = 48, WALL = 120, PLATE = 20, PHOTOS_MAX = 80 };
+
+// Colours whose linear light is known: sRGB 255 is 1, 0 is 0.
+static const uint8_t red[3] = {255, 0, 0}, green[3] = {0, 255, 0}, blue[3] = {0, 0, 255};
+
+struct fixture {
+    char *dir;
+    struct orl_scene scene;
+    struct orl_photo photos[PHOTOS_MAX];
+};
+
+static inline struct orl_view look(double x, double y, double z, int side, double focal)
+{
+    struct orl_view view = {.camera = {.width = side, .height = side, .fx = focal, .fy = focal,
+                                       .cx = 0.5 * side, .cy = 0.5 * side},
+                            .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                               .t = {-x, -y, -z}}};
+    return view;
+}
+
+// A wall at z = 4, 6 units wide, and, if asked for, a plate at z = 2 around x = 0.7.
+static inline void make_points(struct fixture *f, bool plate)
+{
+    size_t count = WALL * WALL + (plate ? PLATE * PLATE : 0);
+    struct orl_points *p = &f->scene.points;
+    assert_int_equal(orl_points_init(NULL, p, count), ORL_OK);
+    for (size_t i = 0; i < count; i++) {
+        bool wall = i < WALL * WALL;
+        size_t side = wall ? WALL : PLATE, k = wall ? i : i - WALL * WALL;
+        double size = wall ? 6 : 0.4;
+        p->position[i][0] = (float)(((double)(k % side) + 0.5) / (double)side * size - size / 2 +
+                                    (wall ? 0 : 0.7));
+        p->position[i][1] = (float)(((double)(k / side) + 0.5) / (double)side * size - size / 2);
+        p->position[i][2] = wall ? 4 : 2;
+        p->normal[i][2] = -1;
+        p->radius[i] = (float)(1.5 * size / (double)side);
+        memcpy(p->color[i], wall ? red : blue, 3);
+    }
+}
+
+static inline void setup(struct fixture *f, bool plate)
+{
+    memset(f, 0, sizeof *f);
+    f->dir = test_dir_make();
+    f->scene.dir = f->dir;
+    f->scene.photos = f->photos;
+    f->scene.photo_distance = 4;
+    char *images = orl_path_join(NULL, f->dir, "images");
+    assert_int_equal(orl_dir_make(NULL, images), ORL_OK);
+    free(images);
+    make_points(f, plate);
+}
+
+static inline void add_photo(struct fixture *f, struct orl_view view, const uint8_t color[3])
+{
+    struct orl_photo *photo = &f->photos[f->scene.photo_count];
+    photo->view = view;
+    photo->gain[0] = photo->gain[1] = photo->gain[2] = 1;
+    photo->response = -1;
+    photo->name = malloc(16);
+    snprintf(photo->name, 16, "%zu.png", f->scene.photo_count);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, view.camera.width, view.camera.height, 3,
+                                    ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < view.camera.width * view.camera.height; i++)
+        memcpy(&image.u8[3 * i], color, 3);
+    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count++);
+    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+    orl_image_finish(&image);
+    free(path);
+}
+
+static inline void teardown(struct fixture *f)
+{
+    for (size_t i = 0; i < f->scene.photo_count; i++)
+        free(f->photos[i].name);
+    orl_points_finish(&f->scene.points);
+    test_dir_remove(f->dir);
+}
+
+static inline struct orl_frame draw(struct orl_gpu *gpu, struct fixture *f, struct orl_view view,
+                                    const struct orl_render_params *params, size_t budget)
+{
+    struct orl_renderer *renderer;
+    struct orl_frame frame;
+    struct orl_renderer_params limits = {.max_vram_bytes = budget};
+    assert_int_equal(orl_renderer_create(gpu, &f->scene, &limits, &renderer), ORL_OK);
+    assert_int_equal(orl_renderer_draw(renderer, &view, params, NULL, &frame), ORL_OK);
+    orl_renderer_destroy(&renderer);
+    return frame;
+}
+
+static inline const float *color_at(const struct orl_frame *frame, int x, int y)
+{
+    return &frame->color.f32[3 * (y * frame->color.width + x)];
+}
+
+#endif
