@@ -3,115 +3,18 @@
 #include <string.h>
 
 #include "core/color.h"
-#include "gpu_test.h"
 #include "render/reexpose.h"
-#include "io/picture.h"
-#include "render/render.h"
+#include "wall_scene.h"
 
 static struct orl_gpu *gpu;
 
-enum { SIDE = 48, WALL = 120, PLATE = 20, PHOTOS_MAX = 4 };
-
-// Two colours whose linear light is known: sRGB 255 is 1, 0 is 0.
-static const uint8_t red[3] = {255, 0, 0}, green[3] = {0, 255, 0}, blue[3] = {0, 0, 255};
-
-struct fixture {
-    char *dir;
-    struct orl_scene scene;
-    struct orl_photo photos[PHOTOS_MAX];
-};
-
-static struct orl_view look(double x, double y, double z, int side, double focal)
-{
-    struct orl_view view = {.camera = {.width = side, .height = side, .fx = focal, .fy = focal,
-                                       .cx = 0.5 * side, .cy = 0.5 * side},
-                            .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                               .t = {-x, -y, -z}}};
-    return view;
-}
-
-// A wall at z = 4, 6 units wide, and, if asked for, a plate at z = 2 around x = 0.7.
-static void make_points(struct fixture *f, bool plate)
-{
-    size_t count = WALL * WALL + (plate ? PLATE * PLATE : 0);
-    struct orl_points *p = &f->scene.points;
-    assert_int_equal(orl_points_init(NULL, p, count), ORL_OK);
-    for (size_t i = 0; i < count; i++) {
-        bool wall = i < WALL * WALL;
-        size_t side = wall ? WALL : PLATE, k = wall ? i : i - WALL * WALL;
-        double size = wall ? 6 : 0.4;
-        p->position[i][0] = (float)(((double)(k % side) + 0.5) / (double)side * size - size / 2 +
-                                    (wall ? 0 : 0.7));
-        p->position[i][1] = (float)(((double)(k / side) + 0.5) / (double)side * size - size / 2);
-        p->position[i][2] = wall ? 4 : 2;
-        p->normal[i][2] = -1;
-        p->radius[i] = (float)(1.5 * size / (double)side);
-        memcpy(p->color[i], wall ? red : blue, 3);
-    }
-}
-
-static void setup(struct fixture *f, bool plate)
-{
-    memset(f, 0, sizeof *f);
-    f->dir = test_dir_make();
-    f->scene.dir = f->dir;
-    f->scene.photos = f->photos;
-    f->scene.photo_distance = 4;
-    char *images = orl_path_join(NULL, f->dir, "images");
-    assert_int_equal(orl_dir_make(NULL, images), ORL_OK);
-    free(images);
-    make_points(f, plate);
-}
-
-static void add_photo(struct fixture *f, struct orl_view view, const uint8_t color[3])
-{
-    struct orl_photo *photo = &f->photos[f->scene.photo_count];
-    photo->view = view;
-    photo->gain[0] = photo->gain[1] = photo->gain[2] = 1;
-    photo->response = -1;
-    photo->name = malloc(16);
-    snprintf(photo->name, 16, "%zu.png", f->scene.photo_count);
-    struct orl_image image;
-    assert_int_equal(orl_image_init(NULL, &image, view.camera.width, view.camera.height, 3,
-                                    ORL_PIXEL_U8), ORL_OK);
-    for (int i = 0; i < view.camera.width * view.camera.height; i++)
-        memcpy(&image.u8[3 * i], color, 3);
-    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count++);
-    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
-    orl_image_finish(&image);
-    free(path);
-}
-
-static void teardown(struct fixture *f)
-{
-    for (size_t i = 0; i < f->scene.photo_count; i++)
-        free(f->photos[i].name);
-    orl_points_finish(&f->scene.points);
-    test_dir_remove(f->dir);
-}
-
-static struct orl_frame draw(struct fixture *f, struct orl_view view,
-                             const struct orl_render_params *params, size_t budget)
-{
-    struct orl_renderer *renderer;
-    struct orl_frame frame;
-    struct orl_renderer_params limits = {.max_vram_bytes = budget};
-    assert_int_equal(orl_renderer_create(gpu, &f->scene, &limits, &renderer), ORL_OK);
-    assert_int_equal(orl_renderer_draw(renderer, &view, params, NULL, &frame), ORL_OK);
-    orl_renderer_destroy(&renderer);
-    return frame;
-}
+enum { SIDE = 48 };
 
 static struct orl_render_params airieau(void)
 {
     struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
     params.border_px = 0;
     return params;
-}
-
-static const float *color_at(const struct orl_frame *frame, int x, int y)
-{
-    return &frame->color.f32[3 * (y * frame->color.width + x)];
 }
 
 // The weights of Airieau 2012, 5.3, for the wall point that pixel (x, y) sees.
@@ -139,11 +42,11 @@ static void weights_are_cosine_over_distance_difference(void **state)
     (void)state;
     struct fixture f;
     setup(&f, false);
-    struct orl_view view = look(0, 0, 0, SIDE, 40);
-    add_photo(&f, look(-0.5, 0.2, 0, SIDE, 40), red);
-    add_photo(&f, look(0.8, 0, 1.5, 64, 30), green); // other size and focal length
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    add_photo(&f, look_from(-0.5, 0.2, 0, SIDE, 40), red);
+    add_photo(&f, look_from(0.8, 0, 1.5, 64, 30), green); // other size and focal length
     struct orl_render_params params = airieau();
-    struct orl_frame frame = draw(&f, view, &params, 0);
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     const int pixels[][2] = {{24, 24}, {15, 30}, {30, 18}};
     for (size_t i = 0; i < ORL_COUNT(pixels); i++) {
         int x = pixels[i][0], y = pixels[i][1];
@@ -164,11 +67,11 @@ static void occluded_photographs_are_rejected(void **state)
     (void)state;
     struct fixture f;
     setup(&f, true);
-    struct orl_view view = look(0, 0, 0, SIDE, 40);
-    add_photo(&f, look(-0.4, 0, 0, SIDE, 40), red);
-    add_photo(&f, look(1.2, 0, 0, SIDE, 40), green);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    add_photo(&f, look_from(-0.4, 0, 0, SIDE, 40), red);
+    add_photo(&f, look_from(1.2, 0, 0, SIDE, 40), green);
     struct orl_render_params params = airieau();
-    struct orl_frame frame = draw(&f, view, &params, 0);
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     // From x = 1.2 the plate (0.7, z 2) hides the wall around x = 0.2: pixel 24 + 10 * 0.2.
     const float *hidden = color_at(&frame, 26, 24), *open = color_at(&frame, 18, 24);
     assert_float_equal(frame.depth.f32[24 * SIDE + 26], 4, 0.02);
@@ -176,7 +79,7 @@ static void occluded_photographs_are_rejected(void **state)
     assert_float_equal(hidden[0], 1, 1e-5);
     assert_true(open[0] > 0.2 && open[1] > 0.2);
     params.visibility = ORL_VISIBILITY_NONE;
-    struct orl_frame all = draw(&f, view, &params, 0);
+    struct orl_frame all = draw(gpu, &f, view, &params, 0);
     assert_true(color_at(&all, 26, 24)[1] > 0.2);
     orl_frame_finish(&frame);
     orl_frame_finish(&all);
@@ -197,13 +100,13 @@ static void photographs_are_aligned(void **state)
     static const uint8_t color[3] = {60, 120, 230}, white[3] = {255, 255, 255};
     struct fixture f;
     setup(&f, false);
-    struct orl_view view = look(0, 0, 0, SIDE, 40);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
     add_photo(&f, view, color);
     memcpy(f.photos[0].gain, (float[3]){0.5f, 1.2f, 1.6f}, sizeof f.photos[0].gain);
     memcpy(f.photos[0].vignette, (float[3]){-0.3f, 0.1f, 0}, sizeof f.photos[0].vignette);
     struct orl_render_params params = airieau();
     params.alignment = ORL_ALIGNMENT_ON;
-    struct orl_frame frame = draw(&f, view, &params, 0);
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     double r2 = 0.5 * 0.5 * 2 / (0.5 * SIDE * SIDE), light = 1 - 0.3 * r2 + 0.1 * r2 * r2;
     for (int c = 0; c < 3; c++) {
         double x = (double)orl_srgb_decode(color[c] / 255.0f);
@@ -218,7 +121,7 @@ static void photographs_are_aligned(void **state)
     check_colors(&frame.color, color);
     orl_frame_finish(&frame);
     params.alignment = ORL_ALIGNMENT_OFF;
-    frame = draw(&f, view, &params, 0);
+    frame = draw(gpu, &f, view, &params, 0);
     check_colors(&frame.color, color);
     orl_frame_finish(&frame);
     teardown(&f);
@@ -227,7 +130,7 @@ static void photographs_are_aligned(void **state)
     add_photo(&f, view, white);
     memcpy(f.photos[0].gain, (float[3]){0.5f, 1.2f, 1.6f}, sizeof f.photos[0].gain);
     params.alignment = ORL_ALIGNMENT_ON;
-    frame = draw(&f, view, &params, 0);
+    frame = draw(gpu, &f, view, &params, 0);
     check_colors(&frame.color, white);
     orl_frame_finish(&frame);
     teardown(&f);
@@ -238,12 +141,12 @@ static void held_out_photographs_are_never_used(void **state)
     (void)state;
     struct fixture f;
     setup(&f, false);
-    struct orl_view view = look(0, 0, 0, SIDE, 40);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
     add_photo(&f, view, green);
-    add_photo(&f, look(0.5, 0, 0, SIDE, 40), red);
+    add_photo(&f, look_from(0.5, 0, 0, SIDE, 40), red);
     f.photos[0].test = true;
     struct orl_render_params params = airieau();
-    struct orl_frame frame = draw(&f, view, &params, 0);
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_float_equal(frame.color.f32[3 * i + 1], 0, 0);
     assert_float_equal(color_at(&frame, 24, 24)[0], 1, 1e-5);
@@ -256,12 +159,12 @@ static void holes_are_filled_but_not_covered(void **state)
     (void)state;
     struct fixture f;
     setup(&f, false);
-    struct orl_view view = look(0, 0, 0, SIDE, 12); // sees far past the wall's edge
-    add_photo(&f, look(0.1, 0, 0, 64, 16), green);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 12); // sees far past the wall's edge
+    add_photo(&f, look_from(0.1, 0, 0, 64, 16), green);
     struct orl_render_params params = airieau();
-    struct orl_frame filled = draw(&f, view, &params, 0);
+    struct orl_frame filled = draw(gpu, &f, view, &params, 0);
     params.fill = ORL_FILL_NONE;
-    struct orl_frame open = draw(&f, view, &params, 0);
+    struct orl_frame open = draw(gpu, &f, view, &params, 0);
     assert_float_equal(open.coverage.f32[24 * SIDE + 24], 1, 0);
     assert_float_equal(open.coverage.f32[0], 0, 0);
     assert_float_equal(open.depth.f32[0], 0, 0);
@@ -279,9 +182,9 @@ static void points_show_their_own_color(void **state)
     (void)state;
     struct fixture f;
     setup(&f, true);
-    struct orl_view view = look(0, 0, 0, SIDE, 40);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
     add_photo(&f, view, green);
-    struct orl_frame frame = draw(&f, view, &orl_method_find(NULL, "points")->params, 0);
+    struct orl_frame frame = draw(gpu, &f, view, &orl_method_find(NULL, "points")->params, 0);
     const float *wall = color_at(&frame, 10, 24), *plate = color_at(&frame, 38, 24);
     assert_float_equal(wall[0], 1, 1e-4);
     assert_float_equal(plate[2], 1, 1e-4);
@@ -295,11 +198,11 @@ static void the_same_input_gives_the_same_bits(void **state)
     (void)state;
     struct fixture f;
     setup(&f, true);
-    struct orl_view view = look(0.3, -0.2, 0.5, SIDE, 30);
-    add_photo(&f, look(-0.4, 0, 0, SIDE, 40), red);
-    add_photo(&f, look(1.2, 0, 0, SIDE, 40), green);
+    struct orl_view view = look_from(0.3, -0.2, 0.5, SIDE, 30);
+    add_photo(&f, look_from(-0.4, 0, 0, SIDE, 40), red);
+    add_photo(&f, look_from(1.2, 0, 0, SIDE, 40), green);
     struct orl_render_params params = airieau();
-    struct orl_frame a = draw(&f, view, &params, 0), b = draw(&f, view, &params, 0);
+    struct orl_frame a = draw(gpu, &f, view, &params, 0), b = draw(gpu, &f, view, &params, 0);
     assert_memory_equal(a.color.data, b.color.data, orl_image_bytes(&a.color));
     assert_memory_equal(a.depth.data, b.depth.data, orl_image_bytes(&a.depth));
     orl_frame_finish(&a);
@@ -313,11 +216,12 @@ static void a_small_budget_plans_instead_of_failing(void **state)
     (void)state;
     struct fixture f;
     setup(&f, false);
-    struct orl_view view = look(0, 0, 0, SIDE, 40);
-    add_photo(&f, look(-0.5, 0, 0, SIDE, 40), red);
-    add_photo(&f, look(0.5, 0, 0, SIDE, 40), green);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    add_photo(&f, look_from(-0.5, 0, 0, SIDE, 40), red);
+    add_photo(&f, look_from(0.5, 0, 0, SIDE, 40), green);
     struct orl_render_params params = airieau();
-    struct orl_frame whole = draw(&f, view, &params, 0), tight = draw(&f, view, &params, 1);
+    struct orl_frame whole = draw(gpu, &f, view, &params, 0);
+    struct orl_frame tight = draw(gpu, &f, view, &params, 1);
     for (int i = 0; i < 3; i++)
         assert_float_equal(color_at(&whole, 24, 24)[i], color_at(&tight, 24, 24)[i], 2e-3);
     assert_true(tight.coverage.f32[24 * SIDE + 24] > 0);
@@ -348,13 +252,13 @@ static void layers_can_be_left_out(void **state)
     (void)state;
     struct fixture f;
     setup(&f, false);
-    add_photo(&f, look(0, 0, 0, SIDE, 40), red);
+    add_photo(&f, look_from(0, 0, 0, SIDE, 40), red);
     struct orl_render_params params = airieau();
-    struct orl_frame all = draw(&f, look(0, 0, 0, SIDE, 40), &params, 0);
+    struct orl_frame all = draw(gpu, &f, look_from(0, 0, 0, SIDE, 40), &params, 0);
     params.leave_out = ORL_LAYER_DEPTH | ORL_LAYER_NORMAL;
-    struct orl_frame some = draw(&f, look(0, 0, 0, SIDE, 40), &params, 0);
+    struct orl_frame some = draw(gpu, &f, look_from(0, 0, 0, SIDE, 40), &params, 0);
     params.leave_out = ORL_LAYER_COVERAGE;
-    struct orl_frame others = draw(&f, look(0, 0, 0, SIDE, 40), &params, 0);
+    struct orl_frame others = draw(gpu, &f, look_from(0, 0, 0, SIDE, 40), &params, 0);
     assert_null(some.depth.data);
     assert_null(some.normal.data);
     assert_null(others.coverage.data);
@@ -374,15 +278,15 @@ static void absurd_cameras_and_wrong_photographs_are_refused(void **state)
     (void)state;
     struct fixture f;
     setup(&f, false);
-    add_photo(&f, look(0, 0, 0, SIDE, 40), red);
+    add_photo(&f, look_from(0, 0, 0, SIDE, 40), red);
     struct orl_renderer *renderer;
     struct orl_frame frame;
     struct orl_render_params params = airieau();
     assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
-    struct orl_view view = look(0, 0, 0, SIDE, NAN);
+    struct orl_view view = look_from(0, 0, 0, SIDE, NAN);
     assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, &frame),
                      ORL_ERR_ARGUMENT);
-    view = look(0, 0, 0, SIDE, 40);
+    view = look_from(0, 0, 0, SIDE, 40);
     f.photos[0].view.camera.width = SIDE + 1; // not what the file holds
     assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, &frame), ORL_ERR_FORMAT);
     assert_null(frame.color.data);

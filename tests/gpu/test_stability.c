@@ -3,8 +3,7 @@
 #include <string.h>
 
 #include "eval/stability.h"
-#include "gpu_test.h"
-#include "io/picture.h"
+#include "wall_scene.h"
 
 static struct orl_gpu *gpu;
 
@@ -12,9 +11,7 @@ enum { SIDE = 64, WALL = 160, PHOTOS = 3, FRAMES = 8 };
 
 static struct orl_view look(double x)
 {
-    return (struct orl_view){
-        .camera = {.width = SIDE, .height = SIDE, .fx = 60, .fy = 60, .cx = 32, .cy = 32},
-        .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .t = {-x, 0, 0}}};
+    return look_from(x, 0, 0, SIDE, 60);
 }
 
 // --- made-up frames of a wall at z = 4 ---
@@ -151,67 +148,22 @@ static void wrong_size(void **state)
     release(&b);
 }
 
-// --- rendered: a wall at z = 4, photographs of one colour each ---
+// --- rendered: a wall at z = 4, 8 units wide, seen by photographs of one grey each ---
 
-struct fixture {
-    char *dir;
-    struct orl_scene scene;
-    struct orl_photo photos[PHOTOS];
-    bool skip[PHOTOS];
-};
-
-static void add_photo(struct fixture *f, double x, uint8_t value)
+static void setup_walk(struct fixture *f, const uint8_t values[PHOTOS])
 {
-    size_t index = f->scene.photo_count++;
-    struct orl_photo *photo = &f->photos[index];
-    *photo = (struct orl_photo){.view = look(x), .gain = {1, 1, 1}, .response = -1};
-    photo->name = malloc(16);
-    snprintf(photo->name, 16, "%zu.png", index);
-    struct orl_image image;
-    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
-    memset(image.u8, value, orl_image_bytes(&image));
-    char *path = orl_scene_photo_path(NULL, &f->scene, index);
-    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
-    orl_image_finish(&image);
-    free(path);
-}
-
-static void setup(struct fixture *f, const uint8_t values[PHOTOS])
-{
-    memset(f, 0, sizeof *f);
-    f->dir = test_dir_make();
-    f->scene.dir = f->dir;
-    f->scene.photos = f->photos;
-    f->scene.photo_distance = 4;
-    char *images = orl_path_join(NULL, f->dir, "images");
-    assert_int_equal(orl_dir_make(NULL, images), ORL_OK);
-    free(images);
-    struct orl_points *p = &f->scene.points;
-    assert_int_equal(orl_points_init(NULL, p, WALL * WALL), ORL_OK);
-    for (size_t i = 0; i < WALL * WALL; i++) {
-        p->position[i][0] = (float)(((double)(i % WALL) + 0.5) / WALL * 8 - 4);
-        p->position[i][1] = (float)(((double)(i / WALL) + 0.5) / WALL * 8 - 4);
-        p->position[i][2] = 4;
-        p->normal[i][2] = -1;
-        p->radius[i] = 1.5f * 8 / WALL;
-    }
+    setup_empty(f, 4);
+    assert_int_equal(orl_points_init(NULL, &f->scene.points, WALL * WALL), ORL_OK);
+    set_square(&f->scene.points, 0, WALL, 8, 0, 4, (uint8_t[3]){0});
     for (int i = 0; i < PHOTOS; i++)
-        add_photo(f, 0.5 * (i - 1), values[i]);
-}
-
-static void teardown(struct fixture *f)
-{
-    for (size_t i = 0; i < f->scene.photo_count; i++)
-        free(f->photos[i].name);
-    orl_points_finish(&f->scene.points);
-    test_dir_remove(f->dir);
+        add_photo(f, look(0.5 * (i - 1)), (uint8_t[3]){values[i], values[i], values[i]});
 }
 
 static const bool *half_way(void *priv, size_t frame)
 {
-    struct fixture *f = priv;
-    f->skip[1] = frame >= FRAMES / 2;
-    return f->skip;
+    bool *skip = priv;
+    skip[1] = frame >= FRAMES / 2;
+    return skip;
 }
 
 static struct orl_stability walk(struct fixture *f, const char *method, bool still, bool pops)
@@ -219,6 +171,7 @@ static struct orl_stability walk(struct fixture *f, const char *method, bool sti
     struct orl_renderer *renderer;
     struct orl_path path;
     struct orl_stability s;
+    bool skip[PHOTOS] = {false};
     const struct orl_method *row = orl_method_find(NULL, method);
     assert_non_null(row);
     assert_int_equal(orl_stability_walk(NULL, &f->scene, FRAMES, 1, &path), ORL_OK);
@@ -228,7 +181,7 @@ static struct orl_stability walk(struct fixture *f, const char *method, bool sti
     assert_int_equal(orl_renderer_create(gpu, &f->scene, NULL, &renderer), ORL_OK);
     const struct orl_stability_params params = {
         .method = method, .render = &row->params, .views = path.views, .view_count = FRAMES,
-        .skip = pops ? half_way : NULL, .skip_priv = f};
+        .skip = pops ? half_way : NULL, .skip_priv = skip};
     assert_int_equal(orl_stability_run(gpu, renderer, &params, &s), ORL_OK);
     assert_int_equal(s.step_count, FRAMES - 1);
     assert_true(s.all.compared > 0.6);
@@ -241,7 +194,7 @@ static void one_colour_is_steady(void **state)
 {
     (void)state;
     struct fixture f;
-    setup(&f, (uint8_t[]){140, 140, 140});
+    setup_walk(&f, (uint8_t[]){140, 140, 140});
     for (const struct orl_method *m = orl_methods; m->name; m++) {
         struct orl_stability s = walk(&f, m->name, false, false);
         assert_true(s.all.mean < 0.01 && s.all.jump < 0.01);
@@ -254,7 +207,7 @@ static void standing_still_is_steady(void **state)
 {
     (void)state;
     struct fixture f;
-    setup(&f, (uint8_t[]){100, 140, 180});
+    setup_walk(&f, (uint8_t[]){100, 140, 180});
     struct orl_stability s = walk(&f, "oriel", true, false);
     assert_true(s.all.mean == 0 && s.all.p99 == 0 && s.all.block_worst == 0);
     orl_stability_finish(&s);
@@ -265,7 +218,7 @@ static void a_pop_is_found(void **state)
 {
     (void)state;
     struct fixture f;
-    setup(&f, (uint8_t[]){100, 180, 100});
+    setup_walk(&f, (uint8_t[]){100, 180, 100});
     struct orl_stability s = walk(&f, "oriel", true, true);
     for (size_t i = 0; i < s.step_count; i++) {
         bool pops = i == FRAMES / 2 - 1;
@@ -286,7 +239,7 @@ static void walks_past_training_photographs(void **state)
     (void)state;
     struct fixture f;
     struct orl_path path;
-    setup(&f, (uint8_t[]){100, 100, 100});
+    setup_walk(&f, (uint8_t[]){100, 100, 100});
     f.photos[1].test = true;
     f.photos[1].view = look(50);
     assert_int_equal(orl_stability_walk(NULL, &f.scene, 5, 2, &path), ORL_OK);

@@ -2,9 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "gpu_test.h"
-#include "io/picture.h"
-#include "render/render.h"
+#include "wall_scene.h"
 
 static struct orl_gpu *gpu;
 
@@ -12,18 +10,10 @@ enum { SIDE = 64, WALL_WIDE = 480, WALL_HIGH = 32, PHOTOS = 60, SLOTS = 6 };
 
 #define STEP 0.5f // between photographs
 
-struct fixture {
-    char *dir;
-    struct orl_scene scene;
-    struct orl_photo photos[PHOTOS];
-};
-
 // Sees 1.33 units of the wall: at most 6 photographs show any of it.
 static struct orl_view look(double x)
 {
-    return (struct orl_view){
-        .camera = {.width = SIDE, .height = SIDE, .fx = 96, .fy = 96, .cx = 32, .cy = 32},
-        .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .t = {-x, 0, 0}}};
+    return look_from(x, 0, 0, SIDE, 96);
 }
 
 static void paint(size_t index, uint8_t rgb[3])
@@ -34,16 +24,9 @@ static void paint(size_t index, uint8_t rgb[3])
 }
 
 // A wall at z = 2 along x, and photographs of one colour each along it.
-static void setup(struct fixture *f, size_t count)
+static void setup_row(struct fixture *f, size_t count)
 {
-    memset(f, 0, sizeof *f);
-    f->dir = test_dir_make();
-    f->scene.dir = f->dir;
-    f->scene.photos = f->photos;
-    f->scene.photo_distance = 2;
-    char *images = orl_path_join(NULL, f->dir, "images");
-    assert_int_equal(orl_dir_make(NULL, images), ORL_OK);
-    free(images);
+    setup_empty(f, 2);
     struct orl_points *p = &f->scene.points;
     assert_int_equal(orl_points_init(NULL, p, WALL_WIDE * WALL_HIGH), ORL_OK);
     for (size_t i = 0; i < WALL_WIDE * WALL_HIGH; i++) {
@@ -54,31 +37,10 @@ static void setup(struct fixture *f, size_t count)
         p->radius[i] = 0.08f;
     }
     for (size_t k = 0; k < count; k++) {
-        struct orl_photo *photo = &f->photos[f->scene.photo_count];
-        photo->view = look((double)STEP * (double)k);
-        photo->gain[0] = photo->gain[1] = photo->gain[2] = 1;
-        photo->response = -1;
-        photo->name = malloc(32);
-        snprintf(photo->name, 32, "%zu.png", k);
         uint8_t rgb[3];
         paint(k, rgb);
-        struct orl_image image;
-        assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
-        for (int i = 0; i < SIDE * SIDE; i++)
-            memcpy(&image.u8[3 * i], rgb, 3);
-        char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count++);
-        assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
-        orl_image_finish(&image);
-        free(path);
+        add_photo(f, look((double)STEP * (double)k), rgb);
     }
-}
-
-static void teardown(struct fixture *f)
-{
-    for (size_t i = 0; i < f->scene.photo_count; i++)
-        free(f->photos[i].name);
-    orl_points_finish(&f->scene.points);
-    test_dir_remove(f->dir);
 }
 
 static struct orl_renderer *renderer_of(const struct fixture *f,
@@ -89,7 +51,7 @@ static struct orl_renderer *renderer_of(const struct fixture *f,
     return renderer;
 }
 
-static struct orl_frame draw(struct orl_renderer *renderer, double x)
+static struct orl_frame draw_at(struct orl_renderer *renderer, double x)
 {
     struct orl_view view = look(x);
     struct orl_frame frame;
@@ -126,14 +88,14 @@ static bool device_has(enum orl_textures textures)
 static void check_flat(enum orl_textures textures, size_t block, float tolerance)
 {
     struct fixture f;
-    setup(&f, 3);
+    setup_row(&f, 3);
     struct orl_renderer *full = renderer_of(&f, &(struct orl_renderer_params){0});
-    struct orl_frame plain = draw(full, 0.7);
+    struct orl_frame plain = draw_at(full, 0.7);
     orl_renderer_destroy(&full);
     assert_true(bytes_of("photographs") == 0);
     struct orl_renderer *small =
         renderer_of(&f, &(struct orl_renderer_params){.textures = textures});
-    struct orl_frame frame = draw(small, 0.7);
+    struct orl_frame frame = draw_at(small, 0.7);
     size_t blocks = 0;
     for (int side = SIDE; side; side /= 2)
         blocks += (size_t)((side + 3) / 4 * ((side + 3) / 4));
@@ -171,7 +133,7 @@ static void short_of_memory_compresses_first(void **state)
     if (!device_has(ORL_TEXTURES_BC7) || !device_has(ORL_TEXTURES_BC1))
         skip();
     struct fixture f;
-    setup(&f, PHOTOS);
+    setup_row(&f, PHOTOS);
     struct orl_renderer *all = renderer_of(&f, &(struct orl_renderer_params){0});
     size_t plain = bytes_of("photographs"), depth = bytes_of("photograph depth");
     orl_renderer_destroy(&all);
@@ -256,20 +218,20 @@ static void photographs_are_loaded_as_the_viewer_moves(void **state)
 {
     (void)state;
     struct fixture f;
-    setup(&f, PHOTOS);
+    setup_row(&f, PHOTOS);
     struct orl_renderer *all =
         renderer_of(&f, &(struct orl_renderer_params){.photo_divide = 4});
     size_t color = bytes_of("photographs") / PHOTOS;
     size_t depth = bytes_of("photograph depth") / PHOTOS, before = bytes_of("photographs");
     struct orl_frame frames[9];
     for (int i = 0; i < 9; i++) // to the end and back to the start
-        frames[i] = draw(all, 0.3 + (i < 5 ? i : 8 - i) * 7.1);
+        frames[i] = draw_at(all, 0.3 + (i < 5 ? i : 8 - i) * 7.1);
     assert_true(largest_difference(&frames[0], &frames[1]) > 0.05f); // the views do differ
     orl_renderer_destroy(&all);
     assert_int_equal(before, PHOTOS * color);
     struct orl_renderer *few = renderer_of_few(&f, color, depth);
     for (int i = 0; i < 9; i++) {
-        struct orl_frame frame = draw(few, 0.3 + (i < 5 ? i : 8 - i) * 7.1);
+        struct orl_frame frame = draw_at(few, 0.3 + (i < 5 ? i : 8 - i) * 7.1);
         assert_true(largest_difference(&frames[i], &frame) < 1e-6f);
         assert_int_equal(bytes_of("photographs"), SLOTS * color);
         orl_frame_finish(&frame);

@@ -8,7 +8,7 @@
 #include "io/picture.h"
 #include "render/render.h"
 
-enum { SIDE = 48, WALL = 120, PLATE = 20, PHOTOS_MAX = 80 };
+enum { PHOTOS_MAX = 80 };
 
 // Colours whose linear light is known: sRGB 255 is 1, 0 is 0.
 static const uint8_t red[3] = {255, 0, 0}, green[3] = {0, 255, 0}, blue[3] = {0, 0, 255};
@@ -19,46 +19,54 @@ struct fixture {
     struct orl_photo photos[PHOTOS_MAX];
 };
 
-static inline struct orl_view look(double x, double y, double z, int side, double focal)
+// Looks along z, as the wall's normals look back.
+static inline struct orl_view look_from(double x, double y, double z, int side, double focal)
 {
-    struct orl_view view = {.camera = {.width = side, .height = side, .fx = focal, .fy = focal,
-                                       .cx = 0.5 * side, .cy = 0.5 * side},
-                            .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                               .t = {-x, -y, -z}}};
-    return view;
+    return (struct orl_view){.camera = {.width = side, .height = side, .fx = focal, .fy = focal,
+                                        .cx = 0.5 * side, .cy = 0.5 * side},
+                             .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                                .t = {-x, -y, -z}}};
 }
 
-// A wall at z = 4, 6 units wide, and, if asked for, a plate at z = 2 around x = 0.7.
-static inline void make_points(struct fixture *f, bool plate)
-{
-    size_t count = WALL * WALL + (plate ? PLATE * PLATE : 0);
-    struct orl_points *p = &f->scene.points;
-    assert_int_equal(orl_points_init(NULL, p, count), ORL_OK);
-    for (size_t i = 0; i < count; i++) {
-        bool wall = i < WALL * WALL;
-        size_t side = wall ? WALL : PLATE, k = wall ? i : i - WALL * WALL;
-        double size = wall ? 6 : 0.4;
-        p->position[i][0] = (float)(((double)(k % side) + 0.5) / (double)side * size - size / 2 +
-                                    (wall ? 0 : 0.7));
-        p->position[i][1] = (float)(((double)(k / side) + 0.5) / (double)side * size - size / 2);
-        p->position[i][2] = wall ? 4 : 2;
-        p->normal[i][2] = -1;
-        p->radius[i] = (float)(1.5 * size / (double)side);
-        memcpy(p->color[i], wall ? red : blue, 3);
-    }
-}
-
-static inline void setup(struct fixture *f, bool plate)
+// A scene without points and photographs, `distance` from what they will see.
+static inline void setup_empty(struct fixture *f, double distance)
 {
     memset(f, 0, sizeof *f);
     f->dir = test_dir_make();
     f->scene.dir = f->dir;
     f->scene.photos = f->photos;
-    f->scene.photo_distance = 4;
+    f->scene.photo_distance = distance;
     char *images = orl_path_join(NULL, f->dir, "images");
     assert_int_equal(orl_dir_make(NULL, images), ORL_OK);
     free(images);
-    make_points(f, plate);
+}
+
+// `side` x `side` points around (x, 0, z), `size` units wide, from points[first] on.
+static inline void set_square(struct orl_points *points, size_t first, size_t side, double size,
+                              double x, float z, const uint8_t color[3])
+{
+    for (size_t k = 0, i = first; k < side * side; k++, i++) {
+        double column = (double)(k % side), row = (double)(k / side);
+        points->position[i][0] = (float)((column + 0.5) / (double)side * size - size / 2 + x);
+        points->position[i][1] = (float)((row + 0.5) / (double)side * size - size / 2);
+        points->position[i][2] = z;
+        points->normal[i][2] = -1;
+        points->radius[i] = (float)(1.5 * size / (double)side);
+        memcpy(points->color[i], color, 3);
+    }
+}
+
+// A wall at z = 4, 6 units wide, and, if asked for, a plate at z = 2 around x = 0.7.
+static inline void setup(struct fixture *f, bool plate)
+{
+    enum { WALL = 120, PLATE = 20 };
+    setup_empty(f, 4);
+    struct orl_points *points = &f->scene.points;
+    size_t count = WALL * WALL + (plate ? PLATE * PLATE : 0);
+    assert_int_equal(orl_points_init(NULL, points, count), ORL_OK);
+    set_square(points, 0, WALL, 6, 0, 4, red);
+    if (plate)
+        set_square(points, WALL * WALL, PLATE, 0.4, 0.7, 2, blue);
 }
 
 static inline void add_photo(struct fixture *f, struct orl_view view, const uint8_t color[3])
