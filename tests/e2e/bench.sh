@@ -2,51 +2,16 @@
 # oriel bench on a workspace made by hand: figures that are sane, files, refusals. Never
 # how long anything takes.
 set -u
-oriel=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-
-fail() {
-    echo "FAILED: $*" >&2
-    tail -n 20 stdout.txt stderr.txt >&2
-    failed=1
-}
-
-runs() {
-    local status=$1 got
-    shift
-    "$@" >stdout.txt 2>stderr.txt
-    got=$?
-    [ $got -eq "$status" ] || fail "$got instead of $status: $*"
-}
+. "$2/tests/e2e/command_lib"
 
 # Numbers of all fields of this name in FILE, one a line.
 numbers() {
     sed -n "s/^ *\"$1\": \\([-0-9.e+]*\\),*\$/\\1/p" "$2"
 }
 
-"$oriel" synth monument --out photos --size 96x64 --count 4 --quiet || exit 77
-mkdir -p ws
-cp -r photos ws/images
-cp -r photos-truth/sparse ws/sparse
-{
-    printf 'ply\nformat ascii 1.0\nelement vertex 2500\n'
-    for p in x y z nx ny nz; do echo "property float $p"; done
-    for p in red green blue; do echo "property uchar $p"; done
-    echo end_header
-    for ((i = 0; i < 2500; i++)); do
-        echo "$((i % 50 - 25)).5 $((i / 50 - 25)).5 0 0 0 1 $((i % 256)) 90 120"
-    done
-} >ws/fused.ply
-cp ws/fused.ply ws/points.ply
-mapfile -t names < <(cd photos && ls)
-{
-    echo '{"version": 1, "photographs": ['
-    for n in 0 1 2; do echo " {\"name\": \"${names[$n]}\", \"split\": \"train\"},"; done
-    echo " {\"name\": \"${names[3]}\", \"split\": \"test\"}]}"
-} >ws/scene.json
+workspace 4 || exit 77
+square
+scene train train train test
 # A held-out photograph is not even read.
 head -c 700 "ws/images/${names[3]}" >cut && mv cut "ws/images/${names[3]}"
 

@@ -1,52 +1,15 @@
 #!/usr/bin/env bash
 # oriel eval on a workspace made by hand: figures, files, and what it refuses.
 set -u
-oriel=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
+. "$2/tests/e2e/command_lib"
 
-fail() {
-    echo "FAILED: $*" >&2
-    cat stdout.txt stderr.txt >&2
-    failed=1
-}
-
-# runs STATUS command...
-runs() {
-    local status=$1 got
-    shift
-    "$@" >stdout.txt 2>stderr.txt
-    got=$?
-    [ $got -eq "$status" ] || fail "$got instead of $status: $*"
-}
-
-"$oriel" synth monument --out photos --size 96x64 --count 3 --quiet || exit 1
-mkdir -p ws
-cp -r photos ws/images
-cp -r photos-truth/sparse ws/sparse
-{
-    printf 'ply\nformat ascii 1.0\nelement vertex 2500\n'
-    for p in x y z nx ny nz; do echo "property float $p"; done
-    for p in red green blue; do echo "property uchar $p"; done
-    echo end_header
-    for ((i = 0; i < 2500; i++)); do
-        echo "$((i % 50 - 25)).5 $((i / 50 - 25)).5 0 0 0 1 $((i % 256)) 90 120"
-    done
-} >ws/fused.ply
+workspace 3 || exit 1
+square
 
 runs 2 "$oriel" eval ws
 grep -q -- '--test-every' stderr.txt || fail "no advice when nothing is held out"
 
-mapfile -t names < <(cd photos && ls)
-{
-    echo '{"version": 1, "photographs": ['
-    echo " {\"name\": \"${names[0]}\", \"split\": \"train\"},"
-    echo " {\"name\": \"${names[1]}\", \"split\": \"test\"},"
-    echo " {\"name\": \"${names[2]}\", \"split\": \"train\"}]}"
-} >ws/scene.json
-cp ws/fused.ply ws/points.ply
+scene train test train
 
 runs 0 "$oriel" eval ws --json out.json --images pictures --quiet
 grep -q "${names[1]}.*96x64" stdout.txt || fail "no row for the held-out photograph"

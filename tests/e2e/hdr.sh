@@ -1,28 +1,9 @@
 #!/usr/bin/env bash
 # oriel hdr on a small monument with sun and deep shade: files, truth, and what it refuses.
 set -u
-oriel=$1
+. "$2/tests/e2e/command_lib"
 truth_scene=$(dirname "$oriel")/tests/bench_truth_scene
 [ -x "$truth_scene" ] || { echo "skipped: $truth_scene is not built"; exit 77; }
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-
-fail() {
-    echo "FAILED: $*" >&2
-    cat stdout.txt stderr.txt >&2
-    failed=1
-}
-
-# runs STATUS command...
-runs() {
-    local status=$1 got
-    shift
-    "$@" >stdout.txt 2>stderr.txt
-    got=$?
-    [ $got -eq "$status" ] || fail "$got instead of $status: $*"
-}
 
 "$oriel" synth monument --out photos --size 288x192 --count 18 --contrast 8 \
     --exposures -3,0,3 --noise 0.005 --quiet || exit 1

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # Bad input to render and to the device: a clear word, the right status, nothing written.
 set -u
-oriel=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
+. "$2/tests/e2e/command_lib"
 
 # refuses STATUS WORDS command...: exits so, says so on stderr, leaves no out.*
 refuses() {
@@ -22,10 +18,7 @@ refuses() {
 }
 
 # A plain COLMAP workspace of one photograph and four points.
-"$oriel" synth monument --out photos --size 96x64 --count 2 --quiet || exit 1
-mkdir -p ws
-cp -r photos ws/images
-cp -r photos-truth/sparse ws/sparse
+workspace 2 || exit 1
 cat >ws/fused.ply <<'END'
 ply
 format ascii 1.0

@@ -2,40 +2,11 @@
 # oriel tune on a workspace made by hand: it finds what was made worse on purpose, says
 # the same twice, keeps it when told to, and never looks at held-out photographs.
 set -u
-oriel=$1
-source=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
+. "$2/tests/e2e/command_lib"
 
-fail() {
-    echo "FAILED: $*" >&2
-    tail -n 20 stdout.txt stderr.txt >&2
-    failed=1
-}
-
-runs() {
-    local status=$1 got
-    shift
-    "$@" >stdout.txt 2>stderr.txt
-    got=$?
-    [ $got -eq "$status" ] || fail "$got instead of $status: $*"
-}
-
-"$oriel" synth monument --out photos --size 96x64 --count 5 --quiet || exit 77
-mkdir -p ws
-cp -r photos ws/images
-cp -r photos-truth/sparse ws/sparse
+workspace 5 || exit 77
 bash "$source/tests/bench/truth_cloud" photos-truth 2 >ws/fused.ply || exit 1
-# As prepare writes it, with radii.
-cp ws/fused.ply ws/points.ply
-mapfile -t names < <(cd photos && ls)
-{
-    echo '{"version": 1, "photographs": ['
-    for n in 0 1 2 3; do echo " {\"name\": \"${names[$n]}\", \"split\": \"train\"},"; done
-    echo " {\"name\": \"${names[4]}\", \"split\": \"test\"}]}"
-} >ws/scene.json
+scene train train train train test
 # A held-out photograph is not even read.
 cp "ws/images/${names[4]}" whole.jpg
 head -c 700 whole.jpg >"ws/images/${names[4]}"
