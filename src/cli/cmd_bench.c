@@ -211,9 +211,10 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
     return result;
 }
 
-static enum orl_result run(const struct terminal *terminal, const struct options *o,
+static enum orl_result run(const struct terminal *terminal, const void *options,
                            const struct arg_common *common, const char *dir)
 {
+    const struct options *o = options;
     const struct orl_log *log = &terminal->log;
     struct plan plan = {0};
     struct orl_scene *scene = NULL;
@@ -277,15 +278,7 @@ int cmd_bench(int argc, char **argv)
         "bench", "SCENE [options]",
         "Measures frames: time pass by pass, memory by owner, and how both grow with points,\n"
         "photographs and their resolution. Medians; the device is named.", table, 1, 1};
-    struct arg_common common = {0};
-    struct terminal terminal;
-    const char *dir;
-    size_t count;
-    int status;
-    if (command_begin(&command, argc, argv, &common, &terminal, &dir, &count, &status)) {
-        status = command_status(run(&terminal, &o, &common, dir));
-        terminal_finish(&terminal);
-    }
+    int status = command_main(&command, argc, argv, run, &o);
     orl_names_finish(&o.methods);
     orl_names_finish(&o.sizes);
     orl_names_finish(&o.points);

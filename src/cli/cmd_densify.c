@@ -37,10 +37,14 @@ static enum orl_result choose_photos(const struct orl_log *log, const char *work
     return result;
 }
 
-static enum orl_result run(const struct options *o, const struct arg_common *common,
-                           const char *workspace, struct terminal *terminal)
+static enum orl_result run(const struct terminal *terminal, const void *options,
+                           const struct arg_common *common, const char *workspace)
 {
+    const struct options *o = options;
     const struct orl_log *log = &terminal->log;
+    struct orl_densify_params params = o->params;
+    params.seed = (uint32_t)o->seed;
+    params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
     struct orl_names photos = {0};
     struct orl_gpu *gpu = NULL;
     enum orl_result result = choose_photos(log, workspace, &o->exclude, &photos);
@@ -48,7 +52,7 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
     if (result == ORL_OK)
-        result = orl_densify(gpu, workspace, &photos, &o->params, &terminal->progress);
+        result = orl_densify(gpu, workspace, &photos, &params, &terminal->progress);
     orl_gpu_destroy(&gpu);
     orl_names_finish(&photos);
     return result;
@@ -78,17 +82,7 @@ int cmd_densify(int argc, char **argv)
         "settings are skipped, so that an interrupted run goes on. colmap stereo_fusion reads the\n"
         "result.",
         table, 1, 1};
-    struct arg_common common = {0};
-    struct terminal terminal;
-    const char *workspace;
-    size_t count;
-    int status;
-    if (command_begin(&command, argc, argv, &common, &terminal, &workspace, &count, &status)) {
-        o.params.seed = (uint32_t)o.seed;
-        o.params.max_vram_bytes = (size_t)o.max_vram_mib << 20;
-        status = command_status(run(&o, &common, workspace, &terminal));
-        terminal_finish(&terminal);
-    }
+    int status = command_main(&command, argc, argv, run, &o);
     orl_names_finish(&o.exclude);
     return status;
 }

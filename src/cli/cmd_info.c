@@ -128,6 +128,19 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
     return result;
 }
 
+static enum orl_result run(const struct terminal *terminal, const void *options,
+                           const struct arg_common *common, const char *dir)
+{
+    (void)common;
+    const bool *json = options;
+    struct orl_scene *scene = NULL;
+    enum orl_result result = orl_scene_open(&terminal->log, dir, &scene);
+    if (result == ORL_OK)
+        result = *json ? print_json(&terminal->log, scene) : print_text(&terminal->log, scene);
+    orl_scene_destroy(&scene);
+    return result;
+}
+
 int cmd_info(int argc, char **argv)
 {
     bool json = false;
@@ -139,19 +152,5 @@ int cmd_info(int argc, char **argv)
         "info", "SCENE [--json]",
         "Says what is in a scene: photographs, cameras, points, and how it was made.", options, 1,
         1};
-    struct arg_common common = {0};
-    struct terminal terminal;
-    const char *dir;
-    size_t count;
-    int status;
-    if (command_begin(&command, argc, argv, &common, &terminal, &dir, &count, &status)) {
-        struct orl_scene *scene = NULL;
-        enum orl_result result = orl_scene_open(&terminal.log, dir, &scene);
-        if (result == ORL_OK)
-            result = json ? print_json(&terminal.log, scene) : print_text(&terminal.log, scene);
-        orl_scene_destroy(&scene);
-        terminal_finish(&terminal);
-        status = command_status(result);
-    }
-    return status;
+    return command_main(&command, argc, argv, run, &json);
 }

@@ -116,9 +116,10 @@ static enum orl_result start_values(const struct orl_log *log, const struct opti
     return method_choose(log, o->fresh ? NULL : scene, o->method, &o->settings, start);
 }
 
-static enum orl_result run(const struct terminal *terminal, const struct options *o,
+static enum orl_result run(const struct terminal *terminal, const void *options,
                            const struct arg_common *common, const char *dir)
 {
+    const struct options *o = options;
     const struct orl_log *log = &terminal->log;
     const struct orl_method *method = orl_method_find(log, o->method);
     struct orl_scene *scene = NULL;
@@ -180,15 +181,7 @@ int cmd_tune(int argc, char **argv)
         "tune", "SCENE [--method NAME] [--apply]",
         "Finds the values of a method's options with which training photographs come out best,\n"
         "each rendered from the others. Held-out photographs take no part.", table, 1, 1};
-    struct arg_common common = {0};
-    struct terminal terminal;
-    const char *dir;
-    size_t count;
-    int status;
-    if (command_begin(&command, argc, argv, &common, &terminal, &dir, &count, &status)) {
-        status = command_status(run(&terminal, &o, &common, dir));
-        terminal_finish(&terminal);
-    }
+    int status = command_main(&command, argc, argv, run, &o);
     orl_names_finish(&o.settings);
     orl_names_finish(&o.keys);
     return status;

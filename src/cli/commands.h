@@ -26,6 +26,12 @@ int cmd_tune(int argc, char **argv);
 bool command_begin(const struct arg_command *command, int argc, char **argv,
                    struct arg_common *common, struct terminal *terminal,
                    const char **positionals, size_t *positional_count, int *status);
+// What a command does with its one positional and its options.
+typedef enum orl_result command_run(const struct terminal *terminal, const void *options,
+                                    const struct arg_common *common, const char *positional);
+// A whole command that takes one positional: parses, runs, returns the exit status.
+int command_main(const struct arg_command *command, int argc, char **argv, command_run *run,
+                 const void *options);
 // 0 for ORL_OK; 2 for argument, format, data and not-found errors; 130 when
 // cancelled; else 1.
 int command_status(enum orl_result result);

@@ -47,6 +47,21 @@ int command_status(enum orl_result result)
     }
 }
 
+int command_main(const struct arg_command *command, int argc, char **argv, command_run *run,
+                 const void *options)
+{
+    struct arg_common common = {0};
+    struct terminal terminal;
+    const char *positional;
+    size_t count;
+    int status;
+    if (command_begin(command, argc, argv, &common, &terminal, &positional, &count, &status)) {
+        status = command_status(run(&terminal, options, &common, positional));
+        terminal_finish(&terminal);
+    }
+    return status;
+}
+
 static void print_usage(FILE *out)
 {
     fprintf(out, "usage: oriel COMMAND ...    (oriel COMMAND --help says more)\n\n");
