@@ -206,8 +206,6 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
     free(text);
     if (result == ORL_OK && o->out)
         result = orl_bench_plot(log, bench, o->out);
-    if (fflush(stdout) != 0 && result == ORL_OK)
-        result = orl_fail(log, ORL_ERR_IO, "standard output: cannot write");
     return result;
 }
 

@@ -146,8 +146,6 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         result = orl_tune_run(gpu, renderer, scene, &params, &tune);
     if (result == ORL_OK)
         result = report(log, o, scene, orl_gpu_caps(gpu)->renderer, method, &tune);
-    if (fflush(stdout) != 0 && result == ORL_OK)
-        result = orl_fail(log, ORL_ERR_IO, "standard output: cannot write");
     orl_tune_finish(&tune);
     orl_renderer_destroy(&renderer);
     orl_gpu_destroy(&gpu);

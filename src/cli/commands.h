@@ -29,7 +29,8 @@ bool command_begin(const struct arg_command *command, int argc, char **argv,
 // What a command does with its one positional and its options.
 typedef enum orl_result command_run(const struct terminal *terminal, const void *options,
                                     const struct arg_common *common, const char *positional);
-// A whole command that takes one positional: parses, runs, returns the exit status.
+// A whole command that takes one positional: parses, runs, returns the exit status,
+// which says so if what was printed got lost.
 int command_main(const struct arg_command *command, int argc, char **argv, command_run *run,
                  const void *options);
 // 0 for ORL_OK; 2 for argument, format, data and not-found errors; 130 when

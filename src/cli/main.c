@@ -56,7 +56,10 @@ int command_main(const struct arg_command *command, int argc, char **argv, comma
     size_t count;
     int status;
     if (command_begin(command, argc, argv, &common, &terminal, &positional, &count, &status)) {
-        status = command_status(run(&terminal, options, &common, positional));
+        enum orl_result result = run(&terminal, options, &common, positional);
+        if (fflush(stdout) != 0 && result == ORL_OK)
+            result = orl_fail(&terminal.log, ORL_ERR_IO, "standard output: cannot write");
+        status = command_status(result);
         terminal_finish(&terminal);
     }
     return status;

@@ -67,4 +67,10 @@ runs 2 "${bench[@]}" --points 0
 runs 2 "${bench[@]}" --set nonsense=1
 runs 2 "$oriel" bench nowhere
 runs 0 "$oriel" bench --help
+# Results that get lost.
+if [ -w /dev/full ]; then
+    "$oriel" bench ws --quick --seconds 0 --frames 3 --size 32x32 >/dev/full 2>stderr.txt &&
+        fail "figures that could not be written went unnoticed"
+    "$oriel" info ws >/dev/full 2>stderr.txt && fail "info that could not be written went unnoticed"
+fi
 exit $failed
