@@ -6,6 +6,25 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 layout(rgba32f, binding = 1) uniform image2D accumulated;      // colour * weight, weight
 
+// One photograph's colour * weight, weight.
+vec4 look(int i, vec3 p, bool guessed)
+{
+    vec2 pixel;
+    float z;
+    if (!photo_project(i, p, pixel, z))
+        return vec4(0.0);
+    if (flags.x == 1 && !photo_sees(photo_depths(i, pixel), z, guessed))
+        return vec4(0.0);
+    float weight = airieau_weight(p, photo_row(i, PHOTO_EYE).xyz);
+    // Where depth is only guessed, photographs disagree: let the best one dominate.
+    if (guessed)
+        weight = pow(weight * options.y, 8.0);
+    weight *= photo_border(i, pixel);
+    return weight > 0.0
+               ? vec4(photo_sample(i, pixel, photo_mip(i, z, p.z)).rgb, 1.0) * weight
+               : vec4(0.0);
+}
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -18,21 +37,11 @@ void main()
         return;
     vec3 p = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < area.z; i++) {
-        vec2 pixel;
-        float z;
-        if (!photo_project(i, p, pixel, z))
-            continue;
-        if (flags.x == 1 && !photo_sees(photo_depths(i, pixel), z, guessed))
-            continue;
-        float weight = airieau_weight(p, photo_row(i, PHOTO_EYE).xyz);
-        // Where depth is only guessed, photographs disagree: let the best one dominate.
-        if (guessed)
-            weight = pow(weight * options.y, 8.0);
-        weight *= photo_border(i, pixel);
-        if (weight > 0.0)
-            sum += vec4(photo_sample(i, pixel, photo_mip(i, z, depth)).rgb, 1.0) * weight;
-    }
+    int i = 0;
+    do { // the condition last: see gather_best.comp
+        sum += look(i, p, guessed);
+        i++;
+    } while (i < area.z);
     if (sum.a > 0.0)
         imageStore(accumulated, at, imageLoad(accumulated, at) + sum);
 }

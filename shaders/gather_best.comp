@@ -2,6 +2,15 @@
 // the first photograph left out, at borders and where the surface gets hidden.
 #include "include/photo_choice.glsl"
 
+// KEPT: photographs that a pixel may blend, 2 or 4: a software renderer samples all of them.
+#if KEPT > 2
+#define KEPT_VEC vec4
+#define KEPT_IVEC ivec4
+#else
+#define KEPT_VEC vec2
+#define KEPT_IVEC ivec2
+#endif
+
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 layout(rgba32f, binding = 1) writeonly uniform image2D accumulated; // colour * weight, weight
@@ -20,11 +29,11 @@ float photo_sees(vec4 seen, float z)
     return unknown ? choice.z : agrees;
 }
 
-// The best photographs of a pixel, ascending by penalty, and the penalty of the one after
-// the fourth. Components, not arrays: those are slow where registers cannot be indexed.
+// The best photographs of a pixel, ascending by penalty, and the penalty of the one after the
+// last of them. Components, not arrays: those are slow where registers cannot be indexed.
 struct ranking {
-    vec4 penalty;
-    ivec4 photo;
+    KEPT_VEC penalty;
+    KEPT_IVEC photo;
     float next;
 };
 
@@ -43,44 +52,58 @@ void insert(float penalty, int photo, inout ranking r)
 {
     SWAP_IN(x)
     SWAP_IN(y)
+#if KEPT > 2
     SWAP_IN(z)
     SWAP_IN(w)
+#endif
     r.next = min(r.next, penalty);
 }
 
 // The least penalty that is left out.
 float limit_of(ranking r)
 {
-    return choice.x < 1.5 ? r.penalty.y
-         : choice.x < 2.5 ? r.penalty.z
-         : choice.x < 3.5 ? r.penalty.w
-                          : r.next;
+    if (choice.x < 1.5)
+        return r.penalty.y;
+#if KEPT > 2
+    if (choice.x < 3.5)
+        return choice.x < 2.5 ? r.penalty.z : r.penalty.w;
+#endif
+    return r.next;
+}
+
+// Asks photograph `i`.
+void consider(int i, vec3 p, bool guessed, inout ranking r)
+{
+    vec2 pixel;
+    float z;
+    bool inside = photo_project(i, p, pixel, z);
+    float penalty = photo_penalty(i, p);
+    // Not worse than the limit even if it saw the surface for sure.
+    if (inside && penalty < limit_of(r)) {
+        vec4 seen = photo_depths(i, pixel);
+        float sure = photo_border(i, pixel);
+        if (guessed)
+            sure *= photo_unhidden_share(seen, z);
+        else if (flags.x == 1)
+            sure *= photo_sees(seen, z);
+        if (sure > 1e-4)
+            insert(penalty / sure, i, r);
+    }
 }
 
 ranking rank(int list, vec3 p, bool guessed)
 {
-    ranking r = ranking(vec4(NOT_SEEN), ivec4(-1), NOT_SEEN);
-    int count = int(choice_more.x);
-    for (int c = 0; c < count; c++) {
-        int i = chosen[list + c];
-        if (i < 0)
-            break;
-        vec2 pixel;
-        float z;
-        bool inside = photo_project(i, p, pixel, z);
-        float penalty = photo_penalty(i, p);
-        // Not worse than the limit even if it saw the surface for sure.
-        if (inside && penalty < limit_of(r)) {
-            vec4 seen = photo_depths(i, pixel);
-            float sure = photo_border(i, pixel);
-            if (guessed)
-                sure *= photo_unhidden_share(seen, z);
-            else if (flags.x == 1)
-                sure *= photo_sees(seen, z);
-            if (sure > 1e-4)
-                insert(penalty / sure, i, r);
-        }
-    }
+    ranking r = ranking(KEPT_VEC(NOT_SEEN), KEPT_IVEC(-1), NOT_SEEN);
+    int c = 0, count = int(choice_more.x), i = chosen[list];
+    if (i < 0)
+        return r;
+    // The condition last: a software renderer runs a loop's body once more to find one at its
+    // beginning false.
+    do {
+        consider(i, p, guessed, r);
+        c++;
+        i = c < count ? chosen[list + c] : -1;
+    } while (i >= 0);
     return r;
 }
 
@@ -98,23 +121,12 @@ vec4 look(int i, float penalty, float least, float limit, float sharpness, vec3 
                 pow(least / penalty, sharpness) * fade);
 }
 
-// Sum of colour * weight, weight, where samples far from the consensus lose weight: passers-by,
-// leaves, reflections. Roots make the consensus of photographs and not of the best one alone,
-// and differences of light about as the eye sees them.
-vec4 blend(vec4 a, vec4 b, vec4 c, vec4 d, float severity)
+// Adds a sample, or rather colour * weight, weight, to `sum`, with less weight the farther it is
+// from the consensus.
+void add(vec4 one, vec3 mean, float severity, inout vec4 sum)
 {
-    vec4 weight = vec4(a.a, b.a, c.a, d.a), vote = sqrt(weight);
-    float votes = dot(vote, vec4(1.0));
-    if (severity > 0.0 && votes > 0.0) {
-        mat4x3 root = mat4x3(sqrt(a.rgb), sqrt(b.rgb), sqrt(c.rgb), sqrt(d.rgb));
-        vec3 mean = root * vote / votes;
-        for (int k = 0; k < 4; k++) {
-            vec3 off = root[k] - mean;
-            weight[k] /= 1.0 + dot(off, off) * severity;
-        }
-    }
-    return vec4(a.rgb, 1.0) * weight.x + vec4(b.rgb, 1.0) * weight.y +
-           vec4(c.rgb, 1.0) * weight.z + vec4(d.rgb, 1.0) * weight.w;
+    vec3 off = sqrt(one.rgb) - mean;
+    sum += vec4(one.rgb, 1.0) * (one.a / (1.0 + dot(off, off) * severity));
 }
 
 void main()
@@ -133,10 +145,26 @@ void main()
         float sharpness = guessed ? choice.w : choice.y, limit = limit_of(r), least = r.penalty.x;
         vec4 a = look(r.photo.x, r.penalty.x, least, limit, sharpness, p);
         vec4 b = look(r.photo.y, r.penalty.y, least, limit, sharpness, p);
+#if KEPT > 2
         vec4 c = look(r.photo.z, r.penalty.z, least, limit, sharpness, p);
         vec4 d = look(r.photo.w, r.penalty.w, least, limit, sharpness, p);
-        // On guessed depth photographs disagree by nature.
-        vec4 sum = blend(a, b, c, d, guessed ? 0.0 : choice_more.y);
+#endif
+        // Samples far from the consensus lose weight: passers-by, leaves, reflections. Roots make
+        // the consensus of photographs and not of the best one alone, and differences of light
+        // about as the eye sees them. On guessed depth photographs disagree by nature.
+        float severity = guessed ? 0.0 : choice_more.y;
+        vec4 vote = vec4(sqrt(a.rgb), 1.0) * sqrt(a.a) + vec4(sqrt(b.rgb), 1.0) * sqrt(b.a);
+#if KEPT > 2
+        vote += vec4(sqrt(c.rgb), 1.0) * sqrt(c.a) + vec4(sqrt(d.rgb), 1.0) * sqrt(d.a);
+#endif
+        vec3 mean = vote.rgb / max(vote.a, 1e-30);
+        vec4 sum = vec4(0.0);
+        add(a, mean, severity, sum);
+        add(b, mean, severity, sum);
+#if KEPT > 2
+        add(c, mean, severity, sum);
+        add(d, mean, severity, sum);
+#endif
         if (sum.a > 0.0)
             imageStore(accumulated, at, sum);
     }

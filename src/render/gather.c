@@ -27,12 +27,15 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
         result = orl_prog_create(gpu, "choose.comp", NULL, sizeof(struct gather_block),
                                  &gather->choose);
     static const char *const defines[ORL_SAMPLING_COUNT] = {[ORL_SAMPLING_BICUBIC] = "BICUBIC 1\n"};
+    static const char *const few[ORL_SAMPLING_COUNT][KEPT_PROGRAMS] = {
+        [ORL_SAMPLING_BILINEAR] = {"KEPT 2\n", "KEPT 4\n"},
+        [ORL_SAMPLING_BICUBIC] = {"BICUBIC 1\nKEPT 2\n", "BICUBIC 1\nKEPT 4\n"}};
     for (int i = 0; result == ORL_OK && i < ORL_SAMPLING_COUNT; i++) {
         result = orl_prog_create(gpu, radiance ? "gather_radiance.comp" : "gather.comp", defines[i],
                                  sizeof(struct gather_block), &gather->all[i]);
-        if (result == ORL_OK)
-            result = orl_prog_create(gpu, "gather_best.comp", defines[i],
-                                     sizeof(struct gather_block), &gather->best[i]);
+        for (int k = 0; result == ORL_OK && k < KEPT_PROGRAMS; k++)
+            result = orl_prog_create(gpu, "gather_best.comp", few[i][k],
+                                     sizeof(struct gather_block), &gather->best[i][k]);
     }
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
@@ -43,7 +46,8 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
 {
     for (int i = 0; i < ORL_SAMPLING_COUNT; i++) {
         orl_prog_destroy(gpu, &gather->all[i]);
-        orl_prog_destroy(gpu, &gather->best[i]);
+        for (int k = 0; k < KEPT_PROGRAMS; k++)
+            orl_prog_destroy(gpu, &gather->best[i][k]);
     }
     orl_prog_destroy(gpu, &gather->choose);
     orl_tex_destroy(gpu, &gather->photo_rows);
@@ -189,7 +193,7 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     orl_pass_begin(r->gpu, "choose");
     orl_gpu_dispatch(r->gpu, &d);
     orl_pass_end(r->gpu);
-    d.prog = g->best[params->sampling];
+    d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     orl_pixel_groups(view->camera.width, view->camera.height, d.groups);

@@ -143,10 +143,11 @@ void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accu
 // --- blending (gather.c) ---
 
 enum { PHOTOS_PER_FRAME_MAX = 48 }; // of blend=best
+enum { KEPT_PROGRAMS = 2 };         // for pixels of two photographs and of more
 
 struct gather {
     struct orl_prog *choose;
-    struct orl_prog *all[ORL_SAMPLING_COUNT], *best[ORL_SAMPLING_COUNT];
+    struct orl_prog *all[ORL_SAMPLING_COUNT], *best[ORL_SAMPLING_COUNT][KEPT_PROGRAMS];
     struct photo_data *list; // of the photographs of one dispatch
     size_t *chosen;          // their indices in the scene
     struct orl_buf *photos;  // struct photo_data
