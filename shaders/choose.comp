@@ -39,13 +39,14 @@ void main()
     for (int i = 0; i < area.z; i++) {
         // The best that it can do anywhere in the tile, and a little for how much it sees.
         float least = 1e30, seen = 0.0;
+        photo shot = photo_at(i);
         for (int s = 0; s < ACROSS * ACROSS; s++) {
             vec2 pixel;
             float z;
-            if (!(points[s].z > 0.0) || !photo_project(i, points[s], pixel, z))
+            if (!(points[s].z > 0.0) || !photo_project(shot, points[s], pixel, z))
                 continue;
-            float hidden = photo_unhidden_share(photo_depths(i, pixel), z) > 0.9 ? 1.0 : 8.0;
-            least = min(least, photo_penalty(i, points[s]) * hidden);
+            float hidden = photo_unhidden_share(photo_depths(shot, pixel), z) > 0.9 ? 1.0 : 8.0;
+            least = min(least, photo_penalty(shot, points[s]) * hidden);
             seen += 1.0 / hidden;
         }
         least *= 1.0 + 1.0 / max(seen, 0.1);

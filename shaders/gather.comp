@@ -7,21 +7,21 @@ layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed b
 layout(rgba32f, binding = 1) uniform image2D accumulated;      // colour * weight, weight
 
 // One photograph's colour * weight, weight.
-vec4 look(int i, vec3 p, bool guessed)
+vec4 look(photo shot, vec3 p, bool guessed)
 {
     vec2 pixel;
     float z;
-    if (!photo_project(i, p, pixel, z))
+    if (!photo_project(shot, p, pixel, z))
         return vec4(0.0);
-    if (flags.x == 1 && !photo_sees(photo_depths(i, pixel), z, guessed))
+    if (flags.x == 1 && !photo_sees(photo_depths(shot, pixel), z, guessed))
         return vec4(0.0);
-    float weight = airieau_weight(p, photo_row(i, PHOTO_EYE).xyz);
+    float weight = airieau_weight(p, shot.eye.xyz);
     // Where depth is only guessed, photographs disagree: let the best one dominate.
     if (guessed)
         weight = pow(weight * options.y, 8.0);
-    weight *= photo_border(i, pixel);
+    weight *= photo_border(shot, pixel);
     return weight > 0.0
-               ? vec4(photo_sample(i, pixel, photo_mip(i, z, p.z)).rgb, 1.0) * weight
+               ? vec4(photo_sample(shot, pixel, photo_mip(shot, z, p.z)).rgb, 1.0) * weight
                : vec4(0.0);
 }
 
@@ -39,7 +39,7 @@ void main()
     vec4 sum = vec4(0.0);
     int i = 0;
     do { // the condition last: see gather_best.comp
-        sum += look(i, p, guessed);
+        sum += look(photo_at(i), p, guessed);
         i++;
     } while (i < area.z);
     if (sum.a > 0.0)

@@ -3,14 +3,7 @@
 #include "include/photo_choice.glsl"
 
 // KEPT: photographs that a pixel may blend, 2 or 4: a software renderer samples all of them.
-#if KEPT > 2
-#define KEPT_VEC vec4
-#define KEPT_IVEC ivec4
-#else
-#define KEPT_VEC vec2
-#define KEPT_IVEC ivec2
-#endif
-
+// An invocation makes 2x2 pixels, so that it loads each photograph's parameters once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 layout(rgba32f, binding = 1) writeonly uniform image2D accumulated; // colour * weight, weight
@@ -29,143 +22,126 @@ float photo_sees(vec4 seen, float z)
     return unknown ? choice.z : agrees;
 }
 
-// The best photographs of a pixel, ascending by penalty, and the penalty of the one after the
-// last of them. Components, not arrays: those are slow where registers cannot be indexed.
+// A pixel's surface point.
+struct spot {
+    vec3 p;       // z 0: none
+    bool guessed;
+};
+
+// Where a photograph shows it.
+struct sight {
+    float penalty;
+    int photo;
+    vec2 pixel;
+    float z;
+};
+
+// The best of a pixel, ascending by penalty, and the penalty of the one after the last of them.
 struct ranking {
-    KEPT_VEC penalty;
-    KEPT_IVEC photo;
+    sight best[KEPT];
     float next;
 };
 
-// Puts (penalty, photo) in place k and hands on what was there, if that is worse.
-#define SWAP_IN(k)                                   \
-    if (penalty < r.penalty.k) {                     \
-        float worse = r.penalty.k;                   \
-        int other = r.photo.k;                       \
-        r.penalty.k = penalty;                       \
-        r.photo.k = photo;                           \
-        penalty = worse;                             \
-        photo = other;                               \
-    }
-
-void insert(float penalty, int photo, inout ranking r)
+void insert(sight s, inout ranking r)
 {
-    SWAP_IN(x)
-    SWAP_IN(y)
-#if KEPT > 2
-    SWAP_IN(z)
-    SWAP_IN(w)
-#endif
-    r.next = min(r.next, penalty);
+    for (int k = 0; k < KEPT; k++)
+        if (s.penalty < r.best[k].penalty) {
+            sight worse = r.best[k];
+            r.best[k] = s;
+            s = worse;
+        }
+    r.next = min(r.next, s.penalty);
 }
 
 // The least penalty that is left out.
 float limit_of(ranking r)
 {
-    if (choice.x < 1.5)
-        return r.penalty.y;
-#if KEPT > 2
-    if (choice.x < 3.5)
-        return choice.x < 2.5 ? r.penalty.z : r.penalty.w;
-#endif
-    return r.next;
+    float limit = r.next;
+    for (int k = 1; k < KEPT; k++)
+        limit = choice.x == float(k) ? r.best[k].penalty : limit;
+    return limit;
 }
 
-// Asks photograph `i`.
-void consider(int i, vec3 p, bool guessed, inout ranking r)
+void consider(int i, photo shot, spot s, inout ranking r)
 {
-    vec2 pixel;
-    float z;
-    bool inside = photo_project(i, p, pixel, z);
-    float penalty = photo_penalty(i, p);
+    sight one = sight(photo_penalty(shot, s.p), i, vec2(0.0), 0.0);
+    bool inside = photo_project(shot, s.p, one.pixel, one.z);
     // Not worse than the limit even if it saw the surface for sure.
-    if (inside && penalty < limit_of(r)) {
-        vec4 seen = photo_depths(i, pixel);
-        float sure = photo_border(i, pixel);
-        if (guessed)
-            sure *= photo_unhidden_share(seen, z);
+    if (inside && s.p.z > 0.0 && one.penalty < limit_of(r)) {
+        vec4 seen = photo_depths(shot, one.pixel);
+        float sure = photo_border(shot, one.pixel);
+        if (s.guessed)
+            sure *= photo_unhidden_share(seen, one.z);
         else if (flags.x == 1)
-            sure *= photo_sees(seen, z);
+            sure *= photo_sees(seen, one.z);
+        one.penalty /= sure;
         if (sure > 1e-4)
-            insert(penalty / sure, i, r);
+            insert(one, r);
     }
 }
 
-ranking rank(int list, vec3 p, bool guessed)
-{
-    ranking r = ranking(KEPT_VEC(NOT_SEEN), KEPT_IVEC(-1), NOT_SEEN);
-    int c = 0, count = int(choice_more.x), i = chosen[list];
-    if (i < 0)
-        return r;
-    // The condition last: a software renderer runs a loop's body once more to find one at its
-    // beginning false.
-    do {
-        consider(i, p, guessed, r);
-        c++;
-        i = c < count ? chosen[list + c] : -1;
-    } while (i >= 0);
-    return r;
-}
-
 // One photograph's colour and its weight.
-vec4 look(int i, float penalty, float least, float limit, float sharpness, vec3 p)
+vec4 look(sight one, float least, float limit, spot s)
 {
-    if (!(penalty < limit))
-        return vec4(0.0);
     // Full weight until the penalty comes near that of the first left out.
-    float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.0 - penalty / limit));
-    vec2 pixel;
-    float z;
-    photo_project(i, p, pixel, z);
-    return vec4(photo_sample(i, pixel, photo_mip(i, z, p.z)).rgb,
-                pow(least / penalty, sharpness) * fade);
+    float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.0 - one.penalty / limit));
+    photo shot = photo_at(one.photo);
+    vec3 color = photo_sample(shot, one.pixel, photo_mip(shot, one.z, s.p.z)).rgb;
+    float sharpness = s.guessed ? choice.w : choice.y;
+    return one.penalty < limit ? vec4(color, pow(least / one.penalty, sharpness) * fade)
+                               : vec4(0.0);
 }
 
-// Adds a sample, or rather colour * weight, weight, to `sum`, with less weight the farther it is
-// from the consensus.
-void add(vec4 one, vec3 mean, float severity, inout vec4 sum)
+// Colour * weight, weight. Samples far from the consensus lose weight: passers-by, leaves,
+// reflections. Roots make the consensus of photographs and not of the best one alone, and
+// differences of light about as the eye sees them.
+vec4 blend(spot s, ranking r)
 {
-    vec3 off = sqrt(one.rgb) - mean;
-    sum += vec4(one.rgb, 1.0) * (one.a / (1.0 + dot(off, off) * severity));
+    float limit = limit_of(r);
+    vec4 samples[KEPT], vote = vec4(0.0), sum = vec4(0.0);
+    for (int k = 0; k < KEPT; k++) {
+        samples[k] = look(r.best[k], r.best[0].penalty, limit, s);
+        vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
+    }
+    vec3 mean = vote.rgb / max(vote.a, 1e-30);
+    // On guessed depth photographs disagree by nature.
+    float severity = s.guessed ? 0.0 : choice_more.y;
+    for (int k = 0; k < KEPT; k++) {
+        vec3 off = sqrt(samples[k].rgb) - mean;
+        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
+    }
+    return sum;
 }
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y)
+    ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
+    if (corner.x >= area.x || corner.y >= area.y)
         return;
-    float stored = imageLoad(view_depth, at).r;
-    bool guessed = stored < 0.0;
-    vec3 p = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored);
-    if (p.z > 0.0) {
-        // A group lies within one tile, so that each photograph's data are the same for all of it.
-        ivec2 corner = ivec2(gl_WorkGroupID.xy) * ivec2(ORL_PIXEL_GROUP_X, ORL_PIXEL_GROUP_Y);
-        ivec2 tile = corner / CHOICE_TILE;
-        ranking r = rank((tile.y * area.w + tile.x) * CANDIDATES, p, guessed);
-        float sharpness = guessed ? choice.w : choice.y, limit = limit_of(r), least = r.penalty.x;
-        vec4 a = look(r.photo.x, r.penalty.x, least, limit, sharpness, p);
-        vec4 b = look(r.photo.y, r.penalty.y, least, limit, sharpness, p);
-#if KEPT > 2
-        vec4 c = look(r.photo.z, r.penalty.z, least, limit, sharpness, p);
-        vec4 d = look(r.photo.w, r.penalty.w, least, limit, sharpness, p);
-#endif
-        // Samples far from the consensus lose weight: passers-by, leaves, reflections. Roots make
-        // the consensus of photographs and not of the best one alone, and differences of light
-        // about as the eye sees them. On guessed depth photographs disagree by nature.
-        float severity = guessed ? 0.0 : choice_more.y;
-        vec4 vote = vec4(sqrt(a.rgb), 1.0) * sqrt(a.a) + vec4(sqrt(b.rgb), 1.0) * sqrt(b.a);
-#if KEPT > 2
-        vote += vec4(sqrt(c.rgb), 1.0) * sqrt(c.a) + vec4(sqrt(d.rgb), 1.0) * sqrt(d.a);
-#endif
-        vec3 mean = vote.rgb / max(vote.a, 1e-30);
-        vec4 sum = vec4(0.0);
-        add(a, mean, severity, sum);
-        add(b, mean, severity, sum);
-#if KEPT > 2
-        add(c, mean, severity, sum);
-        add(d, mean, severity, sum);
-#endif
-        if (sum.a > 0.0)
-            imageStore(accumulated, at, sum);
+    spot spots[4];
+    ranking rankings[4];
+    for (int k = 0; k < 4; k++) {
+        ivec2 at = corner + ivec2(k & 1, k >> 1);
+        float stored = imageLoad(view_depth, at).r; // 0 outside
+        spots[k] = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
+                        stored < 0.0);
+        rankings[k].next = NOT_SEEN;
+        for (int n = 0; n < KEPT; n++)
+            rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 1.0);
     }
+    ivec2 tile = corner / CHOICE_TILE; // of all four, since its side is even
+    int list = (tile.y * area.w + tile.x) * CANDIDATES, count = int(choice_more.x), c = 0;
+    // The condition last: a software renderer runs a loop's body once more to find one at its
+    // beginning false.
+    do {
+        int i = chosen[list + c];
+        photo shot = photo_at(max(i, 0));
+        for (int k = 0; k < 4; k++)
+            if (i >= 0)
+                consider(i, shot, spots[k], rankings[k]);
+        c = i >= 0 ? c + 1 : count;
+    } while (c < count);
+    // Stores outside the picture do nothing.
+    for (int k = 0; k < 4; k++)
+        imageStore(accumulated, corner + ivec2(k & 1, k >> 1), blend(spots[k], rankings[k]));
 }

@@ -23,15 +23,15 @@ struct Sample {
 };
 
 // Exposure at which a photograph would have taken a radiance.
-vec3 exposure_of(int i, vec3 color)
+vec3 exposure_of(photo shot, vec3 color)
 {
-    return color / photo_row(i, PHOTO_GAIN).rgb;
+    return color / shot.gain.rgb;
 }
 
-// Squared relative error of photograph `i` by noise, where the radiance is about this.
-float noise_of(int i, vec3 color)
+// Squared relative error of a photograph by noise, where the radiance is about this.
+float noise_of(photo shot, vec3 color)
 {
-    return relative_variance(exposure_of(i, color), photo_row(i, PHOTO_NOISE));
+    return relative_variance(exposure_of(shot, color), shot.noise);
 }
 
 // How much of a sample is the surface at z, squared: what lies before it may be a thousand
@@ -46,11 +46,11 @@ float seen_share(vec4 seen, float z, bool guessed)
 }
 
 // What the method makes of a photograph that sees the point.
-float geometric_weight(int i, vec3 p, bool guessed)
+float geometric_weight(photo shot, vec3 p, bool guessed)
 {
     if (flags.z == 1)
-        return pow(1.0 / photo_penalty(i, p), guessed ? choice.w : choice.y);
-    float weight = airieau_weight(p, photo_row(i, PHOTO_EYE).xyz);
+        return pow(1.0 / photo_penalty(shot, p), guessed ? choice.w : choice.y);
+    float weight = airieau_weight(p, shot.eye.xyz);
     // Where depth is only guessed, photographs disagree: let the best one dominate.
     return guessed ? pow(weight * options.y, 8.0) : weight;
 }
@@ -80,19 +80,20 @@ float total_weight(Sample s, float noise)
 bool ask(int i, vec3 p, bool guessed, out Sample s)
 {
     float z;
+    photo shot = photo_at(i);
     s.weight = 0.0;
-    if (!photo_project(i, p, s.pixel, z))
+    if (!photo_project(shot, p, s.pixel, z))
         return false;
     s.usual = usual_weight(guessed);
-    s.weight = geometric_weight(i, p, guessed) * photo_border(i, s.pixel);
+    s.weight = geometric_weight(shot, p, guessed) * photo_border(shot, s.pixel);
     if (!(s.weight > 0.0))
         return false;
     if (flags.x == 1)
-        s.weight *= seen_share(photo_depths(i, s.pixel), z, guessed);
+        s.weight *= seen_share(photo_depths(shot, s.pixel), z, guessed);
     if (!(s.weight > 0.0))
         return false;
-    s.mip = photo_mip(i, z, p.z);
-    vec4 texel = photo_radiance(i, s.pixel, s.mip);
+    s.mip = photo_mip(shot, z, p.z);
+    vec4 texel = photo_radiance(shot, s.pixel, s.mip);
     s.color = texel.rgb;
     s.clip = texel.a;
     return texel.a > 0.0;
@@ -126,7 +127,7 @@ void probe(int i, int probe_index)
     float depth = imageLoad(view_depth, at).r;
     Sample s;
     if (depth != 0.0 && ask(i, surface_point(at, abs(depth)), depth < 0.0, s))
-        atomicMax(scores[i], floatBitsToUint(total_weight(s, noise_of(i, s.color))));
+        atomicMax(scores[i], floatBitsToUint(total_weight(s, noise_of(photo_at(i), s.color))));
 }
 
 void choose()
@@ -187,7 +188,7 @@ void ask_chosen(vec3 p, bool guessed)
         if (!ask(i, p, guessed, samples[at]))
             continue;
         sample_photo[at] = i;
-        weights[at] = total_weight(samples[at], noise_of(i, samples[at].color));
+        weights[at] = total_weight(samples[at], noise_of(photo_at(i), samples[at].color));
         heaviest = max(heaviest, weights[at]);
         sample_count++;
     }
@@ -201,7 +202,7 @@ void ask_chosen(vec3 p, bool guessed)
             known = known || chosen[k] == i;
         if (known || !ask(i, p, guessed, s))
             continue;
-        float weight = total_weight(s, noise_of(i, s.color));
+        float weight = total_weight(s, noise_of(photo_at(i), s.color));
         int at = place_for(weight);
         if (at < 0)
             continue;
@@ -258,7 +259,7 @@ void blend(ivec2 at)
     vec3 level = max(median_color(), radiance.z);
     float noise[ORL_RADIANCE_KEPT];
     for (int k = 0; k < sample_count; k++) {
-        noise[k] = noise_of(sample_photo[k], level);
+        noise[k] = noise_of(photo_at(sample_photo[k]), level);
         weights[k] = total_weight(samples[k], noise[k]);
     }
     float limit = left_out(), total = 0.0, trust = 0.0;
@@ -277,7 +278,7 @@ void blend(ivec2 at)
     for (int k = 0; k < sample_count; k++) {
         vec3 color = samples[k].color;
         if (flags.y == 1 && weights[k] > 0.02 * total)
-            color = photo_sharper(sample_photo[k], samples[k].pixel, samples[k].mip, color);
+            color = photo_sharper(photo_at(sample_photo[k]), samples[k].pixel, samples[k].mip, color);
         sum += vec4(color, 1.0) * weights[k];
     }
     imageStore(accumulated, at, imageLoad(accumulated, at) + sum);

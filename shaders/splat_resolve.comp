@@ -10,7 +10,10 @@ layout(rgba32f, binding = 0) readonly uniform imageBuffer positions;
 layout(rg32ui, binding = 1) readonly uniform uimageBuffer attributes; // normal, colour
 layout(r32ui, binding = 2) readonly uniform uimage2D splat_index;
 layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
-layout(rgba32ui, binding = 4) uniform uimage2D splats;
+layout(rg32ui, binding = 4) writeonly uniform uimage2D splats;
+#ifdef CHUNKS
+layout(rgba32ui, binding = 8) uniform uimage2D whole_splats; // of earlier chunks
+#endif
 layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
 layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
 layout(r32f, binding = 7) readonly uniform imageBuffer enlarged; // radii of each block
@@ -27,7 +30,9 @@ surfel splat(ivec2 at, int point)
     p *= 1.0 + behind * options.y;
     vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
     n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
-    int block = point / ORL_ITEM_POINTS % (size.z / ORL_BLOCK_POINTS);
+    // Remainder of a division, in floats: both are exact below 2^24, and integers divide slowly.
+    int item = point / ORL_ITEM_POINTS, blocks = size.z / ORL_BLOCK_POINTS;
+    int block = item - blocks * int(float(item) / float(blocks));
     float radius = position.w * options.x * imageLoad(enlarged, block).x;
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
@@ -45,9 +50,13 @@ void main()
         bool mine = point < uint(size.z) && at.x < size.x && at.y < size.y;
         // No branch: the view's parameters are then loaded once for all four pixels.
         child[i] = splat(at, mine ? int(point) : 0);
-        if (!mine) // empty, or what an earlier chunk won
-            child[i] = surfel_unpack_splat(size.w > 0 ? imageLoad(splats, at) : uvec4(0u));
-        imageStore(splats, at, surfel_pack_splat(child[i]));
+        child[i].radius = mine ? child[i].radius : 0.0;
+#ifdef CHUNKS
+        if (!mine && size.w > 0)
+            child[i] = surfel_unpack_splat(imageLoad(whole_splats, at));
+        imageStore(whole_splats, at, surfel_pack_splat(child[i]));
+#endif
+        imageStore(splats, at, surfel_pack_own(child[i], level_centre(at, 0)));
     }
     surfel merged = surfel_merge(child, 0);
     imageStore(coarse_a, parent, surfel_pack_a(merged));

@@ -4,15 +4,25 @@
 #define BLOCK_GATHER
 #include "include/render_blocks.h"
 
-// Photographs, as rows of struct photo_data of render_blocks.h. Read as an image: on a software
-// renderer a fifth of what storage costs, and a third of the whole gather.
+// Rows of struct photo_data of render_blocks.h. Read as an image: on a software renderer a fifth
+// of what storage costs, and a third of the whole gather.
 layout(rgba32f, binding = 7) readonly uniform imageBuffer photo_rows;
-// Rows 0 to 2 are from_view's.
-const int PHOTO_EYE = 3, PHOTO_FOCAL = 4, PHOTO_SIZE = 5, PHOTO_SLOT_SIZE = 6, PHOTO_GAIN = 7,
-          PHOTO_LENS = 8, PHOTO_NOISE = 9;
-vec4 photo_row(int i, int row)
+
+// A photograph; see struct photo_data.
+struct photo {
+    vec4 from_view[3], eye, focal, size, slot_size, gain, lens, noise;
+};
+
+// What is not used of it is not loaded. Loading costs: share it between pixels where that can be.
+photo photo_at(int i)
 {
-    return imageLoad(photo_rows, i * ORL_PHOTO_VEC4S + row);
+    int row = i * ORL_PHOTO_VEC4S;
+    return photo(vec4[3](imageLoad(photo_rows, row), imageLoad(photo_rows, row + 1),
+                         imageLoad(photo_rows, row + 2)),
+                 imageLoad(photo_rows, row + 3), imageLoad(photo_rows, row + 4),
+                 imageLoad(photo_rows, row + 5), imageLoad(photo_rows, row + 6),
+                 imageLoad(photo_rows, row + 7), imageLoad(photo_rows, row + 8),
+                 imageLoad(photo_rows, row + 9));
 }
 
 // Mipmapped. sRGB, whose reads are linear light; with RADIANCE linear exposure * trust *
@@ -20,44 +30,44 @@ vec4 photo_row(int i, int row)
 layout(binding = 0) uniform sampler2DArray photo_color;
 layout(binding = 1) uniform sampler2DArray photo_depth; // z, 0: none
 
-// Where a point of the view's camera frame lies in photograph `i`: pixel coordinates and z
+// Where a point of the view's camera frame lies in a photograph: pixel coordinates and z
 // in its frame. False behind it or outside.
-bool photo_project(int i, vec3 p, out vec2 pixel, out float z)
+bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
 {
     vec4 ph = vec4(p, 1.0);
-    vec3 q = vec3(dot(photo_row(i, 0), ph), dot(photo_row(i, 1), ph),
-                  dot(photo_row(i, 2), ph));
+    vec3 q = vec3(dot(shot.from_view[0], ph), dot(shot.from_view[1], ph),
+                  dot(shot.from_view[2], ph));
     z = q.z;
     pixel = vec2(-1.0);
     if (!(q.z > 0.0))
         return false;
-    pixel = photo_row(i, PHOTO_FOCAL).xy * q.xy / q.z + photo_row(i, PHOTO_FOCAL).zw;
-    vec2 border = min(pixel, photo_row(i, PHOTO_SIZE).xy - pixel);
+    pixel = shot.focal.xy * q.xy / q.z + shot.focal.zw;
+    vec2 border = min(pixel, shot.size.xy - pixel);
     return min(border.x, border.y) > 0.5;
 }
 
 // Falls from 1 to 0 towards the photograph's border.
-float photo_border(int i, vec2 pixel)
+float photo_border(photo shot, vec2 pixel)
 {
-    vec2 border = min(pixel, photo_row(i, PHOTO_SIZE).xy - pixel) - 0.5;
+    vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
     return clamp(min(border.x, border.y) / max(options.z, 0.5), 0.0, 1.0);
 }
 
 // The photograph's own depth at the four texels around a pixel.
-vec4 photo_depths(int i, vec2 pixel)
+vec4 photo_depths(photo shot, vec2 pixel)
 {
-    vec2 at = pixel / photo_row(i, PHOTO_SIZE).xy * photo_row(i, PHOTO_SIZE).zw;
+    vec2 at = pixel / shot.size.xy * shot.size.zw;
     // Stay within the photograph's part of its slot.
-    at = clamp(at, vec2(0.5), photo_row(i, PHOTO_SIZE).zw - 0.5);
-    float slot = photo_row(i, PHOTO_EYE).w;
-    return textureGather(photo_depth, vec3(at / photo_row(i, PHOTO_SLOT_SIZE).zw, slot));
+    at = clamp(at, vec2(0.5), shot.size.zw - 0.5);
+    float slot = shot.eye.w;
+    return textureGather(photo_depth, vec3(at / shot.slot_size.zw, slot));
 }
 
 // Mip level at which the photograph has the view's resolution.
-float photo_mip(int i, float z, float view_depth)
+float photo_mip(photo shot, float z, float view_depth)
 {
-    float magnification = photo_row(i, PHOTO_FOCAL).x * view_depth / (z * view_focal.x);
-    return clamp(log2(magnification), 0.0, photo_row(i, PHOTO_GAIN).w);
+    float magnification = shot.focal.x * view_depth / (z * view_focal.x);
+    return clamp(log2(magnification), 0.0, shot.gain.w);
 }
 
 vec4 photo_texel(vec2 at, float slot, float lod)
@@ -65,18 +75,18 @@ vec4 photo_texel(vec2 at, float slot, float lod)
     return textureLod(photo_color, vec3(at, slot), lod);
 }
 
-vec4 photo_bilinear(int i, vec2 pixel, float mip)
+vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
 {
-    return photo_texel(pixel / photo_row(i, PHOTO_SLOT_SIZE).xy, photo_row(i, PHOTO_EYE).w, mip);
+    return photo_texel(pixel / shot.slot_size.xy, shot.eye.w, mip);
 }
 
 // Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005): bilinear sampling would
 // blur every photograph by the phase that it happens to be met at.
-vec4 photo_bicubic(int i, vec2 pixel, float mip)
+vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
 {
-    float lod = floor(mip + 0.5), slot = photo_row(i, PHOTO_EYE).w;
-    vec2 size_at = max(floor(photo_row(i, PHOTO_SLOT_SIZE).xy / exp2(lod)), vec2(1.0));
-    vec2 at = pixel / photo_row(i, PHOTO_SLOT_SIZE).xy * size_at - 0.5;
+    float lod = floor(mip + 0.5), slot = shot.eye.w;
+    vec2 size_at = max(floor(shot.slot_size.xy / exp2(lod)), vec2(1.0));
+    vec2 at = pixel / shot.slot_size.xy * size_at - 0.5;
     vec2 base = floor(at), f = at - base;
     vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
     vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
@@ -99,55 +109,59 @@ vec4 photo_bicubic(int i, vec2 pixel, float mip)
 #ifdef RADIANCE
 const float SHARPEN_MAX = 1.5;
 
-vec4 photo_radiance(int i, vec2 pixel, float mip)
+vec4 photo_radiance(photo shot, vec2 pixel, float mip)
 {
-    vec4 texel = photo_bilinear(i, pixel, mip);
+    vec4 texel = photo_bilinear(shot, pixel, mip);
     vec3 exposure = texel.rgb / (ORL_RADIANCE_SCALE * max(texel.a, 1e-8));
-    return vec4(exposure * photo_row(i, PHOTO_GAIN).rgb, texel.a);
+    return vec4(exposure * shot.gain.rgb, texel.a);
 }
 
 // What is `color` by photo_radiance, sharper. Where contrasts are high, or trust falls, the
 // negative lobes of this filter ring far below black: it changes by a factor, no more.
-vec3 photo_sharper(int i, vec2 pixel, float mip, vec3 color)
+vec3 photo_sharper(photo shot, vec2 pixel, float mip, vec3 color)
 {
-    vec4 texel = photo_bicubic(i, pixel, mip);
+    vec4 texel = photo_bicubic(shot, pixel, mip);
     if (!(texel.a > 1e-8))
         return color;
-    vec3 sharper = texel.rgb / (ORL_RADIANCE_SCALE * texel.a) * photo_row(i, PHOTO_GAIN).rgb;
+    vec3 sharper = texel.rgb / (ORL_RADIANCE_SCALE * texel.a) * shot.gain.rgb;
     return clamp(sharper, color / SHARPEN_MAX, color * SHARPEN_MAX);
 }
 
-vec4 photo_sample(int i, vec2 pixel, float mip)
+vec4 photo_sample(photo shot, vec2 pixel, float mip)
 {
-    vec4 texel = photo_radiance(i, pixel, mip);
-    return flags.y == 1 ? vec4(photo_sharper(i, pixel, mip, texel.rgb), texel.a) : texel;
+    vec4 texel = photo_radiance(shot, pixel, mip);
+    return flags.y == 1 ? vec4(photo_sharper(shot, pixel, mip, texel.rgb), texel.a) : texel;
 }
 #else
 // Brings linear colour to the scene's exposure and white balance, the lens's fall-off undone.
 // Linear for all but the brightest; white stays white, as a photograph that clipped was at
 // least that bright, and cameras compress what is near. src/render/reexpose.c undoes it.
-vec3 photo_aligned(int i, vec2 pixel, vec3 color)
+vec3 photo_aligned(photo shot, vec2 pixel, vec3 color)
 {
-    vec2 off = pixel - photo_row(i, PHOTO_FOCAL).zw;
-    vec3 lens = photo_row(i, PHOTO_LENS).xyz;
-    float r2 = dot(off, off) * photo_row(i, PHOTO_LENS).w;
+    vec2 off = pixel - shot.focal.zw;
+    vec3 lens = shot.lens.xyz;
+    float r2 = dot(off, off) * shot.lens.w;
     float light = 1.0 + r2 * (lens.x + r2 * (lens.y + r2 * lens.z));
-    vec3 gain = photo_row(i, PHOTO_GAIN).rgb / max(light, 0.1);
+    vec3 gain = shot.gain.rgb / max(light, 0.1);
     // The largest power of color with which brighter stays brighter.
     vec3 power = mix(vec3(3.0), min(gain / max(gain - 1.0, 1e-6), vec3(3.0)),
                      greaterThan(gain, vec3(1.0)));
     return gain * color / (1.0 + (gain - 1.0) * pow(min(color, vec3(1.0)), power));
 }
 
-vec4 photo_sample(int i, vec2 pixel, float mip)
+vec4 photo_sample(photo shot, vec2 pixel, float mip)
 {
     // A program for each: software renderers run both sides of a condition.
 #ifdef BICUBIC
-    vec3 color = photo_bicubic(i, pixel, mip).rgb;
+    vec3 color = photo_bicubic(shot, pixel, mip).rgb;
 #else
-    vec3 color = photo_bilinear(i, pixel, mip).rgb;
+    // Levels blend in a narrow range only: a software renderer reads both of them there, and
+    // elsewhere one, the sharper one more often than not.
+    float level = floor(mip);
+    level += clamp(5.0 * (mip - level) - 3.5, 0.0, 1.0);
+    vec3 color = photo_bilinear(shot, pixel, level).rgb;
 #endif
-    return vec4(photo_aligned(i, pixel, color), 1.0);
+    return vec4(photo_aligned(shot, pixel, color), 1.0);
 }
 #endif
 

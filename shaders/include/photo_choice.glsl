@@ -4,13 +4,13 @@
 // Unstructured lumigraph penalty (Buehler 2001, 4.2; resolution as in SIBR's ulr): the angle
 // between the two lines of sight, and how much coarser the photograph sees the point. The
 // constant keeps a photograph taken from here from silencing every other.
-float photo_penalty(int i, vec3 p)
+float photo_penalty(photo shot, vec3 p)
 {
-    vec3 to_photo = photo_row(i, PHOTO_EYE).xyz - p;
+    vec3 to_photo = shot.eye.xyz - p;
     float here = length(p), there = length(to_photo);
     float angle = acos(clamp(dot(-p, to_photo) / (here * there), -1.0, 1.0));
     // Compare sizes of a pixel on the surface, not distances: focal lengths may differ.
-    float coarser = there / here * view_focal.x / photo_row(i, PHOTO_FOCAL).x - 1.0;
+    float coarser = there / here * view_focal.x / shot.focal.x - 1.0;
     return angle + 0.1 * max(coarser, 0.0) + 0.005;
 }
 

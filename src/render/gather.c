@@ -196,7 +196,7 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
-    orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
+    orl_pixel_groups((view->camera.width + 1) / 2, (view->camera.height + 1) / 2, d.groups);
     orl_pass_begin(r->gpu, "gather");
     orl_gpu_dispatch(r->gpu, &d);
     orl_pass_end(r->gpu);
