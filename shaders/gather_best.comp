@@ -42,14 +42,18 @@ struct ranking {
     float next;
 };
 
+// Selects, and no branches, here and below: those cost a software renderer a mask on every value
+// that outlives them.
 void insert(sight s, inout ranking r)
 {
-    for (int k = 0; k < KEPT; k++)
-        if (s.penalty < r.best[k].penalty) {
-            sight worse = r.best[k];
-            r.best[k] = s;
-            s = worse;
-        }
+    for (int k = 0; k < KEPT; k++) {
+        bool better = s.penalty < r.best[k].penalty;
+        sight other = r.best[k];
+        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.photo : other.photo,
+                          better ? s.pixel : other.pixel, better ? s.z : other.z);
+        s = sight(better ? other.penalty : s.penalty, better ? other.photo : s.photo,
+                  better ? other.pixel : s.pixel, better ? other.z : s.z);
+    }
     r.next = min(r.next, s.penalty);
 }
 
@@ -64,20 +68,14 @@ float limit_of(ranking r)
 
 void consider(int i, photo shot, spot s, inout ranking r)
 {
-    sight one = sight(photo_penalty(shot, s.p), i, vec2(0.0), 0.0);
-    bool inside = photo_project(shot, s.p, one.pixel, one.z);
-    // Not worse than the limit even if it saw the surface for sure.
-    if (inside && s.p.z > 0.0 && one.penalty < limit_of(r)) {
-        vec4 seen = photo_depths(shot, one.pixel);
-        float sure = photo_border(shot, one.pixel);
-        if (s.guessed)
-            sure *= photo_unhidden_share(seen, one.z);
-        else if (flags.x == 1)
-            sure *= photo_sees(seen, one.z);
-        one.penalty /= sure;
-        if (sure > 1e-4)
-            insert(one, r);
-    }
+    vec2 pixel;
+    float z;
+    bool inside = photo_project(shot, s.p, pixel, z);
+    vec4 seen = photo_depths(shot, pixel);
+    float sees = s.guessed ? photo_unhidden_share(seen, z) : flags.x == 1 ? photo_sees(seen, z) : 1.0;
+    float sure = sees * photo_border(shot, pixel);
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
+    insert(sight(paints ? photo_penalty(shot, s.p) / sure : NOT_SEEN, i, pixel, z), r);
 }
 
 // One photograph's colour and its weight.
@@ -131,16 +129,16 @@ void main()
     }
     ivec2 tile = corner / CHOICE_TILE; // of all four, since its side is even
     int list = (tile.y * area.w + tile.x) * CANDIDATES, count = int(choice_more.x), c = 0;
+    int i = chosen[list];
     // The condition last: a software renderer runs a loop's body once more to find one at its
     // beginning false.
     do {
-        int i = chosen[list + c];
         photo shot = photo_at(max(i, 0));
         for (int k = 0; k < 4; k++)
-            if (i >= 0)
-                consider(i, shot, spots[k], rankings[k]);
-        c = i >= 0 ? c + 1 : count;
-    } while (c < count);
+            consider(i, shot, spots[k], rankings[k]);
+        c++;
+        i = c < count ? chosen[list + c] : -1;
+    } while (i >= 0);
     // Stores outside the picture do nothing.
     for (int k = 0; k < 4; k++)
         imageStore(accumulated, corner + ivec2(k & 1, k >> 1), blend(spots[k], rankings[k]));

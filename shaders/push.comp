@@ -12,7 +12,7 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) readonly uniform image2D coarse_a;
 layout(rg32ui, binding = 1) readonly uniform uimage2D coarse_b;
 #ifdef LAST
-layout(rgba32ui, binding = 2) readonly uniform uimage2D splats;
+layout(rg32ui, binding = 2) readonly uniform uimage2D splats; // surfel_pack_own
 layout(r32f, binding = 3) writeonly uniform image2D depth_out;     // 0: none
 layout(rgba16f, binding = 4) writeonly uniform image2D normal_out; // w: 1 on a splat
 #else
@@ -93,18 +93,18 @@ void main()
                              : vec4(0.0625, 0.1875, 0.1875, 0.5625);
         vec2 target = level_centre(at, level.z);
 #ifdef LAST
-        surfel own = surfel_unpack_splat(imageLoad(splats, at));
-        surfel s = filled(target, own.near, disc, centre, ray, weight);
-        bool kept = s.radius == 0.0;
-        if (kept)
-            s = own;
+        uvec2 own = imageLoad(splats, at).xy;
+        float own_depth = uintBitsToFloat(own.x);
+        surfel s = filled(target, own_depth, disc, centre, ray, weight);
+        bool kept = s.radius == 0.0, inside;
         s.normal = normalize(s.normal);
-        bool inside;
         float depth = surfel_depth_at(s, camera_ray(target + s.displacement), camera_ray(target),
                                       inside);
-        bool any = s.radius > 0.0;
-        imageStore(depth_out, at, vec4(any ? depth : 0.0));
-        imageStore(normal_out, at, any ? vec4(s.normal, kept ? 1.0 : 0.0) : vec4(0.0));
+        depth = kept ? own_depth : depth;
+        vec3 normal = kept ? octahedron_decode(unpackSnorm2x16(own.y)) : s.normal;
+        bool any = !kept || own_depth > 0.0;
+        imageStore(depth_out, at, vec4(depth));
+        imageStore(normal_out, at, any ? vec4(normal, kept ? 1.0 : 0.0) : vec4(0.0));
 #else
         float own_near = imageLoad(fine_a, at).x;
         surfel s = filled(target, own_near, disc, centre, ray, weight);

@@ -1,6 +1,6 @@
-// Levels 0 and 1 of the pyramid from the winning points, 2x2 pixels an invocation. Runs once
-// per chunk of points and writes the pixels that this chunk won; the last run leaves level 1
-// whole.
+// Levels 0 and 1 of the pyramid from the winning points, 2x2 pixels an invocation.
+// CHUNKS: runs once per chunk of points and writes the pixels that this chunk won; the last run
+// leaves level 1 whole.
 #include "include/splat.glsl"
 #include "include/octahedron.glsl"
 #include "include/surfel.glsl"
@@ -11,12 +11,30 @@ layout(rg32ui, binding = 1) readonly uniform uimageBuffer attributes; // normal,
 layout(r32ui, binding = 2) readonly uniform uimage2D splat_index;
 layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
 layout(rg32ui, binding = 4) writeonly uniform uimage2D splats;
-#ifdef CHUNKS
-layout(rgba32ui, binding = 8) uniform uimage2D whole_splats; // of earlier chunks
-#endif
 layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
 layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
-layout(r32f, binding = 7) readonly uniform imageBuffer enlarged; // radii of each block
+#ifdef CHUNKS
+layout(rgba32ui, binding = 7) uniform uimage2D won; // by earlier chunks
+layout(std430, binding = 2) readonly buffer block_enlarged {
+    float enlarged[]; // radii of each block
+};
+#else
+layout(r32f, binding = 7) readonly uniform imageBuffer block_enlarged;
+#endif
+
+float radius_factor(int block)
+{
+#ifdef CHUNKS
+    return enlarged[block];
+#else
+    return imageLoad(block_enlarged, block).x;
+#endif
+}
+
+vec2 splat_ray(vec2 pixel)
+{
+    return (pixel - focal.zw) / focal.xy;
+}
 
 surfel splat(ivec2 at, int point)
 {
@@ -33,7 +51,7 @@ surfel splat(ivec2 at, int point)
     // Remainder of a division, in floats: both are exact below 2^24, and integers divide slowly.
     int item = point / ORL_ITEM_POINTS, blocks = size.z / ORL_BLOCK_POINTS;
     int block = item - blocks * int(float(item) / float(blocks));
-    float radius = position.w * options.x * imageLoad(enlarged, block).x;
+    float radius = position.w * options.x * radius_factor(block);
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
 }
@@ -51,12 +69,18 @@ void main()
         // No branch: the view's parameters are then loaded once for all four pixels.
         child[i] = splat(at, mine ? int(point) : 0);
         child[i].radius = mine ? child[i].radius : 0.0;
+        vec2 centre = vec2(at) + 0.5;
+        uvec4 own = surfel_pack_own(child[i], splat_ray(centre + child[i].displacement),
+                                    splat_ray(centre));
 #ifdef CHUNKS
         if (!mine && size.w > 0)
-            child[i] = surfel_unpack_splat(imageLoad(whole_splats, at));
-        imageStore(whole_splats, at, surfel_pack_splat(child[i]));
+            child[i] = surfel_unpack_splat(imageLoad(won, at));
+        else
+            imageStore(splats, at, own);
+        imageStore(won, at, surfel_pack_splat(child[i]));
+#else
+        imageStore(splats, at, own);
 #endif
-        imageStore(splats, at, surfel_pack_own(child[i], level_centre(at, 0)));
     }
     surfel merged = surfel_merge(child, 0);
     imageStore(coarse_a, parent, surfel_pack_a(merged));

@@ -17,7 +17,7 @@ vec2 level_centre(ivec2 pixel, int level)
     return (vec2(pixel) + 0.5) * float(1 << level);
 }
 
-// --- as kept: from level 1 on in two texels, level 0 in one ---
+// --- as kept: in two texels ---
 
 surfel surfel_unpack(vec4 a, uvec4 b)
 {
@@ -34,20 +34,6 @@ uvec4 surfel_pack_b(surfel s)
 {
     return uvec4(packSnorm2x16(octahedron_encode(s.normal)), packHalf2x16(s.displacement), 0u,
                  0u);
-}
-
-// A splat's interval is [depth, depth + radius].
-surfel surfel_unpack_splat(uvec4 words)
-{
-    float depth = uintBitsToFloat(words.x), radius = uintBitsToFloat(words.y);
-    return surfel(depth, depth + radius, depth, radius,
-                  octahedron_decode(unpackSnorm2x16(words.z)), unpackHalf2x16(words.w));
-}
-
-uvec4 surfel_pack_splat(surfel s)
-{
-    return uvec4(floatBitsToUint(s.depth), floatBitsToUint(s.radius),
-                 packSnorm2x16(octahedron_encode(s.normal)), packHalf2x16(s.displacement));
 }
 
 // --- pull ---
@@ -103,4 +89,30 @@ float surfel_depth_at(surfel s, vec2 centre, vec2 target, out bool inside)
     float behind = depth - s.depth;
     inside = dot(offset, offset) + behind * behind <= s.radius * s.radius;
     return max(depth, 0.0);
+}
+
+// --- level 0, as kept ---
+
+// A splat's interval is [depth, depth + radius].
+surfel surfel_unpack_splat(uvec4 words)
+{
+    float depth = uintBitsToFloat(words.x), radius = uintBitsToFloat(words.y);
+    return surfel(depth, depth + radius, depth, radius,
+                  octahedron_decode(unpackSnorm2x16(words.z)), unpackHalf2x16(words.w));
+}
+
+uvec4 surfel_pack_splat(surfel s)
+{
+    return uvec4(floatBitsToUint(s.depth), floatBitsToUint(s.radius),
+                 packSnorm2x16(octahedron_encode(s.normal)), packHalf2x16(s.displacement));
+}
+
+// What level 0 comes out as where it keeps its own splat: depth at the pixel's centre, 0 for
+// none, and normal. Rays: to the splat's centre and the pixel's.
+uvec4 surfel_pack_own(surfel s, vec2 centre, vec2 target)
+{
+    bool inside;
+    float depth = surfel_depth_at(s, centre, target, inside);
+    return uvec4(floatBitsToUint(s.radius > 0.0 ? depth : 0.0),
+                 packSnorm2x16(octahedron_encode(s.normal)), 0u, 0u);
 }

@@ -39,8 +39,8 @@ enum { PYRAMID_LEVELS_MAX = 9 };
 
 // Depth of one view, rebuilt from the points: splat, pull, push.
 struct proxy {
-    struct orl_prog *splat_depth, *splat_index, *splat_resolve, *pull, *push, *push_last, *support;
-    struct orl_prog *color;
+    struct orl_prog *splat_depth, *splat_index, *splat_resolve, *resolve_chunk, *pull, *push;
+    struct orl_prog *push_last, *support, *color;
     struct cloud cloud;
 };
 
@@ -50,7 +50,8 @@ struct proxy_target {
     struct orl_tex *splat_depth;  // R32UI: bits of the nearest depth; all ones: empty
     struct orl_tex *splat_index;  // R32UI: the nearest point; all ones: empty
     struct orl_tex *splat_layer;  // R32UI: shaders/include/splat.glsl
-    struct orl_tex *splats;       // level 0 of the pyramid: shaders/include/surfel.glsl
+    struct orl_tex *splats;       // RG32UI: level 0 of the pyramid: shaders/include/surfel.glsl
+    struct orl_tex *chunk_splats; // RGBA32UI: what it was made from; NULL: points are one chunk
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // from level 1 on
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
     struct orl_tex *pushed_depth; // before stray points are dropped
@@ -61,9 +62,9 @@ struct proxy_target {
 enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct proxy *proxy);
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
-// Does nothing when the target has this size already.
-enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *target, int width,
-                                        int height);
+// For drawing `proxy` into it. Does nothing when the target has this size already.
+enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, const struct proxy *proxy,
+                                        struct proxy_target *target, int width, int height);
 void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
 // Bytes of a target of this size.
 size_t orl_proxy_target_bytes(int width, int height);

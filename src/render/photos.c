@@ -364,8 +364,8 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
     struct photo_state *state = &photos->states[index];
     struct orl_view view = {.camera = state->depth_camera,
                             .cam_from_world = photos->scene->photos[index].view.cam_from_world};
-    enum orl_result result = orl_proxy_target_resize(gpu, &photos->target, view.camera.width,
-                                                     view.camera.height);
+    enum orl_result result = orl_proxy_target_resize(gpu, proxy, &photos->target,
+                                                     view.camera.width, view.camera.height);
     if (result != ORL_OK)
         return result;
     orl_proxy_draw(gpu, proxy, &view, options, &photos->target);

@@ -24,6 +24,7 @@ enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *poi
         {"splat_depth.comp", NULL, sizeof(struct splat_block), &proxy->splat_depth},
         {"splat_index.comp", NULL, sizeof(struct splat_block), &proxy->splat_index},
         {"splat_resolve.comp", NULL, sizeof(struct splat_block), &proxy->splat_resolve},
+        {"splat_resolve.comp", "CHUNKS", sizeof(struct splat_block), &proxy->resolve_chunk},
         {"points_color.comp", NULL, sizeof(struct splat_block), &proxy->color},
         {"pull.comp", NULL, sizeof(struct pyramid_block), &proxy->pull},
         {"push.comp", NULL, sizeof(struct pyramid_block), &proxy->push},
@@ -45,7 +46,8 @@ void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
 {
     orl_cloud_finish(gpu, &proxy->cloud);
     struct orl_prog **const programs[] = {
-        &proxy->splat_depth, &proxy->splat_index, &proxy->splat_resolve, &proxy->color,
+        &proxy->splat_depth, &proxy->splat_index, &proxy->splat_resolve, &proxy->resolve_chunk,
+        &proxy->color,
         &proxy->pull, &proxy->push, &proxy->push_last, &proxy->support,
     };
     for (size_t i = 0; i < ORL_COUNT(programs); i++)
@@ -65,9 +67,9 @@ static int pyramid_levels(int width, int height)
 
 size_t orl_proxy_target_bytes(int width, int height)
 {
-    // Three words a pixel of splats, 16 bytes of level 0, two depths, a normal, and 24 bytes
+    // Three words a pixel of splats, 8 bytes of level 0, two depths, a normal, and 24 bytes
     // of the coarser levels.
-    return (size_t)width * (size_t)height * (12 + 16 + 8 + 8 + 24 / 3);
+    return (size_t)width * (size_t)height * (12 + 8 + 8 + 8 + 24 / 3);
 }
 
 // Each level half as large as the one before, rounded up: loads outside read as empty.
@@ -88,8 +90,8 @@ static enum orl_result make_pyramid(struct orl_gpu *gpu, struct proxy_target *t)
     return result;
 }
 
-enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, struct proxy_target *target, int width,
-                                        int height)
+enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, const struct proxy *proxy,
+                                        struct proxy_target *target, int width, int height)
 {
     if (target->width == width && target->height == height)
         return ORL_OK;
@@ -105,13 +107,16 @@ enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, struct proxy_target
         {"splat depth", GL_R32UI, &target->splat_depth},
         {"splat index", GL_R32UI, &target->splat_index},
         {"splat layer", GL_R32UI, &target->splat_layer},
-        {"splats", GL_RGBA32UI, &target->splats},
+        {"splats", GL_RG32UI, &target->splats},
+        {"splats of chunks", GL_RGBA32UI, &target->chunk_splats},
         {"pushed depth", GL_R32F, &target->pushed_depth},
         {"proxy depth", GL_R32F, &target->depth},
         {"proxy normal", GL_RGBA16F, &target->normal},
     };
     enum orl_result result = make_pyramid(gpu, target);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
+        if (rows[i].tex == &target->chunk_splats && proxy->cloud.chunk_count < 2)
+            continue;
         struct orl_tex_params params = {.width = width, .height = height,
                                         .format = rows[i].format, .tag = rows[i].tag};
         result = orl_tex_create(gpu, &params, rows[i].tex);
@@ -129,7 +134,7 @@ void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target)
     }
     struct orl_tex **const textures[] = {
         &target->splat_depth, &target->splat_index, &target->splat_layer, &target->splats,
-        &target->pushed_depth, &target->depth, &target->normal,
+        &target->chunk_splats, &target->pushed_depth, &target->depth, &target->normal,
     };
     for (size_t i = 0; i < ORL_COUNT(textures); i++)
         orl_tex_destroy(gpu, textures[i]);
@@ -186,20 +191,24 @@ static void splat(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_b
 static void resolve(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_block *block,
                     struct proxy_target *t)
 {
+    bool chunks = proxy->cloud.chunk_count > 1;
     for (size_t i = 0; i < proxy->cloud.chunk_count; i++) {
         const struct point_chunk *chunk = &proxy->cloud.chunks[i];
         block->size[2] = chunk->count;
         block->size[3] = chunk->first;
-        struct orl_dispatch d = {.prog = proxy->splat_resolve, .params = block,
+        struct orl_dispatch d = {.prog = chunks ? proxy->resolve_chunk : proxy->splat_resolve,
+                                 .params = block, .bufs = {[2] = {.buf = chunk->enlarged}},
                                  .images = {{chunk->position_texels, 0, GL_READ_ONLY},
                                             {chunk->attribute_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},
                                             {t->splat_layer, 0, GL_READ_ONLY},
-                                            {t->splats, 0, GL_READ_WRITE},
+                                            {t->splats, 0, GL_WRITE_ONLY},
                                             {t->surfel_a[1], 0, GL_WRITE_ONLY},
                                             {t->surfel_b[1], 0, GL_WRITE_ONLY},
                                             {chunk->enlarged_texels, 0, GL_READ_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+        if (chunks)
+            d.images[7] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
         orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }

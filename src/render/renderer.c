@@ -79,7 +79,8 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
 
 static enum orl_result resize(struct orl_renderer *r, int width, int height)
 {
-    enum orl_result result = orl_proxy_target_resize(r->gpu, &r->target, width, height);
+    enum orl_result result = orl_proxy_target_resize(r->gpu, &r->proxy, &r->target, width,
+                                                     height);
     if (result == ORL_OK)
         result = orl_fill_resize(r->gpu, &r->fill, width, height);
     const struct orl_tex *old = r->accumulated;

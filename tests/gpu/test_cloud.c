@@ -30,7 +30,7 @@ struct scene {
 static void open_scene(struct scene *s)
 {
     assert_int_equal(orl_proxy_init(gpu, &s->points, &s->proxy), ORL_OK);
-    assert_int_equal(orl_proxy_target_resize(gpu, &s->target, SIDE, SIDE), ORL_OK);
+    assert_int_equal(orl_proxy_target_resize(gpu, &s->proxy, &s->target, SIDE, SIDE), ORL_OK);
 }
 
 static void close_scene(struct scene *s)

@@ -55,7 +55,7 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     struct proxy proxy;
     struct proxy_target target = {0};
     assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
-    assert_int_equal(orl_proxy_target_resize(gpu, &target, SIDE, SIDE), ORL_OK);
+    assert_int_equal(orl_proxy_target_resize(gpu, &proxy, &target, SIDE, SIDE), ORL_OK);
     orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, &target);
     orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof out->depth, out->depth);
     orl_tex_read(target.normal, 0, GL_RGBA, GL_FLOAT, sizeof out->normal, out->normal);
@@ -250,7 +250,7 @@ static void odd_sizes_lose_no_pixel(void **state)
     struct proxy_target target = {0};
     float depth[W * H];
     assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
-    assert_int_equal(orl_proxy_target_resize(gpu, &target, W, H), ORL_OK);
+    assert_int_equal(orl_proxy_target_resize(gpu, &proxy, &target, W, H), ORL_OK);
     orl_proxy_draw(gpu, &proxy, &view, &(struct proxy_options){.splat_scale = 1}, &target);
     orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < W * H; i++)
