@@ -1,4 +1,4 @@
-// Writes guessed background depth, negative, where the proxy has none.
+// Writes guessed background depth, negative, where the proxy has none. 2x2 pixels an invocation.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
@@ -11,10 +11,14 @@ layout(r32f, binding = 1) uniform image2D depth;
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y || imageLoad(depth, at).r > 0.0)
+    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
+    if (2 * parent.x >= area.x || 2 * parent.y >= area.y)
         return;
-    vec4 value = fill_finer(at);
-    if (value.r > 0.0)
-        imageStore(depth, at, vec4(-value.a / value.r));
+    vec4 finer[4];
+    fill_finer(parent, finer);
+    for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
+        ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
+        if (finer[k].r > 0.0 && !(imageLoad(depth, at).r > 0.0))
+            imageStore(depth, at, vec4(-finer[k].a / finer[k].r));
+    }
 }

@@ -1,4 +1,5 @@
-// Fills pixels that know nothing from the coarser level, bilinearly (Gortler 1996, push).
+// Fills pixels that know nothing from the coarser level, bilinearly (Gortler 1996, push). 2x2
+// pixels an invocation.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
@@ -11,10 +12,14 @@ layout(rgba32f, binding = 1) readonly uniform image2D coarse;
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y || imageLoad(fine, at).a > 0.0)
+    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
+    if (2 * parent.x >= area.x || 2 * parent.y >= area.y)
         return;
-    vec4 sum = fill_finer(at);
-    if (sum.a > 0.0)
-        imageStore(fine, at, sum);
+    vec4 finer[4];
+    fill_finer(parent, finer);
+    for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
+        ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
+        if (finer[k].a > 0.0 && !(imageLoad(fine, at).a > 0.0))
+            imageStore(fine, at, finer[k]);
+    }
 }

@@ -6,7 +6,8 @@
 // An invocation makes 2x2 pixels, so that it loads each photograph's parameters once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-layout(rgba32f, binding = 1) writeonly uniform image2D accumulated; // colour * weight, weight
+layout(rgba32f, binding = 1) writeonly uniform image2D accumulated; // colour, 1; 0: none
+layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sum of 2x2 of them: fill_seed.comp
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
@@ -72,7 +73,9 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float z;
     bool inside = photo_project(shot, s.p, pixel, z);
     vec4 seen = photo_depths(shot, pixel);
-    float sees = s.guessed ? photo_unhidden_share(seen, z) : flags.x == 1 ? photo_sees(seen, z) : 1.0;
+    float sees = s.guessed      ? photo_unhidden_share(seen, z)
+                 : flags.x == 1 ? photo_sees(seen, z)
+                                : 1.0;
     float sure = sees * photo_border(shot, pixel);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
     insert(sight(paints ? photo_penalty(shot, s.p) / sure : NOT_SEEN, i, pixel, z), r);
@@ -90,7 +93,7 @@ vec4 look(sight one, float least, float limit, spot s)
                                : vec4(0.0);
 }
 
-// Colour * weight, weight. Samples far from the consensus lose weight: passers-by, leaves,
+// Colour, and 1 where there is one. Samples far from the consensus lose weight: passers-by, leaves,
 // reflections. Roots make the consensus of photographs and not of the best one alone, and
 // differences of light about as the eye sees them.
 vec4 blend(spot s, ranking r)
@@ -108,7 +111,7 @@ vec4 blend(spot s, ranking r)
         vec3 off = sqrt(samples[k].rgb) - mean;
         sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
     }
-    return sum;
+    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
 
 void main()
@@ -139,7 +142,12 @@ void main()
         c++;
         i = c < count ? chosen[list + c] : -1;
     } while (i >= 0);
-    // Stores outside the picture do nothing.
-    for (int k = 0; k < 4; k++)
-        imageStore(accumulated, corner + ivec2(k & 1, k >> 1), blend(spots[k], rankings[k]));
+    vec4 seed = vec4(0.0);
+    for (int k = 0; k < 4; k++) {
+        vec4 color = blend(spots[k], rankings[k]);
+        seed += color;
+        // Stores outside the picture do nothing.
+        imageStore(accumulated, corner + ivec2(k & 1, k >> 1), color);
+    }
+    imageStore(seeds, corner / 2, seed);
 }

@@ -278,7 +278,8 @@ void blend(ivec2 at)
     for (int k = 0; k < sample_count; k++) {
         vec3 color = samples[k].color;
         if (flags.y == 1 && weights[k] > 0.02 * total)
-            color = photo_sharper(photo_at(sample_photo[k]), samples[k].pixel, samples[k].mip, color);
+            color = photo_sharper(photo_at(sample_photo[k]), samples[k].pixel, samples[k].mip,
+                                  color);
         sum += vec4(color, 1.0) * weights[k];
     }
     imageStore(accumulated, at, imageLoad(accumulated, at) + sum);

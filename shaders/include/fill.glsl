@@ -1,15 +1,19 @@
 // Reading the filling pyramid, whose finest level has half the picture's size. Included where
 // FILL_LEVEL names the level's image.
 
-// What a pixel of the next finer level gets: bilinear, as Gortler 1996's push.
-vec4 fill_finer(ivec2 at)
+// What the 2x2 finer pixels of a pixel get: bilinear, as Gortler 1996's push. All four at once,
+// since they share what they read.
+void fill_finer(ivec2 parent, out vec4 finer[4])
 {
-    ivec2 parent = at / 2, side = 2 * (at & 1) - 1, last = imageSize(FILL_LEVEL) - 1;
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < 4; i++) {
-        ivec2 step = ivec2(i & 1, i >> 1);
-        float share = (step.x == 0 ? 0.75 : 0.25) * (step.y == 0 ? 0.75 : 0.25);
-        sum += share * imageLoad(FILL_LEVEL, clamp(parent + side * step, ivec2(0), last));
+    ivec2 last = imageSize(FILL_LEVEL) - 1;
+    vec4 upper[3], lower[3]; // of three columns
+    for (int x = 0; x < 3; x++) {
+        vec4 column[3];
+        for (int y = 0; y < 3; y++)
+            column[y] = imageLoad(FILL_LEVEL, clamp(parent + ivec2(x, y) - 1, ivec2(0), last));
+        upper[x] = 0.75 * column[1] + 0.25 * column[0];
+        lower[x] = 0.75 * column[1] + 0.25 * column[2];
     }
-    return sum;
+    finer = vec4[4](0.75 * upper[1] + 0.25 * upper[0], 0.75 * upper[1] + 0.25 * upper[2],
+                    0.75 * lower[1] + 0.25 * lower[0], 0.75 * lower[1] + 0.25 * lower[2]);
 }

@@ -69,17 +69,18 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return ORL_OK;
 }
 
-static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *prog, const struct orl_tex *first,
-                GLenum first_access, const struct orl_tex *second, GLenum second_access,
-                const struct orl_tex *covered)
+static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *prog,
+                const struct orl_tex *first, GLenum first_access, const struct orl_tex *second,
+                GLenum second_access, const struct orl_tex *covered)
 {
-    struct image_block block = {.area = {covered->params.width, covered->params.height},
-                                .scale = {fill->depth_scale}};
+    bool four = prog == fill->push || prog == fill->apply_depth;
+    int width = covered->params.width, height = covered->params.height;
+    struct image_block block = {.area = {width, height}, .scale = {fill->depth_scale}};
     struct orl_dispatch d = {.prog = prog, .params = &block,
                              .images = {{first, 0, first_access}, {second, 0, second_access}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups(covered->params.width, covered->params.height, d.groups);
+    orl_pixel_groups(four ? (width + 1) / 2 : width, four ? (height + 1) / 2 : height, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }
 
@@ -103,7 +104,8 @@ void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *dept
 
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
 {
-    run(gpu, fill, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
-        fill->level[0]);
+    if (accumulated)
+        run(gpu, fill, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
+            fill->level[0]);
     spread(gpu, fill);
 }

@@ -195,6 +195,7 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     orl_pass_end(r->gpu);
     d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
+    d.images[2] = (struct orl_image_binding){r->fill.level[0], 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     orl_pixel_groups((view->camera.width + 1) / 2, (view->camera.height + 1) / 2, d.groups);
     orl_pass_begin(r->gpu, "gather");
@@ -209,6 +210,7 @@ static enum orl_result blend_all(struct orl_renderer *r, const struct orl_view *
                                  const struct proxy_options *depth_options, const bool *skip)
 {
     size_t count = 0;
+    orl_accumulated_clear(r);
     for (size_t i = 0; i < r->scene->photo_count; i++) {
         if (!r->photos.states[i].usable || (skip && skip[i]))
             continue;
@@ -232,7 +234,8 @@ static enum orl_result blend_all(struct orl_renderer *r, const struct orl_view *
 // Paints from the photographs that this view can use best; the rest need not be resident.
 static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view *view,
                                   const struct orl_render_params *params,
-                                  const struct proxy_options *depth_options, const bool *skip)
+                                  const struct proxy_options *depth_options, const bool *skip,
+                                  bool *seeded)
 {
     size_t most = (size_t)r->photos.slot_count, count = 0;
     most = most < PHOTOS_PER_FRAME_MAX ? most : PHOTOS_PER_FRAME_MAX;
@@ -241,17 +244,24 @@ static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view 
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = orl_photos_require(r->gpu, &r->photos, &r->proxy, r->gather.chosen[i],
                                     depth_options);
-    return result == ORL_OK && count ? gather_best(r, view, params, count) : result;
+    if (result != ORL_OK)
+        return result;
+    *seeded = count > 0;
+    if (count)
+        return gather_best(r, view, params, count);
+    orl_accumulated_clear(r);
+    return ORL_OK;
 }
 
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip)
+                           const struct orl_render_params *params, const bool *skip, bool *seeded)
 {
+    *seeded = false;
     struct proxy_options options = orl_proxy_options(params);
     // The choice of the best asks what hides the surface even when pixels do not. Radiance
     // needs every exposure: the best by angle alone may all be clipped.
     if (params->blend == ORL_BLEND_BEST && !r->photos.radiance)
-        return blend_best(r, view, params, &options, skip);
+        return blend_best(r, view, params, &options, skip, seeded);
     bool test = params->visibility == ORL_VISIBILITY_HARD;
     return blend_all(r, view, params, test ? &options : NULL, skip);
 }

@@ -138,7 +138,8 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
 // Guesses background depth, as negative values, where `depth` is 0.
 void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth);
-// Spreads `accumulated` (colour * weight, weight) over fill->level[0].
+// Spreads `accumulated` (colour * weight, weight) over fill->level[0]; NULL: what that holds, 2x2
+// pixels of colour, 1 summed.
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
 
 // --- blending (gather.c) ---
@@ -164,9 +165,10 @@ enum orl_result orl_preselect(const struct orl_log *log, const struct photos *ph
                               size_t *chosen, size_t *count) ORL_CHECK_RESULT;
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
-// Adds every usable photograph's weighted colour to r->accumulated.
+// Colour from the usable photographs as colour * weight, weight into r->accumulated. *seeded:
+// and summed for orl_fill_color into the fill's finest level.
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip);
+                           const struct orl_render_params *params, const bool *skip, bool *seeded);
 
 struct orl_renderer {
     struct orl_gpu *gpu;
@@ -184,6 +186,8 @@ struct orl_renderer {
 
 // renderer.c
 struct proxy_options orl_proxy_options(const struct orl_render_params *params);
+// Nothing accumulated, and no trust.
+void orl_accumulated_clear(struct orl_renderer *r);
 
 // read_back.c: the last draw; leave_out as of struct orl_render_params.
 enum orl_result orl_read_back(struct orl_renderer *r, unsigned leave_out, struct orl_frame *frame);

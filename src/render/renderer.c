@@ -106,6 +106,13 @@ struct proxy_options orl_proxy_options(const struct orl_render_params *params)
                                   .points_per_pixel = params->points_per_pixel};
 }
 
+void orl_accumulated_clear(struct orl_renderer *r)
+{
+    orl_tex_clear(r->accumulated, 0);
+    if (r->trusted)
+        orl_tex_clear(r->trusted, 0);
+}
+
 static void compose(struct orl_renderer *r, const struct orl_render_params *params)
 {
     struct image_block block = {.area = {r->target.width, r->target.height,
@@ -117,7 +124,7 @@ static void compose(struct orl_renderer *r, const struct orl_render_params *para
                                         {r->target.depth, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_pixel_groups(r->target.width, r->target.height, d.groups);
+    orl_pixel_groups((r->target.width + 1) / 2, (r->target.height + 1) / 2, d.groups);
     orl_gpu_dispatch(r->gpu, &d);
 }
 
@@ -126,20 +133,19 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
 {
     struct orl_gpu *gpu = r->gpu;
     enum orl_result result = ORL_OK;
+    bool seeded = false;
     struct proxy_options options = orl_proxy_options(params);
     orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
-    orl_tex_clear(r->accumulated, 0);
-    if (r->trusted)
-        orl_tex_clear(r->trusted, 0);
     if (params->color == ORL_COLOR_PHOTOS) {
         if (params->fill == ORL_FILL_DEPTH) {
             orl_pass_begin(gpu, "fill");
             orl_fill_depth(gpu, &r->fill, r->target.depth);
             orl_pass_end(gpu);
         }
-        result = orl_gather(r, view, params, skip);
+        result = orl_gather(r, view, params, skip, &seeded);
     } else {
         orl_pass_begin(gpu, "gather");
+        orl_accumulated_clear(r);
         orl_proxy_color(gpu, &r->proxy, view, &r->target, r->accumulated);
         orl_pass_end(gpu);
     }
@@ -147,7 +153,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
         return result;
     orl_pass_begin(gpu, "fill");
     if (params->fill != ORL_FILL_NONE)
-        orl_fill_color(gpu, &r->fill, r->accumulated);
+        orl_fill_color(gpu, &r->fill, seeded ? NULL : r->accumulated);
     compose(r, params);
     orl_pass_end(gpu);
     return ORL_OK;
