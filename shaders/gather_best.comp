@@ -29,12 +29,10 @@ struct spot {
     bool guessed;
 };
 
-// Where a photograph shows it.
+// A photograph that shows it.
 struct sight {
     float penalty;
     int photo;
-    vec2 pixel;
-    float z;
 };
 
 // The best of a pixel, ascending by penalty, and the penalty of the one after the last of them.
@@ -50,10 +48,8 @@ void insert(sight s, inout ranking r)
     for (int k = 0; k < KEPT; k++) {
         bool better = s.penalty < r.best[k].penalty;
         sight other = r.best[k];
-        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.photo : other.photo,
-                          better ? s.pixel : other.pixel, better ? s.z : other.z);
-        s = sight(better ? other.penalty : s.penalty, better ? other.photo : s.photo,
-                  better ? other.pixel : s.pixel, better ? other.z : s.z);
+        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.photo : other.photo);
+        s = sight(better ? other.penalty : s.penalty, better ? other.photo : s.photo);
     }
     r.next = min(r.next, s.penalty);
 }
@@ -78,7 +74,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
                                 : 1.0;
     float sure = sees * photo_border(shot, pixel);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
-    insert(sight(paints ? photo_penalty(shot, s.p) / sure : NOT_SEEN, i, pixel, z), r);
+    insert(sight(paints ? photo_penalty(shot, s.p) / sure : NOT_SEEN, i), r);
 }
 
 // One photograph's colour and its weight.
@@ -87,7 +83,10 @@ vec4 look(sight one, float least, float limit, spot s)
     // Full weight until the penalty comes near that of the first left out.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.0 - one.penalty / limit));
     photo shot = photo_at(one.photo);
-    vec3 color = photo_sample(shot, one.pixel, photo_mip(shot, one.z, s.p.z)).rgb;
+    vec2 pixel; // again: four pixels' worth of what consider knew is much to keep
+    float z;
+    photo_project(shot, s.p, pixel, z);
+    vec3 color = photo_sample(shot, pixel, photo_mip(shot, z, s.p.z)).rgb;
     float sharpness = s.guessed ? choice.w : choice.y;
     return one.penalty < limit ? vec4(color, pow(least / one.penalty, sharpness) * fade)
                                : vec4(0.0);
@@ -128,7 +127,7 @@ void main()
                         stored < 0.0);
         rankings[k].next = NOT_SEEN;
         for (int n = 0; n < KEPT; n++)
-            rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 1.0);
+            rankings[k].best[n] = sight(NOT_SEEN, 0);
     }
     ivec2 tile = corner / CHOICE_TILE; // of all four, since its side is even
     int list = (tile.y * area.w + tile.x) * CANDIDATES, count = int(choice_more.x), c = 0;

@@ -10,7 +10,7 @@ layout(rgba32f, binding = 7) readonly uniform imageBuffer photo_rows;
 
 // A photograph; see struct photo_data.
 struct photo {
-    vec4 from_view[3], eye, focal, size, slot_size, gain, lens, noise;
+    vec4 from_view[3], eye, focal, size, gain, lens, noise;
 };
 
 // What is not used of it is not loaded. Loading costs: share it between pixels where that can be.
@@ -21,8 +21,7 @@ photo photo_at(int i)
                          imageLoad(photo_rows, row + 2)),
                  imageLoad(photo_rows, row + 3), imageLoad(photo_rows, row + 4),
                  imageLoad(photo_rows, row + 5), imageLoad(photo_rows, row + 6),
-                 imageLoad(photo_rows, row + 7), imageLoad(photo_rows, row + 8),
-                 imageLoad(photo_rows, row + 9));
+                 imageLoad(photo_rows, row + 7), imageLoad(photo_rows, row + 8));
 }
 
 // Mipmapped. sRGB, whose reads are linear light; with RADIANCE linear exposure * trust *
@@ -60,14 +59,14 @@ vec4 photo_depths(photo shot, vec2 pixel)
     // Stay within the photograph's part of its slot.
     at = clamp(at, vec2(0.5), shot.size.zw - 0.5);
     float slot = shot.eye.w;
-    return textureGather(photo_depth, vec3(at / shot.slot_size.zw, slot));
+    return textureGather(photo_depth, vec3(at / slots.zw, slot));
 }
 
 // Mip level at which the photograph has the view's resolution.
 float photo_mip(photo shot, float z, float view_depth)
 {
     float magnification = shot.focal.x * view_depth / (z * view_focal.x);
-    return clamp(log2(magnification), 0.0, shot.gain.w);
+    return clamp(log2(magnification), 0.0, choice_more.z);
 }
 
 vec4 photo_texel(vec2 at, float slot, float lod)
@@ -77,16 +76,16 @@ vec4 photo_texel(vec2 at, float slot, float lod)
 
 vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
 {
-    return photo_texel(pixel / shot.slot_size.xy, shot.eye.w, mip);
+    return photo_texel(pixel / slots.xy, shot.gain.w, mip);
 }
 
 // Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005): bilinear sampling would
 // blur every photograph by the phase that it happens to be met at.
 vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
 {
-    float lod = floor(mip + 0.5), slot = shot.eye.w;
-    vec2 size_at = max(floor(shot.slot_size.xy / exp2(lod)), vec2(1.0));
-    vec2 at = pixel / shot.slot_size.xy * size_at - 0.5;
+    float lod = floor(mip + 0.5), slot = shot.gain.w;
+    vec2 size_at = max(floor(slots.xy / exp2(lod)), vec2(1.0));
+    vec2 at = pixel / slots.xy * size_at - 0.5;
     vec2 base = floor(at), f = at - base;
     vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
     vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);

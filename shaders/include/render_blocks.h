@@ -40,15 +40,14 @@ ORL_BLOCK(pyramid_block)
 #define ORL_RADIANCE_KEPT 6    // of those, for the pixels of a work group
 
 // A photograph as the gather passes see it; an array of these is a storage buffer.
-#define ORL_PHOTO_VEC4S 10
+#define ORL_PHOTO_VEC4S 9
 #if defined(__STDC_VERSION__)
 struct photo_data {
     VEC4S(from_view, 3); // rows: rotation | translation, photograph's camera from the view's
     VEC4(eye);           // photograph's centre in the view's camera frame; w: slot
     VEC4(focal);         // fx fy cx cy of the resident photograph, pixels
     VEC4(size);          // width, height of the resident photograph; of its depth map
-    VEC4(slot_size);     // width, height of a slot; of a depth slot
-    VEC4(gain);          // rgb gain on linear colour; w: largest mip level
+    VEC4(gain);          // rgb gain on linear colour; w: slot again, so that sampling loads one less
     VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
     VEC4(noise);         // of radiance: variance per light, of reading out; z: 1 if rounded
 };
@@ -68,7 +67,9 @@ ORL_BLOCK(gather_block)
     VEC4(choice);     // x: photographs per pixel, y: sharpness, z: trust in photographs
                       // without depth, w: sharpness on guessed depth
     VEC4(choice_more); // x: photographs of the tile's list that a pixel asks,
-                       // y: severity with outliers, 1 / squared root of light; 0: none
+                       // y: severity with outliers, 1 / squared root of light; 0: none,
+                       // z: largest mip level
+    VEC4(slots);       // width, height of a slot; of a depth slot
 };
 #endif
 

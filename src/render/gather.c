@@ -93,7 +93,6 @@ static void describe_photo(const struct photos *photos, size_t index, const stru
 {
     const struct orl_photo *photo = &photos->scene->photos[index];
     const struct photo_state *state = &photos->states[index];
-    const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth->params;
     relative_pose(&photo->view.cam_from_world, &view->cam_from_world, data);
     data->eye[3] = (float)state->slot;
     set_focal(data->focal, &state->color_camera);
@@ -101,16 +100,12 @@ static void describe_photo(const struct photos *photos, size_t index, const stru
     data->size[1] = (float)state->color_camera.height;
     data->size[2] = (float)state->depth_camera.width;
     data->size[3] = (float)state->depth_camera.height;
-    data->slot_size[0] = (float)color->width;
-    data->slot_size[1] = (float)color->height;
-    data->slot_size[2] = (float)depth->width;
-    data->slot_size[3] = (float)depth->height;
     for (int c = 0; c < 3; c++) {
         data->gain[c] = aligned || photos->radiance ? photo->gain[c] : 1;
         data->lens[c] = aligned ? photo->vignette[c] : 0;
     }
     data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
-    data->gain[3] = (float)(color->levels - 1);
+    data->gain[3] = (float)state->slot;
     if (!photos->radiance)
         return;
     for (int c = 0; c < 3; c++)
@@ -131,6 +126,8 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
                                         const struct orl_render_params *params, size_t count)
 {
     struct gather *g = &r->gather;
+    const struct orl_tex_params *color = &r->photos.color->params;
+    const struct orl_tex_params *depth = &r->photos.depth->params;
     for (size_t i = 0; i < count; i++)
         describe_photo(&r->photos, g->chosen[i], view, params->alignment == ORL_ALIGNMENT_ON,
                        &g->list[i]);
@@ -146,7 +143,10 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
         .choice = {floorf(params->photos_per_pixel + 0.5f), params->sharpness,
                    params->unknown_trust, params->guess_sharpness},
         .choice_more = {floorf(params->candidates + 0.5f),
-                        params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0},
+                        params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
+                        (float)(color->levels - 1)},
+        .slots = {(float)color->width, (float)color->height, (float)depth->width,
+                  (float)depth->height},
     };
     set_focal(block.view_focal, &view->camera);
     return block;

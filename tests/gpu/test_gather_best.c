@@ -149,6 +149,54 @@ static void many_photographs_leave_the_best(void **state)
     teardown(&f);
 }
 
+// 2x2 pixels are made at once: the last row and column of odd pictures too, and nothing beside.
+static void odd_sizes_lose_no_pixel(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, true);
+    for (int i = 0; i < 3; i++) // wider than the view
+        add_photo(&f, look_from(0.1 * i, 0, 0, 64, 40), red);
+    struct orl_view view = look(0.05, 0, 0);
+    view.camera.width = 37;
+    view.camera.height = 33;
+    for (int kept = 2; kept <= 4; kept += 2) {
+        struct orl_render_params params = best();
+        params.photos_per_pixel = (float)kept;
+        struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+        for (int i = 0; i < 37 * 33; i++) {
+            assert_float_equal(frame.color.f32[3 * i], 1, 1e-4);
+            assert_float_equal(frame.color.f32[3 * i + 1], 0, 1e-4);
+            assert_float_equal(frame.coverage.f32[i], 1, 0);
+        }
+        orl_frame_finish(&frame);
+    }
+    teardown(&f);
+}
+
+// What no photograph sees takes its neighbours' colour, and is no surface of theirs.
+static void unseen_pixels_are_filled(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    add_photo(&f, look_from(-1.2, 0, 0, 48, 80), green); // sees x from -2.4 to 0
+    struct orl_render_params params = best();
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    for (int x = 2; x < 46; x++) {
+        assert_float_equal(color_at(&frame, x, 24)[1], 1, 1e-3);
+        assert_float_equal(color_at(&frame, x, 24)[0], 0, 1e-4);
+        assert_float_equal(frame.coverage.f32[24 * 48 + x], x < 23 ? 1 : 0, x > 20 && x < 26);
+    }
+    params.fill = ORL_FILL_NONE;
+    struct orl_frame open = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    assert_float_equal(color_at(&open, 40, 24)[1], 0, 0);
+    assert_float_equal(color_at(&open, 12, 24)[1], 1, 1e-3);
+    orl_frame_finish(&frame);
+    orl_frame_finish(&open);
+    teardown(&f);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -158,6 +206,8 @@ int main(void)
         cmocka_unit_test(a_small_move_changes_little),
         cmocka_unit_test(outliers_lose),
         cmocka_unit_test(many_photographs_leave_the_best),
+        cmocka_unit_test(odd_sizes_lose_no_pixel),
+        cmocka_unit_test(unseen_pixels_are_filled),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);
