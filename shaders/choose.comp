@@ -36,7 +36,8 @@ void main()
         best[c] = 1e30;
         index[c] = -1;
     }
-    for (int i = 0; i < area.z; i++) {
+    int i = 0;
+    do { // the condition last: see gather_best.comp
         // The best that it can do anywhere in the tile, and a little for how much it sees.
         float least = 1e30, seen = 0.0;
         photo shot = photo_at(i);
@@ -49,9 +50,7 @@ void main()
             least = min(least, photo_penalty(shot, points[s]) * hidden);
             seen += 1.0 / hidden;
         }
-        least *= 1.0 + 1.0 / max(seen, 0.1);
-        if (seen == 0.0)
-            continue;
+        least = seen == 0.0 ? 1e30 : least * (1.0 + 1.0 / max(seen, 0.1));
         int candidate = i;
         for (int c = 0; c < CANDIDATES; c++) { // insertion
             if (least < best[c]) {
@@ -63,7 +62,8 @@ void main()
                 candidate = n;
             }
         }
-    }
+        i++;
+    } while (i < area.z);
     for (int c = 0; c < CANDIDATES; c++)
         chosen[(tile.y * row + tile.x) * CANDIDATES + c] = index[c];
 }

@@ -1,20 +1,25 @@
 // The finished frame: blended colour, or the fill where nothing was blended. 2x2 pixels an
 // invocation.
+// REST: gather_best.comp did all but the pixels that nothing paints, of some work groups.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) uniform image2D accumulated; // in: colour * weight, weight;
+                                                          // REST: see gather_best.comp
                                                           // out: colour, coverage
 layout(rgba32f, binding = 1) readonly uniform image2D filled;
 layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 
 #define FILL_LEVEL filled
 #include "include/fill.glsl"
+#ifdef REST
+#include "include/unpainted.glsl"
+#endif
 
-void main()
+void compose(uvec2 group)
 {
-    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 parent = ivec2(group * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy);
     if (2 * parent.x >= area.x || 2 * parent.y >= area.y)
         return;
     vec4 finer[4];
@@ -22,14 +27,32 @@ void main()
     for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
         ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
         vec4 sum = imageLoad(accumulated, at);
-        float on_surface = imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
         bool fills = area.w == 1 && finer[k].a > 0.0;
-        vec4 filled = vec4(fills ? finer[k].rgb / finer[k].a : vec3(0.0),
-                           // Splat colours between splats count as covered by them.
-                           area.z == 1 ? on_surface : 0.0);
-        vec4 result = sum.a > 0.0 ? vec4(sum.rgb / sum.a, on_surface) : filled;
-        // Most are as they should be where gather_best.comp painted.
-        if (result != sum)
-            imageStore(accumulated, at, result);
+        vec3 filled = fills ? finer[k].rgb / finer[k].a : vec3(0.0);
+#ifdef REST
+        if (sum.a < 0.0)
+            imageStore(accumulated, at, vec4(filled, 0.0));
+#else
+        float on_surface = imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
+        // Splat colours between splats count as covered by them.
+        imageStore(accumulated, at,
+                   sum.a > 0.0 ? vec4(sum.rgb / sum.a, on_surface)
+                               : vec4(filled, area.z == 1 ? on_surface : 0.0));
+#endif
     }
+}
+
+void main()
+{
+#ifdef REST
+    uint row = uint(area.x + 2 * ORL_PIXEL_GROUP_X - 1) / (2 * ORL_PIXEL_GROUP_X);
+    uint place = gl_WorkGroupID.x;
+    do {
+        uint number = unpainted_groups[place];
+        compose(uvec2(number % row, number / row));
+        place += UNPAINTED_DISPATCH_MAX;
+    } while (place < unpainted_count);
+#else
+    compose(gl_WorkGroupID.xy);
+#endif
 }

@@ -6,11 +6,13 @@
 // An invocation makes 2x2 pixels, so that it loads each photograph's parameters once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-layout(rgba32f, binding = 1) writeonly uniform image2D accumulated; // colour, 1; 0: none
+// Finished: colour, coverage. What nothing paints is left to compose.comp: 0, -1.
+layout(rgba32f, binding = 1) writeonly uniform image2D accumulated;
 layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sum of 2x2 of them: fill_seed.comp
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
+#include "include/unpainted.glsl"
 
 // How surely the photograph saw this surface: 1 where its depth agrees, little where it
 // has none, 0 where it saw something else.
@@ -142,11 +144,18 @@ void main()
         i = c < count ? chosen[list + c] : -1;
     } while (i >= 0);
     vec4 seed = vec4(0.0);
+    bool whole = true;
     for (int k = 0; k < 4; k++) {
         vec4 color = blend(spots[k], rankings[k]);
+        bool painted = color.a > 0.0;
         seed += color;
+        whole = whole && painted;
+        color.a = !painted ? -1.0 : spots[k].guessed ? 0.0 : 1.0;
         // Stores outside the picture do nothing.
         imageStore(accumulated, corner + ivec2(k & 1, k >> 1), color);
     }
     imageStore(seeds, corner / 2, seed);
+    if (!whole)
+        unpainted_add(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x,
+                      gl_NumWorkGroups.x * gl_NumWorkGroups.y);
 }

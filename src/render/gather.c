@@ -53,6 +53,7 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
     orl_tex_destroy(gpu, &gather->photo_rows);
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
+    orl_buf_destroy(gpu, &gather->unpainted);
     free(gather->list);
     free(gather->chosen);
     memset(gather, 0, sizeof *gather);
@@ -169,22 +170,37 @@ static void gather_all(struct orl_renderer *r, const struct orl_view *view,
     orl_pass_end(r->gpu);
 }
 
+// Room for `bytes` in *buf, which loses what it holds.
+static enum orl_result make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
+                                 struct orl_buf **buf)
+{
+    if (*buf && (*buf)->size >= bytes)
+        return ORL_OK;
+    orl_buf_destroy(gpu, buf);
+    return orl_buf_create(gpu, tag, bytes, NULL, buf);
+}
+
 static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view *view,
                                    const struct orl_render_params *params, size_t count)
 {
     struct gather *g = &r->gather;
     int across = tiles(view->camera.width), down = tiles(view->camera.height);
-    size_t bytes = (size_t)across * (size_t)down * CANDIDATES * sizeof(int);
-    if (!g->tile_lists || g->tile_lists->size < bytes) {
-        orl_buf_destroy(r->gpu, &g->tile_lists);
-        enum orl_result result =
-            orl_buf_create(r->gpu, "photographs of tiles", bytes, NULL, &g->tile_lists);
-        if (result != ORL_OK)
-            return result;
-    }
+    unsigned groups[3]; // 2x2 pixels an invocation
+    orl_pixel_groups((view->camera.width + 1) / 2, (view->camera.height + 1) / 2, groups);
+    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/include/unpainted.glsl
+    enum orl_result result =
+        make_room(r->gpu, "photographs of tiles",
+                  (size_t)across * (size_t)down * CANDIDATES * sizeof(int), &g->tile_lists);
+    if (result == ORL_OK)
+        result = make_room(r->gpu, "groups with unpainted pixels",
+                           sizeof nothing + 8 * (size_t)groups[0] * groups[1], &g->unpainted);
+    if (result != ORL_OK)
+        return result;
+    orl_buf_fill(g->unpainted, 0);
+    orl_buf_write(g->unpainted, 0, sizeof nothing, nothing);
     struct gather_block block = prepare_pass(r, view, params, count);
     struct orl_dispatch d = {.prog = g->choose, .params = &block,
-                             .bufs = {[1] = {.buf = g->tile_lists}},
+                             .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unpainted}},
                              .textures = {r->photos.color, r->photos.depth},
                              .images = {{r->target.depth, 0, GL_READ_ONLY},
                                         [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
@@ -196,8 +212,9 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){r->fill.level[0], 0, GL_WRITE_ONLY};
-    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
-    orl_pixel_groups((view->camera.width + 1) / 2, (view->camera.height + 1) / 2, d.groups);
+    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                GL_COMMAND_BARRIER_BIT;
+    memcpy(d.groups, groups, sizeof groups);
     orl_pass_begin(r->gpu, "gather");
     orl_gpu_dispatch(r->gpu, &d);
     orl_pass_end(r->gpu);
@@ -235,7 +252,7 @@ static enum orl_result blend_all(struct orl_renderer *r, const struct orl_view *
 static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view *view,
                                   const struct orl_render_params *params,
                                   const struct proxy_options *depth_options, const bool *skip,
-                                  bool *seeded)
+                                  bool *finished)
 {
     size_t most = (size_t)r->photos.slot_count, count = 0;
     most = most < PHOTOS_PER_FRAME_MAX ? most : PHOTOS_PER_FRAME_MAX;
@@ -246,7 +263,7 @@ static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view 
                                     depth_options);
     if (result != ORL_OK)
         return result;
-    *seeded = count > 0;
+    *finished = count > 0;
     if (count)
         return gather_best(r, view, params, count);
     orl_accumulated_clear(r);
@@ -254,14 +271,14 @@ static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view 
 }
 
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip, bool *seeded)
+                           const struct orl_render_params *params, const bool *skip, bool *finished)
 {
-    *seeded = false;
+    *finished = false;
     struct proxy_options options = orl_proxy_options(params);
     // The choice of the best asks what hides the surface even when pixels do not. Radiance
     // needs every exposure: the best by angle alone may all be clipped.
     if (params->blend == ORL_BLEND_BEST && !r->photos.radiance)
-        return blend_best(r, view, params, &options, skip, seeded);
+        return blend_best(r, view, params, &options, skip, finished);
     bool test = params->visibility == ORL_VISIBILITY_HARD;
     return blend_all(r, view, params, test ? &options : NULL, skip);
 }

@@ -155,6 +155,7 @@ struct gather {
     struct orl_buf *photos;  // struct photo_data
     struct orl_tex *photo_rows; // its view, RGBA32F
     struct orl_buf *tile_lists; // choose.comp
+    struct orl_buf *unpainted;  // of the last gather_best.comp: shaders/include/unpainted.glsl
 };
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
@@ -165,10 +166,11 @@ enum orl_result orl_preselect(const struct orl_log *log, const struct photos *ph
                               size_t *chosen, size_t *count) ORL_CHECK_RESULT;
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
-// Colour from the usable photographs as colour * weight, weight into r->accumulated. *seeded:
-// and summed for orl_fill_color into the fill's finest level.
+// Colour from the usable photographs as colour * weight, weight into r->accumulated. *finished:
+// as colour, coverage, but for r->gather.unpainted, and summed for orl_fill_color into the fill's
+// finest level.
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip, bool *seeded);
+                           const struct orl_render_params *params, const bool *skip, bool *finished);
 
 struct orl_renderer {
     struct orl_gpu *gpu;
@@ -177,7 +179,7 @@ struct orl_renderer {
     struct photos photos;
     struct fill fill;
     struct gather gather;
-    struct orl_prog *compose;
+    struct orl_prog *compose, *compose_rest;
     struct proxy_target target;
     struct orl_tex *accumulated; // colour * weight, weight; composed in place
     struct orl_tex *trusted;     // of radiance: weight * trust, weight

@@ -51,6 +51,9 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "compose.comp", NULL, sizeof(struct image_block),
                                  &r->compose);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "compose.comp", "REST", sizeof(struct image_block),
+                                 &r->compose_rest);
     if (result != ORL_OK) {
         orl_renderer_destroy(&r);
         return result;
@@ -69,6 +72,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_fill_finish(r->gpu, &r->fill);
     orl_gather_finish(r->gpu, &r->gather);
     orl_prog_destroy(r->gpu, &r->compose);
+    orl_prog_destroy(r->gpu, &r->compose_rest);
     orl_proxy_target_finish(r->gpu, &r->target);
     orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->accumulated);
@@ -113,12 +117,14 @@ void orl_accumulated_clear(struct orl_renderer *r)
         orl_tex_clear(r->trusted, 0);
 }
 
-static void compose(struct orl_renderer *r, const struct orl_render_params *params)
+static void compose(struct orl_renderer *r, const struct orl_render_params *params, bool finished)
 {
     struct image_block block = {.area = {r->target.width, r->target.height,
                                          params->color == ORL_COLOR_POINTS,
                                          params->fill != ORL_FILL_NONE}};
-    struct orl_dispatch d = {.prog = r->compose, .params = &block,
+    struct orl_dispatch d = {.prog = finished ? r->compose_rest : r->compose, .params = &block,
+                             .bufs = {[2] = {.buf = finished ? r->gather.unpainted : NULL}},
+                             .indirect = finished ? r->gather.unpainted : NULL,
                              .images = {{r->accumulated, 0, GL_READ_WRITE},
                                         {r->fill.level[0], 0, GL_READ_ONLY},
                                         {r->target.depth, 0, GL_READ_ONLY}},
@@ -133,7 +139,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
 {
     struct orl_gpu *gpu = r->gpu;
     enum orl_result result = ORL_OK;
-    bool seeded = false;
+    bool finished = false;
     struct proxy_options options = orl_proxy_options(params);
     orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
     if (params->color == ORL_COLOR_PHOTOS) {
@@ -142,7 +148,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
             orl_fill_depth(gpu, &r->fill, r->target.depth);
             orl_pass_end(gpu);
         }
-        result = orl_gather(r, view, params, skip, &seeded);
+        result = orl_gather(r, view, params, skip, &finished);
     } else {
         orl_pass_begin(gpu, "gather");
         orl_accumulated_clear(r);
@@ -153,8 +159,8 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
         return result;
     orl_pass_begin(gpu, "fill");
     if (params->fill != ORL_FILL_NONE)
-        orl_fill_color(gpu, &r->fill, seeded ? NULL : r->accumulated);
-    compose(r, params);
+        orl_fill_color(gpu, &r->fill, finished ? NULL : r->accumulated);
+    compose(r, params, finished);
     orl_pass_end(gpu);
     return ORL_OK;
 }
