@@ -8,7 +8,7 @@
 #include "gpu/gpu.h"
 
 // Raised when the same photographs and settings give other maps than before.
-enum { ORL_DENSIFY_VERSION = 3 };
+enum { ORL_DENSIFY_VERSION = 4 };
 
 struct orl_densify_params {
     int sources;          // source photographs per reference, [1, 16]; cost grows with it
@@ -30,8 +30,9 @@ struct orl_densify_params {
     .seed = 1
 
 // Writes WORKSPACE/stereo/{depth_maps,normal_maps}/NAME.{photometric,geometric}.bin
-// for every photograph in `photos` (names; NULL: all of the model), using only
-// those as sources. Photographs whose maps are already there are skipped when these were
+// and confidence_maps/NAME.geometric.bin (same format: 0 where there is no depth, 0.2 where a
+// plain surface was completed from around, up to 1 where many sources agree) for every
+// photograph in `photos` (names; NULL: all of the model), using only those as sources. Photographs whose maps are already there are skipped when these were
 // made from the same photographs with the same settings, as stereo/densify.json says; else
 // all maps are made again. The same seed gives the same maps. Interrupted, it leaves whole
 // files only. ORL_ERR_ARGUMENT: there are maps that densify did not make.

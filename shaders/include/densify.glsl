@@ -69,12 +69,12 @@ vec3 plane_from_normal(float w, vec3 away, vec2 pixel)
     return vec3(w, w * away.xy / (camera.xy * dot(away, view_ray(pixel))));
 }
 
-// Within the depth range and seen at less than 80 degrees.
+// Within the depth range and seen at less than 86 degrees: ground before a viewer reaches that.
 bool plane_valid(vec3 plane, vec2 pixel)
 {
     vec3 n = plane_normal(plane, pixel), r = view_ray(pixel);
     return plane.x >= range.x && plane.x <= range.y &&
-           plane.x * plane.x > 0.03 * dot(n, n) * dot(r, r);
+           plane.x * plane.x > 0.004 * dot(n, n) * dot(r, r);
 }
 
 vec3 random_plane(vec2 pixel)
