@@ -32,7 +32,7 @@ struct densifier {
     struct orl_densify_params params; // sources: as many as fit
     int shrink;                       // halvings of the photographs
     const struct orl_progress *progress;
-    char *images_dir, *depth_dir, *normal_dir, *sparse_dir; // owned
+    char *images_dir, *depth_dir, *normal_dir, *confidence_dir, *sparse_dir; // owned
     struct orl_colmap_model model;
     struct densify_photos photos;
     struct densify_plan *plans;
@@ -108,11 +108,13 @@ static enum orl_result read_map(const struct densifier *d, const char *dir, size
     return result;
 }
 
-// The depth map is written last, so that a photograph with one has both.
+// The depth map is written last, so that a photograph with one has all.
 static enum orl_result write_maps(const struct densifier *d, size_t photo,
                                   const struct pass *pass, const struct densify_maps *maps)
 {
     enum orl_result result = write_map(d, d->normal_dir, photo, pass, &maps->normal);
+    if (result == ORL_OK && pass == &d->passes[d->pass_count - 1])
+        result = write_map(d, d->confidence_dir, photo, pass, &maps->confidence);
     if (result == ORL_OK)
         result = write_map(d, d->depth_dir, photo, pass, &maps->depth);
     return result;
@@ -298,6 +300,9 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo,
         result = orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
                                 ORL_PIXEL_F32);
     if (result == ORL_OK)
+        result = orl_image_init(d->log, &maps.confidence, width >> d->shrink, height >> d->shrink,
+                                1, ORL_PIXEL_F32);
+    if (result == ORL_OK)
         result = write_maps(d, photo, pass, &maps);
     orl_densify_maps_finish(&maps);
     return result;
@@ -337,6 +342,8 @@ static enum orl_result process(struct densifier *d, size_t photo, const struct p
     if (result == ORL_OK && job.last)
         result = orl_densify_remove_speckles(d->log, &camera, &maps, pixels / SPECKLE_SHARE,
                                              0.01f);
+    if (result == ORL_OK && job.last)
+        result = orl_densify_complete(d->log, &job, &maps);
     if (result == ORL_OK)
         result = write_maps(d, photo, pass, &maps);
 end:
@@ -478,7 +485,8 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     d->sparse_dir = orl_path_join(d->log, workspace, "sparse");
     d->depth_dir = orl_path_join(d->log, workspace, "stereo/depth_maps");
     d->normal_dir = orl_path_join(d->log, workspace, "stereo/normal_maps");
-    if (!d->images_dir || !d->sparse_dir || !d->depth_dir || !d->normal_dir)
+    d->confidence_dir = orl_path_join(d->log, workspace, "stereo/confidence_maps");
+    if (!d->images_dir || !d->sparse_dir || !d->depth_dir || !d->normal_dir || !d->confidence_dir)
         return ORL_ERR_MEMORY;
     enum orl_result result = orl_colmap_read(d->log, d->sparse_dir, &d->model);
     if (result == ORL_OK)
@@ -495,6 +503,8 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
         result = orl_dir_make(d->log, d->depth_dir);
     if (result == ORL_OK)
         result = orl_dir_make(d->log, d->normal_dir);
+    if (result == ORL_OK)
+        result = orl_dir_make(d->log, d->confidence_dir);
     return result;
 }
 
@@ -524,5 +534,6 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
     free(d.sparse_dir);
     free(d.depth_dir);
     free(d.normal_dir);
+    free(d.confidence_dir);
     return result;
 }

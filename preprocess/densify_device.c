@@ -153,8 +153,7 @@ static enum orl_result make_state(struct orl_gpu *gpu, struct level *level, int 
     return ORL_OK;
 }
 
-// A coarse pixel belongs to the subject when any of its pixels does.
-static bool mask_at(const struct orl_image *mask, int level, int x, int y)
+bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y)
 {
     if (!mask->data)
         return true;
@@ -182,7 +181,7 @@ static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densif
     for (size_t i = 0; i < count; i++) {
         int x = (int)(i % (size_t)luma->width), y = (int)(i / (size_t)luma->width);
         pixels[2 * i] = luma->u8[i];
-        pixels[2 * i + 1] = mask_at(&job->mask, level->number, x, y) ? 255 : 0;
+        pixels[2 * i + 1] = orl_densify_mask_at(&job->mask, level->number, x, y) ? 255 : 0;
     }
     orl_tex_write(level->reference, 0, 0, GL_RG, GL_UNSIGNED_BYTE, pixels);
     free(pixels);
@@ -434,13 +433,19 @@ static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
     enum orl_result result = orl_image_init(log, &maps->depth, width, height, 1, ORL_PIXEL_F32);
     if (result == ORL_OK)
         result = orl_image_init(log, &maps->normal, width, height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &maps->confidence, width, height, 1, ORL_PIXEL_F32);
     if (result != ORL_OK)
         goto end;
     orl_tex_read(tex, 0, GL_RGBA, GL_FLOAT, count * 4 * sizeof *pixels, pixels);
     result = orl_gpu_finish(gpu);
     for (size_t i = 0; i < count; i++) {
-        memcpy(&maps->normal.f32[3 * i], &pixels[4 * i], 3 * sizeof *pixels);
-        maps->depth.f32[i] = pixels[4 * i + 3];
+        const float *n = &pixels[4 * i];
+        float confidence = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int k = 0; k < 3 && confidence > 0.0f; k++)
+            maps->normal.f32[3 * i + (size_t)k] = n[k] / confidence;
+        maps->confidence.f32[i] = confidence;
+        maps->depth.f32[i] = n[3];
     }
 end:
     free(pixels);

@@ -112,6 +112,7 @@ void orl_densify_device_destroy(struct densify_device **device);
 
 struct densify_maps {
     struct orl_image depth, normal; // one and three channels
+    struct orl_image confidence;    // (0, 1] where there is depth
 };
 void orl_densify_maps_finish(struct densify_maps *maps);
 
@@ -133,6 +134,9 @@ struct densify_job {
     const struct orl_progress *progress;
     double done, total; // for the progress report; this job counts 1
 };
+// Does a pixel of a level belong to the subject? It does when any of its pixels does.
+bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y);
+
 // From coarse to fine; keeps only what matches.
 enum orl_result orl_densify_photometric(struct densify_device *device,
                                         const struct densify_job *job,
@@ -141,6 +145,11 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
 // well and agrees with a source.
 enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
                                       struct densify_maps *maps);
+
+// Gives depth to holes in plain surfaces, which nothing can be matched on: where planes of
+// several directions agree and the photograph shows no edge on the way. For the last pass.
+enum orl_result orl_densify_complete(const struct orl_log *log, const struct densify_job *job,
+                                     struct densify_maps *maps);
 
 // Removes connected pieces of less than `least` pixels; neighbours are connected when one
 // is off the other's plane by less than `tolerance` of its depth.

@@ -71,6 +71,7 @@ void orl_densify_maps_finish(struct densify_maps *maps)
 {
     orl_image_finish(&maps->depth);
     orl_image_finish(&maps->normal);
+    orl_image_finish(&maps->confidence);
 }
 
 // --- decoded photographs: each is the source of several, and serves every pass ---
@@ -247,6 +248,7 @@ enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
         size_t piece = flood_from(&flood, start);
         for (size_t i = 0; piece < least && i < piece; i++) {
             maps->depth.f32[flood.queue[i]] = 0.0f;
+            maps->confidence.f32[flood.queue[i]] = 0.0f;
             memset(&maps->normal.f32[3 * flood.queue[i]], 0, 3 * sizeof(float));
         }
     }

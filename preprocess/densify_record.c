@@ -9,7 +9,8 @@
 #include "preprocess/densify_internal.h"
 #include "scene/manifest.h"
 
-static const char *const map_dirs[] = {"stereo/depth_maps", "stereo/normal_maps"};
+static const char *const map_dirs[] = {"stereo/depth_maps", "stereo/normal_maps",
+                                         "stereo/confidence_maps"};
 
 struct digest {
     const struct orl_log *log;

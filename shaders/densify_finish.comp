@@ -6,7 +6,7 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) readonly uniform image2D planes;
 layout(r32f, binding = 1) readonly uniform image2D costs;
 layout(rgba32ui, binding = 2) readonly uniform uimage2D fits; // of densify_fit.comp
-layout(rgba32f, binding = 3) writeonly uniform image2D maps; // normal, depth
+layout(rgba32f, binding = 3) writeonly uniform image2D maps; // confidence * normal, depth
 
 const int FIT_ASIDE = 6, FIT_DIAGONAL = 5, SMOOTH_RADIUS = 2;
 
@@ -65,8 +65,12 @@ void main()
     vec4 map = vec4(0.0);
     float cost = imageLoad(costs, at).r;
     bool keep = texelFetch(reference, at, 0).g > 0.0 && plane.x > 0.0 && cost < limit.x;
+    // A half at the greatest cost that is kept, and for each source more that agrees half of
+    // what was doubtful.
+    float confidence = 0.5 * (1.0 - 0.5 * cost / limit.x);
 #ifdef GEOMETRIC
     opinion count = ask_sources(plane, pixel);
+    confidence *= 2.0 * max(1.0 - exp2(-float(count.agree - count.against)), 0.1);
     keep = keep && count.against <= count.agree &&
            (count.agree >= 2 || (count.agree == 1 && cost < limit.w));
 #endif
@@ -76,7 +80,7 @@ void main()
         fitted.x = smoothed_depth(at, plane);
 #endif
         plane = fitted;
-        map = vec4(-normalize(plane_normal(plane, pixel)), 1.0 / plane.x);
+        map = vec4(-confidence * normalize(plane_normal(plane, pixel)), 1.0 / plane.x);
     }
     imageStore(maps, at, map);
 }

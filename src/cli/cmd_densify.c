@@ -80,7 +80,7 @@ int cmd_densify(int argc, char **argv)
         "Writes stereo/depth_maps and stereo/normal_maps of a COLMAP undistorted workspace, as\n"
         "colmap patch_match_stereo does, without CUDA. Photographs that have maps of these\n"
         "settings are skipped, so that an interrupted run goes on. colmap stereo_fusion reads the\n"
-        "result.",
+        "result. stereo/confidence_maps says how sure each depth is.",
         table, 1, 1};
     int status = command_main(&command, argc, argv, run, &o);
     orl_names_finish(&o.exclude);
