@@ -34,7 +34,7 @@ struct spot {
 // A photograph that shows it.
 struct sight {
     float penalty;
-    int photo;
+    int index; // of the photograph
 };
 
 // The best of a pixel, ascending by penalty, and the penalty of the one after the last of them.
@@ -50,8 +50,8 @@ void insert(sight s, inout ranking r)
     for (int k = 0; k < KEPT; k++) {
         bool better = s.penalty < r.best[k].penalty;
         sight other = r.best[k];
-        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.photo : other.photo);
-        s = sight(better ? other.penalty : s.penalty, better ? other.photo : s.photo);
+        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.index : other.index);
+        s = sight(better ? other.penalty : s.penalty, better ? other.index : s.index);
     }
     r.next = min(r.next, s.penalty);
 }
@@ -84,7 +84,7 @@ vec4 look(sight one, float least, float limit, spot s)
 {
     // Full weight until the penalty comes near that of the first left out.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.0 - one.penalty / limit));
-    photo shot = photo_at(one.photo);
+    photo shot = photo_at(one.index);
     vec2 pixel; // again: four pixels' worth of what consider knew is much to keep
     float z;
     photo_project(shot, s.p, pixel, z);
