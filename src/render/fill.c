@@ -73,6 +73,7 @@ static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *p
                 const struct orl_tex *first, GLenum first_access, const struct orl_tex *second,
                 GLenum second_access, const struct orl_tex *covered)
 {
+    // These take 2x2 pixels an invocation.
     bool four = prog == fill->push || prog == fill->apply_depth;
     int width = covered->params.width, height = covered->params.height;
     struct image_block block = {.area = {width, height}, .scale = {fill->depth_scale}};
