@@ -55,7 +55,9 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
     const size_t block = sizeof(struct frame_params);
     result = orl_prog_create(gpu, "synth_cone.comp", NULL, block, &synth->cone);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "synth_frame.comp", NULL, block, &synth->frame);
+        result = orl_prog_create(gpu, "synth_frame.comp",
+                                 params->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : NULL, block,
+                                 &synth->frame);
     if (result == ORL_OK)
         result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
     if (result == ORL_OK)

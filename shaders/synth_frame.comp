@@ -71,31 +71,78 @@ bool slide(vec3 ray, inout Hit hit)
     return true;
 }
 
+#ifdef HIGH_CONTRAST
+// Five samples say little of a pixel where light changes by stops: a sliver of sun in deep
+// shade that they miss may be most of its light. Its corners tell such pixels from others,
+// and a sheared grid, no two of whose samples share a row or a column, then takes their place.
+const int CORNER_COUNT = 4, FINE = 5; // samples each way
+const int FIRST_COUNT = SAMPLE_COUNT + CORNER_COUNT;
+const float STEADY = 2.0; // ratio of light up to which five are enough
+
+vec2 sample_at(int i)
+{
+    if (i < SAMPLE_COUNT)
+        return samples[i];
+    int k = i - SAMPLE_COUNT;
+    if (k < CORNER_COUNT)
+        return vec2(k % 2, k / 2);
+    k -= CORNER_COUNT;
+    vec2 cell = vec2(k % FINE, k / FINE);
+    return (cell + (cell.yx + 0.5) / float(FINE)) / float(FINE);
+}
+#else
+const int FIRST_COUNT = SAMPLE_COUNT;
+#define sample_at(i) samples[i]
+#endif
+
+vec3 color_of(Hit hit, vec3 ray)
+{
+    if (hit.t >= SKY_T)
+        return sky(ray);
+    return radiance(hit.p, hit.n, material_at(hit.p, hit.n, hit.t / camera.x), hit.light);
+}
+
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, size.z);
     if (pixel.x >= size.x || pixel.y >= size.w)
         return;
     // All samples of the pixel share the way to where the first of them may hit.
-    float cone = 0.42 / min(camera.x, camera.y);
+    float cone = (FIRST_COUNT > SAMPLE_COUNT ? 0.72 : 0.42) / min(camera.x, camera.y);
     float start = imageLoad(start_image, pixel / 8).x;
     start = free_way(eye.xyz, ray_through(vec2(pixel) + 0.5), start, cone);
     vec3 sum = vec3(0.0);
+#ifdef HIGH_CONTRAST
+    vec3 fine = vec3(0.0);
+    vec2 range = vec2(1e30, 0.0);
+#endif
     Hit centre = Hit(SKY_T, vec3(0.0), vec3(0.0), vec2(0.0));
-    for (int i = 0; i < SAMPLE_COUNT; i++) {
-        vec3 ray = ray_through(vec2(pixel) + samples[i]);
+    int end = FIRST_COUNT;
+    for (int i = 0; i < end; i++) {
+        vec3 ray = ray_through(vec2(pixel) + sample_at(i));
         Hit hit = centre;
         if (i == 0 || !slide(ray, hit))
             hit = find_hit(ray, start);
         if (i == 0)
             centre = hit;
-        float footprint = hit.t / camera.x;
-        if (hit.t < SKY_T)
-            sum += radiance(hit.p, hit.n, material_at(hit.p, hit.n, footprint), hit.light);
-        else
-            sum += sky(ray);
+        vec3 color = color_of(hit, ray);
+        if (i < SAMPLE_COUNT)
+            sum += color;
+#ifdef HIGH_CONTRAST
+        if (i >= FIRST_COUNT)
+            fine += color;
+        float light = dot(color, vec3(1.0));
+        range = vec2(min(range.x, light), max(range.y, light));
+        if (i + 1 == FIRST_COUNT && range.y > STEADY * range.x)
+            end = FIRST_COUNT + FINE * FINE;
+#endif
     }
+    vec3 mean = sum / float(SAMPLE_COUNT);
+#ifdef HIGH_CONTRAST
+    if (end > FIRST_COUNT)
+        mean = fine / float(FINE * FINE);
+#endif
     vec3 n = vec3(dot(centre.n, right.xyz), dot(centre.n, down.xyz), dot(centre.n, forward.xyz));
-    imageStore(radiance_image, pixel, vec4(sum / float(SAMPLE_COUNT), 1.0));
+    imageStore(radiance_image, pixel, vec4(mean, 1.0));
     imageStore(truth_image, pixel, vec4(n, centre.t < SKY_T ? centre.t : 0.0));
 }
