@@ -176,13 +176,23 @@ static enum orl_result measure(struct job *job, const struct orl_method *first, 
     return result;
 }
 
+static enum orl_result check_together(const struct orl_log *log, const struct options *o)
+{
+    if (o->walk && (o->merge || o->truth))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk compares frames with each other: "
+                        "without --merge and --truth");
+    if (o->merge && strcmp(o->textures, "auto") != 0)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --merge keeps photographs as it needs them: "
+                        "without --textures");
+    return ORL_OK;
+}
+
 static enum orl_result run(struct job *job, const char *scene_dir,
                            const struct arg_common *common)
 {
-    if (job->options->walk && (job->options->merge || job->options->truth))
-        return orl_fail(job->log, ORL_ERR_ARGUMENT,
-                        "eval: --walk compares frames with each other: without --merge and "
-                        "--truth");
+    enum orl_result result = check_together(job->log, job->options);
+    if (result != ORL_OK)
+        return result;
     bool all = strcmp(job->options->method, "all") == 0;
     const struct orl_method *first =
         all ? orl_methods : orl_method_find(job->log, job->options->method);
@@ -195,7 +205,7 @@ static enum orl_result run(struct job *job, const char *scene_dir,
     if (!job->evals)
         return ORL_ERR_MEMORY;
     struct orl_render_params tried = first->params; // wrong settings are found before the work
-    enum orl_result result = apply_settings(job, &tried);
+    result = apply_settings(job, &tried);
     struct orl_renderer_params limits = {
         .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
     if (result == ORL_OK)
