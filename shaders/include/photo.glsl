@@ -66,7 +66,12 @@ vec4 photo_depths(photo shot, vec2 pixel)
 float photo_mip(photo shot, float z, float view_depth)
 {
     float magnification = shot.focal.x * view_depth / (z * view_focal.x);
-    return clamp(log2(magnification), 0.0, choice_more.z);
+    float mip = clamp(log2(magnification), 0.0, choice_more.z);
+#ifdef RADIANCE
+    return floor(mip + 0.5); // between levels a software renderer reads twice as much
+#else
+    return mip;
+#endif
 }
 
 vec4 photo_texel(vec2 at, float slot, float lod)

@@ -36,8 +36,8 @@ ORL_BLOCK(pyramid_block)
 // above 2^-14, and linear exposures of interest, times trust, reach far below that.
 #define ORL_RADIANCE_SCALE 4096.0
 
-#define ORL_RADIANCE_PHOTOS 128 // of one gather of radiance
-#define ORL_RADIANCE_KEPT 6    // of those, for the pixels of a work group
+#define ORL_RADIANCE_KEPT 5 // photographs for the pixels of a tile, one work group
+#define ORL_RADIANCE_LIST (ORL_RADIANCE_KEPT + 1) // and the best one's weight
 
 // A photograph as the gather passes see it; an array of these is a storage buffer.
 #define ORL_PHOTO_VEC4S 9

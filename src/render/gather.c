@@ -24,8 +24,8 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
     if (result == ORL_OK)
         result = orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "choose.comp", NULL, sizeof(struct gather_block),
-                                 &gather->choose);
+        result = orl_prog_create(gpu, radiance ? "choose_radiance.comp" : "choose.comp", NULL,
+                                 sizeof(struct gather_block), &gather->choose);
     static const char *const defines[ORL_SAMPLING_COUNT] = {[ORL_SAMPLING_BICUBIC] = "BICUBIC 1\n"};
     static const char *const few[ORL_SAMPLING_COUNT][KEPT_PROGRAMS] = {
         [ORL_SAMPLING_BILINEAR] = {"KEPT 2\n", "KEPT 4\n"},
@@ -153,8 +153,43 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
     return block;
 }
 
-static void gather_all(struct orl_renderer *r, const struct orl_view *view,
-                       const struct orl_render_params *params, size_t count)
+// Room for `bytes` in *buf, which loses what it holds.
+static enum orl_result make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
+                                 struct orl_buf **buf)
+{
+    if (*buf && (*buf)->size >= bytes)
+        return ORL_OK;
+    orl_buf_destroy(gpu, buf);
+    return orl_buf_create(gpu, tag, bytes, NULL, buf);
+}
+
+static void run(struct orl_gpu *gpu, const char *pass, const struct orl_dispatch *d)
+{
+    orl_pass_begin(gpu, pass);
+    orl_gpu_dispatch(gpu, d);
+    orl_pass_end(gpu);
+}
+
+// Lists the photographs of each group of pixels; the rest of the dispatch as for the gather.
+static enum orl_result choose_radiance(struct orl_renderer *r, struct orl_dispatch d)
+{
+    size_t across = d.groups[0], down = d.groups[1];
+    enum orl_result result =
+        make_room(r->gpu, "photographs of tiles",
+                  across * down * ORL_RADIANCE_LIST * sizeof(int), &r->gather.tile_lists);
+    if (result != ORL_OK)
+        return result;
+    d.prog = r->gather.choose;
+    d.bufs[1].buf = r->gather.tile_lists;
+    d.groups[0] = orl_groups(across, 8);
+    d.groups[1] = orl_groups(down, 8);
+    d.barrier = GL_SHADER_STORAGE_BARRIER_BIT;
+    run(r->gpu, "choose", &d);
+    return ORL_OK;
+}
+
+static enum orl_result gather_all(struct orl_renderer *r, const struct orl_view *view,
+                                  const struct orl_render_params *params, size_t count)
 {
     struct gather_block block = prepare_pass(r, view, params, count);
     struct orl_dispatch d = {.prog = r->gather.all[params->sampling], .params = &block,
@@ -165,19 +200,14 @@ static void gather_all(struct orl_renderer *r, const struct orl_view *view,
                                         [PHOTO_ROWS] = {r->gather.photo_rows, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
-    orl_pass_begin(r->gpu, "gather");
-    orl_gpu_dispatch(r->gpu, &d);
-    orl_pass_end(r->gpu);
-}
-
-// Room for `bytes` in *buf, which loses what it holds.
-static enum orl_result make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
-                                 struct orl_buf **buf)
-{
-    if (*buf && (*buf)->size >= bytes)
-        return ORL_OK;
-    orl_buf_destroy(gpu, buf);
-    return orl_buf_create(gpu, tag, bytes, NULL, buf);
+    if (r->photos.radiance) {
+        enum orl_result result = choose_radiance(r, d);
+        if (result != ORL_OK)
+            return result;
+        d.bufs[1].buf = r->gather.tile_lists;
+    }
+    run(r->gpu, "gather", &d);
+    return ORL_OK;
 }
 
 static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view *view,
@@ -206,18 +236,14 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
                                         [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
                              .groups = {orl_groups((size_t)across, 8), orl_groups((size_t)down, 8)},
                              .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
-    orl_pass_begin(r->gpu, "choose");
-    orl_gpu_dispatch(r->gpu, &d);
-    orl_pass_end(r->gpu);
+    run(r->gpu, "choose", &d);
     d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){r->fill.level[0], 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                 GL_COMMAND_BARRIER_BIT;
     memcpy(d.groups, groups, sizeof groups);
-    orl_pass_begin(r->gpu, "gather");
-    orl_gpu_dispatch(r->gpu, &d);
-    orl_pass_end(r->gpu);
+    run(r->gpu, "gather", &d);
     return ORL_OK;
 }
 
@@ -231,21 +257,18 @@ static enum orl_result blend_all(struct orl_renderer *r, const struct orl_view *
     for (size_t i = 0; i < r->scene->photo_count; i++) {
         if (!r->photos.states[i].usable || (skip && skip[i]))
             continue;
-        // As many at once as are resident together, and as the shader takes.
-        if (count == (size_t)r->photos.slot_count ||
-            (r->photos.radiance && count == ORL_RADIANCE_PHOTOS)) {
-            gather_all(r, view, params, count);
+        enum orl_result result = ORL_OK;
+        if (count == (size_t)r->photos.slot_count) {
+            result = gather_all(r, view, params, count);
             count = 0;
         }
-        enum orl_result result =
-            orl_photos_require(r->gpu, &r->photos, &r->proxy, i, depth_options);
+        if (result == ORL_OK)
+            result = orl_photos_require(r->gpu, &r->photos, &r->proxy, i, depth_options);
         if (result != ORL_OK)
             return result;
         r->gather.chosen[count++] = i;
     }
-    if (count)
-        gather_all(r, view, params, count);
-    return ORL_OK;
+    return count ? gather_all(r, view, params, count) : ORL_OK;
 }
 
 // Paints from the photographs that this view can use best; the rest need not be resident.

@@ -154,7 +154,7 @@ struct gather {
     size_t *chosen;          // their indices in the scene
     struct orl_buf *photos;  // struct photo_data
     struct orl_tex *photo_rows; // its view, RGBA32F
-    struct orl_buf *tile_lists; // choose.comp
+    struct orl_buf *tile_lists; // choose.comp, choose_radiance.comp
     struct orl_buf *unpainted;  // of the last gather_best.comp: shaders/include/unpainted.glsl
 };
 

@@ -286,6 +286,46 @@ static void clipped_pixels_leave_no_mark(void **state)
     teardown(&f);
 }
 
+// Bright where x > edge in the world, at the wall.
+static void edge_light(const struct orl_view *view, int x, double edge, float light[3])
+{
+    double pixel = 4 / view->camera.fx; // on the wall
+    double left = (x - view->camera.cx) * pixel - view->cam_from_world.t[0];
+    double share = fmin(fmax((left + pixel - edge) / pixel, 0), 1);
+    for (int c = 0; c < 3; c++)
+        light[c] = (float)(50 * share + (double)WALL[c] / 8 * (1 - share));
+}
+
+// Within a tile, so that probes see both sides.
+static const double EDGE = 0.32;
+
+static void right_edge(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)y;
+    edge_light(view, x, EDGE, light);
+}
+
+static void misplaced_edge(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)y;
+    edge_light(view, x, EDGE + 0.06, light); // by three quarters of a pixel
+}
+
+static void what_clips_beside_a_sample_makes_it_doubtful(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(0.04, 0), 3, misplaced_edge); // near, half of its sample clips
+    add_photo(&f, look(0.35, 0), -7, right_edge);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_frame frame = draw(&f, &params);
+    // The near photograph's other half is the dark side alone, nine stops below.
+    assert_true(frame.color.f32[3 * (MIDDLE + 4)] > 50.0f / 8);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // --- cameras that are not sRGB ---
 
 // Linear values, and a third of the light lost in the corners.
@@ -511,6 +551,7 @@ int main(void)
         cmocka_unit_test(noise_does_not_outvote_light),
         cmocka_unit_test(what_moved_does_not_ghost),
         cmocka_unit_test(clipped_pixels_leave_no_mark),
+        cmocka_unit_test(what_clips_beside_a_sample_makes_it_doubtful),
         cmocka_unit_test(response_and_vignetting_are_undone),
         cmocka_unit_test(linear_files_keep_their_range),
         cmocka_unit_test(panoramas_show_what_is_there),
