@@ -21,7 +21,7 @@ float photo_sees(vec4 seen, float z)
     vec4 off = abs(seen - z) / (z * options.x);
     vec4 share = clamp(2.0 - off, 0.0, 1.0);
     float agrees = max(max(share.x, share.y), max(share.z, share.w));
-    bool unknown = all(equal(seen, vec4(0.0)));
+    bool unknown = all(lessThanEqual(seen, vec4(0.0)));
     return unknown ? choice.z : agrees;
 }
 

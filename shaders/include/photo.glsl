@@ -27,7 +27,7 @@ photo photo_at(int i)
 // Mipmapped. sRGB, whose reads are linear light; with RADIANCE linear exposure * trust *
 // ORL_RADIANCE_SCALE, and trust: what is clipped leaves no mark on its neighbours.
 layout(binding = 0) uniform sampler2DArray photo_color;
-layout(binding = 1) uniform sampler2DArray photo_depth; // z, 0: none
+layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: guessed, 0: none
 
 // Where a point of the view's camera frame lies in a photograph: pixel coordinates and z
 // in its frame. False behind it or outside.

@@ -35,7 +35,7 @@ float seen_share(vec4 seen, float z, bool guessed)
     if (guessed)
         return photo_unhidden_share(seen, z);
     vec4 same = clamp(2.0 - abs(seen - z) / (z * options.x), 0.0, 1.0);
-    float share = dot(mix(same, vec4(choice.z), equal(seen, vec4(0.0))), vec4(0.25));
+    float share = dot(mix(same, vec4(choice.z), lessThanEqual(seen, vec4(0.0))), vec4(0.25));
     return share * share;
 }
 

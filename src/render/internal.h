@@ -103,10 +103,11 @@ struct photos {
     struct orl_tex *color;      // mipmapped: sRGB, or radiance * trust and trust
     GLenum format;              // of color
     struct orl_tex *loading;    // a photograph before it is compressed; NULL: format is not
-    struct orl_tex *depth;      // z, 0: none
+    struct orl_tex *depth;      // z; < 0: guessed in a hole, 0: none
     int slot_count, divide;     // photographs are loaded at 1/divide of their size
     unsigned clock;
     struct proxy_target target; // for depth maps
+    struct orl_prog *guess_holes;
     bool radiance;              // see struct orl_renderer_params
     struct orl_sensor sensor;
     float ev_darkest, ev_brightest; // of the photographs in use

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "io/picture.h"
+#include "include/render_blocks.h"
 #include "render/internal.h"
 #include "render/radiance.h"
 
@@ -212,6 +213,9 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         result = orl_tex_create(gpu, &depth, &photos->depth);
     if (result == ORL_OK && is_compressed(photos))
         result = orl_tex_create(gpu, &loading, &photos->loading);
+    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "photo_holes.comp", NULL, sizeof(struct image_block),
+                                 &photos->guess_holes);
     if (result != ORL_OK)
         orl_photos_finish(gpu, photos);
     return result;
@@ -224,6 +228,7 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
     orl_tex_destroy(gpu, &photos->loading);
     free(photos->states);
     orl_proxy_target_finish(gpu, &photos->target);
+    orl_prog_destroy(gpu, &photos->guess_holes);
     memset(photos, 0, sizeof *photos);
 }
 
@@ -357,6 +362,16 @@ end:
     return result;
 }
 
+static void guess_holes(struct orl_gpu *gpu, const struct photos *photos, int width, int height)
+{
+    struct image_block block = {.area = {width, height}};
+    struct orl_dispatch d = {.prog = photos->guess_holes, .params = &block,
+                             .images = {{photos->target.depth, 0, GL_READ_WRITE}},
+                             .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
+    orl_pixel_groups(width, height, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+}
+
 static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
                                   const struct proxy *proxy, size_t index,
                                   const struct proxy_options *options)
@@ -369,6 +384,7 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
     if (result != ORL_OK)
         return result;
     orl_proxy_draw(gpu, proxy, &view, options, &photos->target);
+    guess_holes(gpu, photos, view.camera.width, view.camera.height);
     orl_tex_copy_layer(photos->target.depth, 0, view.camera.width, view.camera.height,
                        photos->depth, state->slot);
     state->depth_options = *options;
