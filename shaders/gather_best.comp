@@ -71,7 +71,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float z;
     bool inside = photo_project(shot, s.p, pixel, z);
     vec4 seen = photo_depths(shot, pixel);
-    float sees = s.guessed      ? photo_unhidden_share(seen, z)
+    float sees = s.guessed      ? photo_unhidden_share(shot, seen, z)
                  : flags.x == 1 ? photo_sees(seen, z)
                                 : 1.0;
     float sure = sees * photo_border(shot, pixel);

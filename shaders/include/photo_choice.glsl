@@ -14,16 +14,17 @@ float photo_penalty(photo shot, vec3 p)
     return angle + 0.1 * max(coarser, 0.0) + 0.005;
 }
 
-// Of depth, as options.x: what is twice this behind a guess in a hole of the photograph's depth is
-// hidden there. Guesses on both sides are rough: a fountain hides the facade across the
-// square, and one house not the next.
-const float GUESS_TOLERANCE = 0.33;
+// Radians of parallax between the view and the photograph by which what is hidden lies behind a
+// guess in a hole of the photograph's depth. In angles, since guesses of what is far are rough,
+// and a photograph taken from beside the view shows the same hole in the same place.
+const float GUESS_PARALLAX = 0.05;
 
 // How much of the photograph around a pixel has nothing standing before z.
-float photo_unhidden_share(vec4 seen, float z)
+float photo_unhidden_share(photo shot, vec4 seen, float z)
 {
     vec4 front = (z - seen) / (z * options.x); // in tolerances
-    vec4 behind_guess = (z + seen) / (z * GUESS_TOLERANCE);
+    vec4 nearer = -1.0 / min(seen, -1e-9) - 1.0 / z;
+    vec4 behind_guess = nearer * length(shot.eye.xyz) / GUESS_PARALLAX;
     front = mix(front, behind_guess, lessThan(seen, vec4(0.0)));
     vec4 share = mix(clamp(2.0 - front, 0.0, 1.0), vec4(1.0), equal(seen, vec4(0.0)));
     return dot(share, vec4(0.25)); // at an edge it shows some of what is behind

@@ -30,10 +30,10 @@ float noise_of(photo shot, vec3 color)
 
 // How much of a sample is the surface at z, squared: what lies before it may be a thousand
 // times as bright. 0: hidden.
-float seen_share(vec4 seen, float z, bool guessed)
+float seen_share(photo shot, vec4 seen, float z, bool guessed)
 {
     if (guessed)
-        return photo_unhidden_share(seen, z);
+        return photo_unhidden_share(shot, seen, z);
     vec4 same = clamp(2.0 - abs(seen - z) / (z * options.x), 0.0, 1.0);
     float share = dot(mix(same, vec4(choice.z), lessThanEqual(seen, vec4(0.0))), vec4(0.25));
     return share * share;
@@ -96,7 +96,7 @@ bool ask(photo shot, vec3 p, bool guessed, out Sample s)
     if (!(s.weight > 0.0))
         return false;
     if (flags.x == 1)
-        s.weight *= seen_share(photo_depths(shot, s.pixel), z, guessed);
+        s.weight *= seen_share(shot, photo_depths(shot, s.pixel), z, guessed);
     if (!(s.weight > 0.0))
         return false;
     s.mip = photo_mip(shot, z, p.z);
