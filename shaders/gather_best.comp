@@ -106,11 +106,9 @@ vec4 blend(spot s, ranking r)
         vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
-    // On guessed depth photographs disagree by nature.
-    float severity = s.guessed ? 0.0 : choice_more.y;
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(samples[k].rgb) - mean;
-        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
+        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * choice_more.y));
     }
     return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
