@@ -39,7 +39,8 @@ uvec4 surfel_pack_b(surfel s)
 // --- pull ---
 
 // The 2x2 children of a pixel as one. Only those inside the interval of the nearest are
-// merged, the others are occluded (Airieau 2012, 5.1).
+// merged, the others are occluded (Airieau 2012, 5.1). Selected, not multiplied by 0: an empty
+// child may hold anything, infinities too.
 surfel surfel_merge(surfel child[4], int child_level)
 {
     float front = 1e38, front_far = 0.0;
@@ -51,14 +52,14 @@ surfel surfel_merge(surfel child[4], int child_level)
     surfel sum = surfel(front, front_far, 0.0, 0.0, vec3(0.0), vec2(0.0));
     float count = 0.0;
     for (int i = 0; i < 4; i++) {
-        float one = child[i].radius > 0.0 && child[i].near <= front_far ? 1.0 : 0.0;
+        bool one = child[i].radius > 0.0 && child[i].near <= front_far;
         vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * float(1 << child_level);
-        sum.far = max(sum.far, one * child[i].far);
-        sum.depth += one * child[i].depth;
-        sum.radius += one * child[i].radius;
-        sum.normal += one * child[i].normal;
-        sum.displacement += one * (child[i].displacement + offset);
-        count += one;
+        sum.far = max(sum.far, one ? child[i].far : 0.0);
+        sum.depth += one ? child[i].depth : 0.0;
+        sum.radius += one ? child[i].radius : 0.0;
+        sum.normal += one ? child[i].normal : vec3(0.0);
+        sum.displacement += one ? child[i].displacement + offset : vec2(0.0);
+        count += one ? 1.0 : 0.0;
     }
     if (count == 0.0)
         return NO_SURFEL;

@@ -231,6 +231,24 @@ static void occluded_points_are_replaced(void **state)
             assert_float_equal(d.depth[at(x, y)], 10, 1e-2);
 }
 
+// Pixels that nothing wins are worked out for some point all the same, here one in the plane of
+// the eye, and what comes out is thrown away.
+static void points_beside_the_eye_leave_no_mark(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    struct point p[200];
+    for (size_t i = 0; i < ORL_COUNT(p); i++)
+        p[i] = (struct point){.x = 1, .radius = 0.1f, .normal = {0, 0, -1}};
+    p[77] = seen_at(20.5, 20.5, 2, 0.25);
+    static struct drawn d;
+    draw(p, ORL_COUNT(p), &view, &d);
+    assert_int_not_equal(d.listed[0], 77);
+    for (int y = 19; y <= 21; y++)
+        for (int x = 19; x <= 21; x++)
+            assert_float_equal(d.depth[at(x, y)], 2, 1e-4);
+}
+
 static void odd_sizes_lose_no_pixel(void **state)
 {
     (void)state;
@@ -272,6 +290,7 @@ int main(void)
         cmocka_unit_test(a_slanted_disc_is_narrow_and_keeps_its_plane),
         cmocka_unit_test(holes_between_splats_are_pushed_shut),
         cmocka_unit_test(occluded_points_are_replaced),
+        cmocka_unit_test(points_beside_the_eye_leave_no_mark),
         cmocka_unit_test(odd_sizes_lose_no_pixel),
     };
     int failed = cmocka_run_group_tests_name("proxy", tests, NULL, NULL);
