@@ -49,8 +49,10 @@ surfel splat(ivec2 at, int point)
     vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
     n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
     // Remainder of a division, in floats: both are exact below 2^24, and integers divide slowly.
+    // But a quotient may be 2.5 units in its last place off: a whole one may come out one less.
     int item = point / ORL_ITEM_POINTS, blocks = size.z / ORL_BLOCK_POINTS;
     int block = item - blocks * int(float(item) / float(blocks));
+    block += block < 0 ? blocks : block < blocks ? 0 : -blocks;
     float radius = position.w * options.x * radius_factor(block);
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
