@@ -389,6 +389,7 @@ void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
                                  .groups = {orl_groups((size_t)chunk->block_count,
                                                        ORL_POINT_GROUP)},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                            GL_SHADER_STORAGE_BARRIER_BIT |
                                             GL_COMMAND_BARRIER_BIT};
         orl_gpu_dispatch(gpu, &d);
     }

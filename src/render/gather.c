@@ -198,7 +198,9 @@ static enum orl_result gather_all(struct orl_renderer *r, const struct orl_view 
                                         {r->accumulated, 0, GL_READ_WRITE},
                                         {r->trusted, 0, GL_READ_WRITE},
                                         [PHOTO_ROWS] = {r->gather.photo_rows, 0, GL_READ_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+                             // Storage: the next turn's choice overwrites this one's lists.
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_SHADER_STORAGE_BARRIER_BIT};
     orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
     if (r->photos.radiance) {
         enum orl_result result = choose_radiance(r, d);
