@@ -5,8 +5,8 @@
 #include "include/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-// In place: a guess is no depth to others, as none is.
-layout(r32f, binding = 0) uniform image2D depth;
+layout(r32f, binding = 0) readonly uniform image2D depth;
+layout(r32f, binding = 1) writeonly uniform image2D guessed; // the same, and guesses
 
 const int DIRECTIONS = 8, STRIDE = 2;
 const int REACH_SHARE = 24; // of the picture's longer side
@@ -14,8 +14,13 @@ const int REACH_SHARE = 24; // of the picture's longer side
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y || imageLoad(depth, at).r > 0.0)
+    if (at.x >= area.x || at.y >= area.y)
         return;
+    float here = imageLoad(depth, at).r;
+    if (here > 0.0) {
+        imageStore(guessed, at, vec4(here));
+        return;
+    }
     int reach = max(area.x, area.y) / REACH_SHARE;
     float sum = 0.0, total = 0.0; // of inverse depth
     int empty = 0, longest = 0, first = 0;
@@ -36,6 +41,6 @@ void main()
         first += k == first && !met ? 1 : 0;
     }
     // The run may go on from the last direction to the first.
-    if (total > 0.0 && max(longest, empty + first) < DIRECTIONS / 2)
-        imageStore(depth, at, vec4(-total / sum));
+    bool hole = total > 0.0 && max(longest, empty + first) < DIRECTIONS / 2;
+    imageStore(guessed, at, vec4(hole ? -total / sum : 0.0));
 }

@@ -54,7 +54,7 @@ struct proxy_target {
     struct orl_tex *chunk_splats; // RGBA32UI: what it was made from; NULL: points are one chunk
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // from level 1 on
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
-    struct orl_tex *pushed_depth; // before stray points are dropped
+    struct orl_tex *pushed_depth; // before stray points are dropped; photos.c: with holes guessed
     struct orl_tex *depth;        // R32F: z, 0: none
     struct orl_tex *normal;       // RGBA16F: camera frame, 0: none; w: 1 where a splat shows
 };

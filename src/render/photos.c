@@ -362,11 +362,13 @@ end:
     return result;
 }
 
+// From the target's depth into its pushed_depth, which is of no more use.
 static void guess_holes(struct orl_gpu *gpu, const struct photos *photos, int width, int height)
 {
     struct image_block block = {.area = {width, height}};
     struct orl_dispatch d = {.prog = photos->guess_holes, .params = &block,
-                             .images = {{photos->target.depth, 0, GL_READ_WRITE}},
+                             .images = {{photos->target.depth, 0, GL_READ_ONLY},
+                                        {photos->target.pushed_depth, 0, GL_WRITE_ONLY}},
                              .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_pixel_groups(width, height, d.groups);
     orl_gpu_dispatch(gpu, &d);
@@ -385,7 +387,7 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
         return result;
     orl_proxy_draw(gpu, proxy, &view, options, &photos->target);
     guess_holes(gpu, photos, view.camera.width, view.camera.height);
-    orl_tex_copy_layer(photos->target.depth, 0, view.camera.width, view.camera.height,
+    orl_tex_copy_layer(photos->target.pushed_depth, 0, view.camera.width, view.camera.height,
                        photos->depth, state->slot);
     state->depth_options = *options;
     state->has_depth = true;

@@ -17,22 +17,24 @@ static bool in_hole(int x, int y)
 static void guess(float *depth)
 {
     struct orl_prog *prog;
-    struct orl_tex *tex;
+    struct orl_tex *tex, *guessed;
     struct orl_tex_params params = {.width = WIDTH, .height = HEIGHT, .format = GL_R32F,
                                     .tag = "test depth"};
     struct image_block block = {.area = {WIDTH, HEIGHT}};
     assert_int_equal(orl_prog_create(gpu, "photo_holes.comp", NULL, sizeof block, &prog), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &guessed), ORL_OK);
     orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, depth);
     struct orl_dispatch d = {.prog = prog, .params = &block,
-                             .images = {{tex, 0, GL_READ_WRITE}},
+                             .images = {{tex, 0, GL_READ_ONLY}, {guessed, 0, GL_WRITE_ONLY}},
                              .groups = {orl_groups(WIDTH, ORL_PIXEL_GROUP_X),
                                         orl_groups(HEIGHT, ORL_PIXEL_GROUP_Y), 1},
                              .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_gpu_dispatch(gpu, &d);
-    orl_tex_read(tex, 0, GL_RED, GL_FLOAT, sizeof(float) * WIDTH * HEIGHT, depth);
+    orl_tex_read(guessed, 0, GL_RED, GL_FLOAT, sizeof(float) * WIDTH * HEIGHT, depth);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     orl_tex_destroy(gpu, &tex);
+    orl_tex_destroy(gpu, &guessed);
     orl_prog_destroy(gpu, &prog);
 }
 
