@@ -30,12 +30,13 @@ struct orl_densify_params {
     .seed = 1
 
 // Writes WORKSPACE/stereo/{depth_maps,normal_maps}/NAME.{photometric,geometric}.bin
-// and confidence_maps/NAME.geometric.bin (same format: 0 where there is no depth, 0.2 where a
-// plain surface was completed from around, up to 1 where many sources agree) for every
-// photograph in `photos` (names; NULL: all of the model), using only those as sources. Photographs whose maps are already there are skipped when these were
-// made from the same photographs with the same settings, as stereo/densify.json says; else
-// all maps are made again. The same seed gives the same maps. Interrupted, it leaves whole
-// files only. ORL_ERR_ARGUMENT: there are maps that densify did not make.
+// and, of the last pass, confidence_maps/NAME.geometric.bin (same format: 0 where there is no
+// depth, 0.2 where a plain surface was completed from around, up to 1 where many sources agree)
+// for every photograph in `photos` (names; NULL: all of the model), using only those as sources.
+// Photographs whose maps are already there are skipped when these were made from the same
+// photographs with the same settings, as stereo/densify.json says; else all maps are made again.
+// The same seed gives the same maps. Interrupted, it leaves whole files only.
+// ORL_ERR_ARGUMENT: there are maps that densify did not make.
 enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_names *photos,
                             const struct orl_densify_params *params,

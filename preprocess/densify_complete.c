@@ -10,12 +10,12 @@
 
 enum {
     DIRECTIONS = 8,
-    REACH = 64,     // pixels, how far a surface may be
-    STRIDE = 2,     // pixels from one place asked to the next
-    BEYOND = 4,     // pixels by which the surface must go on behind where it is met: the rim
-                    // around whatever stands before the sky is narrower
+    REACH = 64,       // pixels, how far a surface may be
+    STRIDE = 2,       // pixels from one place asked to the next
+    BEYOND = 4,       // pixels by which the surface must go on behind where it is met: the rim
+                      // around whatever stands before the sky is narrower
     AGREEING_MIN = 3, // directions
-    LUMA_MAX = 10,  // of 255, by which the photograph may change on the way
+    LUMA_MAX = 10,    // of 255, by which the photograph may change on the way
 };
 
 static const float SAME_PLANE = 0.01f; // of depth

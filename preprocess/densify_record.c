@@ -10,7 +10,7 @@
 #include "scene/manifest.h"
 
 static const char *const map_dirs[] = {"stereo/depth_maps", "stereo/normal_maps",
-                                         "stereo/confidence_maps"};
+                                       "stereo/confidence_maps"};
 
 struct digest {
     const struct orl_log *log;
@@ -93,7 +93,7 @@ static enum orl_result make_record(const struct orl_log *log, const char *worksp
     return result;
 }
 
-// Sets *any when a photograph taking part has a map of either kind.
+// Sets *any when a photograph taking part has a map of any kind.
 static enum orl_result find_maps(const struct orl_log *log, const char *workspace,
                                  const struct densify_photos *photos, bool *any)
 {

@@ -46,7 +46,8 @@ void main()
             float z;
             if (!(points[s].z > 0.0) || !photo_project(shot, points[s], pixel, z))
                 continue;
-            float hidden = photo_unhidden_share(shot, photo_depths(shot, pixel), z) > 0.9 ? 1.0 : 8.0;
+            float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
+            float hidden = share > 0.9 ? 1.0 : 8.0;
             least = min(least, photo_penalty(shot, points[s]) * hidden);
             seen += 1.0 / hidden;
         }

@@ -8,7 +8,8 @@ bool photo_sees(vec4 seen, float z, bool guessed)
     float tolerance = options.x * z;
     if (guessed)
         return photo_unhidden(seen, z, tolerance);
-    return any(lessThanEqual(abs(seen - z), vec4(tolerance))) || all(lessThanEqual(seen, vec4(0.0)));
+    return any(lessThanEqual(abs(seen - z), vec4(tolerance))) ||
+           all(lessThanEqual(seen, vec4(0.0)));
 }
 
 // Airieau 2012, 5.3: cos(theta) / delta, with delta relative to the viewing

@@ -173,7 +173,8 @@ vec4 photo_sample(photo shot, vec2 pixel, float mip)
 // behind everything else.
 bool photo_unhidden(vec4 seen, float z, float tolerance)
 {
-    return !any(bvec4(seen.x > 0.0 && seen.x < z - tolerance, seen.y > 0.0 && seen.y < z - tolerance,
+    return !any(bvec4(seen.x > 0.0 && seen.x < z - tolerance,
+                      seen.y > 0.0 && seen.y < z - tolerance,
                       seen.z > 0.0 && seen.z < z - tolerance,
                       seen.w > 0.0 && seen.w < z - tolerance));
 }

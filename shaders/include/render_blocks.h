@@ -47,7 +47,7 @@ struct photo_data {
     VEC4(eye);           // photograph's centre in the view's camera frame; w: slot
     VEC4(focal);         // fx fy cx cy of the resident photograph, pixels
     VEC4(size);          // width, height of the resident photograph; of its depth map
-    VEC4(gain);          // rgb gain on linear colour; w: slot again, so that sampling loads one less
+    VEC4(gain);          // rgb gain on linear colour; w: slot again, for sampling to load one less
     VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
     VEC4(noise);         // of radiance: variance per light, of reading out; z: 1 if rounded
 };

@@ -260,7 +260,7 @@ int cmd_eval(int argc, char **argv)
         {"divide", ARG_INT, &o.divide, "N", "of --walk: pictures at 1/N of their size; default 1",
          1, 64},
         {"textures", ARG_STRING, &o.textures, "KIND",
-         "photographs on the device: auto (default), full, bc7, bc1", 0, 0},
+         "photographs on the device: auto (default), full, bc7, bc1; not with --merge", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

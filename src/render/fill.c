@@ -51,7 +51,8 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     free_levels(gpu, fill);
     enum orl_result result = ORL_OK;
     // From half the size down to one pixel, rounded up: image loads outside a level read 0.
-    for (int w = (width + 1) / 2, h = (height + 1) / 2; result == ORL_OK; w = (w + 1) / 2, h = (h + 1) / 2) {
+    for (int w = (width + 1) / 2, h = (height + 1) / 2; result == ORL_OK;
+         w = (w + 1) / 2, h = (h + 1) / 2) {
         struct orl_tex_params params = {.width = w, .height = h, .format = GL_RGBA32F,
                                         .tag = "fill pyramid"};
         result = orl_tex_create(gpu, &params, &fill->level[fill->levels]);

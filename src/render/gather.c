@@ -296,7 +296,8 @@ static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view 
 }
 
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip, bool *finished)
+                           const struct orl_render_params *params, const bool *skip,
+                           bool *finished)
 {
     *finished = false;
     struct proxy_options options = orl_proxy_options(params);

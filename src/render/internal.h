@@ -131,7 +131,8 @@ struct fill {
     struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
     int width, height, levels;
     float depth_scale; // a typical depth of the scene
-    struct orl_tex *level[PYRAMID_LEVELS_MAX + 8]; // value * weight, weight; level 0 has half the size
+    // value * weight, weight; level 0 has half the size
+    struct orl_tex *level[PYRAMID_LEVELS_MAX + 8];
 };
 
 enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill);
@@ -171,7 +172,8 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
 // as colour, coverage, but for r->gather.unpainted, and summed for orl_fill_color into the fill's
 // finest level.
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip, bool *finished);
+                           const struct orl_render_params *params, const bool *skip,
+                           bool *finished);
 
 struct orl_renderer {
     struct orl_gpu *gpu;
