@@ -11,16 +11,15 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include <jansson.h>
-
 #include "core/file.h"
 #include "core/memory.h"
 #include "datasets/synth.h"
 #include "eval/truth.h"
 #include "hdr/hdr.h"
 #include "io/picture.h"
+#include "scene/manifest.h"
 
-enum { EDGE_PX = 2, SAMPLES_MAX = 4 };
+enum { EDGE_PX = 2 };
 
 struct job {
     struct orl_log log;
@@ -86,11 +85,14 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void report(const struct view *v, const char *what, const struct orl_image *image)
+static enum orl_result report(const struct job *job, const struct view *v, const char *what,
+                              const struct orl_image *image)
 {
-    double squares[2] = {0}, *all = malloc(3 * v->pixels * sizeof *all);
+    double squares[2] = {0}, *all = orl_array(&job->log, v->pixels, 3 * sizeof *all);
     size_t count[2] = {0}, n = 0;
-    for (size_t i = 0; all && i < 3 * v->pixels; i++) {
+    if (!all)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < 3 * v->pixels; i++) {
         if (!v->use[i / 3])
             continue;
         double e = stops((double)image->f32[i]) - stops((double)v->truth.f32[i]);
@@ -108,7 +110,7 @@ static void report(const struct view *v, const char *what, const struct orl_imag
                100 * (double)count[1] / (double)n);
     }
     free(all);
-    fflush(stdout);
+    return fflush(stdout) == 0 ? ORL_OK : orl_fail(&job->log, ORL_ERR_IO, "cannot write figures");
 }
 
 // Red: too bright, green: too dark, full at four stops; blue: not covered.
@@ -206,22 +208,22 @@ static enum orl_result report_truth(const struct job *job, const struct view *v)
         {"truth, shifted 0.5 px", 0.5},
     };
     enum orl_result result = ORL_OK;
-    struct orl_image image, back;
+    struct orl_image image, back = {0};
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(trials); i++) {
         result = draw_truth(job, v, trials[i].shift, 0, &image);
         if (result == ORL_OK)
-            report(v, trials[i].what, &image);
+            result = report(job, v, trials[i].what, &image);
         orl_image_finish(&image);
     }
     if (result == ORL_OK)
         result = draw_truth(job, v, 0.5, 0.5, &image);
     if (result == ORL_OK)
         result = half_back(job, &image, &back);
-    if (result == ORL_OK) {
-        report(v, "truth, resampled", &back);
+    if (result == ORL_OK)
+        result = report(job, v, "truth, resampled", &back);
+    if (result == ORL_OK)
         result = write_error(job, v, "resampled", &back);
-        orl_image_finish(&back);
-    }
+    orl_image_finish(&back);
     orl_image_finish(&image);
     return result;
 }
@@ -246,8 +248,9 @@ static enum orl_result report_all(const struct job *job, struct view *v,
     for (size_t i = 0; i < v->pixels; i++)
         v->use[i] = frames[0].coverage.f32[i] > 0.5f;
     for (int m = 0; m < 2 && result == ORL_OK; m++) {
-        report(v, names[m], &frames[m].color);
-        result = write_error(job, v, names[m], &frames[m].color);
+        result = report(job, v, names[m], &frames[m].color);
+        if (result == ORL_OK)
+            result = write_error(job, v, names[m], &frames[m].color);
     }
     return result == ORL_OK && job->bound ? report_truth(job, v) : result;
 }
@@ -265,8 +268,8 @@ static enum orl_result report_view(const struct job *job, struct orl_hdr *hdr[2]
     v.view.camera = orl_camera_resized(&photo->view.camera, photo->view.camera.width / job->divide,
                                        photo->view.camera.height / job->divide);
     v.pixels = (size_t)v.view.camera.width * (size_t)v.view.camera.height;
-    v.use = calloc(v.pixels, 1);
-    v.edge = calloc(v.pixels, 1);
+    v.use = orl_array(&job->log, v.pixels, 1);
+    v.edge = orl_array(&job->log, v.pixels, 1);
     if (result == ORL_OK && (!v.use || !v.edge))
         result = ORL_ERR_MEMORY;
     for (int round = 0; result == ORL_OK && round < 2; round++)
@@ -290,14 +293,17 @@ static enum orl_result report_view(const struct job *job, struct orl_hdr *hdr[2]
 static enum orl_result run(struct job *job)
 {
     struct orl_hdr *hdr[2] = {0};
-    json_error_t error;
+    json_t *root = NULL;
     char *path = orl_path_join(&job->log, job->truth_dir, "synth.json");
-    json_t *root = path ? json_load_file(path, 0, &error) : NULL;
-    enum orl_result result = root ? orl_truth_open(&job->log, job->scene, job->truth_dir,
-                                                   &job->truth)
-                                  : ORL_ERR_NOT_FOUND;
+    enum orl_result result = path ? orl_json_read(&job->log, path, &root) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_truth_open(&job->log, job->scene, job->truth_dir, &job->truth);
+    const json_t *contrast = json_object_get(root, "contrast");
+    if (result == ORL_OK && job->bound && !contrast)
+        result = orl_fail(&job->log, ORL_ERR_DATA,
+                          "%s: contrast is missing: made by an older oriel", path);
     job->synth.seed = (uint32_t)json_integer_value(json_object_get(root, "seed"));
-    job->synth.contrast_ev = json_number_value(json_object_get(root, "contrast"));
+    job->synth.contrast_ev = json_number_value(contrast);
     for (int m = 0; m < 2 && result == ORL_OK; m++) {
         struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
         params.merge = (enum orl_hdr_merge)m;
