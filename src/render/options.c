@@ -88,7 +88,8 @@ const struct orl_render_option orl_render_options[] = {
     {"border_px", FIELD(border_px), NULL, 0, 1024, "pixels of the photograph",
      "photographs fade out over this width at their border"},
     {"ghosts", FIELD(ghosts), NULL, 0, 16, "stops",
-     "of radiance: samples this far from the others count half, beyond noise; 0: all count"},
+     "of radiance: samples this far from the others count half, beyond noise and edges; 0: all "
+     "count"},
     {0},
 };
 

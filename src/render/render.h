@@ -44,8 +44,8 @@ struct orl_render_params {
     float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
     float border_px;                // photographs fade out over this width, [0, 1024] pixels
     float ghosts;                   // of a radiance renderer: samples that differ from the
-                                    // others by this many stops beyond noise count half,
-                                    // [0, 16]; 0: all count
+                                    // others by this many stops beyond noise and what light
+                                    // varies around them count half, [0, 16]; 0: all count
     float photos_per_pixel;         // blended by `best`, [1, 4]
     float candidates;               // of a tile, that each pixel asks, [1, 8]
     float outliers;                 // of `best`: a sample this far from the consensus counts
