@@ -123,9 +123,12 @@ static enum orl_result write_manifest(const struct job *job, const char *from, c
             exposure_of(job, name, &ev);
         json_object_set_new(photo, "exposure_ev", json_real(ev));
         json_object_set_new(photo, "series", json_integer(series_of(job, ev)));
-        json_t *gain = json_array();
-        for (int c = 0; c < 3; c++)
-            json_array_append_new(gain, json_real(exp2(-ev)));
+        // What the photographs differed by before still holds.
+        json_t *gain = json_array(), *own = json_object_get(photo, "gain");
+        for (size_t c = 0; c < 3; c++) {
+            double before = own ? json_number_value(json_array_get(own, c)) : 1.0;
+            json_array_append_new(gain, json_real(exp2(-ev) * before));
+        }
         json_object_set_new(photo, "gain", gain);
     }
     int status = root ? json_dump_file(root, to, JSON_INDENT(1)) : -1;
