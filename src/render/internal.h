@@ -67,7 +67,7 @@ enum orl_result orl_proxy_target_resize(struct orl_gpu *gpu, const struct proxy 
                                         struct proxy_target *target, int width, int height);
 void orl_proxy_target_finish(struct orl_gpu *gpu, struct proxy_target *target);
 // Bytes of a target of this size.
-size_t orl_proxy_target_bytes(int width, int height);
+size_t orl_proxy_target_bytes(const struct proxy *proxy, int width, int height);
 // How the proxy is made, from the method's parameters.
 struct proxy_options {
     float splat_scale, front_layer, min_support, points_per_pixel;

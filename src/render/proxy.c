@@ -65,11 +65,12 @@ static int pyramid_levels(int width, int height)
     return levels < PYRAMID_LEVELS_MAX ? levels : PYRAMID_LEVELS_MAX;
 }
 
-size_t orl_proxy_target_bytes(int width, int height)
+size_t orl_proxy_target_bytes(const struct proxy *proxy, int width, int height)
 {
     // Three words a pixel of splats, 8 bytes of level 0, two depths, a normal, and 24 bytes
-    // of the coarser levels.
-    return (size_t)width * (size_t)height * (12 + 8 + 8 + 8 + 24 / 3);
+    // of the coarser levels; four words more between chunks.
+    size_t chunks = proxy->cloud.chunk_count < 2 ? 0 : 16;
+    return (size_t)width * (size_t)height * (12 + 8 + 8 + 8 + 24 / 3 + chunks);
 }
 
 // Each level half as large as the one before, rounded up: loads outside read as empty.

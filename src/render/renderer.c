@@ -7,7 +7,7 @@
 #include "render/internal.h"
 
 // What stays after photographs: points, and targets of the usual sizes.
-static size_t fixed_bytes(const struct orl_scene *scene)
+static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *proxy)
 {
     int width = 1, height = 1;
     for (size_t i = 0; i < scene->photo_count; i++) {
@@ -15,7 +15,7 @@ static size_t fixed_bytes(const struct orl_scene *scene)
         width = c->width > width ? c->width : width;
         height = c->height > height ? c->height : height;
     }
-    return scene->points.count * 24 + 2 * orl_proxy_target_bytes(width, height) +
+    return scene->points.count * 24 + 2 * orl_proxy_target_bytes(proxy, width, height) +
            (size_t)width * (size_t)height * (16 + 24);
 }
 
@@ -33,14 +33,14 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     r->gpu = gpu;
     r->scene = scene;
     size_t budget = 0;
-    if (params->max_vram_bytes) {
-        size_t fixed = fixed_bytes(scene);
+    enum orl_result result = orl_proxy_init(gpu, &scene->points, &r->proxy);
+    if (result == ORL_OK && params->max_vram_bytes) {
+        size_t fixed = fixed_bytes(scene, &r->proxy);
         budget = params->max_vram_bytes > fixed ? params->max_vram_bytes - fixed : 1;
         orl_logf(log, ORL_LOG_INFO,
                  "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
                  "photographs", params->max_vram_bytes >> 20, fixed >> 20, budget >> 20);
     }
-    enum orl_result result = orl_proxy_init(gpu, &scene->points, &r->proxy);
     if (result == ORL_OK)
         result = orl_photos_init(gpu, scene, params, budget, &r->photos);
     if (result == ORL_OK)
