@@ -8,7 +8,7 @@
 #include "gpu/gpu.h"
 
 // Raised when the same photographs and settings give other maps than before.
-enum { ORL_DENSIFY_VERSION = 4 };
+enum { ORL_DENSIFY_VERSION = 5 };
 
 struct orl_densify_params {
     int sources;          // source photographs per reference, [1, 16]; cost grows with it

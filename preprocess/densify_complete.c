@@ -10,7 +10,7 @@
 
 enum {
     DIRECTIONS = 8,
-    REACH = 64,       // pixels, how far a surface may be
+    REACH_SHARE = 12, // of the photograph's longer side: how far a surface may be
     STRIDE = 2,       // pixels from one place asked to the next
     BEYOND = 4,       // pixels by which the surface must go on behind where it is met: the rim
                       // around whatever stands before the sky is narrower
@@ -35,6 +35,7 @@ struct completion {
     const struct densify_maps *maps; // as matched: what is completed is no evidence
     const struct orl_image *luma;
     struct orl_camera camera;
+    int reach; // pixels
 };
 
 // Depth of the plane of pixel `from` at pixel `to`; 0: seen edge on or behind the camera.
@@ -64,7 +65,7 @@ static struct met look(const struct completion *c, int x, int y, int dx, int dy)
     const struct met none = {0};
     const float *depth = c->maps->depth.f32;
     size_t width = (size_t)c->luma->width, at = (size_t)y * width + (size_t)x;
-    for (int r = STRIDE; r <= REACH; r += STRIDE) {
+    for (int r = STRIDE; r <= c->reach; r += STRIDE) {
         int u = x + r * dx, v = y + r * dy;
         if (!inside(c, u, v))
             return none;
@@ -188,6 +189,7 @@ enum orl_result orl_densify_complete(const struct orl_log *log, const struct den
                            .camera = orl_densify_level_camera(&job->reference->camera,
                                                               job->finest)};
     int width = c.luma->width, height = c.luma->height;
+    c.reach = (width > height ? width : height) / REACH_SHARE;
     size_t count = (size_t)width * (size_t)height;
     float *found = orl_array(log, count, 4 * sizeof *found); // normal, depth
     if (!found)

@@ -6,7 +6,7 @@
 
 #include "preprocess/densify_internal.h"
 
-enum { WIDTH = 96, HEIGHT = 64, LEFT = 36, RIGHT = 60, TOP = 20, BOTTOM = 44, WALL = 120 };
+enum { WIDTH = 96, HEIGHT = 64, LEFT = 42, RIGHT = 50, TOP = 28, BOTTOM = 36, WALL = 120 };
 
 struct fixture {
     struct densify_pyramid picture;
