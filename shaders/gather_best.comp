@@ -16,7 +16,7 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 
 // How surely the photograph saw this surface: 1 where its depth agrees, little where it
 // has none, 0 where it saw something else.
-float photo_sees(vec4 seen, float z)
+float photo_seen_share(vec4 seen, float z)
 {
     vec4 off = abs(seen - z) / (z * options.x);
     vec4 share = clamp(2.0 - off, 0.0, 1.0);
@@ -72,7 +72,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     bool inside = photo_project(shot, s.p, pixel, z);
     vec4 seen = photo_depths(shot, pixel);
     float sees = s.guessed      ? photo_unhidden_share(shot, seen, z)
-                 : flags.x == 1 ? photo_sees(seen, z)
+                 : flags.x == 1 ? photo_seen_share(seen, z)
                                 : 1.0;
     float sure = sees * photo_border(shot, pixel);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
