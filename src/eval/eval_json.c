@@ -1,7 +1,7 @@
 // The evaluation's report. Field names are fixed; others may be added.
 #include <jansson.h>
 
-#include "eval/eval.h"
+#include "eval/internal.h"
 
 // Takes over `value`, also on failure: when either is missing or memory ran out.
 static bool set(json_t *object, const char *key, json_t *value)
@@ -73,6 +73,20 @@ static bool add_eval(json_t *array, const struct orl_eval *eval)
     return json_array_append_new(array, object) == 0 && ok;
 }
 
+char *orl_reports_to_text(const struct orl_log *log, json_t *all, bool whole, bool array,
+                          int digits)
+{
+    char *text = NULL;
+    if (whole)
+        text = json_dumps(array ? all : json_array_get(all, 0),
+                          JSON_INDENT(1) | JSON_REAL_PRECISION(digits));
+    if (!text)
+        orl_logf(log, ORL_LOG_ERROR, "the report cannot be made: out of memory or a name that is "
+                                     "not UTF-8");
+    json_decref(all);
+    return text;
+}
+
 char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
                        bool array)
 {
@@ -80,13 +94,5 @@ char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, 
     bool ok = all != NULL;
     for (size_t i = 0; i < count && ok; i++)
         ok = add_eval(all, &evals[i]);
-    char *text = NULL;
-    if (ok)
-        text = json_dumps(array ? all : json_array_get(all, 0),
-                          JSON_INDENT(1) | JSON_REAL_PRECISION(8));
-    if (!text)
-        orl_logf(log, ORL_LOG_ERROR, "the report cannot be made: out of memory or a name that is "
-                                     "not UTF-8");
-    json_decref(all);
-    return text;
+    return orl_reports_to_text(log, all, ok, array, 8);
 }

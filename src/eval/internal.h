@@ -2,7 +2,15 @@
 #ifndef ORL_EVAL_INTERNAL_H
 #define ORL_EVAL_INTERNAL_H
 
+#include <jansson.h>
+
 #include "eval/eval.h"
+
+// Text of an array of reports, or of the only one in it; NULL, with a line in the log, when
+// there is no memory (`whole` false: already while they were put together) or a name is not
+// UTF-8. Takes `all`.
+char *orl_reports_to_text(const struct orl_log *log, json_t *all, bool whole, bool array,
+                          int digits);
 
 // Writes one view's pictures into params->image_dir, which exists.
 enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,

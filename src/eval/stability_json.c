@@ -1,6 +1,7 @@
 // The report of a walk.
 #include <jansson.h>
 
+#include "eval/internal.h"
 #include "eval/stability.h"
 
 static json_t *step_json(const struct orl_stability_step *s)
@@ -37,13 +38,5 @@ char *orl_stability_to_json(const struct orl_log *log, const struct orl_scene *s
     bool ok = root != NULL;
     for (size_t i = 0; ok && i < count; i++)
         ok = json_array_append_new(root, stability_json(scene, &all[i])) == 0;
-    char *text = NULL;
-    if (ok)
-        text = json_dumps(array ? root : json_array_get(root, 0),
-                          JSON_INDENT(1) | JSON_REAL_PRECISION(6));
-    if (!text)
-        orl_logf(log, ORL_LOG_ERROR, "the report cannot be made: out of memory or a name that is "
-                                     "not UTF-8");
-    json_decref(root);
-    return text;
+    return orl_reports_to_text(log, root, ok, array, 6);
 }
