@@ -93,14 +93,9 @@ static struct met look(const struct completion *c, int x, int y, int dx, int dy)
 // Does a source see through the place to something clearly farther?
 static bool seen_through(const struct completion *c, int x, int y, float depth)
 {
-    const struct orl_camera *k = &c->camera;
-    const struct orl_pose *pose = &c->job->view.cam_from_world;
-    double cam[3] = {(x + 0.5 - k->cx) / k->fx * depth, (y + 0.5 - k->cy) / k->fy * depth, depth};
+    const struct orl_view own = {c->camera, c->job->view.cam_from_world};
     double world[3], pixel[2], expected;
-    for (int i = 0; i < 3; i++)
-        cam[i] -= pose->t[i];
-    for (int i = 0; i < 3; i++)
-        world[i] = pose->r[0][i] * cam[0] + pose->r[1][i] * cam[1] + pose->r[2][i] * cam[2];
+    orl_view_unproject(&own, x + 0.5, y + 0.5, depth, world);
     for (int s = 0; s < c->job->plan->count; s++) {
         const struct orl_image *map = &c->job->source_depths[s];
         struct orl_view view = c->job->source_views[s];

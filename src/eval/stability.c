@@ -76,14 +76,8 @@ static double depth_at(const struct orl_stability_frame *frame, int x, int y)
 static bool reproject(const struct orl_view *from, int x, int y, double z,
                       const struct orl_view *to, double pixel[2], double *depth)
 {
-    const struct orl_camera *c = &from->camera;
-    const struct orl_pose *pose = &from->cam_from_world;
-    double at[3] = {(x + 0.5 - c->cx) / c->fx * z, (y + 0.5 - c->cy) / c->fy * z, z}, world[3];
-    for (int k = 0; k < 3; k++) {
-        world[k] = 0;
-        for (int j = 0; j < 3; j++)
-            world[k] += pose->r[j][k] * (at[j] - pose->t[j]);
-    }
+    double world[3];
+    orl_view_unproject(from, x + 0.5, y + 0.5, z, world);
     return orl_view_project(to, world, pixel, depth);
 }
 

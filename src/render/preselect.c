@@ -25,14 +25,7 @@ static void sample_point(const struct orl_view *view, int index, double typical,
     const struct orl_camera *c = &view->camera;
     int x = index % ACROSS, y = index / ACROSS % ACROSS;
     double z = depths[index / (ACROSS * ACROSS)] * typical;
-    double at[3] = {((x + 0.5) * c->width / ACROSS - c->cx) / c->fx * z,
-                    ((y + 0.5) * c->height / ACROSS - c->cy) / c->fy * z, z};
-    const struct orl_pose *pose = &view->cam_from_world;
-    for (int k = 0; k < 3; k++) {
-        out[k] = 0;
-        for (int j = 0; j < 3; j++)
-            out[k] += pose->r[j][k] * (at[j] - pose->t[j]);
-    }
+    orl_view_unproject(view, (x + 0.5) * c->width / ACROSS, (y + 0.5) * c->height / ACROSS, z, out);
 }
 
 // Inverse of the penalty of photo_choice.glsl; 0 where the photograph does not see the point.

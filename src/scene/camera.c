@@ -166,3 +166,16 @@ bool orl_view_project(const struct orl_view *view, const double world[3], double
     pixel[1] = view->camera.fy * cam[1] / cam[2] + view->camera.cy;
     return true;
 }
+
+void orl_view_unproject(const struct orl_view *view, double u, double v, double depth,
+                        double world[3])
+{
+    const struct orl_camera *c = &view->camera;
+    const struct orl_pose *pose = &view->cam_from_world;
+    double cam[3] = {(u - c->cx) / c->fx * depth, (v - c->cy) / c->fy * depth, depth};
+    for (int k = 0; k < 3; k++) {
+        world[k] = 0;
+        for (int j = 0; j < 3; j++)
+            world[k] += pose->r[j][k] * (cam[j] - pose->t[j]);
+    }
+}

@@ -43,5 +43,8 @@ struct orl_view orl_view_interpolate(const struct orl_view *a, const struct orl_
 // False behind the camera. Pixel coordinates may lie outside the picture.
 bool orl_view_project(const struct orl_view *view, const double world[3], double pixel[2],
                       double *depth);
+// Its inverse: what lies at `depth` along the camera's z axis behind pixel coordinates u, v.
+void orl_view_unproject(const struct orl_view *view, double u, double v, double depth,
+                        double world[3]);
 
 #endif

@@ -62,19 +62,18 @@ static enum orl_result read_map(const struct job *job, const char *folder, const
 static void add_point(struct job *job, const struct orl_view *view, int x, int y, double z,
                       const float normal[3])
 {
-    const struct orl_camera *c = &view->camera;
     const struct orl_pose *pose = &view->cam_from_world;
     struct orl_points *points = &job->points;
-    const double at[3] = {(x + 0.5 - c->cx) / c->fx * z - pose->t[0],
-                          (y + 0.5 - c->cy) / c->fy * z - pose->t[1], z - pose->t[2]};
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) {
-            points->position[points->count][i] += (float)(pose->r[k][i] * at[k]);
+    double world[3];
+    orl_view_unproject(view, x + 0.5, y + 0.5, z, world);
+    for (int i = 0; i < 3; i++) {
+        points->position[points->count][i] = (float)world[i];
+        for (int k = 0; k < 3; k++)
             points->normal[points->count][i] += (float)pose->r[k][i] * normal[k];
-        }
+    }
     // Discs of slanted surfaces reach their neighbours; no more, or edges grow.
     double facing = fmax(fabs((double)normal[2]), 0.6);
-    points->radius[points->count++] = (float)(0.6 * job->stride * z / c->fx / facing);
+    points->radius[points->count++] = (float)(0.6 * job->stride * z / view->camera.fx / facing);
 }
 
 static enum orl_result add_photo(struct job *job, const struct orl_colmap_image *image)

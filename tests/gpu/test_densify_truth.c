@@ -63,17 +63,6 @@ static void free_truth(struct truth *truth)
     }
 }
 
-static void unproject(const struct orl_view *view, int x, int y, double depth, double world[3])
-{
-    const struct orl_camera *c = &view->camera;
-    const struct orl_pose *pose = &view->cam_from_world;
-    double cam[3] = {(x + 0.5 - c->cx) / c->fx * depth, (y + 0.5 - c->cy) / c->fy * depth, depth};
-    for (int i = 0; i < 3; i++)
-        cam[i] -= pose->t[i];
-    for (int i = 0; i < 3; i++)
-        world[i] = pose->r[0][i] * cam[0] + pose->r[1][i] * cam[1] + pose->r[2][i] * cam[2];
-}
-
 // Does photograph `index` see the place? Its own depth there must be the same.
 static bool sees(const struct truth *truth, int index, const double world[3], double pixel[2])
 {
@@ -131,7 +120,7 @@ static void write_model(const struct truth *truth, const char *dir)
                 double depth = truth->frames[i].depth.f32[y * c->width + x];
                 if (!(depth > 0.0))
                     continue;
-                unproject(&truth->views[i], x, y, depth, world);
+                orl_view_unproject(&truth->views[i], x + 0.5, y + 0.5, depth, world);
                 for (int k = 0; k < trial->count; k++)
                     if (sees(truth, k, world, pixels[count]))
                         views[count++] = k;
@@ -191,12 +180,12 @@ struct figures {
 static void add_pixel(const struct truth *truth, int index, size_t at, double depth,
                       const float *normal, struct figures *figures)
 {
-    int width = truth->views[index].camera.width;
+    int width = truth->views[index].camera.width, x = (int)at % width, y = (int)at / width;
     double expected = truth->frames[index].depth.f32[at], world[3], pixel[2];
     const float *facing = &truth->frames[index].normal.f32[3 * at];
     bool shared = false;
     if (expected > 0.0) {
-        unproject(&truth->views[index], (int)at % width, (int)at / width, expected, world);
+        orl_view_unproject(&truth->views[index], x + 0.5, y + 0.5, expected, world);
         for (int k = 0; k < trial->count && !shared; k++)
             shared = k != index && sees(truth, k, world, pixel);
     }

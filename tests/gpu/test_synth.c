@@ -55,18 +55,6 @@ static int finish_views(void **state)
     return 0;
 }
 
-static void unproject(const struct orl_view *view, int x, int y, double depth, double world[3])
-{
-    const struct orl_camera *c = &view->camera;
-    const struct orl_pose *pose = &view->cam_from_world;
-    double cam[3] = {(x + 0.5 - c->cx) / c->fx * depth, (y + 0.5 - c->cy) / c->fy * depth, depth};
-    for (int i = 0; i < 3; i++) {
-        world[i] = 0;
-        for (int k = 0; k < 3; k++)
-            world[i] += pose->r[k][i] * (cam[k] - pose->t[k]);
-    }
-}
-
 // Least and greatest depth of the pixels around a position; false if any is sky.
 static bool depth_range(const struct orl_image *depth, const double pixel[2], double range[2])
 {
@@ -96,7 +84,7 @@ static void depth_agrees_between_views(void **state)
             float depth = drawn.a.depth.f32[y * WIDTH + x];
             if (depth <= 0)
                 continue;
-            unproject(a, x, y, depth, world);
+            orl_view_unproject(a, x + 0.5, y + 0.5, depth, world);
             if (!orl_view_project(b, world, pixel, &z) ||
                 !depth_range(&drawn.b.depth, pixel, range))
                 continue;
@@ -125,7 +113,7 @@ static void ground_is_flat(void **state)
             double up = 0, world[3];
             for (int k = 0; k < 3; k++)
                 up += pose->r[k][1] * n[k];
-            unproject(view, x, y, drawn.a.depth.f32[i], world);
+            orl_view_unproject(view, x + 0.5, y + 0.5, drawn.a.depth.f32[i], world);
             if (up < 0.9999 || world[1] > 0.05)
                 continue;
             ground++;
