@@ -1,4 +1,6 @@
-// Writes guessed background depth, negative, where the proxy has none. 2x2 pixels an invocation.
+// Writes guessed background depth, negative, where the proxy has none: what is known around, but
+// no farther than the ground (Li's room, of which only the floor is sure). 2x2 pixels an
+// invocation.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
@@ -8,6 +10,13 @@ layout(r32f, binding = 1) uniform image2D depth;
 
 #define FILL_LEVEL filled
 #include "include/fill.glsl"
+
+// Inverse depth; 0: no ground there.
+float on_ground(ivec2 at)
+{
+    float inverse = dot(ground.xyz, vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0));
+    return inverse > ground.w ? inverse : 0.0;
+}
 
 void main()
 {
@@ -19,6 +28,6 @@ void main()
     for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
         ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
         if (finer[k].r > 0.0 && !(imageLoad(depth, at).r > 0.0))
-            imageStore(depth, at, vec4(-finer[k].a / finer[k].r));
+            imageStore(depth, at, vec4(-1.0 / max(finer[k].r / finer[k].a, on_ground(at))));
     }
 }

@@ -85,6 +85,8 @@ ORL_BLOCK(image_block)
 {
     IVEC4(area); // width, height of the written level; z, w: the pass's own
     VEC4(scale); // x: a typical depth of the scene
+    VEC4(focal); // fx fy cx cy
+    VEC4(ground); // dot(xyz, ray) is its inverse depth; w: the least that counts
 };
 #endif
 

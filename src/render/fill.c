@@ -7,7 +7,7 @@
 enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill)
 {
     memset(fill, 0, sizeof *fill);
-    fill->depth_scale = depth_scale;
+    fill->block.scale[0] = depth_scale;
     const struct {
         const char *file, *defines;
         struct orl_prog **prog;
@@ -77,7 +77,9 @@ static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *p
     // These take 2x2 pixels an invocation.
     bool four = prog == fill->push || prog == fill->apply_depth;
     int width = covered->params.width, height = covered->params.height;
-    struct image_block block = {.area = {width, height}, .scale = {fill->depth_scale}};
+    struct image_block block = fill->block;
+    block.area[0] = width;
+    block.area[1] = height;
     struct orl_dispatch d = {.prog = prog, .params = &block,
                              .images = {{first, 0, first_access}, {second, 0, second_access}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
@@ -96,8 +98,37 @@ static void spread(struct orl_gpu *gpu, struct fill *fill)
             fill->level[i]);
 }
 
-void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth)
+// Farther than so many times the photographs' height, what stands on the ground hides it.
+static const double GROUND_REACH = 20;
+
+// Where the view's rays meet the ground: with it at dot(plane, X) = 0 and X = eye + R^T ray z, the
+// inverse of z is linear in the ray.
+static void set_ground(struct image_block *block, const struct orl_view *view,
+                       const struct orl_ground *ground)
 {
+    const struct orl_pose *pose = &view->cam_from_world;
+    const struct orl_camera *c = &view->camera;
+    const float focal[4] = {(float)c->fx, (float)c->fy, (float)c->cx, (float)c->cy};
+    memcpy(block->focal, focal, sizeof focal);
+    memset(block->ground, 0, sizeof block->ground);
+    if (!ground || !(ground->height > 0))
+        return;
+    double eye[3], height = ground->plane[3];
+    orl_pose_centre(pose, eye);
+    for (int k = 0; k < 3; k++)
+        height += ground->plane[k] * eye[k];
+    if (!(height > 0))
+        return;
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++)
+            block->ground[k] -= (float)(pose->r[k][l] * ground->plane[l] / height);
+    block->ground[3] = (float)(1 / (GROUND_REACH * ground->height));
+}
+
+void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_view *view,
+                    const struct orl_ground *ground, struct orl_tex *depth)
+{
+    set_ground(&fill->block, view, ground);
     run(gpu, fill, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
         fill->level[0]);
     spread(gpu, fill);

@@ -130,7 +130,7 @@ enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
 struct fill {
     struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
     int width, height, levels;
-    float depth_scale; // a typical depth of the scene
+    struct image_block block; // of its passes
     // value * weight, weight; level 0 has half the size
     struct orl_tex *level[PYRAMID_LEVELS_MAX + 8];
 };
@@ -138,8 +138,10 @@ struct fill {
 enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill);
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
-// Guesses background depth, as negative values, where `depth` is 0.
-void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *depth);
+// Guesses background depth, as negative values, where `depth` is 0; no farther than the
+// ground, if not NULL.
+void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_view *view,
+                    const struct orl_ground *ground, struct orl_tex *depth);
 // Spreads `accumulated` (colour * weight, weight) over fill->level[0]; NULL: what that holds, 2x2
 // pixels of colour, 1 summed.
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);

@@ -22,12 +22,12 @@
 const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
      "Buehler 2001's penalty, weights of our own",
-     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
+     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_GROUND,
       .sampling = ORL_SAMPLING_BICUBIC, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS, BEST_DEFAULTS,
       .alignment = ORL_ALIGNMENT_ON}},
     {"oriel-fast", "oriel from two photographs a pixel, of three, sampled bilinearly",
      "as oriel",
-     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
+     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_GROUND,
       .sampling = ORL_SAMPLING_BILINEAR, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS,
       .alignment = ORL_ALIGNMENT_ON, .candidates = 3.0f, .photos_per_pixel = 2.0f}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
@@ -44,7 +44,7 @@ static const char *const visibility_names[] = {"none", "hard", NULL};
 static const char *const sampling_names[] = {"bilinear", "bicubic", NULL};
 static const char *const alignment_names[] = {"off", "on", NULL};
 static const char *const blend_names[] = {"all", "best", NULL};
-static const char *const fill_names[] = {"none", "color", "depth", NULL};
+static const char *const fill_names[] = {"none", "color", "depth", "ground", NULL};
 
 #define FIELD(name) offsetof(struct orl_render_params, name)
 
@@ -54,7 +54,8 @@ const struct orl_render_option orl_render_options[] = {
     {"visibility", FIELD(visibility), visibility_names, 0, 0, "",
      "which photographs see a surface point: all, or those whose depth map agrees"},
     {"fill", FIELD(fill), fill_names, 0, 0, "",
-     "pixels without splats: black, neighbours' colour, or photographs at a guessed depth"},
+     "pixels without splats: black, neighbours' colour, photographs at a guessed depth, or "
+     "that and no farther than the ground"},
     {"sampling", FIELD(sampling), sampling_names, 0, 0, "",
      "of photographs; bicubic is sharper and takes five fetches instead of one"},
     {"alignment", FIELD(alignment), alignment_names, 0, 0, "",

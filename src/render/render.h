@@ -9,7 +9,13 @@
 // --- methods and options ---
 
 enum orl_visibility { ORL_VISIBILITY_NONE, ORL_VISIBILITY_HARD, ORL_VISIBILITY_COUNT };
-enum orl_fill { ORL_FILL_NONE, ORL_FILL_COLOR, ORL_FILL_DEPTH, ORL_FILL_COUNT };
+enum orl_fill {
+    ORL_FILL_NONE,
+    ORL_FILL_COLOR,
+    ORL_FILL_DEPTH,
+    ORL_FILL_GROUND, // depth, but no farther than the scene's ground
+    ORL_FILL_COUNT
+};
 enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COUNT };
 
 enum orl_blend { ORL_BLEND_ALL, ORL_BLEND_BEST, ORL_BLEND_COUNT };

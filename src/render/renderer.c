@@ -143,9 +143,11 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
     struct proxy_options options = orl_proxy_options(params);
     orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
     if (params->color == ORL_COLOR_PHOTOS) {
-        if (params->fill == ORL_FILL_DEPTH) {
+        if (params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND) {
             orl_pass_begin(gpu, "fill");
-            orl_fill_depth(gpu, &r->fill, r->target.depth);
+            orl_fill_depth(gpu, &r->fill, view,
+                           params->fill == ORL_FILL_GROUND ? &r->scene->ground : NULL,
+                           r->target.depth);
             orl_pass_end(gpu);
         }
         result = orl_gather(r, view, params, skip, &finished);

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/colmap.h"
+#include "scene/ground.h"
 #include "scene/manifest.h"
 #include "scene/radii.h"
 
@@ -241,7 +242,9 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
         (result = orl_manifest_read(log, folder->manifest, folder->points, scene)) != ORL_OK)
         return result;
     result = read_points(log, scene, folder->manifest ? folder->points : folder->fused);
-    return result == ORL_OK ? set_photo_distance(log, scene, model) : result;
+    if (result == ORL_OK)
+        result = set_photo_distance(log, scene, model);
+    return result == ORL_OK ? orl_ground_find(log, scene, &scene->ground) : result;
 }
 
 enum orl_result orl_scene_open(const struct orl_log *log, const char *dir, struct orl_scene **out)

@@ -31,6 +31,12 @@ struct orl_tuned {
     double value;
 };
 
+// A plane: where the photographer stood.
+struct orl_ground {
+    double plane[4]; // world: dot(plane, (X, 1)) is X's height above it, in scene units
+    double height;   // mean of the photographs' above it; 0: none was found
+};
+
 struct orl_scene {
     char *dir; // owned
     struct orl_photo *photos;
@@ -41,6 +47,7 @@ struct orl_scene {
     struct orl_tuned *tuned;
     size_t tuned_count;
     double photo_distance; // median distance from photographs to the points they see
+    struct orl_ground ground;
 };
 
 // Opens SCENE (scene.json, points.ply) or a plain COLMAP dense workspace with

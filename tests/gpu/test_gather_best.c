@@ -197,6 +197,39 @@ static void unseen_pixels_are_filled(void **state)
     teardown(&f);
 }
 
+// What is no wall is ground: another photograph sees it there than at the wall's depth.
+static void guesses_end_at_the_ground(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, 48, 12);
+    // Row 44 looks down at 1.71 of its depth: it meets y = 3 at depth 1.76, and y = 6.8 at the
+    // wall's depth, 4.
+    add_photo(&f, look_from(0, 2, -1, 48, 30), red);
+    add_photo(&f, look_from(0, 6, 0, 48, 30), green);
+    const struct orl_ground none = {.height = 0};
+    const struct orl_ground floor = {.plane = {0, -1, 0, 3}, .height = 2};
+    const struct orl_ground overhead = {.plane = {0, -1, 0, -1}, .height = 2};
+    const struct orl_ground grazed = {.plane = {0, -1, 0, 3}, .height = 0.05};
+    const struct { struct orl_ground ground; enum orl_fill fill; bool meets; } cases[] = {
+        {none, ORL_FILL_GROUND, false},     {floor, ORL_FILL_DEPTH, false},
+        {floor, ORL_FILL_GROUND, true},     {overhead, ORL_FILL_GROUND, false},
+        {grazed, ORL_FILL_GROUND, false},
+    };
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        struct orl_render_params params = best();
+        params.fill = cases[i].fill;
+        f.scene.ground = cases[i].ground;
+        struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+        assert_float_equal(color_at(&frame, 24, 44)[0], cases[i].meets, 1e-3);
+        assert_float_equal(color_at(&frame, 24, 44)[1], !cases[i].meets, 1e-3);
+        assert_float_equal(frame.coverage.f32[44 * 48 + 24], 0, 0);
+        orl_frame_finish(&frame);
+    }
+    teardown(&f);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -208,6 +241,7 @@ int main(void)
         cmocka_unit_test(many_photographs_leave_the_best),
         cmocka_unit_test(odd_sizes_lose_no_pixel),
         cmocka_unit_test(unseen_pixels_are_filled),
+        cmocka_unit_test(guesses_end_at_the_ground),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

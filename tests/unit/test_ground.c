@@ -1,0 +1,145 @@
+// The ground under a facade that photographs walk along, and scenes without one.
+#include <math.h>
+#include <string.h>
+
+#include "scene/ground.h"
+#include "test.h"
+
+enum { PHOTOS = 9, GROUND = 150, FACADE = 3000 };
+
+struct street {
+    struct orl_scene scene;
+    struct orl_photo photos[PHOTOS];
+};
+
+// Evenly spread over [0, 1).
+static double spread(size_t i, double step)
+{
+    return fmod((double)i * step, 1);
+}
+
+// A facade 8 wide and 5 high at z = 10, a strip of ground at y = 1.6 before it, both off by up to
+// 2 cm, and photographs of it, eyes at y = 0 give or take 5 cm, pitched by a fifth.
+static void build(struct street *s, size_t ground_points)
+{
+    memset(s, 0, sizeof *s);
+    s->scene.photos = s->photos;
+    s->scene.photo_count = PHOTOS;
+    s->scene.photo_distance = 10;
+    assert_int_equal(orl_points_init(NULL, &s->scene.points, ground_points + FACADE), ORL_OK);
+    for (size_t i = 0; i < s->scene.points.count; i++) {
+        double a = spread(i, 0.6180339887), b = spread(i, 0.7548776662);
+        double noise = 0.04 * spread(i, 0.5698402910) - 0.02;
+        float *at = s->scene.points.position[i], *normal = s->scene.points.normal[i];
+        bool on_ground = i < ground_points;
+        at[0] = (float)(8 * a - 4);
+        at[1] = (float)(on_ground ? 1.6 + noise : 1.6 - 5 * b);
+        at[2] = (float)(on_ground ? 10 - 3 * b : 10 + noise);
+        normal[on_ground ? 1 : 2] = -1;
+    }
+    for (int i = 0; i < PHOTOS; i++) {
+        const double eye[3] = {0.7 * i - 3, i % 3 == 0 ? -0.05 : 0.05, 0.3 * (i % 4)};
+        const double target[3] = {0.2 * i, eye[1] - 2, 10}, up[3] = {0, -1, 0};
+        s->photos[i].view.cam_from_world = orl_pose_look_at(eye, target, up);
+    }
+}
+
+static struct orl_ground find(const struct street *s)
+{
+    struct orl_ground ground;
+    assert_int_equal(orl_ground_find(NULL, &s->scene, &ground), ORL_OK);
+    return ground;
+}
+
+static void assert_found(const struct orl_ground *ground)
+{
+    assert_float_equal(ground->height, 1.6, 0.1);
+    assert_true(ground->plane[1] < -0.999);
+    const double feet[3] = {0, 1.6, 8}; // a point of it
+    double off = ground->plane[3];
+    for (int k = 0; k < 3; k++)
+        off += ground->plane[k] * feet[k];
+    assert_float_equal(off, 0, 0.05);
+}
+
+static void finds_the_street(void **state)
+{
+    (void)state;
+    struct street s;
+    build(&s, GROUND);
+    struct orl_ground ground = find(&s), again = find(&s);
+    assert_found(&ground);
+    assert_memory_equal(&ground, &again, sizeof ground);
+    // Photographs on their side.
+    for (int i = 0; i < PHOTOS; i++) {
+        struct orl_pose *pose = &s.photos[i].view.cam_from_world, was = *pose;
+        for (int k = 0; k < 3; k++) {
+            pose->r[0][k] = -was.r[1][k];
+            pose->r[1][k] = was.r[0][k];
+        }
+        pose->t[0] = -was.t[1];
+        pose->t[1] = was.t[0];
+    }
+    ground = find(&s);
+    assert_found(&ground);
+    orl_points_finish(&s.scene.points);
+}
+
+static void held_out_photographs_have_no_say(void **state)
+{
+    (void)state;
+    struct street s;
+    build(&s, GROUND);
+    struct orl_ground without = find(&s);
+    const double eye[3] = {0, 40, 5}, target[3] = {0, 0, 5}, up[3] = {0, 0, 1};
+    s.photos[4].view.cam_from_world = orl_pose_look_at(eye, target, up); // from underground
+    struct orl_ground none = find(&s);
+    assert_float_equal(none.height, 0, 0);
+    s.photos[4].test = true;
+    struct orl_ground held_out = find(&s);
+    assert_float_equal(held_out.height, without.height, 0.05);
+    orl_points_finish(&s.scene.points);
+}
+
+static void there_may_be_none(void **state)
+{
+    (void)state;
+    struct street s;
+    build(&s, GROUND);
+    struct orl_ground ground;
+    // From a kite: at heights of every kind.
+    for (int i = 0; i < PHOTOS; i++) {
+        const double eye[3] = {0.7 * i - 3, -1.5 * i, 0}, target[3] = {0, 0, 10}, up[3] = {0, -1, 0};
+        s.photos[i].view.cam_from_world = orl_pose_look_at(eye, target, up);
+    }
+    ground = find(&s);
+    assert_float_equal(ground.height, 0, 0);
+    orl_points_finish(&s.scene.points);
+    // A small thing on a turntable, all points near one another.
+    build(&s, GROUND);
+    for (size_t i = 0; i < s.scene.points.count; i++)
+        for (int k = 0; k < 3; k++)
+            s.scene.points.position[i][k] = 0.1f * s.scene.points.position[i][k] +
+                                            (k == 2 ? 9.0f : k == 1 ? 1.4f : 0.0f);
+    ground = find(&s);
+    assert_float_equal(ground.height, 0, 0);
+    // Few photographs and no points.
+    s.scene.photo_count = 2;
+    ground = find(&s);
+    assert_float_equal(ground.height, 0, 0);
+    s.scene.photo_count = PHOTOS;
+    orl_points_finish(&s.scene.points);
+    s.scene.points = (struct orl_points){0};
+    ground = find(&s);
+    assert_float_equal(ground.height, 0, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finds_the_street),
+        cmocka_unit_test(held_out_photographs_have_no_say),
+        cmocka_unit_test(there_may_be_none),
+    };
+    return cmocka_run_group_tests_name("ground", tests, NULL, NULL);
+}
