@@ -94,6 +94,9 @@ vec4 look(sight one, float least, float limit, spot s)
                                : vec4(0.0);
 }
 
+// On guessed depth a photograph that differs shows something else, more often than not.
+const float GUESS_SEVERITY = 4.0;
+
 // Colour, and 1 where there is one. Samples far from the consensus lose weight: passers-by, leaves,
 // reflections. Roots make the consensus of photographs and not of the best one alone, and
 // differences of light about as the eye sees them.
@@ -106,9 +109,10 @@ vec4 blend(spot s, ranking r)
         vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
+    float severity = choice_more.y * (s.guessed ? GUESS_SEVERITY : 1.0);
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(samples[k].rgb) - mean;
-        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * choice_more.y));
+        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
     }
     return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
