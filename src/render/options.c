@@ -81,7 +81,8 @@ const struct orl_render_option orl_render_options[] = {
     {"front_layer", FIELD(front_layer), NULL, 0, 0.1, "fraction of depth",
      "splats this close behind the nearest one are averaged with it; 0: the nearest alone"},
     {"min_support", FIELD(min_support), NULL, 0, 25, "pixels of 5x5",
-     "with a surface at the same depth that a pixel needs, else it is a stray point"},
+     "with a surface at the same depth that a pixel needs, else it is a stray point; above 0, "
+     "holes with 13 around them are closed"},
     {"points_per_pixel", FIELD(points_per_pixel), NULL, 0, 64, "points",
      "above which splats are thinned and enlarged; 0: all are drawn"},
     {"distance_floor", FIELD(distance_floor), NULL, 1e-4, 1, "fraction of viewing distance",
