@@ -12,7 +12,7 @@
 // fountain-P11 is rendered from the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
-    .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 16.0f,                      \
+    .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 8.0f,                      \
     .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 1.5f,  \
     .unknown_trust = 0.05f, .outliers = 0.3f
 
@@ -105,7 +105,7 @@ const struct orl_render_tries orl_render_tries[] = {
     {"guess_sharpness", 5, {0.5, 1, 2, 4, 8}},
     {"unknown_trust", 5, {0, 0.02, 0.05, 0.15, 0.5}},
     {"distance_floor", 4, {0.01, 0.03, 0.1, 0.3}},
-    {"border_px", 3, {4, 16, 48}},
+    {"border_px", 4, {4, 8, 16, 48}},
     {0},
 };
 
