@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "preprocess/ground.h"
 #include "preprocess/job.h"
 #include "scene/manifest.h"
 
@@ -94,18 +95,36 @@ static json_t *left_out(const struct orl_job *job, const json_t *done)
     return list;
 }
 
-// What oriel tune kept in a scene that is still the same.
-static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
+// The ground, and what oriel tune found, in a scene that is still the same.
+static enum orl_result keep(const struct orl_job *job, const char *path, json_t *root)
 {
+    static const char *const keys[] = {"ground", "tuned"};
     json_t *old = NULL;
     if (!orl_path_is_file(path)) // removed before a stage was done again
         return ORL_OK;
     enum orl_result result = orl_json_read(job->log, path, &old);
-    json_t *tuned = json_object_get(old, "tuned");
-    if (tuned && json_object_set(root, "tuned", tuned) != 0)
-        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(keys); i++) {
+        json_t *value = json_object_get(old, keys[i]);
+        if (value && json_object_set(root, keys[i], value) != 0)
+            result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    }
     json_decref(old);
     return result;
+}
+
+// Of the scene that is written already, which is whole without it.
+static enum orl_result add_ground(const struct orl_job *job, const char *path, json_t *root)
+{
+    struct orl_scene *scene;
+    enum orl_result result = orl_scene_open(job->log, job->dir, &scene);
+    if (result != ORL_OK)
+        return result;
+    result = orl_ground_refine(job->log, scene);
+    if (result == ORL_OK &&
+        json_object_set_new(root, "ground", orl_manifest_ground(&scene->ground)) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    orl_scene_destroy(&scene);
+    return result == ORL_OK ? orl_json_write(job->log, path, root) : result;
 }
 
 enum orl_result orl_stage_manifest(struct orl_job *job)
@@ -131,9 +150,11 @@ enum orl_result orl_stage_manifest(struct orl_job *job)
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     if (result == ORL_OK)
-        result = keep_tuned(job, path, root);
+        result = keep(job, path, root);
     if (result == ORL_OK)
         result = orl_json_write(job->log, path, root);
+    if (result == ORL_OK && !json_object_get(root, "ground"))
+        result = add_ground(job, path, root);
     json_decref(root);
     free(path);
     return result;

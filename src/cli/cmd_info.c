@@ -68,15 +68,6 @@ static json_t *photo_json(const struct orl_photo *photo)
                      photo->series);
 }
 
-// NULL: there is none.
-static json_t *ground_json(const struct orl_ground *ground)
-{
-    if (!(ground->height > 0))
-        return NULL;
-    return json_pack("{s:f, s:[f,f,f,f]}", "height", ground->height, "plane", ground->plane[0],
-                     ground->plane[1], ground->plane[2], ground->plane[3]);
-}
-
 static enum orl_result print_json(const struct orl_log *log, const struct orl_scene *scene)
 {
     double low[3], high[3];
@@ -92,14 +83,14 @@ static enum orl_result print_json(const struct orl_log *log, const struct orl_sc
     if (path && orl_path_is_file(path))
         result = orl_json_read(log, path, &manifest);
     json_t *root = json_pack(
-        "{s:s, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, s:o?}",
+        "{s:s, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, s:o}",
         "scene", scene->dir, "counts", "photographs", (json_int_t)scene->photo_count, "train",
         (json_int_t)(scene->photo_count - test), "test", (json_int_t)test, "points",
         (json_int_t)scene->points.count, "photo_distance", scene->photo_distance, "bounds",
         low[0], low[1], low[2], high[0], high[1], high[2], "photographs", photos, "stages",
         json_object_get(manifest, "stages"), "settings", json_object_get(manifest, "settings"),
         "left_out", json_object_get(manifest, "left_out"), "tuned",
-        json_object_get(manifest, "tuned"), "ground", ground_json(&scene->ground));
+        json_object_get(manifest, "tuned"), "ground", orl_manifest_ground(&scene->ground));
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
     if (text)
         printf("%s\n", text);

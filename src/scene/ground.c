@@ -180,7 +180,7 @@ static bool candidate(const struct sample *s, int i, int pair, double plane[4])
 enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scene *scene,
                                 struct orl_ground *ground)
 {
-    *ground = (struct orl_ground){0};
+    *ground = (struct orl_ground){.known = true};
     struct sample s = {0};
     enum orl_result result = take_sample(log, scene, &s);
     if (result != ORL_OK || s.photo_count < 3)

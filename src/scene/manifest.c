@@ -185,6 +185,30 @@ static enum orl_result read_photos(const struct orl_log *log, const char *path,
     return result;
 }
 
+// null: there is none. Absent: to be looked for.
+static enum orl_result read_ground(const struct orl_log *log, const char *path,
+                                   const json_t *root, struct orl_ground *ground)
+{
+    const json_t *told = json_object_get(root, "ground");
+    const json_t *plane = json_object_get(told, "plane");
+    ground->known = told != NULL;
+    if (!told || json_is_null(told))
+        return ORL_OK;
+    double length2 = 0, height = json_number_value(json_object_get(told, "height"));
+    bool numbers = json_array_size(plane) == 4;
+    for (size_t k = 0; numbers && k < 4; k++) {
+        ground->plane[k] = json_number_value(json_array_get(plane, k));
+        numbers = json_is_number(json_array_get(plane, k)) && isfinite(ground->plane[k]);
+        length2 += k < 3 ? ground->plane[k] * ground->plane[k] : 0;
+    }
+    if (!numbers || fabs(length2 - 1) > 1e-6 || !(height > 0 && isfinite(height)))
+        return orl_fail(log, ORL_ERR_FORMAT,
+                        "%s: \"ground\" is not a plane, its normal of length 1, and a height above "
+                        "0", path);
+    ground->height = height;
+    return ORL_OK;
+}
+
 static enum orl_result check_points(const struct orl_log *log, const json_t *root,
                                     const char *points_path)
 {
@@ -225,9 +249,19 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
     if (result == ORL_OK)
         result = orl_manifest_read_tuned(log, path, root, scene);
     if (result == ORL_OK)
+        result = read_ground(log, path, root, &scene->ground);
+    if (result == ORL_OK)
         result = check_points(log, root, points_path);
     json_decref(root);
     return result;
+}
+
+json_t *orl_manifest_ground(const struct orl_ground *ground)
+{
+    const double *p = ground->plane;
+    return ground->height > 0 ? json_pack("{s:[f,f,f,f], s:f}", "plane", p[0], p[1], p[2], p[3],
+                                          "height", ground->height)
+                              : json_null();
 }
 
 enum orl_result orl_manifest_check_unfinished(const struct orl_log *log, const char *dir)

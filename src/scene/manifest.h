@@ -25,6 +25,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
 enum orl_result orl_manifest_read_tuned(const struct orl_log *log, const char *path,
                                         const json_t *root,
                                         struct orl_scene *scene) ORL_CHECK_RESULT;
+// What is "ground": null where there is none. New.
+json_t *orl_manifest_ground(const struct orl_ground *ground);
 // Sets "tuned" of a method in DIR/scene.json; takes over `record`, whose "settings" has
 // option keys and numbers. ORL_ERR_NOT_FOUND: there is no scene.json.
 enum orl_result orl_manifest_write_tuned(const struct orl_log *log, const char *dir,

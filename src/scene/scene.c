@@ -244,7 +244,9 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
     result = read_points(log, scene, folder->manifest ? folder->points : folder->fused);
     if (result == ORL_OK)
         result = set_photo_distance(log, scene, model);
-    return result == ORL_OK ? orl_ground_find(log, scene, &scene->ground) : result;
+    if (result == ORL_OK && !scene->ground.known)
+        result = orl_ground_find(log, scene, &scene->ground);
+    return result;
 }
 
 enum orl_result orl_scene_open(const struct orl_log *log, const char *dir, struct orl_scene **out)

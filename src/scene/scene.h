@@ -34,7 +34,8 @@ struct orl_tuned {
 // A plane: where the photographer stood.
 struct orl_ground {
     double plane[4]; // world: dot(plane, (X, 1)) is X's height above it, in scene units
-    double height;   // mean of the photographs' above it; 0: none was found
+    double height;   // mean of the photographs' above it; 0: there is none
+    bool known;      // looked for, or told by scene.json
 };
 
 struct orl_scene {

@@ -304,6 +304,38 @@ static void reads_tuned_settings(void **state)
     test_dir_remove(dir);
 }
 
+static void reads_ground(void **state)
+{
+    (void)state;
+    char *dir = whole(), text[2048];
+    const char *format = "%.*s, \"ground\": %s}";
+    int length = (int)(strrchr(manifest, '}') - manifest);
+    struct orl_scene *scene;
+    snprintf(text, sizeof text, format, length, manifest,
+             "{\"plane\": [0, -0.6, 0.8, 2.5], \"height\": 1.5}");
+    save(dir, "scene.json", text);
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_float_equal(scene->ground.height, 1.5, 0);
+    assert_float_equal(scene->ground.plane[2], 0.8, 0);
+    assert_float_equal(scene->ground.plane[3], 2.5, 0);
+    orl_scene_destroy(&scene);
+    snprintf(text, sizeof text, format, length, manifest, "null");
+    save(dir, "scene.json", text);
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_float_equal(scene->ground.height, 0, 0);
+    orl_scene_destroy(&scene);
+    static const char *const bad[] = {
+        "1", "{}", "{\"plane\": [0, 1, 0, 1]}", "{\"plane\": [0, 1, 0, 1], \"height\": 0}",
+        "{\"plane\": [0, 1, 1], \"height\": 1}", "{\"plane\": [0, 1, 1, 1], \"height\": 1}",
+        "{\"plane\": [0, 1, 0, \"x\"], \"height\": 1}"};
+    for (size_t i = 0; i < ORL_COUNT(bad); i++) {
+        snprintf(text, sizeof text, format, length, manifest, bad[i]);
+        save(dir, "scene.json", text);
+        assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_ERR_FORMAT);
+    }
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -315,6 +347,7 @@ int main(void)
         cmocka_unit_test(reads_optics),
         cmocka_unit_test(warns_of_other_points),
         cmocka_unit_test(reads_tuned_settings),
+        cmocka_unit_test(reads_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
