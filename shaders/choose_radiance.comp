@@ -23,9 +23,10 @@ float score(int i, ivec2 tile)
                                      (TILE / (2 * ivec2(PROBES_X, PROBES_Y)));
         at = min(at, area.xy - 1);
         float depth = imageLoad(view_depth, at).r;
-        Sample s;
-        if (depth != 0.0 && ask(shot, surface_point(at, abs(depth)), depth < 0.0, s))
-            most = max(most, total_weight(s, noise_of(shot, s.color), depth < 0.0));
+        if (depth == 0.0)
+            continue;
+        Sample s = ask(shot, i, surface_point(at, abs(depth)), depth < 0.0);
+        most = max(most, weight_alone(shot, s));
     }
     return most;
 }

@@ -12,79 +12,71 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 const float LEAST_SHARE_FOUND = 0.02; // of the tile's best: with less a pixel asks all the others
+const float DOUBT_FROM = 0.1; // excess below which a sample keeps all but 1 % of its weight
+const float SHARP_FROM = 0.02; // of the weight: with less a sample is not read again
 
 // The heaviest samples of a pixel. Only ever indexed by loops that compilers unroll: memory that
 // each invocation addresses by itself costs more than all the rest on a software renderer.
 Sample samples[ORL_RADIANCE_KEPT];
-int photos[ORL_RADIANCE_KEPT];
 float weights[ORL_RADIANCE_KEPT]; // 0: no sample
 #define EACH_SAMPLE(k) for (int k = 0; k < ORL_RADIANCE_KEPT; k++)
 
-void put(int at, int i, Sample s, float weight)
-{
-    EACH_SAMPLE(k) {
-        if (k == at) {
-            samples[k] = s;
-            photos[k] = i;
-            weights[k] = weight;
-        }
-    }
-}
-
 // In place of the lightest sample, if that is lighter.
-void put_among(int i, Sample s, float weight)
+void put(Sample s, float weight)
 {
     int least = -1;
     float lightest = weight;
     EACH_SAMPLE(k) {
-        if (weights[k] < lightest) {
-            lightest = weights[k];
-            least = k;
-        }
+        bool lighter = weights[k] < lightest;
+        lightest = lighter ? weights[k] : lightest;
+        least = lighter ? k : least;
     }
-    put(least, i, s, weight);
+    EACH_SAMPLE(k) {
+        bool here = k == least;
+        samples[k].color = here ? s.color : samples[k].color;
+        samples[k].clip = here ? s.clip : samples[k].clip;
+        samples[k].weight = here ? s.weight : samples[k].weight;
+        samples[k].pixel = here ? s.pixel : samples[k].pixel;
+        samples[k].mip = here ? s.mip : samples[k].mip;
+        samples[k].shot = here ? s.shot : samples[k].shot;
+        weights[k] = here ? weight : weights[k];
+    }
 }
 
-// The heaviest weight.
-float ask_photos(vec3 p, bool guessed)
+// The tile's photographs and, where a pixel finds little in them, all others: a small surface
+// that no probe of the tile met.
+void ask_photos(vec3 p, bool guessed)
 {
     EACH_SAMPLE(k) {
-        samples[k] = Sample(vec3(0.0), 0.0, 0.0, 1.0, vec2(0.0), 0.0);
-        photos[k] = 0;
+        samples[k] = Sample(vec3(0.0), 0.0, 0.0, vec2(0.0), 0.0, 0);
         weights[k] = 0.0;
     }
-    float heaviest = 0.0;
     int list = ORL_RADIANCE_LIST * int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
-    for (int n = 0; n < ORL_RADIANCE_KEPT; n++) {
-        int i = chosen[list + n];
-        Sample s;
-        if (i < 0)
-            break;
-        photo shot = photo_at(i);
-        if (!ask(shot, p, guessed, s))
-            continue;
-        float weight = total_weight(s, noise_of(shot, s.color), guessed);
-        s.unrest = unrest(shot, s);
-        put(n, i, s, weight);
-        heaviest = max(heaviest, weight);
-    }
-    // What no probe saw: a small surface that the chosen photographs see badly or not.
-    if (heaviest > LEAST_SHARE_FOUND * intBitsToFloat(chosen[list + ORL_RADIANCE_KEPT]))
-        return heaviest;
-    for (int i = 0; i < area.z; i++) {
-        Sample s;
+    int listed[ORL_RADIANCE_KEPT];
+    EACH_SAMPLE(k)
+        listed[k] = chosen[list + k];
+    float enough = LEAST_SHARE_FOUND * intBitsToFloat(chosen[list + ORL_RADIANCE_KEPT]);
+    float heaviest = 0.0;
+    int n = 0, i = max(listed[0], 0);
+    int other = listed[0] < 0 ? 0 : -1; // where it is among all; -1: still in the list
+    do { // the condition last: see gather_best.comp
         bool known = false;
-        for (int n = 0; n < ORL_RADIANCE_KEPT; n++)
-            known = known || chosen[list + n] == i;
+        EACH_SAMPLE(k)
+            known = known || listed[k] == i;
         photo shot = photo_at(i);
-        if (known || !ask(shot, p, guessed, s))
-            continue;
-        float weight = total_weight(s, noise_of(shot, s.color), guessed);
-        s.unrest = unrest(shot, s);
-        put_among(i, s, weight);
+        Sample s = ask(shot, i, p, guessed);
+        float weight = known && other >= 0 ? 0.0 : weight_alone(shot, s);
+        put(s, weight);
         heaviest = max(heaviest, weight);
-    }
-    return heaviest;
+        n++;
+        i = -1;
+        EACH_SAMPLE(k)
+            i = k == n ? listed[k] : i;
+        if (i < 0 && (other >= 0 || !(heaviest > enough))) {
+            other++;
+            i = other < area.z ? other : -1;
+        }
+    } while (i >= 0);
 }
 
 // Radiance of the sample at the weighted median of brightness.
@@ -100,8 +92,8 @@ vec3 median_color()
         float below = 0.0, mine = brightness[k];
         EACH_SAMPLE(j)
             below += brightness[j] < mine || (brightness[j] == mine && j < k) ? weights[j] : 0.0;
-        if (below <= 0.5 * total && below + weights[k] > 0.5 * total)
-            median = samples[k].color;
+        bool middle = below <= 0.5 * total && below + weights[k] > 0.5 * total;
+        median = middle ? samples[k].color : median;
     }
     return median;
 }
@@ -109,7 +101,8 @@ vec3 median_color()
 // Largest weight that a method of the best few leaves out.
 float left_out()
 {
-    int kept = flags.z == 1 ? int(choice.x) : ORL_RADIANCE_KEPT;
+#ifdef BEST
+    int kept = int(choice.x);
     float limit = 0.0;
     EACH_SAMPLE(k) {
         int above = 0;
@@ -118,51 +111,93 @@ float left_out()
         limit = above == kept ? weights[k] : limit;
     }
     return limit;
+#else
+    return 0.0;
+#endif
+}
+
+Sample sample_at(int one)
+{
+    Sample s = samples[0];
+    EACH_SAMPLE(k) {
+        bool here = k == one;
+        s.color = here ? samples[k].color : s.color;
+        s.clip = here ? samples[k].clip : s.clip;
+        s.weight = here ? samples[k].weight : s.weight;
+        s.pixel = here ? samples[k].pixel : s.pixel;
+        s.mip = here ? samples[k].mip : s.mip;
+        s.shot = here ? samples[k].shot : s.shot;
+    }
+    return s;
+}
+
+// Lessens the weights of things that moved between the photographs. noise: of the samples.
+void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
+{
+    float off[ORL_RADIANCE_KEPT], allowed[ORL_RADIANCE_KEPT]; // squared stops
+    int doubtful = 0; // bits
+    EACH_SAMPLE(k) {
+        off[k] = stops2(samples[k].color, level);
+        // 1 / ln(2)^2 makes relative error stops.
+        allowed[k] = radiance.x * radiance.x + 2.0814 * noise[k];
+        doubtful |= weights[k] > 0.0 && off[k] > DOUBT_FROM * allowed[k] ? 1 << k : 0;
+    }
+    do { // of those alone, since it is a read
+        int one = findLSB(doubtful); // -1: none
+        Sample s = sample_at(one);
+        float more = unrest(photo_at(s.shot), s);
+        EACH_SAMPLE(k) {
+            float excess = off[k] / (allowed[k] + more);
+            weights[k] *= k == one ? 1.0 / (1.0 + excess * excess) : 1.0;
+        }
+        doubtful &= doubtful - 1;
+    } while (doubtful != 0);
 }
 
 // Final weights and their sum; returns the sum of weight * trust.
-float weigh(bool guessed, out float total)
+float weigh(out float total)
 {
     // How far each sample is to be trusted depends on how much light there was, which its
     // own noise must not decide: the median says.
-    vec3 level = max(median_color(), radiance.z);
+    vec3 level = max(median_color(), radiance.z), inverse = 1.0 / level;
     float noise[ORL_RADIANCE_KEPT], trust = 0.0;
     EACH_SAMPLE(k) {
-        noise[k] = noise_of(photo_at(photos[k]), level);
-        weights[k] = total_weight(samples[k], noise[k], guessed);
+        noise[k] = noise_of(photo_at(samples[k].shot), inverse);
+        weights[k] = total_weight(samples[k], noise[k]);
     }
     float limit = left_out();
+    EACH_SAMPLE(k)
+        weights[k] = max(weights[k] - limit, 0.0); // so that none appears at once
+    if (radiance.x > 0.0)
+        lessen_ghosts(level, noise);
     total = 0.0;
     EACH_SAMPLE(k) {
-        weights[k] = max(weights[k] - limit, 0.0); // so that none appears at once
-        // Things that moved between the photographs. 1 / ln(2)^2 makes relative error stops.
-        if (radiance.x > 0.0) {
-            float excess = stops2(samples[k].color, level) /
-                           (radiance.x * radiance.x + 2.0814 * noise[k] + samples[k].unrest);
-            weights[k] /= 1.0 + excess * excess;
-        }
         total += weights[k];
         trust += weights[k] * samples[k].clip * MODEL / (MODEL + noise[k]);
     }
     return trust;
 }
 
-// Colour * weight, weight of sample k.
-vec4 sampled(int n, float total)
+// Sum of colour * weight; those that count are read again with the sharper filter.
+vec3 blend(float total)
 {
-    Sample s = samples[0];
-    int i = photos[0];
-    float weight = weights[0];
+    vec3 sum = vec3(0.0);
+    int sharp = 0; // bits
     EACH_SAMPLE(k) {
-        if (k == n) {
-            s = samples[k];
-            i = photos[k];
-            weight = weights[k];
-        }
+        bool counts = flags.y == 1 && weights[k] > SHARP_FROM * total;
+        sharp |= counts ? 1 << k : 0;
+        sum += counts ? vec3(0.0) : samples[k].color * weights[k];
     }
-    if (flags.y == 1 && weight > 0.02 * total)
-        s.color = photo_sharper(photo_at(i), s.pixel, s.mip, s.color);
-    return vec4(s.color, 1.0) * weight;
+    do {
+        int one = findLSB(sharp); // -1: none
+        Sample s = sample_at(one);
+        float weight = 0.0;
+        EACH_SAMPLE(k)
+            weight = k == one ? weights[k] : weight;
+        sum += photo_sharper(photo_at(s.shot), s.pixel, s.mip, s.color) * weight;
+        sharp &= sharp - 1;
+    } while (sharp != 0);
+    return sum;
 }
 
 void main()
@@ -171,12 +206,11 @@ void main()
     if (at.x >= area.x || at.y >= area.y)
         return;
     float depth = imageLoad(view_depth, at).r;
-    if (depth == 0.0 || !(ask_photos(surface_point(at, abs(depth)), depth < 0.0) > 0.0))
+    if (depth == 0.0)
         return;
-    float total, trust = weigh(depth < 0.0, total);
-    vec4 sum = vec4(0.0);
-    for (int n = 0; n < ORL_RADIANCE_KEPT; n++)
-        sum += sampled(n, total);
+    ask_photos(surface_point(at, abs(depth)), depth < 0.0);
+    float total, trust = weigh(total);
+    vec4 sum = vec4(blend(total), total);
     imageStore(accumulated, at, imageLoad(accumulated, at) + sum);
     imageStore(trusted, at, imageLoad(trusted, at) + vec4(trust, total, 0.0, 0.0));
 }

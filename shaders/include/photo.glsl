@@ -130,12 +130,6 @@ vec3 photo_sharper(photo shot, vec2 pixel, float mip, vec3 color)
     vec3 sharper = texel.rgb / (ORL_RADIANCE_SCALE * texel.a) * shot.gain.rgb;
     return clamp(sharper, color / SHARPEN_MAX, color * SHARPEN_MAX);
 }
-
-vec4 photo_sample(photo shot, vec2 pixel, float mip)
-{
-    vec4 texel = photo_radiance(shot, pixel, mip);
-    return flags.y == 1 ? vec4(photo_sharper(shot, pixel, mip, texel.rgb), texel.a) : texel;
-}
 #else
 // Brings linear colour to the scene's exposure and white balance, the lens's fall-off undone.
 // Linear for all but the brightest; white stays white, as a photograph that clipped was at

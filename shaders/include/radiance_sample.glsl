@@ -1,5 +1,7 @@
 // What photographs of several exposures say of a surface point, shared by the passes that blend
 // them into one radiance.
+// BEST: weights of blend=best, otherwise Airieau's. A program for each, and selects rather than
+// branches: software renderers run both sides of a condition.
 #define RADIANCE
 #include "include/airieau.glsl"
 #include "include/photo_choice.glsl"
@@ -10,64 +12,51 @@
 struct Sample {
     vec3 color;   // radiance
     float clip;   // trust as far as clipping goes
-    float weight; // geometric
-    float unrest; // squared stops
+    float weight; // geometric; 0: the photograph does not see the point
     vec2 pixel;
     float mip;
+    int shot;     // the photograph
 };
 
-// Exposure at which a photograph would have taken a radiance.
-vec3 exposure_of(photo shot, vec3 color)
+// Squared relative error of a photograph by noise, where this is one over radiance.
+float noise_of(photo shot, vec3 inverse)
 {
-    return color / shot.gain.rgb;
-}
-
-// Squared relative error of a photograph by noise, where the radiance is about this.
-float noise_of(photo shot, vec3 color)
-{
-    return relative_variance(exposure_of(shot, color), shot.noise);
+    return relative_variance(shot.gain.rgb * inverse, shot.noise);
 }
 
 // How much of a sample is the surface at z, squared: what lies before it may be a thousand
 // times as bright. 0: hidden.
 float seen_share(photo shot, vec4 seen, float z, bool guessed)
 {
-    if (guessed)
-        return photo_unhidden_share(shot, seen, z);
     vec4 same = clamp(2.0 - abs(seen - z) / (z * options.x), 0.0, 1.0);
     float share = dot(mix(same, vec4(choice.z), lessThanEqual(seen, vec4(0.0))), vec4(0.25));
-    return share * share;
+    return guessed ? photo_unhidden_share(shot, seen, z) : share * share;
 }
 
-// What the method makes of a photograph that sees the point.
+// What the method makes of a photograph that sees the point, in units of what it makes of one
+// whose model error is MODEL: a tenth of a radian away, or a tenth of the distance nearer or
+// farther. Where depth is only guessed, photographs disagree: the best one dominates.
 float geometric_weight(photo shot, vec3 p, bool guessed)
 {
-    if (flags.z == 1)
-        return pow(1.0 / photo_penalty(shot, p), guessed ? choice.w : choice.y);
-    float weight = airieau_weight(p, shot.eye.xyz);
-    // Where depth is only guessed, photographs disagree: let the best one dominate.
-    return guessed ? pow(weight * options.y, 8.0) : weight;
+#ifdef BEST
+    // At most what sums and products stay finite with.
+    return min(pow(0.1 / photo_penalty(shot, p), guessed ? choice.w : choice.y), 1e18);
+#else
+    float weight = airieau_weight(p, shot.eye.xyz) * (0.1 + options.y);
+    float squared = weight * weight, fourth = squared * squared;
+    return guessed ? fourth * fourth : weight;
+#endif
 }
 
-// The same of a photograph whose model error is MODEL: a tenth of a radian away, or a tenth
-// of the distance nearer or farther.
-float usual_weight(bool guessed)
-{
-    if (flags.z == 1)
-        return pow(10.0, guessed ? choice.w : choice.y);
-    float weight = 1.0 / (0.1 + options.y);
-    return guessed ? pow(weight * options.y, 8.0) : weight;
-}
-
-// A geometric weight is an inverse variance too, in units of usual_weight / MODEL: errors of
-// the model and of noise add up, and a photograph taken from here has none but its noise.
+// A geometric weight is an inverse variance too, in units of 1 / MODEL: errors of the model and
+// of noise add up, and a photograph taken from here has none but its noise.
 // The other way round, noise is never forgiven for bad geometry: its samples stray anyway.
-float total_weight(Sample s, float noise, bool guessed)
+float total_weight(Sample s, float noise)
 {
     // Traces of trust in clipped samples must tell them apart whatever their geometry.
     float trace = min(1024.0 * s.clip, 1.0);
     return s.clip * s.clip * s.clip * trace * trace * s.weight /
-           (1.0 + max(s.weight / usual_weight(guessed), 1.0) * noise / MODEL);
+           (1.0 + max(s.weight, 1.0) * noise / MODEL);
 }
 
 // Squared difference in stops, mean of the channels.
@@ -85,25 +74,28 @@ float unrest(photo shot, Sample s)
     return 16.0 * stops2(s.color, around.rgb) + 64.0 * (1.0 - around.a);
 }
 
-// What a photograph says of a point; false when it does not see it.
-bool ask(photo shot, vec3 p, bool guessed, out Sample s)
+// What photograph i, which is `shot`, says of a point before the view.
+Sample ask(photo shot, int i, vec3 p, bool guessed)
 {
+    Sample s;
+    s.shot = i;
     float z;
-    s.weight = 0.0;
-    if (!photo_project(shot, p, s.pixel, z))
-        return false;
-    s.weight = geometric_weight(shot, p, guessed) * photo_border(shot, s.pixel);
-    if (!(s.weight > 0.0))
-        return false;
-    if (flags.x == 1)
-        s.weight *= seen_share(shot, photo_depths(shot, s.pixel), z, guessed);
-    if (!(s.weight > 0.0))
-        return false;
+    bool sees = photo_project(shot, p, s.pixel, z);
+    z = sees ? z : p.z; // no logarithm of less than 0
     s.mip = photo_mip(shot, z, p.z);
     vec4 texel = photo_radiance(shot, s.pixel, s.mip);
     s.color = texel.rgb;
     s.clip = texel.a;
-    return texel.a > 0.0;
+    float share = flags.x == 1 ? seen_share(shot, photo_depths(shot, s.pixel), z, guessed) : 1.0;
+    float weight = geometric_weight(shot, p, guessed) * photo_border(shot, s.pixel) * share;
+    s.weight = sees && texel.a > 0.0 ? weight : 0.0;
+    return s;
+}
+
+// Its weight, by noise where there is as much light as it says itself.
+float weight_alone(photo shot, Sample s)
+{
+    return total_weight(s, noise_of(shot, 1.0 / s.color));
 }
 
 vec3 surface_point(ivec2 at, float depth)

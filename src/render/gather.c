@@ -10,6 +10,39 @@ enum { PHOTO_ROWS = 7 }; // image binding of shaders/include/photo.glsl
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 
+static enum orl_result create(struct orl_gpu *gpu, const char *file, const char *defines,
+                              struct orl_prog **prog)
+{
+    return orl_prog_create(gpu, file, defines, sizeof(struct gather_block), prog);
+}
+
+static enum orl_result create_programs(struct orl_gpu *gpu, struct gather *gather)
+{
+    static const char *const defines[ORL_SAMPLING_COUNT] = {[ORL_SAMPLING_BICUBIC] = "BICUBIC 1\n"};
+    static const char *const few[ORL_SAMPLING_COUNT][KEPT_PROGRAMS] = {
+        [ORL_SAMPLING_BILINEAR] = {"KEPT 2\n", "KEPT 4\n"},
+        [ORL_SAMPLING_BICUBIC] = {"BICUBIC 1\nKEPT 2\n", "BICUBIC 1\nKEPT 4\n"}};
+    enum orl_result result = create(gpu, "choose.comp", NULL, &gather->choose);
+    for (int i = 0; result == ORL_OK && i < ORL_SAMPLING_COUNT; i++) {
+        result = create(gpu, "gather.comp", defines[i], &gather->all[i]);
+        for (int k = 0; result == ORL_OK && k < KEPT_PROGRAMS; k++)
+            result = create(gpu, "gather_best.comp", few[i][k], &gather->best[i][k]);
+    }
+    return result;
+}
+
+static enum orl_result create_radiance_programs(struct orl_gpu *gpu, struct gather *gather)
+{
+    static const char *const defines[ORL_BLEND_COUNT] = {[ORL_BLEND_BEST] = "BEST 1\n"};
+    enum orl_result result = ORL_OK;
+    for (int i = 0; result == ORL_OK && i < ORL_BLEND_COUNT; i++) {
+        result = create(gpu, "choose_radiance.comp", defines[i], &gather->choose_radiance[i]);
+        if (result == ORL_OK)
+            result = create(gpu, "gather_radiance.comp", defines[i], &gather->radiance[i]);
+    }
+    return result;
+}
+
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
                                 struct gather *gather)
 {
@@ -24,19 +57,7 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
     if (result == ORL_OK)
         result = orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, radiance ? "choose_radiance.comp" : "choose.comp", NULL,
-                                 sizeof(struct gather_block), &gather->choose);
-    static const char *const defines[ORL_SAMPLING_COUNT] = {[ORL_SAMPLING_BICUBIC] = "BICUBIC 1\n"};
-    static const char *const few[ORL_SAMPLING_COUNT][KEPT_PROGRAMS] = {
-        [ORL_SAMPLING_BILINEAR] = {"KEPT 2\n", "KEPT 4\n"},
-        [ORL_SAMPLING_BICUBIC] = {"BICUBIC 1\nKEPT 2\n", "BICUBIC 1\nKEPT 4\n"}};
-    for (int i = 0; result == ORL_OK && i < ORL_SAMPLING_COUNT; i++) {
-        result = orl_prog_create(gpu, radiance ? "gather_radiance.comp" : "gather.comp", defines[i],
-                                 sizeof(struct gather_block), &gather->all[i]);
-        for (int k = 0; result == ORL_OK && k < KEPT_PROGRAMS; k++)
-            result = orl_prog_create(gpu, "gather_best.comp", few[i][k],
-                                     sizeof(struct gather_block), &gather->best[i][k]);
-    }
+        result = radiance ? create_radiance_programs(gpu, gather) : create_programs(gpu, gather);
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
     return result;
@@ -48,6 +69,10 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
         orl_prog_destroy(gpu, &gather->all[i]);
         for (int k = 0; k < KEPT_PROGRAMS; k++)
             orl_prog_destroy(gpu, &gather->best[i][k]);
+    }
+    for (int i = 0; i < ORL_BLEND_COUNT; i++) {
+        orl_prog_destroy(gpu, &gather->choose_radiance[i]);
+        orl_prog_destroy(gpu, &gather->radiance[i]);
     }
     orl_prog_destroy(gpu, &gather->choose);
     orl_tex_destroy(gpu, &gather->photo_rows);
@@ -137,7 +162,7 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
         .options = {params->depth_tolerance, params->distance_floor,
                     params->border_px / (float)r->photos.divide},
         .flags = {params->visibility == ORL_VISIBILITY_HARD,
-                  params->sampling == ORL_SAMPLING_BICUBIC, params->blend == ORL_BLEND_BEST},
+                  params->sampling == ORL_SAMPLING_BICUBIC},
         .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model),
                      orl_least_radiance(&r->photos.sensor, r->photos.ev_brightest, true)},
         .area = {view->camera.width, view->camera.height, (int)count, tiles(view->camera.width)},
@@ -171,7 +196,8 @@ static void run(struct orl_gpu *gpu, const char *pass, const struct orl_dispatch
 }
 
 // Lists the photographs of each group of pixels; the rest of the dispatch as for the gather.
-static enum orl_result choose_radiance(struct orl_renderer *r, struct orl_dispatch d)
+static enum orl_result choose_radiance(struct orl_renderer *r, enum orl_blend blend,
+                                       struct orl_dispatch d)
 {
     size_t across = d.groups[0], down = d.groups[1];
     enum orl_result result =
@@ -179,7 +205,7 @@ static enum orl_result choose_radiance(struct orl_renderer *r, struct orl_dispat
                   across * down * ORL_RADIANCE_LIST * sizeof(int), &r->gather.tile_lists);
     if (result != ORL_OK)
         return result;
-    d.prog = r->gather.choose;
+    d.prog = r->gather.choose_radiance[blend];
     d.bufs[1].buf = r->gather.tile_lists;
     d.groups[0] = orl_groups(across, 8);
     d.groups[1] = orl_groups(down, 8);
@@ -203,9 +229,10 @@ static enum orl_result gather_all(struct orl_renderer *r, const struct orl_view 
                                         GL_SHADER_STORAGE_BARRIER_BIT};
     orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
     if (r->photos.radiance) {
-        enum orl_result result = choose_radiance(r, d);
+        enum orl_result result = choose_radiance(r, params->blend, d);
         if (result != ORL_OK)
             return result;
+        d.prog = r->gather.radiance[params->blend];
         d.bufs[1].buf = r->gather.tile_lists;
     }
     run(r->gpu, "gather", &d);

@@ -154,6 +154,8 @@ enum { KEPT_PROGRAMS = 2 };         // for pixels of two photographs and of more
 struct gather {
     struct orl_prog *choose;
     struct orl_prog *all[ORL_SAMPLING_COUNT], *best[ORL_SAMPLING_COUNT][KEPT_PROGRAMS];
+    // Instead of these three in a renderer of radiance.
+    struct orl_prog *choose_radiance[ORL_BLEND_COUNT], *radiance[ORL_BLEND_COUNT];
     struct photo_data *list; // of the photographs of one dispatch
     size_t *chosen;          // their indices in the scene
     struct orl_buf *photos;  // struct photo_data
