@@ -65,18 +65,24 @@ float limit_of(ranking r)
     return limit;
 }
 
+// A photograph with so great a penalty, an angle of some 50 degrees, shows another side of things:
+// no help where depth is guessed.
+const float GUESS_PENALTY_MOST = 0.9;
+
 void consider(int i, photo shot, spot s, inout ranking r)
 {
     vec2 pixel;
     float z;
     bool inside = photo_project(shot, s.p, pixel, z);
     vec4 seen = photo_depths(shot, pixel);
-    float sees = s.guessed      ? photo_unhidden_share(shot, seen, z)
+    float penalty = photo_penalty(shot, s.p);
+    float beside = clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MOST), 0.0, 1.0);
+    float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * beside
                  : flags.x == 1 ? photo_seen_share(seen, z)
                                 : 1.0;
     float sure = sees * photo_border(shot, pixel);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
-    insert(sight(paints ? photo_penalty(shot, s.p) / sure : NOT_SEEN, i), r);
+    insert(sight(paints ? penalty / sure : NOT_SEEN, i), r);
 }
 
 // One photograph's colour and its weight.

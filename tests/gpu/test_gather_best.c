@@ -230,6 +230,28 @@ static void guesses_end_at_the_ground(void **state)
     teardown(&f);
 }
 
+// Beside the wall depth is guessed: from 16 degrees aside a photograph may paint it, from 62 not.
+static void guesses_are_not_seen_from_the_side(void **state)
+{
+    (void)state;
+    static const struct { double x; bool paints; } cases[] = {{3, true}, {7, false}};
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        struct fixture f;
+        setup(&f, false);
+        add_photo(&f, look_from(0, 0, 0, 48, 20), red); // the wall alone
+        add_photo(&f, look_from(cases[i].x, 0, 0, 48, 20), green);
+        struct orl_render_params params = best();
+        struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, 48, 12), &params, 0);
+        const float *c = color_at(&frame, 44, 24); // of (6.8, 0, 4)
+        if (cases[i].paints)
+            assert_float_equal(c[1], 1, 1e-3);
+        else
+            assert_true(c[0] > 0.5f && c[1] < 0.5f);
+        orl_frame_finish(&frame);
+        teardown(&f);
+    }
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -242,6 +264,7 @@ int main(void)
         cmocka_unit_test(odd_sizes_lose_no_pixel),
         cmocka_unit_test(unseen_pixels_are_filled),
         cmocka_unit_test(guesses_end_at_the_ground),
+        cmocka_unit_test(guesses_are_not_seen_from_the_side),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);
