@@ -207,7 +207,7 @@ static void guesses_end_at_the_ground(void **state)
     // Row 44 looks down at 1.71 of its depth: it meets y = 3 at depth 1.76, and y = 6.8 at the
     // wall's depth, 4.
     add_photo(&f, look_from(0, 2, -1, 48, 30), red);
-    add_photo(&f, look_from(0, 6, 0, 48, 30), green);
+    add_photo(&f, look_from(0, 4.6, 0, 48, 30), green);
     const struct orl_ground none = {.height = 0};
     const struct orl_ground floor = {.plane = {0, -1, 0, 3}, .height = 2};
     const struct orl_ground overhead = {.plane = {0, -1, 0, -1}, .height = 2};
