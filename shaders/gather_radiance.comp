@@ -165,9 +165,10 @@ float weigh(out float total)
         noise[k] = noise_of(photo_at(samples[k].shot), inverse);
         weights[k] = total_weight(samples[k], noise[k]);
     }
-    float limit = left_out();
+    // Nearly all of it, so that none appears at once, and samples that tie with it remain.
+    float limit = 0.999 * left_out();
     EACH_SAMPLE(k)
-        weights[k] = max(weights[k] - limit, 0.0); // so that none appears at once
+        weights[k] = max(weights[k] - limit, 0.0);
     if (radiance.x > 0.0)
         lessen_ghosts(level, noise);
     total = 0.0;

@@ -190,6 +190,23 @@ static void the_darkest_decides_where_all_clip(void **state)
     }
 }
 
+// Only one of them may count, and neither is better.
+static void photographs_that_tie_paint(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    for (int i = 0; i < 3; i++)
+        add_photo(&f, look(0.2, 0), 0, wall_light);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    params.render.photos_per_pixel = 1;
+    struct orl_frame frame = draw(&f, &params);
+    assert_color(&frame, MIDDLE, WALL, 0.01);
+    assert_true(frame.confidence.f32[MIDDLE] > 0.5f);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 static void where_all_are_black_it_is_dark(void **state)
 {
     (void)state;
@@ -547,6 +564,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_photograph_that_does_not_clip_decides),
         cmocka_unit_test(the_darkest_decides_where_all_clip),
+        cmocka_unit_test(photographs_that_tie_paint),
         cmocka_unit_test(where_all_are_black_it_is_dark),
         cmocka_unit_test(noise_does_not_outvote_light),
         cmocka_unit_test(what_moved_does_not_ghost),
