@@ -5,9 +5,10 @@
 #include "include/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(rgba32f, binding = 0) uniform image2D accumulated; // in: colour * weight, weight;
-                                                          // REST: see gather_best.comp
-                                                          // out: colour, coverage
+// In: colour * weight, weight; weight negative where there is at least that much light, and as
+// much as around it if that is more (gather_radiance.comp). REST: see gather_best.comp. Out:
+// colour, coverage.
+layout(rgba32f, binding = 0) uniform image2D accumulated;
 layout(rgba32f, binding = 1) readonly uniform image2D filled;
 layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 
@@ -34,10 +35,11 @@ void compose(uvec2 group)
             imageStore(accumulated, at, vec4(filled, 0.0));
 #else
         float on_surface = imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
+        vec3 own = sum.rgb / max(abs(sum.a), 1e-38);
         // Splat colours between splats count as covered by them.
         imageStore(accumulated, at,
-                   sum.a > 0.0 ? vec4(sum.rgb / sum.a, on_surface)
-                               : vec4(filled, area.z == 1 ? on_surface : 0.0));
+                   vec4(sum.a > 0.0 ? own : max(own, filled),
+                        sum.a != 0.0 || area.z == 1 ? on_surface : 0.0));
 #endif
     }
 }

@@ -4,7 +4,9 @@
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in; // a tile
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-layout(rgba32f, binding = 1) uniform image2D accumulated;      // colour * weight, weight
+// Colour * weight, weight, which is negative where most of it clips: colour is the least there
+// may be.
+layout(rgba32f, binding = 1) uniform image2D accumulated;
 layout(rg32f, binding = 2) uniform image2D trusted;            // weight * trust, weight
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[]; // choose_radiance.comp
@@ -13,6 +15,7 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 const float LEAST_SHARE_FOUND = 0.02; // of the tile's best: with less a pixel asks all the others
 const float DOUBT_FROM = 0.1; // excess below which a sample keeps all but 1 % of its weight
+const float CLIPS_BELOW = 0.5; // mean trust as far as clipping goes
 const float SHARP_FROM = 0.02; // of the weight: with less a sample is not read again
 
 // The heaviest samples of a pixel. Only ever indexed by loops that compilers unroll: memory that
@@ -154,13 +157,13 @@ void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
     } while (doubtful != 0);
 }
 
-// Final weights and their sum; returns the sum of weight * trust.
-float weigh(out float total)
+// Final weights and their sums times trust, times trust as far as clipping goes, and alone.
+vec3 weigh()
 {
     // How far each sample is to be trusted depends on how much light there was, which its
     // own noise must not decide: the median says.
     vec3 level = max(median_color(), radiance.z), inverse = 1.0 / level;
-    float noise[ORL_RADIANCE_KEPT], trust = 0.0;
+    float noise[ORL_RADIANCE_KEPT];
     EACH_SAMPLE(k) {
         noise[k] = noise_of(photo_at(samples[k].shot), inverse);
         weights[k] = total_weight(samples[k], noise[k]);
@@ -171,12 +174,10 @@ float weigh(out float total)
         weights[k] = max(weights[k] - limit, 0.0);
     if (radiance.x > 0.0)
         lessen_ghosts(level, noise);
-    total = 0.0;
-    EACH_SAMPLE(k) {
-        total += weights[k];
-        trust += weights[k] * samples[k].clip * MODEL / (MODEL + noise[k]);
-    }
-    return trust;
+    vec3 sums = vec3(0.0);
+    EACH_SAMPLE(k)
+        sums += weights[k] * vec3(samples[k].clip * vec2(MODEL / (MODEL + noise[k]), 1.0), 1.0);
+    return sums;
 }
 
 // Sum of colour * weight; those that count are read again with the sharper filter.
@@ -210,8 +211,11 @@ void main()
     if (depth == 0.0)
         return;
     ask_photos(surface_point(at, abs(depth)), depth < 0.0);
-    float total, trust = weigh(total);
-    vec4 sum = vec4(blend(total), total);
-    imageStore(accumulated, at, imageLoad(accumulated, at) + sum);
-    imageStore(trusted, at, imageLoad(trusted, at) + vec4(trust, total, 0.0, 0.0));
+    vec3 sums = weigh();
+    float total = sums.z;
+    vec4 before = imageLoad(accumulated, at);
+    bool clips = before.a + (sums.y < CLIPS_BELOW * total ? -total : total) < 0.0;
+    float both = abs(before.a) + total;
+    imageStore(accumulated, at, vec4(before.rgb + blend(total), clips ? -both : both));
+    imageStore(trusted, at, imageLoad(trusted, at) + vec4(sums.x, total, 0.0, 0.0));
 }

@@ -190,6 +190,29 @@ static void the_darkest_decides_where_all_clip(void **state)
     }
 }
 
+// The dark photograph shows the right half; of the left half the bright one tells only that there
+// was at least an eighth.
+static void what_clips_is_as_bright_as_its_surroundings(void **state)
+{
+    (void)state;
+    static const float least[3] = {0.125f, 0.125f, 0.125f};
+    for (int fill = 0; fill < ORL_FILL_COUNT; fill++) {
+        struct fixture f;
+        setup_wall(&f);
+        add_photo(&f, look(2.56, 0), 0, wall_light);
+        add_photo(&f, look(0, 0), 3, wall_light);
+        struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+        params.render.fill = (enum orl_fill)fill;
+        struct orl_frame frame = draw(&f, &params);
+        assert_color(&frame, MIDDLE + SIDE / 4, WALL, 0.01);
+        assert_color(&frame, MIDDLE - SIDE / 4, fill == ORL_FILL_NONE ? least : WALL, 0.01);
+        assert_float_equal(frame.coverage.f32[MIDDLE - SIDE / 4], 1, 0);
+        assert_true(frame.confidence.f32[MIDDLE - SIDE / 4] < 0.01f);
+        orl_frame_finish(&frame);
+        teardown(&f);
+    }
+}
+
 // Only one of them may count, and neither is better.
 static void photographs_that_tie_paint(void **state)
 {
@@ -564,6 +587,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_photograph_that_does_not_clip_decides),
         cmocka_unit_test(the_darkest_decides_where_all_clip),
+        cmocka_unit_test(what_clips_is_as_bright_as_its_surroundings),
         cmocka_unit_test(photographs_that_tie_paint),
         cmocka_unit_test(where_all_are_black_it_is_dark),
         cmocka_unit_test(noise_does_not_outvote_light),
