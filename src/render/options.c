@@ -14,7 +14,7 @@
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
     .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 8.0f,                      \
     .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 1.5f,  \
-    .unknown_trust = 0.05f, .outliers = 0.3f
+    .unknown_trust = 0.5f, .outliers = 0.3f
 
 // What each pixel of blend=best asks and blends.
 #define BEST_DEFAULTS .candidates = 8.0f, .photos_per_pixel = 4.0f
