@@ -88,16 +88,17 @@ void consider(int i, photo shot, spot s, inout ranking r)
 // One photograph's colour and its weight.
 vec4 look(sight one, float least, float limit, spot s)
 {
-    // Full weight until the penalty comes near that of the first left out.
-    float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.0 - one.penalty / limit));
+    // Full weight until the penalty comes near that of the first left out; a trace of it where they
+    // are equal, so that photographs that tie for the last place paint.
+    float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
     photo shot = photo_at(one.index);
     vec2 pixel; // again: four pixels' worth of what consider knew is much to keep
     float z;
     photo_project(shot, s.p, pixel, z);
     vec3 color = photo_sample(shot, pixel, photo_mip(shot, z, s.p.z)).rgb;
     float sharpness = s.guessed ? choice.w : choice.y;
-    return one.penalty < limit ? vec4(color, pow(least / one.penalty, sharpness) * fade)
-                               : vec4(0.0);
+    bool counts = one.penalty < NOT_SEEN && one.penalty <= limit;
+    return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
 }
 
 // On guessed depth a photograph that differs shows something else, more often than not.

@@ -250,6 +250,24 @@ static void guesses_are_not_seen_from_the_side(void **state)
     }
 }
 
+// Between two photographs that see it equally well, the better one would be none.
+static void photographs_that_tie_paint(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    add_photo(&f, look(-0.5, 0, 0), green);
+    add_photo(&f, look(-0.5, 0, 0), green);
+    struct orl_render_params params = best();
+    params.photos_per_pixel = 1;
+    params.fill = ORL_FILL_NONE;
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    assert_float_equal(color_at(&frame, 20, 24)[1], 1, 1e-3);
+    assert_float_equal(frame.coverage.f32[24 * 48 + 20], 1, 0);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -263,6 +281,7 @@ int main(void)
         cmocka_unit_test(unseen_pixels_are_filled),
         cmocka_unit_test(guesses_end_at_the_ground),
         cmocka_unit_test(guesses_are_not_seen_from_the_side),
+        cmocka_unit_test(photographs_that_tie_paint),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);
