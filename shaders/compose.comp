@@ -35,7 +35,7 @@ void compose(uvec2 group)
             imageStore(accumulated, at, vec4(filled, 0.0));
 #else
         float on_surface = imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
-        vec3 own = sum.rgb / max(abs(sum.a), 1e-38);
+        vec3 own = sum.a != 0.0 ? sum.rgb / abs(sum.a) : vec3(0.0);
         // Splat colours between splats count as covered by them.
         imageStore(accumulated, at,
                    vec4(sum.a > 0.0 ? own : max(own, filled),

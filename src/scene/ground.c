@@ -192,7 +192,7 @@ enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scen
             if (!candidate(&s, i, pair, plane) || (height = stood_height(&s, plane)) == 0)
                 continue;
             double here = score(&s, plane, height);
-            if (here <= best)
+            if (!(here > best)) // nor a NaN
                 continue;
             best = here;
             ground->height = height;

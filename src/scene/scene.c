@@ -92,6 +92,8 @@ static size_t sample_distances(const struct orl_scene *scene, double *values, si
 {
     size_t count = 0, step = scene->points.count / per_photo + 1;
     for (size_t i = 0; i < scene->photo_count; i++) {
+        if (scene->photos[i].test)
+            continue;
         const struct orl_view *view = &scene->photos[i].view;
         double centre[3];
         orl_pose_centre(&view->cam_from_world, centre);
@@ -118,6 +120,8 @@ static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_
     if (!values)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < model->image_count; i++) {
+        if (scene->photos[i].test) // the photographs are the model's images
+            continue;
         double centre[3];
         orl_pose_centre(&model->images[i].cam_from_world, centre);
         for (size_t p = 0; p < model->images[i].point_count; p++)

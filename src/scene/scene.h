@@ -47,7 +47,7 @@ struct orl_scene {
     size_t response_count;
     struct orl_tuned *tuned;
     size_t tuned_count;
-    double photo_distance; // median distance from photographs to the points they see
+    double photo_distance; // median distance from training photographs to points they see
     struct orl_ground ground;
 };
 

@@ -46,6 +46,13 @@ sum=$(md5sum <"$scene/points.ply")
 : >"$work/trace"
 prepare 0 --resume
 [ -s "$work/trace" ] && fail "a whole scene was worked on"
+# The ground is looked for once a scene, and kept as it is.
+grep -q '"ground": null' "$scene/scene.json" || fail "scene.json does not tell of the ground"
+sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' "$scene/scene.json"
+prepare 0 --resume
+grep -q '"height": 1.25' "$scene/scene.json" || fail "the ground of a whole scene was not kept"
+run 0 info "$scene"
+prints "ground       1.25 below the photographs"
 prepare 2
 [ "$(md5sum <"$scene/points.ply")" = "$sum" ] || fail "a whole scene was changed"
 
@@ -61,6 +68,7 @@ run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 [ "$(grep -v help "$work/trace" | uniq | tr '\n' ' ')" = "patch_match_stereo stereo_fusion " ] ||
     fail "other hold-outs redo $(tr '\n' ' ' <"$work/trace")"
 prints "4 train, 1 held out"
+grep -q '"height": 1.25' "$scene/scene.json" && fail "the ground of other hold-outs was kept"
 # Depth maps may be deleted once they are fused.
 rm -r "$scene/stereo"
 : >"$work/trace"

@@ -69,7 +69,9 @@ static void finds_the_street(void **state)
     build(&s, GROUND);
     struct orl_ground ground = find(&s), again = find(&s);
     assert_found(&ground);
-    assert_memory_equal(&ground, &again, sizeof ground);
+    assert_float_equal(ground.height, again.height, 0);
+    for (int k = 0; k < 4; k++)
+        assert_float_equal(ground.plane[k], again.plane[k], 0);
     // Photographs on their side.
     for (int i = 0; i < PHOTOS; i++) {
         struct orl_pose *pose = &s.photos[i].view.cam_from_world, was = *pose;

@@ -106,12 +106,11 @@ static void finds_where_photographs_agree(void **state)
     (void)state;
     struct yard yard;
     build(&yard);
-    yard.photos[2].test = true; // neither photograph nor depth map are there to be read
+    yard.photos[2].test = true; // reading it would be an error: it is not there
     for (int i = 0; i < PHOTOS; i++) {
-        if (yard.photos[i].test)
-            continue;
-        photograph(&yard, i);
         write_depth(&yard, i);
+        if (!yard.photos[i].test)
+            photograph(&yard, i);
     }
     struct orl_ground was = yard.scene.ground = off();
     assert_int_equal(orl_ground_refine(NULL, &yard.scene), ORL_OK);
@@ -135,7 +134,9 @@ static void leaves_what_it_cannot_tell(void **state)
         photograph(&yard, i);
     struct orl_ground was = yard.scene.ground = off(); // without depth maps
     assert_int_equal(orl_ground_refine(NULL, &yard.scene), ORL_OK);
-    assert_memory_equal(&yard.scene.ground, &was, sizeof was);
+    assert_float_equal(yard.scene.ground.height, was.height, 0);
+    for (int k = 0; k < 4; k++)
+        assert_float_equal(yard.scene.ground.plane[k], was.plane[k], 0);
     yard.scene.ground = (struct orl_ground){.known = true};
     assert_int_equal(orl_ground_refine(NULL, &yard.scene), ORL_OK);
     assert_float_equal(yard.scene.ground.height, 0, 0);
