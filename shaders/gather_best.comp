@@ -80,7 +80,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * beside
                  : flags.x == 1 ? photo_seen_share(seen, z)
                                 : 1.0;
-    float sure = sees * photo_border(shot, pixel);
+    float sure = sees * photo_border(shot, pixel, s.guessed);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
     insert(sight(paints ? penalty / sure : NOT_SEEN, i), r);
 }

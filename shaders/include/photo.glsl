@@ -45,11 +45,15 @@ bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
     return min(border.x, border.y) > 0.5;
 }
 
+// Skies of other days, and what is not where depth is guessed, must not end in a line.
+const float GUESS_BORDERS = 4.0;
+
 // Falls from 1 to 0 towards the photograph's border.
-float photo_border(photo shot, vec2 pixel)
+float photo_border(photo shot, vec2 pixel, bool guessed)
 {
     vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
-    return clamp(min(border.x, border.y) / max(options.z, 0.5), 0.0, 1.0);
+    float width = max(guessed ? GUESS_BORDERS * options.z : options.z, 0.5);
+    return clamp(min(border.x, border.y) / width, 0.0, 1.0);
 }
 
 // The photograph's own depth at the four texels around a pixel.

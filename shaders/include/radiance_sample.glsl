@@ -87,7 +87,7 @@ Sample ask(photo shot, int i, vec3 p, bool guessed)
     s.color = texel.rgb;
     s.clip = texel.a;
     float share = flags.x == 1 ? seen_share(shot, photo_depths(shot, s.pixel), z, guessed) : 1.0;
-    float weight = geometric_weight(shot, p, guessed) * photo_border(shot, s.pixel) * share;
+    float weight = geometric_weight(shot, p, guessed) * photo_border(shot, s.pixel, guessed) * share;
     s.weight = sees && texel.a > 0.0 ? weight : 0.0;
     return s;
 }
