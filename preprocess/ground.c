@@ -7,8 +7,10 @@
 #include "bridge/bridge.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "io/picture.h"
 #include "scene/colmap.h"
+#include "scene/ground.h"
 
 enum {
     SIDE = 256,         // longer side that photographs are looked at in, pixels
@@ -49,11 +51,6 @@ struct search {
     double axes[2][3]; // that it tilts along
     double eye[3];     // mean of the photographs'
 };
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static enum orl_result find_detail(const struct orl_log *log, const struct orl_image *small,
                                    struct shot *shot)
@@ -153,7 +150,7 @@ static void find_near(struct search *s)
             const double to[3] = {s->shots[b].eye[0] - shot->eye[0],
                                   s->shots[b].eye[1] - shot->eye[1],
                                   s->shots[b].eye[2] - shot->eye[2]};
-            away[b] = a == b ? INFINITY : dot(to, to);
+            away[b] = a == b ? INFINITY : orl_dot3(to, to);
         }
         while (shot->near_count < NEAR_MAX && shot->near_count < s->shot_count - 1) {
             int nearest = 0;
@@ -170,12 +167,11 @@ static void find_axes(struct search *s)
     const double *n = s->found->plane;
     int least = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
     least = fabs(n[2]) < fabs(n[least]) ? 2 : least;
-    double *u = s->axes[0], *v = s->axes[1], length = sqrt(1 - n[least] * n[least]);
+    double *u = s->axes[0];
     for (int k = 0; k < 3; k++)
-        u[k] = ((k == least) - n[least] * n[k]) / length;
-    v[0] = n[1] * u[2] - n[2] * u[1];
-    v[1] = n[2] * u[0] - n[0] * u[2];
-    v[2] = n[0] * u[1] - n[1] * u[0];
+        u[k] = (k == least) - n[least] * n[k];
+    orl_normalize3(u);
+    orl_cross3(n, u, s->axes[1]);
     for (int i = 0; i < s->shot_count; i++)
         for (int k = 0; k < 3; k++)
             s->eye[k] += s->shots[i].eye[k] / s->shot_count;
@@ -188,12 +184,10 @@ static struct orl_ground moved(const struct search *s, const struct move *move)
     double *n = ground.plane;
     for (int k = 0; k < 3; k++)
         n[k] = s->found->plane[k] + move->tilt[0] * s->axes[0][k] + move->tilt[1] * s->axes[1][k];
-    double length = sqrt(dot(n, n));
-    for (int k = 0; k < 3; k++)
-        n[k] /= length;
+    orl_normalize3(n);
     // As far below the photographs' middle as it was, times exp(log_height).
-    double was = dot(s->found->plane, s->eye) + s->found->plane[3];
-    n[3] = was * exp(move->log_height) - dot(n, s->eye);
+    double was = orl_plane_height(s->found->plane, s->eye);
+    n[3] = was * exp(move->log_height) - orl_dot3(n, s->eye);
     return ground;
 }
 
@@ -227,16 +221,14 @@ static void compare(const struct search *s, const struct shot *shot,
                     const struct orl_ground *ground, struct tally *tally)
 {
     const struct orl_camera *c = &shot->view.camera;
-    double height = dot(ground->plane, shot->eye) + ground->plane[3], down[3];
-    if (!(height > 0))
+    double down[3];
+    if (!orl_ground_along_rays(ground, &shot->view, down))
         return;
-    for (int k = 0; k < 3; k++)
-        down[k] = -dot(shot->view.cam_from_world.r[k], ground->plane) / height;
     int step = 1 + (int)sqrt((double)shot->width * shot->height / SPOTS);
     for (int y = step / 2; y < shot->height; y += step)
         for (int x = step / 2; x < shot->width; x += step) {
             const double ray[3] = {(x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy, 1};
-            double inverse = dot(down, ray), at[3];
+            double inverse = orl_dot3(down, ray), at[3];
             if (!shot->open[y * shot->width + x] || inverse * REACH * ground->height < 1)
                 continue;
             orl_view_unproject(&shot->view, x + 0.5, y + 0.5, 1 / inverse, at);

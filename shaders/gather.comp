@@ -19,7 +19,7 @@ vec4 look(photo shot, vec3 p, bool guessed)
     // Where depth is only guessed, photographs disagree: let the best one dominate.
     if (guessed)
         weight = pow(weight * options.y, 8.0);
-    weight *= photo_border(shot, pixel, false);
+    weight *= photo_border(shot, pixel, false); // among all, no border shows
     return weight > 0.0
                ? vec4(photo_sample(shot, pixel, photo_mip(shot, z, p.z)).rgb, 1.0) * weight
                : vec4(0.0);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "hdr/internal.h"
 
 enum { FACES = 6 };
@@ -27,22 +28,10 @@ static const double faces[FACES][3][3] = {
 
 // --- frames ---
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
+// Of directions that cancel out but for rounding, nothing is left: false.
 static bool normalize(double v[3])
 {
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3; i++)
-        v[i] /= length > 0 ? length : 1;
+    double length = orl_normalize3(v);
     return length > 1e-9 && isfinite(length);
 }
 
@@ -60,13 +49,13 @@ static bool panorama_axes(const struct orl_panorama *p, double axes[3][3])
     for (int attempt = 0; attempt < 3; attempt++) {
         double level[3];
         for (int i = 0; i < 3; i++)
-            level[i] = forward[i] - dot(forward, up) * up[i];
-        if (dot(level, level) > 1e-6 && normalize(level)) {
+            level[i] = forward[i] - orl_dot3(forward, up) * up[i];
+        if (orl_dot3(level, level) > 1e-6 && normalize(level)) {
             for (int i = 0; i < 3; i++) {
                 axes[1][i] = -up[i];
                 axes[2][i] = level[i];
             }
-            cross(axes[1], axes[2], axes[0]);
+            orl_cross3(axes[1], axes[2], axes[0]);
             return true;
         }
         for (int i = 0; i < 3; i++)
@@ -91,7 +80,7 @@ void orl_scene_up(const struct orl_scene *scene, double up[3])
 static void place(const struct orl_panorama *p, struct orl_pose *pose)
 {
     for (int i = 0; i < 3; i++)
-        pose->t[i] = -dot(pose->r[i], p->position);
+        pose->t[i] = -orl_dot3(pose->r[i], p->position);
 }
 
 bool orl_panorama_view(const struct orl_panorama *p, struct orl_view *view)
@@ -191,10 +180,10 @@ static void add_face(const struct orl_panorama *p, int number, const struct orl_
         for (int x = 0; x < p->width; x++) {
             double d[3];
             direction_of(p, x, y, d);
-            double z = dot(faces[number][2], d);
+            double z = orl_dot3(faces[number][2], d);
             if (!(z > 0.1))
                 continue;
-            double a = dot(faces[number][0], d) / z, b = dot(faces[number][1], d) / z;
+            double a = orl_dot3(faces[number][0], d) / z, b = orl_dot3(faces[number][1], d) / z;
             double weight = edge_weight(a) * edge_weight(b);
             if (!(weight > 0))
                 continue;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "render/internal.h"
+#include "scene/ground.h"
 
 enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill)
 {
@@ -101,27 +102,18 @@ static void spread(struct orl_gpu *gpu, struct fill *fill)
 // Farther than so many times the photographs' height, what stands on the ground hides it.
 static const double GROUND_REACH = 20;
 
-// Where the view's rays meet the ground: with it at dot(plane, X) = 0 and X = eye + R^T ray z, the
-// inverse of z is linear in the ray.
 static void set_ground(struct image_block *block, const struct orl_view *view,
                        const struct orl_ground *ground)
 {
-    const struct orl_pose *pose = &view->cam_from_world;
     const struct orl_camera *c = &view->camera;
     const float focal[4] = {(float)c->fx, (float)c->fy, (float)c->cx, (float)c->cy};
+    double inverse[3];
     memcpy(block->focal, focal, sizeof focal);
     memset(block->ground, 0, sizeof block->ground);
-    if (!ground || !(ground->height > 0))
-        return;
-    double eye[3], height = ground->plane[3];
-    orl_pose_centre(pose, eye);
-    for (int k = 0; k < 3; k++)
-        height += ground->plane[k] * eye[k];
-    if (!(height > 0))
+    if (!ground || !orl_ground_along_rays(ground, view, inverse))
         return;
     for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
-            block->ground[k] -= (float)(pose->r[k][l] * ground->plane[l] / height);
+        block->ground[k] = (float)inverse[k];
     block->ground[3] = (float)(1 / (GROUND_REACH * ground->height));
 }
 

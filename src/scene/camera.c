@@ -3,27 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static bool normalize(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    if (!(length > 0))
-        return false;
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-    return true;
-}
+#include "core/vec3.h"
 
 bool orl_camera_valid(const struct orl_camera *c)
 {
@@ -91,22 +71,22 @@ void orl_pose_centre(const struct orl_pose *pose, double centre[3])
 static void set_centre(struct orl_pose *pose, const double centre[3])
 {
     for (int i = 0; i < 3; i++)
-        pose->t[i] = -dot(pose->r[i], centre);
+        pose->t[i] = -orl_dot3(pose->r[i], centre);
 }
 
 struct orl_pose orl_pose_look_at(const double eye[3], const double target[3], const double up[3])
 {
     struct orl_pose pose;
     double x[3], y[3], z[3] = {target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]};
-    if (!normalize(z))
+    if (!(orl_normalize3(z) > 0))
         z[0] = 0, z[1] = 0, z[2] = 1;
-    cross(z, up, x);
-    if (!normalize(x)) { // looking along `up`: any horizontal axis will do
+    orl_cross3(z, up, x);
+    if (!(orl_normalize3(x) > 0)) { // looking along `up`: any horizontal axis will do
         const double other[3] = {fabs(z[0]) < 0.5, fabs(z[0]) >= 0.5, 0};
-        cross(z, other, x);
-        normalize(x);
+        orl_cross3(z, other, x);
+        orl_normalize3(x);
     }
-    cross(z, x, y);
+    orl_cross3(z, x, y);
     memcpy(pose.r[0], x, sizeof x);
     memcpy(pose.r[1], y, sizeof y);
     memcpy(pose.r[2], z, sizeof z);
@@ -117,7 +97,7 @@ struct orl_pose orl_pose_look_at(const double eye[3], const double target[3], co
 void orl_pose_apply(const struct orl_pose *pose, const double world[3], double cam[3])
 {
     for (int i = 0; i < 3; i++)
-        cam[i] = dot(pose->r[i], world) + pose->t[i];
+        cam[i] = orl_dot3(pose->r[i], world) + pose->t[i];
 }
 
 static void slerp(const double a[4], const double b[4], double t, double out[4])

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/vec3.h"
 
 enum {
     POINTS_MAX = 4096,
@@ -34,24 +35,6 @@ struct sample {
     double along[3]; // unit: where the photographs' centres spread most
 };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static bool normalise(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    for (int k = 0; k < 3; k++)
-        v[k] /= length;
-    return length > 0 && isfinite(length);
-}
-
-static double above(const double plane[4], const double at[3])
-{
-    return dot(plane, at) + plane[3];
-}
-
 // Largest eigenvector of the centres' covariance, by power iteration.
 static void find_along(struct sample *s)
 {
@@ -65,8 +48,8 @@ static void find_along(struct sample *s)
                 c[k][l] += (s->centres[i][k] - mean[k]) * (s->centres[i][l] - mean[l]);
     double v[3] = {0.8, 0.5, 0.3};
     for (int n = 0; n < 64; n++) {
-        double next[3] = {dot(c[0], v), dot(c[1], v), dot(c[2], v)};
-        if (!normalise(next))
+        double next[3] = {orl_dot3(c[0], v), orl_dot3(c[1], v), orl_dot3(c[2], v)};
+        if (!(orl_normalize3(next) > 0))
             break;
         for (int k = 0; k < 3; k++)
             v[k] = next[k];
@@ -115,16 +98,16 @@ static double stood_height(const struct sample *s, double plane[4])
 {
     double sum = 0, squares = 0, least = INFINITY, across[3] = {0};
     for (int i = 0; i < s->photo_count; i++)
-        sum += above(plane, s->centres[i]);
+        sum += orl_plane_height(plane, s->centres[i]);
     for (int k = 0; sum < 0 && k < 4; k++)
         plane[k] = -plane[k];
     double mean = fabs(sum) / s->photo_count;
     for (int i = 0; i < s->photo_count; i++) {
-        double height = above(plane, s->centres[i]);
+        double height = orl_plane_height(plane, s->centres[i]);
         squares += (height - mean) * (height - mean) / s->photo_count;
         least = fmin(least, height);
         for (int k = 0; k < 3; k++)
-            across[k] += fabs(dot(s->poses[i]->r[k], plane)) / s->photo_count;
+            across[k] += fabs(orl_dot3(s->poses[i]->r[k], plane)) / s->photo_count;
     }
     // Photographs may be on their side.
     bool level = across[2] <= FORWARD_MOST && fmax(across[0], across[1]) >= UPWARD_LEAST;
@@ -139,18 +122,18 @@ static double score(const struct sample *s, const double plane[4], double height
     int on = 0, beneath = 0;
     for (int i = 0; i < s->count; i++) {
         const double *at = s->position[i];
-        double off = above(plane, at);
+        double off = orl_plane_height(plane, at);
         beneath += off < -BENEATH * tolerance;
         if (fabs(off) > tolerance)
             continue;
         counted += (1 - off * off / (tolerance * tolerance)) *
-                   (dot(s->normal[i], plane) > ALIGNED_COSINE ? ALIGNED_COUNTS : 1);
+                   (orl_dot3(s->normal[i], plane) > ALIGNED_COSINE ? ALIGNED_COUNTS : 1);
         on++;
-        squares += dot(at, at);
+        squares += orl_dot3(at, at);
         for (int k = 0; k < 3; k++)
             mean[k] += at[k];
     }
-    double extent2 = on ? squares / on - dot(mean, mean) / ((double)on * on) : 0;
+    double extent2 = on ? squares / on - orl_dot3(mean, mean) / ((double)on * on) : 0;
     if (beneath > BENEATH_MOST * s->count || extent2 < EXTENT * EXTENT * height * height)
         return -1;
     return (counted - BENEATH_COUNTS * beneath) / s->count;
@@ -167,14 +150,12 @@ static bool candidate(const struct sample *s, int i, int pair, double plane[4])
         // Multiplicative hashing: partners spread evenly over the points.
         uint32_t other = ((uint32_t)i * PAIRS + (uint32_t)pair) * 2654435761u;
         const double *b = s->position[((uint64_t)other * (uint64_t)s->count) >> 32];
-        const double to[3] = {b[0] - at[0], b[1] - at[1], b[2] - at[2]}, *a = s->along;
-        plane[0] = a[1] * to[2] - a[2] * to[1];
-        plane[1] = a[2] * to[0] - a[0] * to[2];
-        plane[2] = a[0] * to[1] - a[1] * to[0];
+        const double to[3] = {b[0] - at[0], b[1] - at[1], b[2] - at[2]};
+        orl_cross3(s->along, to, plane);
     }
-    bool is_plane = normalise(plane);
-    plane[3] = -dot(plane, at);
-    return is_plane;
+    double length = orl_normalize3(plane);
+    plane[3] = -orl_dot3(plane, at);
+    return length > 0 && isfinite(length);
 }
 
 enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scene *scene,
@@ -203,4 +184,18 @@ finish:
     free(s.position);
     free(s.normal);
     return result;
+}
+
+bool orl_ground_along_rays(const struct orl_ground *ground, const struct orl_view *view,
+                           double inverse[3])
+{
+    const struct orl_pose *pose = &view->cam_from_world;
+    double eye[3];
+    orl_pose_centre(pose, eye);
+    double height = orl_plane_height(ground->plane, eye);
+    if (!(ground->height > 0 && height > 0))
+        return false;
+    for (int k = 0; k < 3; k++)
+        inverse[k] = -orl_dot3(pose->r[k], ground->plane) / height;
+    return true;
 }

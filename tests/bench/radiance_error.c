@@ -1,15 +1,14 @@
 // radiance_error SCENE TRUTH [--bound] [--divide N] [--samples N] [--images DIR] [--set K=V]...:
 // log2 error of radiance views of a synthetic scene (truth_scene.c), near edges of light and away
-// from them, and the processor time of a view. With --bound also the error that the truth itself
-// has against the truth, over the same pixels, once it is shifted by part of a pixel, or
-// photographed half a pixel off and resampled. An edge is a step of more than a stop between
+// from them. With --bound also the error that the truth itself has against the truth, over the
+// same pixels, once it is shifted by part of a pixel, or photographed half a pixel off and
+// resampled. An edge is a step of more than a stop between
 // neighbouring pixels; near it is within EDGE_PX pixels. --divide: views at 1/N of the
 // photographs' size.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 #include "core/file.h"
 #include "core/memory.h"
@@ -230,14 +229,6 @@ static enum orl_result report_truth(const struct job *job, const struct view *v)
 
 // --- views ---
 
-static double cpu_s(void)
-{
-    struct rusage u;
-    getrusage(RUSAGE_SELF, &u);
-    return (double)u.ru_utime.tv_sec + (double)u.ru_stime.tv_sec +
-           1e-6 * ((double)u.ru_utime.tv_usec + (double)u.ru_stime.tv_usec);
-}
-
 static const char *const names[2] = {"fused", "series"};
 
 static enum orl_result report_all(const struct job *job, struct view *v,
@@ -272,14 +263,8 @@ static enum orl_result report_view(const struct job *job, struct orl_hdr *hdr[2]
     v.edge = orl_array(&job->log, v.pixels, 1);
     if (result == ORL_OK && (!v.use || !v.edge))
         result = ORL_ERR_MEMORY;
-    for (int round = 0; result == ORL_OK && round < 2; round++)
-        for (int m = 0; result == ORL_OK && m < 2; m++) {
-            orl_frame_finish(&frames[m]);
-            double start = cpu_s();
-            result = orl_hdr_draw(hdr[m], &v.view, NULL, &frames[m]);
-            if (round)
-                printf("%s %s: %.3f s of processor time\n", v.name, names[m], cpu_s() - start);
-        }
+    for (int m = 0; result == ORL_OK && m < 2; m++)
+        result = orl_hdr_draw(hdr[m], &v.view, NULL, &frames[m]);
     if (result == ORL_OK)
         result = report_all(job, &v, frames);
     orl_frame_finish(&frames[0]);
