@@ -417,16 +417,33 @@ static enum orl_result begin_database(struct calibration *c, bool sequential)
     return set_mark(c, true);
 }
 
+// Cameras that stood still, one or some all around, are a common mistake.
+static enum orl_result fail_to_place(const struct calibration *c)
+{
+    const struct orl_job *job = c->job;
+    size_t views;
+    enum orl_result result = orl_count_views(job, 3, &views);
+    if (result != ORL_OK)
+        return result;
+    const char *why =
+        views < 2 ? "all show one view, as of a camera that stood still, and tell no depth: take "
+                    "them from different positions, a step or two from one to the next"
+        : views < 3 ? "all show one of two views, as of two cameras that stood still, which is too "
+                      "few: take them from more positions, a step or two from one to the next"
+                    : "take more, with at least two thirds of overlap from one to the next, sharp, "
+                      "with texture, and from different positions; a few cameras fixed around a "
+                      "scene stand too far apart";
+    return orl_fail(job->log, ORL_ERR_DATA,
+                    "only %zu of %zu photographs could be placed relative to each other, and three "
+                    "are needed: %s (what was done is kept in %s)", c->registered,
+                    job->source_count, why, job->dir);
+}
+
 static enum orl_result finish(struct calibration *c)
 {
     const struct orl_job *job = c->job;
     if (c->registered < 3)
-        return orl_fail(job->log, ORL_ERR_DATA,
-                        "only %zu of %zu photographs could be placed relative to each other, and "
-                        "three are needed: take more, with at least two thirds of overlap from "
-                        "one to the next, sharp, with texture, and from different positions "
-                        "(what was done is kept in %s)", c->registered, job->source_count,
-                        job->dir);
+        return fail_to_place(c);
     char *model = orl_job_path(job, WORK "/model");
     if (!model)
         return ORL_ERR_MEMORY;

@@ -11,26 +11,11 @@
 #include "core/memory.h"
 #include "preprocess/job.h"
 
-static bool has_extension(const char *name, const char *const *extensions)
-{
-    const char *dot = strrchr(name, '.');
-    for (; dot && *extensions; extensions++)
-        if (strcasecmp(dot + 1, *extensions) == 0)
-            return true;
-    return false;
-}
-
-static bool is_photo_name(const char *name)
-{
-    static const char *const known[] = {"jpg", "jpeg", "png", NULL};
-    return name[0] != '.' && (has_extension(name, known) || orl_develop_wanted(name));
-}
-
 // Pictures that a user may expect to be taken.
 static bool is_other_photo_name(const char *name)
 {
     static const char *const known[] = {"heic", "heif", "webp", "bmp", "gif", "avif", NULL};
-    return name[0] != '.' && has_extension(name, known);
+    return name[0] != '.' && orl_has_extension(name, known);
 }
 
 static void skip(struct orl_job *job, const char *name, const char *why)
@@ -89,15 +74,15 @@ static enum orl_result add_folder(struct orl_job *job, const char *dir)
 {
     struct orl_names names;
     enum orl_result result = orl_dir_list(job->log, dir, &names);
-    size_t before = job->given, folders = 0;
+    size_t before = job->given, videos = 0;
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
         char *path = orl_path_join(job->log, dir, names.items[i]);
         if (!path)
             result = ORL_ERR_MEMORY;
-        else if (orl_path_is_dir(path))
-            folders++;
-        else if (is_photo_name(names.items[i]))
+        else if (orl_is_photo_name(names.items[i]) && !orl_path_is_dir(path))
             result = add_candidate(job, path);
+        else if (orl_is_video_name(names.items[i]))
+            videos++;
         else if (is_other_photo_name(names.items[i])) {
             job->given++;
             skip(job, path, "not JPEG, PNG, TIFF, EXR or RAW");
@@ -106,9 +91,9 @@ static enum orl_result add_folder(struct orl_job *job, const char *dir)
     }
     orl_names_finish(&names);
     if (result == ORL_OK && job->given == before)
-        result = orl_fail(job->log, ORL_ERR_NOT_FOUND,
-                          "%s: no photograph here (JPEG, PNG, TIFF, EXR or RAW files)%s", dir,
-                          folders ? "; name its subfolders instead" : "");
+        result = orl_fail_no_photos(job, dir);
+    else if (result == ORL_OK && videos)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: videos are left out: %zu", dir, videos);
     return result;
 }
 
@@ -120,6 +105,8 @@ static enum orl_result list_inputs(struct orl_job *job)
         const char *input = params->inputs[i];
         if (orl_path_is_dir(input))
             result = add_folder(job, input);
+        else if (orl_is_video_name(orl_path_name(input)) && orl_path_is_file(input))
+            result = orl_fail_video(job, input);
         else if (access(input, F_OK) == 0)
             result = add_candidate(job, input);
         else
@@ -211,7 +198,7 @@ static void drop_twins(struct orl_job *job)
         static const char *const jpeg[] = {"jpg", "jpeg", NULL};
         const struct orl_source *better = NULL;
         size_t stem = stem_length(source->given);
-        bool may_be = has_extension(source->given, jpeg);
+        bool may_be = orl_has_extension(source->given, jpeg);
         for (size_t k = 0; may_be && k < job->source_count && !better; k++) {
             const struct orl_source *other = &job->sources[k];
             if (other->given && orl_develop_wanted(other->given) &&

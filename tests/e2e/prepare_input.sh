@@ -18,7 +18,21 @@ says "$work/one: 1 usable photograph of 1; at least three are needed"
 
 photos "$work/deep/inner" a.png b.png c.png
 run 2 prepare "$work/deep" --out "$work/s"
-says "name its subfolders instead"
+says "name $work/deep/inner instead"
+[ -e "$work/s" ] && fail "a scene folder was left behind"
+
+# Videos: what to do with them, wherever they are, and no scene folder.
+mkdir -p "$work/film/cam1" "$work/films"
+echo x >"$work/film/cam1/a.avi"
+echo x >"$work/films/B.MP4"
+for given in film film/cam1 films films/B.MP4; do
+    run 2 prepare "$work/$given" --out "$work/s"
+    says "$work/$given: "
+    says "video"
+    says "take frames out of one whose camera moved"
+    says "ffmpeg -i VIDEO -vf fps=2 FRAMES/%05d.png"
+    [ -e "$work/s" ] && fail "a scene folder was left behind"
+done
 
 # Not writable: below a regular file, which stops root too.
 photos "$work/p" a.png b.png c.png d.png e.png
@@ -50,11 +64,13 @@ says "--out SCENE is missing"
 # Damaged ones among good ones are named, skipped and counted; the job goes on.
 head -c 100 "$work/p/a.png" >"$work/p/cut.png"
 echo text >"$work/p/text.jpg"
+echo x >"$work/p/live.mov"
 : >"$work/p/nothing.jpg"
 run 0 prepare "$work/p" --out "$work/s" --test-list e
 for name in cut.png text.jpg nothing.jpg; do
     says "$work/p/$name: "
 done
+says "$work/p: videos are left out: 1"
 prints "8 given, 5 used, 5 registered (4 train, 1 held out)"
 run 0 info "$work/s"
 prints "left out     $work/p/cut.png"

@@ -4,9 +4,22 @@
 export ORIEL_COLMAP=$source/tests/e2e/colmap_double
 photos "$work/p" 0.png 1.png 2.png 3.png 4.png
 
-# No overlap: an error with advice, and what was done is kept.
-DOUBLE_NO_MODEL=1 run 2 prepare "$work/p" --out "$work/none"
+# A camera that stood still: an error that says so.
+DOUBLE_NO_MODEL=1 run 2 prepare "$work/p" --out "$work/still"
 says "only 0 of 5 photographs could be placed"
+says "all show one view, as of a camera that stood still"
+
+# No overlap (grey pictures, which have nothing alike): an error with advice, and what was
+# done is kept.
+mkdir "$work/grey"
+for name in 0 1 2; do
+    base64 -d >"$work/grey/$name.png" <<'PNG'
+iVBORw0KGgoAAAANSUhEUgAAAGAAAABQCAAAAADDiS9JAAAAN0lEQVR42u3NMQ0AAAwDoOqsfyFV
+sWMJGCA9FoFAIBAIBAKBQCAQCAQCgUAgEAgEAoFAIBB8DAZcnYyXbTp6ngAAAABJRU5ErkJggg==
+PNG
+done
+DOUBLE_NO_MODEL=1 run 2 prepare "$work/grey" --out "$work/none"
+says "only 0 of 3 photographs could be placed"
 says "overlap"
 [ -s "$work/none/.oriel/calibrate.tmp/database.db" ] || fail "the features were not kept"
 run 2 info "$work/none"

@@ -261,6 +261,50 @@ static void finds_masks(void **state)
     world_close(&masks);
 }
 
+// A scene of soft blobs from `at` pixels to the right, exposed by `gain`, with somebody in it.
+static void save_view(const char *dir, const char *name, int at, double gain, int passer_by)
+{
+    char path[4096];
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, 192, 144, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int y = 0; y < image.height; y++)
+        for (int x = 0; x < image.width; x++) {
+            double u = x + at, light = sin(u * 0.21 + y * 0.05) * cos(y * 0.17 - u * 0.03);
+            light = 100 + 60 * light;
+            if (x > passer_by && x < passer_by + 12 && y > 90)
+                light = 30;
+            for (int c = 0; c < 3; c++)
+                image.u8[3 * (y * image.width + x) + c] = (uint8_t)(gain * light);
+        }
+    snprintf(path, sizeof path, "%s/%s", dir, name);
+    assert_int_equal(orl_jpeg_write(NULL, path, &image, 90, NULL), ORL_OK);
+    orl_image_finish(&image);
+}
+
+static void counts_views(void **state)
+{
+    (void)state;
+    // Frames of a camera that stood still, of two, and of one that was moved a little.
+    static const struct {
+        int at[4];
+        size_t views;
+    } cases[] = {{{0, 0, 0, 0}, 1}, {{0, 90, 0, 90}, 2}, {{0, 6, 12, 18}, 3}};
+    for (size_t k = 0; k < ORL_COUNT(cases); k++) {
+        struct world w;
+        world_open(&w);
+        for (int i = 0; i < 4; i++) {
+            char name[16];
+            snprintf(name, sizeof name, "%d.jpg", i);
+            save_view(w.photos, name, cases[k].at[i], 1 - 0.2 * i, 30 + 30 * i);
+        }
+        assert_int_equal(orl_stage_collect(&w.job), ORL_OK);
+        size_t views;
+        assert_int_equal(orl_count_views(&w.job, 3, &views), ORL_OK);
+        assert_int_equal(views, cases[k].views);
+        world_close(&w);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -271,6 +315,7 @@ int main(void)
         cmocka_unit_test(refuses_ambiguous_names),
         cmocka_unit_test(holds_out_by_name),
         cmocka_unit_test(finds_masks),
+        cmocka_unit_test(counts_views),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
