@@ -1,6 +1,7 @@
 // The finished frame: blended colour, or the fill where nothing was blended. 2x2 pixels an
 // invocation.
-// REST: gather_best.comp did all but the pixels that nothing paints, of some work groups.
+// REST: gather_best.comp did all but the pixels that nothing paints, and those on guessed depth, of
+// some work groups.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
@@ -15,7 +16,22 @@ layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 #define FILL_LEVEL filled
 #include "include/fill.glsl"
 #ifdef REST
-#include "include/unpainted.glsl"
+#include "include/unfinished.glsl"
+// What gather_best.comp painted on guessed depth: sums of 2x2, colour, 1; and mipmaps.
+layout(binding = 0) uniform sampler2D guesses;
+
+// Colour on guessed depth, blurred as far as it may lie from its place: wrong details are worse
+// than none. With others like it alone, since what has depth is in its place.
+vec3 softened(ivec2 at, vec4 sharp)
+{
+    float most = log2(GUESS_BLUR_MOST * float(max(area.x, area.y)));
+    float blur = clamp(-1.0 - sharp.a, 0.0, max(most, 0.0));
+    vec2 where = (vec2(at) + 0.5) / vec2((area.xy + 1) / 2 * 2);
+    vec4 around = textureLod(guesses, where, max(blur - 1.0, 0.0));
+    // Next to none: a pixel alone in what a driver's mipmaps leave out.
+    vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp.rgb;
+    return mix(sharp.rgb, soft, min(blur, 1.0));
+}
 #endif
 
 void compose(uvec2 group)
@@ -32,7 +48,8 @@ void compose(uvec2 group)
         vec3 filled = fills ? finer[k].rgb / finer[k].a : vec3(0.0);
 #ifdef REST
         if (sum.a < 0.0)
-            imageStore(accumulated, at, vec4(filled, 0.0));
+            imageStore(accumulated, at,
+                       vec4(sum.a < -1.0 ? softened(at, sum) : filled, 0.0));
 #else
         float on_surface = imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
         vec3 own = sum.a != 0.0 ? sum.rgb / abs(sum.a) : vec3(0.0);
@@ -50,10 +67,10 @@ void main()
     uint row = uint(area.x + 2 * ORL_PIXEL_GROUP_X - 1) / (2 * ORL_PIXEL_GROUP_X);
     uint place = gl_WorkGroupID.x;
     do {
-        uint number = unpainted_groups[place];
+        uint number = unfinished_groups[place];
         compose(uvec2(number % row, number / row));
-        place += UNPAINTED_DISPATCH_MAX;
-    } while (place < unpainted_count);
+        place += UNFINISHED_DISPATCH_MAX;
+    } while (place < unfinished_count);
 #else
     compose(gl_WorkGroupID.xy);
 #endif

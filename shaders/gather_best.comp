@@ -6,13 +6,15 @@
 // An invocation makes 2x2 pixels, so that it loads each photograph's parameters once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-// Finished: colour, coverage. What nothing paints is left to compose.comp: 0, -1.
+// Finished: colour, coverage. Left to compose.comp: what nothing paints: 0, -1; what is painted on
+// guessed depth and is to be blurred: colour, -1 - log2 of the blur in pixels.
 layout(rgba32f, binding = 1) writeonly uniform image2D accumulated;
 layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sum of 2x2 of them: fill_seed.comp
+layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // and of those on guessed depth
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
-#include "include/unpainted.glsl"
+#include "include/unfinished.glsl"
 
 // How surely the photograph saw this surface: 1 where its depth agrees, little where it
 // has none, 0 where it saw something else.
@@ -104,10 +106,28 @@ vec4 look(sight one, float least, float limit, spot s)
 // On guessed depth a photograph that differs shows something else, more often than not.
 const float GUESS_SEVERITY = 4.0;
 
-// Colour, and 1 where there is one. Samples far from the consensus lose weight: passers-by, leaves,
-// reflections. Roots make the consensus of photographs and not of the best one alone, and
-// differences of light about as the eye sees them.
-vec4 blend(spot s, ranking r)
+// Where photographs differ by this much, square roots of light, a guess is fully in doubt.
+const float GUESS_DIFFERENCE = 0.1;
+// Doubt in what one photograph shows alone: often enough it is right, and sharp.
+const float GUESS_ALONE = 0.5;
+// The same guess on the ground, which is known far better.
+const float GROUND_DOUBT = 0.3;
+
+// How far colour on guessed depth may lie from its place, log2 of pixels: in proportion to parallax
+// (Eisemann 2007, Filtered Blending), the less the more the photographs agree.
+float guess_blur(spot s, float penalty, float difference, float share)
+{
+    float alone = clamp(5.0 * share - 4.0, 0.0, 1.0);
+    float doubt = clamp(max(difference / GUESS_DIFFERENCE, GUESS_ALONE * alone), 0.0, 1.0);
+    float depths = s.p.z * dot(ground.xyz, vec3(s.p.xy / s.p.z, 1.0)); // of the ground's
+    doubt *= abs(depths - 1.0) < 1e-3 ? GROUND_DOUBT : 1.0;
+    return log2(max(choice_more.w * view_focal.x * penalty * doubt, 1.0));
+}
+
+// Colour, and 1 where there is one; and the blur that it needs on guessed depth. Samples far from
+// the consensus lose weight: passers-by, leaves, reflections. Roots make the consensus of
+// photographs and not of the best one alone, and differences of light about as the eye sees them.
+vec4 blend(spot s, ranking r, out float blur)
 {
     float limit = limit_of(r);
     vec4 samples[KEPT], vote = vec4(0.0), sum = vec4(0.0);
@@ -116,11 +136,15 @@ vec4 blend(spot s, ranking r)
         vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
+    vec2 apart = vec2(0.0); // squares times weight, weight
     float severity = choice_more.y * (s.guessed ? GUESS_SEVERITY : 1.0);
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(samples[k].rgb) - mean;
         sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
+        apart += vec2(dot(off, off), 1.0) * samples[k].a;
     }
+    apart.y = max(apart.y, 1e-30);
+    blur = guess_blur(s, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
     return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
 
@@ -152,19 +176,23 @@ void main()
         c++;
         i = c < count ? chosen[list + c] : -1;
     } while (i >= 0);
-    vec4 seed = vec4(0.0);
+    vec4 seed = vec4(0.0), guess = vec4(0.0);
     bool whole = true;
     for (int k = 0; k < 4; k++) {
-        vec4 color = blend(spots[k], rankings[k]);
+        float blur;
+        vec4 color = blend(spots[k], rankings[k], blur);
         bool painted = color.a > 0.0;
         seed += color;
-        whole = whole && painted;
-        color.a = !painted ? -1.0 : spots[k].guessed ? 0.0 : 1.0;
+        guess += spots[k].guessed ? color : vec4(0.0);
+        bool blurs = painted && spots[k].guessed && blur > 0.0;
+        whole = whole && painted && !blurs;
+        color.a = !painted ? -1.0 : blurs ? -1.0 - blur : spots[k].guessed ? 0.0 : 1.0;
         // Stores outside the picture do nothing.
         imageStore(accumulated, corner + ivec2(k & 1, k >> 1), color);
     }
     imageStore(seeds, corner / 2, seed);
+    imageStore(guesses, corner / 2, guess);
     if (!whole)
-        unpainted_add(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x,
+        unfinished_add(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x,
                       gl_NumWorkGroups.x * gl_NumWorkGroups.y);
 }

@@ -68,7 +68,8 @@ ORL_BLOCK(gather_block)
                       // without depth, w: sharpness on guessed depth
     VEC4(choice_more); // x: photographs of the tile's list that a pixel asks,
                        // y: severity with outliers, 1 / squared root of light; 0: none,
-                       // z: largest mip level
+                       // z: largest mip level, w: blur on guessed depth per radian, radians
+    VEC4(ground);      // of image_block
     VEC4(slots);       // width, height of a slot; of a depth slot
 };
 #endif
@@ -77,6 +78,7 @@ ORL_BLOCK(gather_block)
 #define CHOICE_TILE 16 // pixels
 #define CANDIDATES 8   // photographs listed per tile
 #define KEPT_MAX 4     // blended per pixel, at most
+#define GUESS_BLUR_MOST 0.012 // of the picture's longer side
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 
 // Image-space filling, and pixels from splat colours.

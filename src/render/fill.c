@@ -71,6 +71,11 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return ORL_OK;
 }
 
+bool orl_fill_guesses(const struct orl_render_params *params)
+{
+    return params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND;
+}
+
 static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *prog,
                 const struct orl_tex *first, GLenum first_access, const struct orl_tex *second,
                 GLenum second_access, const struct orl_tex *covered)

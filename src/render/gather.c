@@ -78,10 +78,28 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
     orl_tex_destroy(gpu, &gather->photo_rows);
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
-    orl_buf_destroy(gpu, &gather->unpainted);
+    orl_buf_destroy(gpu, &gather->unfinished);
+    orl_tex_destroy(gpu, &gather->guesses);
     free(gather->list);
     free(gather->chosen);
     memset(gather, 0, sizeof *gather);
+}
+
+enum orl_result orl_gather_resize(struct orl_gpu *gpu, struct gather *gather, int width,
+                                  int height)
+{
+    const struct orl_tex *old = gather->guesses;
+    struct orl_tex_params params = {.width = (width + 1) / 2, .height = (height + 1) / 2,
+                                    .levels = 1, .linear = true, .format = GL_RGBA32F,
+                                    .tag = "guesses"};
+    if (old && old->params.width == params.width && old->params.height == params.height)
+        return ORL_OK;
+    orl_tex_destroy(gpu, &gather->guesses);
+    // A texel of the last level is as large as the largest blur, or all of the picture.
+    int longer = width > height ? width : height;
+    while (1 << params.levels < GUESS_BLUR_MOST * longer && longer >> (params.levels + 1) > 0)
+        params.levels++;
+    return orl_tex_create(gpu, &params, &gather->guesses);
 }
 
 // photo_from_view = photo_from_world * world_from_view, in doubles: both translations
@@ -170,11 +188,13 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
                    params->unknown_trust, params->guess_sharpness},
         .choice_more = {floorf(params->candidates + 0.5f),
                         params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
-                        (float)(color->levels - 1)},
+                        (float)(color->levels - 1),
+                        orl_fill_guesses(params) ? params->guess_blur : 0},
         .slots = {(float)color->width, (float)color->height, (float)depth->width,
                   (float)depth->height},
     };
     set_focal(block.view_focal, &view->camera);
+    memcpy(block.ground, r->fill.block.ground, sizeof block.ground);
     return block;
 }
 
@@ -246,20 +266,20 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     int across = tiles(view->camera.width), down = tiles(view->camera.height);
     unsigned groups[3]; // 2x2 pixels an invocation
     orl_pixel_groups((view->camera.width + 1) / 2, (view->camera.height + 1) / 2, groups);
-    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/include/unpainted.glsl
+    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/include/unfinished.glsl
     enum orl_result result =
         make_room(r->gpu, "photographs of tiles",
                   (size_t)across * (size_t)down * CANDIDATES * sizeof(int), &g->tile_lists);
     if (result == ORL_OK)
-        result = make_room(r->gpu, "groups with unpainted pixels",
-                           sizeof nothing + 8 * (size_t)groups[0] * groups[1], &g->unpainted);
+        result = make_room(r->gpu, "groups with unfinished pixels",
+                           sizeof nothing + 8 * (size_t)groups[0] * groups[1], &g->unfinished);
     if (result != ORL_OK)
         return result;
-    orl_buf_fill(g->unpainted, 0);
-    orl_buf_write(g->unpainted, 0, sizeof nothing, nothing);
+    orl_buf_fill(g->unfinished, 0);
+    orl_buf_write(g->unfinished, 0, sizeof nothing, nothing);
     struct gather_block block = prepare_pass(r, view, params, count);
     struct orl_dispatch d = {.prog = g->choose, .params = &block,
-                             .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unpainted}},
+                             .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
                              .textures = {r->photos.color, r->photos.depth},
                              .images = {{r->target.depth, 0, GL_READ_ONLY},
                                         [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
@@ -269,8 +289,11 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){r->fill.level[0], 0, GL_WRITE_ONLY};
+    d.images[3] = (struct orl_image_binding){g->guesses, 0, GL_WRITE_ONLY};
+    // The last three: mipmaps are made of the guesses, by whichever means.
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                GL_COMMAND_BARRIER_BIT;
+                GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT;
     memcpy(d.groups, groups, sizeof groups);
     run(r->gpu, "gather", &d);
     return ORL_OK;

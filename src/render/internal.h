@@ -146,6 +146,9 @@ void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_vie
 // pixels of colour, 1 summed.
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
 
+// Does this fill guess depth?
+bool orl_fill_guesses(const struct orl_render_params *params);
+
 // --- blending (gather.c) ---
 
 enum { PHOTOS_PER_FRAME_MAX = 48 }; // of blend=best
@@ -161,11 +164,15 @@ struct gather {
     struct orl_buf *photos;  // struct photo_data
     struct orl_tex *photo_rows; // its view, RGBA32F
     struct orl_buf *tile_lists; // choose.comp, choose_radiance.comp
-    struct orl_buf *unpainted;  // of the last gather_best.comp: shaders/include/unpainted.glsl
+    struct orl_buf *unfinished; // of the last gather_best.comp: shaders/include/unfinished.glsl
+    struct orl_tex *guesses;    // of the same, mipmapped: shaders/compose.comp
 };
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
                                 struct gather *gather);
+// For pictures of this size, not of radiance; does nothing when they had it already.
+enum orl_result orl_gather_resize(struct orl_gpu *gpu, struct gather *gather, int width,
+                                  int height);
 // The at most `most` usable photographs that can paint this view best, ascending (preselect.c).
 enum orl_result orl_preselect(const struct orl_log *log, const struct photos *photos,
                               const struct orl_view *view, const bool *skip, size_t most,
@@ -173,7 +180,7 @@ enum orl_result orl_preselect(const struct orl_log *log, const struct photos *ph
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
 // Colour from the usable photographs as colour * weight, weight into r->accumulated. *finished:
-// as colour, coverage, but for r->gather.unpainted, and summed for orl_fill_color into the fill's
+// as colour, coverage, but for r->gather.unfinished, and summed for orl_fill_color into the fill's
 // finest level.
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
                            const struct orl_render_params *params, const bool *skip,

@@ -14,7 +14,7 @@
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
     .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 8.0f,                      \
     .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 1.5f,  \
-    .unknown_trust = 0.5f, .outliers = 0.3f
+    .guess_blur = 0.06f, .unknown_trust = 0.5f, .outliers = 0.3f
 
 // What each pixel of blend=best asks and blends.
 #define BEST_DEFAULTS .candidates = 8.0f, .photos_per_pixel = 4.0f
@@ -72,6 +72,9 @@ const struct orl_render_option orl_render_options[] = {
      "how fast blend=best prefers the better photograph; 0: equal weights"},
     {"guess_sharpness", FIELD(guess_sharpness), NULL, 0, 64, "",
      "the same where only a guessed depth is known"},
+    {"guess_blur", FIELD(guess_blur), NULL, 0, 1, "share of parallax",
+     "that colour may lie from its place where depth is guessed and photographs differ; blurred "
+     "as far; 0: not"},
     {"unknown_trust", FIELD(unknown_trust), NULL, 0, 1, "share",
      "of a photograph that has no depth where the surface would be"},
     {"depth_tolerance", FIELD(depth_tolerance), NULL, 1e-5, 0.5, "fraction of depth",
@@ -103,6 +106,7 @@ const struct orl_render_tries orl_render_tries[] = {
     {"front_layer", 4, {0, 0.005, 0.01, 0.02}},
     {"splat_scale", 3, {0.7, 1, 1.4}},
     {"guess_sharpness", 5, {0.5, 1, 2, 4, 8}},
+    {"guess_blur", 5, {0, 0.03, 0.06, 0.12, 0.25}},
     {"unknown_trust", 5, {0, 0.02, 0.05, 0.15, 0.5}},
     {"distance_floor", 4, {0.01, 0.03, 0.1, 0.3}},
     {"border_px", 4, {4, 8, 16, 48}},

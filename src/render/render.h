@@ -58,6 +58,8 @@ struct orl_render_params {
                                     // half, square root of light, [0, 1]; 0: all count
     float sharpness;                // of `best`: weight = (least penalty / penalty)^sharpness
     float guess_sharpness;          // the same where depth is guessed
+    float guess_blur;               // of `best`: colour on guessed depth may lie this share of the
+                                    // parallax from its place and is blurred as far, [0, 1]
     float unknown_trust;            // share of trust in photographs without depth there, [0, 1]
 };
 

@@ -16,7 +16,7 @@ static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *pro
         height = c->height > height ? c->height : height;
     }
     return scene->points.count * 24 + 2 * orl_proxy_target_bytes(proxy, width, height) +
-           (size_t)width * (size_t)height * (16 + 24);
+           (size_t)width * (size_t)height * (16 + 30);
 }
 
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -87,6 +87,8 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
                                                      height);
     if (result == ORL_OK)
         result = orl_fill_resize(r->gpu, &r->fill, width, height);
+    if (result == ORL_OK && !r->photos.radiance)
+        result = orl_gather_resize(r->gpu, &r->gather, width, height);
     const struct orl_tex *old = r->accumulated;
     if (result != ORL_OK || (old && old->params.width == width && old->params.height == height))
         return result;
@@ -123,14 +125,17 @@ static void compose(struct orl_renderer *r, const struct orl_render_params *para
                                          params->color == ORL_COLOR_POINTS,
                                          params->fill != ORL_FILL_NONE}};
     struct orl_dispatch d = {.prog = finished ? r->compose_rest : r->compose, .params = &block,
-                             .bufs = {[2] = {.buf = finished ? r->gather.unpainted : NULL}},
-                             .indirect = finished ? r->gather.unpainted : NULL,
+                             .bufs = {[2] = {.buf = finished ? r->gather.unfinished : NULL}},
+                             .textures = {finished ? r->gather.guesses : NULL},
+                             .indirect = finished ? r->gather.unfinished : NULL,
                              .images = {{r->accumulated, 0, GL_READ_WRITE},
                                         {r->fill.level[0], 0, GL_READ_ONLY},
                                         {r->target.depth, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_pixel_groups((r->target.width + 1) / 2, (r->target.height + 1) / 2, d.groups);
+    if (finished && orl_fill_guesses(params) && params->guess_blur > 0)
+        orl_tex_make_mipmaps(r->gather.guesses, 0);
     orl_gpu_dispatch(r->gpu, &d);
 }
 
@@ -143,7 +148,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
     struct proxy_options options = orl_proxy_options(params);
     orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
     if (params->color == ORL_COLOR_PHOTOS) {
-        if (params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND) {
+        if (orl_fill_guesses(params)) {
             orl_pass_begin(gpu, "fill");
             orl_fill_depth(gpu, &r->fill, view,
                            params->fill == ORL_FILL_GROUND ? &r->scene->ground : NULL,
