@@ -5,7 +5,8 @@
 #include "render/internal.h"
 #include "scene/ground.h"
 
-enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill)
+enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, bool radiance,
+                              struct fill *fill)
 {
     memset(fill, 0, sizeof *fill);
     fill->block.scale[0] = depth_scale;
@@ -18,9 +19,13 @@ enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fil
         {"fill_pull.comp", NULL, &fill->pull},
         {"fill_push.comp", NULL, &fill->push},
         {"fill_depth.comp", NULL, &fill->apply_depth},
+        {"fill_seed.comp", "SEED_LEAST", &fill->seed_least}, // from here on of radiance
+        {"fill_seed.comp", "SEED_BRIGHTER", &fill->seed_brighter},
+        {"fill_lift.comp", NULL, &fill->lift},
     };
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(programs); i++)
+    size_t count = ORL_COUNT(programs) - (radiance ? 0 : 3);
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = orl_prog_create(gpu, programs[i].file, programs[i].defines,
                                  sizeof(struct image_block), programs[i].prog);
     if (result != ORL_OK)
@@ -43,6 +48,9 @@ void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill)
     orl_prog_destroy(gpu, &fill->pull);
     orl_prog_destroy(gpu, &fill->push);
     orl_prog_destroy(gpu, &fill->apply_depth);
+    orl_prog_destroy(gpu, &fill->seed_least);
+    orl_prog_destroy(gpu, &fill->seed_brighter);
+    orl_prog_destroy(gpu, &fill->lift);
 }
 
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height)
@@ -81,7 +89,7 @@ static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *p
                 GLenum second_access, const struct orl_tex *covered)
 {
     // These take 2x2 pixels an invocation.
-    bool four = prog == fill->push || prog == fill->apply_depth;
+    bool four = prog == fill->push || prog == fill->apply_depth || prog == fill->lift;
     int width = covered->params.width, height = covered->params.height;
     struct image_block block = fill->block;
     block.area[0] = width;
@@ -132,8 +140,23 @@ void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_vie
     run(gpu, fill, fill->apply_depth, fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
 }
 
+// What clips in every photograph is as bright as what around it is bright enough.
+static void lift(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
+{
+    run(gpu, fill, fill->seed_least, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
+        fill->level[0]);
+    spread(gpu, fill);
+    run(gpu, fill, fill->seed_brighter, accumulated, GL_READ_ONLY, fill->level[0], GL_READ_WRITE,
+        fill->level[0]);
+    spread(gpu, fill);
+    run(gpu, fill, fill->lift, fill->level[0], GL_READ_ONLY, accumulated, GL_READ_WRITE,
+        accumulated);
+}
+
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
 {
+    if (accumulated && fill->lift)
+        lift(gpu, fill, accumulated);
     if (accumulated)
         run(gpu, fill, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
             fill->level[0]);

@@ -129,13 +129,15 @@ enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
 
 struct fill {
     struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
+    struct orl_prog *seed_least, *seed_brighter, *lift; // of radiance
     int width, height, levels;
     struct image_block block; // of its passes
     // value * weight, weight; level 0 has half the size
     struct orl_tex *level[PYRAMID_LEVELS_MAX + 8];
 };
 
-enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, struct fill *fill);
+enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, bool radiance,
+                              struct fill *fill);
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
 // Guesses background depth, as negative values, where `depth` is 0; no farther than the
@@ -143,7 +145,8 @@ void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
 void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_view *view,
                     const struct orl_ground *ground, struct orl_tex *depth);
 // Spreads `accumulated` (colour * weight, weight) over fill->level[0]; NULL: what that holds, 2x2
-// pixels of colour, 1 summed.
+// pixels of colour, 1 summed. Of radiance: what `accumulated` says clips takes light from around
+// it first, and its weight's sign with it.
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
 
 // Does this fill guess depth?

@@ -45,7 +45,7 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
         result = orl_photos_init(gpu, scene, params, budget, &r->photos);
     if (result == ORL_OK)
         result = orl_fill_init(gpu, scene->photo_distance > 0 ? (float)scene->photo_distance : 1.0f,
-                               &r->fill);
+                               params->radiance, &r->fill);
     if (result == ORL_OK)
         result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
     if (result == ORL_OK)

@@ -213,6 +213,32 @@ static void what_clips_is_as_bright_as_its_surroundings(void **state)
     }
 }
 
+// A strip of shade from x = 0 to 0.64 in the world, on the wall.
+static void shaded_strip(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)y;
+    double right = 4 * (x + 0.5 - view->camera.cx) / view->camera.fx - view->cam_from_world.t[0];
+    for (int c = 0; c < 3; c++)
+        light[c] = right > 0 && right < 0.64 ? WALL[c] / 64 : WALL[c];
+}
+
+// As above, but shade lies between what clips and what tells its light; it cannot be that dark.
+static void what_clips_takes_nothing_from_shade(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(2.56, 0), 0, shaded_strip);
+    add_photo(&f, look(0, 0), 3, shaded_strip);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_frame frame = draw(&f, &params);
+    assert_color(&frame, MIDDLE + 4, (float[]){WALL[0] / 64, WALL[1] / 64, WALL[2] / 64}, 0.05);
+    assert_color(&frame, MIDDLE - 3, WALL, 0.02);
+    assert_color(&frame, MIDDLE - SIDE / 4, WALL, 0.02);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // Only one of them may count, and neither is better.
 static void photographs_that_tie_paint(void **state)
 {
@@ -588,6 +614,7 @@ int main(void)
         cmocka_unit_test(the_photograph_that_does_not_clip_decides),
         cmocka_unit_test(the_darkest_decides_where_all_clip),
         cmocka_unit_test(what_clips_is_as_bright_as_its_surroundings),
+        cmocka_unit_test(what_clips_takes_nothing_from_shade),
         cmocka_unit_test(photographs_that_tie_paint),
         cmocka_unit_test(where_all_are_black_it_is_dark),
         cmocka_unit_test(noise_does_not_outvote_light),
