@@ -2,6 +2,7 @@
 // invocation.
 // REST: gather_best.comp did all but the pixels that nothing paints, and those on guessed depth, of
 // some work groups.
+// RADIANCE: gather_radiance.comp did what is blended.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
@@ -18,20 +19,25 @@ layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 #include "include/fill.glsl"
 #ifdef REST
 #include "include/unfinished.glsl"
-// What gather_best.comp painted on guessed depth: sums of 2x2, colour, 1; and mipmaps.
+#endif
+#ifdef RADIANCE
+layout(rgba32f, binding = 3) readonly uniform image2D trusted; // z: see gather_radiance.comp
+#endif
+#if defined(REST) || defined(RADIANCE)
+// What is painted on guessed depth: sums of 2x2, colour, 1; and mipmaps.
 layout(binding = 0) uniform sampler2D guesses;
 
 // Colour on guessed depth, blurred as far as it may lie from its place: wrong details are worse
 // than none. With others like it alone, since what has depth is in its place.
-vec3 softened(ivec2 at, vec4 sharp)
+vec3 softened(ivec2 at, vec3 sharp, float blur)
 {
     float most = log2(GUESS_BLUR_MOST * float(max(area.x, area.y)));
-    float blur = clamp(-1.0 - sharp.a, 0.0, max(most, 0.0));
+    blur = clamp(blur, 0.0, max(most, 0.0));
     vec2 where = (vec2(at) + 0.5) / vec2((area.xy + 1) / 2 * 2);
     vec4 around = textureLod(guesses, where, max(blur - 1.0, 0.0));
     // Next to none: a pixel alone in what a driver's mipmaps leave out.
-    vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp.rgb;
-    return mix(sharp.rgb, soft, min(blur, 1.0));
+    vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp;
+    return mix(sharp, soft, min(blur, 1.0));
 }
 #endif
 
@@ -50,10 +56,14 @@ void compose(uvec2 group)
 #ifdef REST
         if (sum.a < 0.0)
             imageStore(accumulated, at,
-                       vec4(sum.a < -1.0 ? softened(at, sum) : filled, 0.0));
+                       vec4(sum.a < -1.0 ? softened(at, sum.rgb, -1.0 - sum.a) : filled, 0.0));
 #else
         float on_surface = imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
         vec3 own = sum.a != 0.0 ? sum.rgb / abs(sum.a) : vec3(0.0);
+#ifdef RADIANCE
+        float blur = imageLoad(trusted, at).z - 1.0;
+        own = blur > 0.0 ? softened(at, own, blur) : own;
+#endif
         // Splat colours between splats count as covered by them.
         imageStore(accumulated, at,
                    vec4(sum.a > 0.0 ? own : max(own, filled),

@@ -4,7 +4,8 @@
 // the farther one of its rim, which it shows, and nothing between the two.
 // SEED_LEAST: the light that there is at least where weights are negative (gather_radiance.comp).
 // SEED_BRIGHTER: logarithms of the light that is as bright as what SEED_LEAST has spread here: what
-// clips is not as dark as the wall beside it. Otherwise: colour.
+// clips is not as dark as the wall beside it.
+// SEED_GUESSES: colour on guessed depth, to blur it. Otherwise: colour.
 #define BLOCK_IMAGE
 #include "include/render_blocks.h"
 
@@ -13,6 +14,9 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D known;
 #else
 layout(rgba32f, binding = 0) readonly uniform image2D known; // colour * weight, weight
+#endif
+#ifdef SEED_GUESSES
+layout(rgba32f, binding = 2) readonly uniform image2D trusted; // z: see gather_radiance.comp
 #endif
 #ifdef SEED_BRIGHTER
 layout(rgba32f, binding = 1) uniform image2D seeded; // in place
@@ -30,6 +34,10 @@ vec4 seed(ivec2 at)
     float z = value.r;
     float weight = clamp(pow(z / scale.x, 14.0), 1e-15, 1e15); // sums stay floats
     return z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
+#elif defined(SEED_GUESSES)
+    float weight = abs(value.a);
+    return weight > 0.0 && imageLoad(trusted, at).z > 0.0 ? vec4(value.rgb / weight, 1.0)
+                                                          : vec4(0.0);
 #elif defined(SEED_LEAST)
     return value.a < 0.0 ? vec4(value.rgb / -value.a, 1.0) : vec4(0.0);
 #elif defined(SEED_BRIGHTER)

@@ -106,24 +106,6 @@ vec4 look(sight one, float least, float limit, spot s)
 // On guessed depth a photograph that differs shows something else, more often than not.
 const float GUESS_SEVERITY = 4.0;
 
-// Where photographs differ by this much, square roots of light, a guess is fully in doubt.
-const float GUESS_DIFFERENCE = 0.1;
-// Doubt in what one photograph shows alone: often enough it is right, and sharp.
-const float GUESS_ALONE = 0.5;
-// The same guess on the ground, which is known far better.
-const float GROUND_DOUBT = 0.3;
-
-// How far colour on guessed depth may lie from its place, log2 of pixels: in proportion to parallax
-// (Eisemann 2007, Filtered Blending), the less the more the photographs agree.
-float guess_blur(spot s, float penalty, float difference, float share)
-{
-    float alone = clamp(5.0 * share - 4.0, 0.0, 1.0);
-    float doubt = clamp(max(difference / GUESS_DIFFERENCE, GUESS_ALONE * alone), 0.0, 1.0);
-    float depths = s.p.z * dot(ground.xyz, vec3(s.p.xy / s.p.z, 1.0)); // of the ground's
-    doubt *= abs(depths - 1.0) < 1e-3 ? GROUND_DOUBT : 1.0;
-    return log2(max(choice_more.w * view_focal.x * penalty * doubt, 1.0));
-}
-
 // Colour, and 1 where there is one; and the blur that it needs on guessed depth. Samples far from
 // the consensus lose weight: passers-by, leaves, reflections. Roots make the consensus of
 // photographs and not of the best one alone, and differences of light about as the eye sees them.
@@ -144,7 +126,7 @@ vec4 blend(spot s, ranking r, out float blur)
         apart += vec2(dot(off, off), 1.0) * samples[k].a;
     }
     apart.y = max(apart.y, 1e-30);
-    blur = guess_blur(s, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
+    blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
     return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
 

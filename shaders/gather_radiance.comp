@@ -7,7 +7,8 @@ layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed b
 // Colour * weight, weight, which is negative where most of it clips: colour is the least there
 // may be.
 layout(rgba32f, binding = 1) uniform image2D accumulated;
-layout(rg32f, binding = 2) uniform image2D trusted;            // weight * trust, weight
+// weight * trust, weight; on guessed depth 1 + log2 of the blur that it needs, in pixels, else 0.
+layout(rgba32f, binding = 2) uniform image2D trusted;
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[]; // choose_radiance.comp
 };
@@ -202,6 +203,31 @@ vec3 blend(float total)
     return sum;
 }
 
+// The blur that colour on guessed depth needs, log2 of pixels.
+float blur_of(vec3 p, float total)
+{
+#ifdef BEST
+    vec4 vote = vec4(0.0);
+    float heaviest = 0.0;
+    int best = 0;
+    EACH_SAMPLE(k) {
+        vote += vec4(sqrt(samples[k].color), 1.0) * sqrt(weights[k]);
+        best = weights[k] > heaviest ? samples[k].shot : best;
+        heaviest = max(heaviest, weights[k]);
+    }
+    vec3 mean = vote.rgb / max(vote.a, 1e-30);
+    float squares = 0.0;
+    EACH_SAMPLE(k) {
+        vec3 off = sqrt(samples[k].color) - mean;
+        squares += dot(off, off) * weights[k];
+    }
+    float all = max(total, 1e-30);
+    return guess_blur(p, photo_penalty(photo_at(best), p), sqrt(squares / all), heaviest / all);
+#else
+    return 0.0;
+#endif
+}
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -210,12 +236,15 @@ void main()
     float depth = imageLoad(view_depth, at).r;
     if (depth == 0.0)
         return;
-    ask_photos(surface_point(at, abs(depth)), depth < 0.0);
+    vec3 p = surface_point(at, abs(depth));
+    ask_photos(p, depth < 0.0);
     vec3 sums = weigh();
     float total = sums.z;
     vec4 before = imageLoad(accumulated, at);
     bool clips = before.a + (sums.y < CLIPS_BELOW * total ? -total : total) < 0.0;
     float both = abs(before.a) + total;
     imageStore(accumulated, at, vec4(before.rgb + blend(total), clips ? -both : both));
-    imageStore(trusted, at, imageLoad(trusted, at) + vec4(sums.x, total, 0.0, 0.0));
+    vec4 trust = imageLoad(trusted, at);
+    float blur = depth < 0.0 && total > trust.y ? 1.0 + blur_of(p, total) : trust.z;
+    imageStore(trusted, at, vec4(trust.xy + vec2(sums.x, total), blur, 0.0));
 }

@@ -129,7 +129,7 @@ enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
 
 struct fill {
     struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
-    struct orl_prog *seed_least, *seed_brighter, *lift; // of radiance
+    struct orl_prog *seed_least, *seed_brighter, *lift, *seed_guesses; // of radiance
     int width, height, levels;
     struct image_block block; // of its passes
     // value * weight, weight; level 0 has half the size
@@ -148,6 +148,11 @@ void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_vie
 // pixels of colour, 1 summed. Of radiance: what `accumulated` says clips takes light from around
 // it first, and its weight's sign with it.
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
+// Of radiance: what `accumulated` holds on guessed depth, as `trusted` says, 2x2 pixels of colour,
+// 1 summed.
+void orl_fill_seed_guesses(struct orl_gpu *gpu, struct fill *fill,
+                           const struct orl_tex *accumulated, const struct orl_tex *trusted,
+                           struct orl_tex *guesses);
 
 // Does this fill guess depth?
 bool orl_fill_guesses(const struct orl_render_params *params);
@@ -168,12 +173,12 @@ struct gather {
     struct orl_tex *photo_rows; // its view, RGBA32F
     struct orl_buf *tile_lists; // choose.comp, choose_radiance.comp
     struct orl_buf *unfinished; // of the last gather_best.comp: shaders/include/unfinished.glsl
-    struct orl_tex *guesses;    // of the same, mipmapped: shaders/compose.comp
+    struct orl_tex *guesses;    // of the last draw, mipmapped: shaders/compose.comp
 };
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
                                 struct gather *gather);
-// For pictures of this size, not of radiance; does nothing when they had it already.
+// For pictures of this size; does nothing when they had it already.
 enum orl_result orl_gather_resize(struct orl_gpu *gpu, struct gather *gather, int width,
                                   int height);
 // The at most `most` usable photographs that can paint this view best, ascending (preselect.c).
@@ -199,7 +204,7 @@ struct orl_renderer {
     struct orl_prog *compose, *compose_rest;
     struct proxy_target target;
     struct orl_tex *accumulated; // colour * weight, weight; composed in place
-    struct orl_tex *trusted;     // of radiance: weight * trust, weight
+    struct orl_tex *trusted;     // of radiance: weight * trust, weight, blur of guesses
     struct orl_image staging; // read_back.c
 };
 

@@ -16,7 +16,7 @@ static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *pro
         height = c->height > height ? c->height : height;
     }
     return scene->points.count * 24 + 2 * orl_proxy_target_bytes(proxy, width, height) +
-           (size_t)width * (size_t)height * (16 + 30);
+           (size_t)width * (size_t)height * (16 + 38);
 }
 
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -49,9 +49,9 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     if (result == ORL_OK)
         result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "compose.comp", NULL, sizeof(struct image_block),
-                                 &r->compose);
-    if (result == ORL_OK)
+        result = orl_prog_create(gpu, "compose.comp", params->radiance ? "RADIANCE" : NULL,
+                                 sizeof(struct image_block), &r->compose);
+    if (result == ORL_OK && !params->radiance)
         result = orl_prog_create(gpu, "compose.comp", "REST", sizeof(struct image_block),
                                  &r->compose_rest);
     if (result != ORL_OK) {
@@ -87,7 +87,7 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
                                                      height);
     if (result == ORL_OK)
         result = orl_fill_resize(r->gpu, &r->fill, width, height);
-    if (result == ORL_OK && !r->photos.radiance)
+    if (result == ORL_OK)
         result = orl_gather_resize(r->gpu, &r->gather, width, height);
     const struct orl_tex *old = r->accumulated;
     if (result != ORL_OK || (old && old->params.width == width && old->params.height == height))
@@ -99,7 +99,6 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
     if (result != ORL_OK || !r->photos.radiance)
         return result;
     orl_tex_destroy(r->gpu, &r->trusted);
-    params.format = GL_RG32F;
     params.tag = "trust";
     return orl_tex_create(r->gpu, &params, &r->trusted);
 }
@@ -126,16 +125,20 @@ static void compose(struct orl_renderer *r, const struct orl_render_params *para
                                          params->fill != ORL_FILL_NONE}};
     struct orl_dispatch d = {.prog = finished ? r->compose_rest : r->compose, .params = &block,
                              .bufs = {[2] = {.buf = finished ? r->gather.unfinished : NULL}},
-                             .textures = {finished ? r->gather.guesses : NULL},
+                             .textures = {r->gather.guesses},
                              .indirect = finished ? r->gather.unfinished : NULL,
                              .images = {{r->accumulated, 0, GL_READ_WRITE},
                                         {r->fill.level[0], 0, GL_READ_ONLY},
-                                        {r->target.depth, 0, GL_READ_ONLY}},
+                                        {r->target.depth, 0, GL_READ_ONLY},
+                                        {r->trusted, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_pixel_groups((r->target.width + 1) / 2, (r->target.height + 1) / 2, d.groups);
-    if (finished && orl_fill_guesses(params) && params->guess_blur > 0)
+    if ((finished || r->trusted) && orl_fill_guesses(params) && params->guess_blur > 0) {
+        if (r->trusted)
+            orl_fill_seed_guesses(r->gpu, &r->fill, r->accumulated, r->trusted, r->gather.guesses);
         orl_tex_make_mipmaps(r->gather.guesses, 0);
+    }
     orl_gpu_dispatch(r->gpu, &d);
 }
 

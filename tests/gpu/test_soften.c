@@ -3,16 +3,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/color.h"
 #include "wall_scene.h"
 
-enum { SIDE = 512, WALL_END = 352 }; // column of x = 3, z = 4, where the wall ends
+enum { SIDE = 512, GREY = 128, WALL_END = 352 }; // column of x = 3, z = 4, where the wall ends
 static const double FOCAL = 128;
 
 static struct orl_gpu *gpu;
 
 // A photograph red as far as `wall_end`, then with upright stripes of blue or black, each `width`
-// pixels wide.
-static void add_striped(struct fixture *f, struct orl_view view, int wall_end, int width)
+// pixels wide; 8-bit `value`.
+static void add_striped(struct fixture *f, struct orl_view view, int wall_end, int width,
+                        uint8_t value)
 {
     add_photo(f, view, red);
     struct orl_image image;
@@ -20,9 +22,9 @@ static void add_striped(struct fixture *f, struct orl_view view, int wall_end, i
     assert_int_equal(orl_image_init(NULL, &image, w, h, 3, ORL_PIXEL_U8), ORL_OK);
     for (int i = 0; i < w * h; i++) {
         int behind = i % w - wall_end;
-        image.u8[3 * i] = behind < 0 ? 255 : 0;
+        image.u8[3 * i] = behind < 0 ? value : 0;
         image.u8[3 * i + 1] = 0;
-        image.u8[3 * i + 2] = behind >= 0 && behind / width % 2 == 0 ? 255 : 0;
+        image.u8[3 * i + 2] = behind >= 0 && behind / width % 2 == 0 ? value : 0;
     }
     char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count - 1);
     assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
@@ -31,17 +33,29 @@ static void add_striped(struct fixture *f, struct orl_view view, int wall_end, i
 }
 
 // A view of the wall's right end from x = 0, painted by one photograph from `x`.
-static struct orl_frame from_aside(double x, float guess_blur)
+static struct orl_frame from_aside_with(double x, float guess_blur, bool radiance)
 {
     struct fixture f;
     setup(&f, false);
     struct orl_view photo = look_from(x, 0, 0, 2 * SIDE, FOCAL);
-    add_striped(&f, photo, SIDE + (int)lrint((3 - x) / 4 * FOCAL), 2);
+    // As radiance, white would be light without an upper bound.
+    add_striped(&f, photo, SIDE + (int)lrint((3 - x) / 4 * FOCAL), 2, radiance ? GREY : 255);
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.guess_blur = guess_blur;
-    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
+    struct orl_renderer_params kind = {.radiance = radiance};
+    struct orl_renderer *renderer;
+    struct orl_frame frame;
+    struct orl_view view = look_from(0, 0, 0, SIDE, FOCAL);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, &kind, &renderer), ORL_OK);
+    assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, &frame), ORL_OK);
+    orl_renderer_destroy(&renderer);
     teardown(&f);
     return frame;
+}
+
+static struct orl_frame from_aside(double x, float guess_blur)
+{
+    return from_aside_with(x, guess_blur, false);
 }
 
 // Between brightest and darkest blue of a row, from 16 pixels behind the wall's end on.
@@ -65,6 +79,23 @@ static void guesses_from_aside_blur(void **state)
     for (int x = WALL_END + 16; x < WALL_END + 80; x++)
         mean += color_at(&soft, x, SIDE / 2)[2] / 64.0;
     assert_float_equal(mean, 0.5, 0.05);
+    orl_frame_finish(&sharp);
+    orl_frame_finish(&soft);
+}
+
+static void radiance_blurs_alike(void **state)
+{
+    (void)state;
+    const double light = (double)orl_srgb_decode(GREY / 255.0f);
+    struct orl_frame sharp = from_aside_with(-1.5, 0, true);
+    struct orl_frame soft = from_aside_with(-1.5, 0.6f, true);
+    assert_true(contrast(&sharp) > 0.9 * light);
+    assert_true(contrast(&soft) < 0.25 * light);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        if (soft.coverage.f32[i] > 0)
+            assert_memory_equal(&soft.color.f32[3 * i], &sharp.color.f32[3 * i], 12);
+        assert_float_equal(soft.confidence.f32[i], sharp.confidence.f32[i], 0);
+    }
     orl_frame_finish(&sharp);
     orl_frame_finish(&soft);
 }
@@ -107,7 +138,7 @@ static void agreement_keeps_sharp(void **state)
         for (int k = 0; k < 2; k++) {
             double x = k ? 1.5 : -1.5;
             int end = SIDE + (int)lrint((3 - x) / 4 * FOCAL);
-            add_striped(&f, look_from(x, 0, 0, 2 * SIDE, FOCAL), end + 4 * apart * k, 4);
+            add_striped(&f, look_from(x, 0, 0, 2 * SIDE, FOCAL), end + 4 * apart * k, 4, 255);
         }
         struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
         params.guess_blur = 0.3f;
@@ -125,6 +156,7 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(guesses_from_aside_blur),
+        cmocka_unit_test(radiance_blurs_alike),
         cmocka_unit_test(surfaces_stay_sharp_and_do_not_run),
         cmocka_unit_test(a_photograph_from_here_stays_sharp),
         cmocka_unit_test(agreement_keeps_sharp),
