@@ -10,7 +10,7 @@
 #include "hdr/hdr.h"
 
 struct options {
-    const char *method, *json, *images, *merge, *truth, *textures;
+    const char *method, *json, *images, *merge, *truth, *textures, *vary, *plot;
     struct orl_names settings;
     int max_vram_mib;
     int walk, divide; // frames of a walk in place of held-out photographs; 0: none
@@ -26,7 +26,8 @@ struct job {
     struct orl_renderer *renderer; // NULL with --merge
     struct orl_hdr *hdr;           // of the method at hand, with --merge
     struct orl_truth truth;
-    struct orl_eval *evals; // one per method
+    struct orl_names varied; // KEY=VALUE of --vary, each
+    struct orl_eval *evals;  // one per method and varied setting
     size_t count;
 };
 
@@ -55,7 +56,8 @@ static void print_radiance(const struct orl_eval *eval)
 
 static void print_table(const struct orl_eval *eval)
 {
-    printf("%s, %s\n", eval->method, eval->device);
+    printf("%s%s%s, %s\n", eval->method, eval->setting[0] ? " " : "", eval->setting,
+           eval->device);
     printf("%-24s %11s %7s %7s %7s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR",
            "fitted", "covered", "SSIM", "cover%", "full%", "1-NCC", "ms");
     for (size_t i = 0; i < eval->view_count; i++) {
@@ -80,11 +82,34 @@ static void print_passes(const struct orl_eval *eval)
 
 // --- the job ---
 
-static enum orl_result apply_settings(const struct job *job, struct orl_render_params *render)
+// varied: one of --vary, or NULL.
+static enum orl_result apply_settings(const struct job *job, const char *varied,
+                                      struct orl_render_params *render)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < job->options->settings.count; i++)
         result = orl_render_params_set(job->log, render, job->options->settings.items[i]);
+    return result == ORL_OK && varied ? orl_render_params_set(job->log, render, varied) : result;
+}
+
+// KEY=A,B,C as KEY=A, KEY=B and KEY=C.
+static enum orl_result list_varied(const struct orl_log *log, const char *text,
+                                   struct orl_names *varied)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--vary %s: must be KEY=VALUE,VALUE,..", text);
+    enum orl_result result = ORL_OK;
+    const char *value = equals + 1;
+    while (result == ORL_OK) {
+        int length = (int)strcspn(value, ",");
+        char *setting = orl_format(log, "%.*s=%.*s", (int)(equals - text), text, length, value);
+        result = setting ? orl_names_add(log, varied, setting) : ORL_ERR_MEMORY;
+        free(setting);
+        if (value[length] == '\0')
+            break;
+        value += length + 1;
+    }
     return result;
 }
 
@@ -103,15 +128,17 @@ static enum orl_result start_hdr(struct job *job, const struct orl_render_params
     return result == ORL_OK ? orl_hdr_create(job->gpu, job->scene, &params, &job->hdr) : result;
 }
 
-static enum orl_result evaluate(struct job *job, const struct orl_method *method)
+static enum orl_result evaluate(struct job *job, const struct orl_method *method,
+                                const char *varied)
 {
     struct orl_render_params render;
     enum orl_result result = orl_render_params_tuned(job->log, method, job->scene, &render);
     if (result == ORL_OK)
-        result = apply_settings(job, &render);
+        result = apply_settings(job, varied, &render);
     if (result != ORL_OK)
         return result;
-    struct orl_eval_params params = {.method = method->name, .render = &render,
+    struct orl_eval_params params = {.method = method->name, .setting = varied,
+                                           .render = &render,
                                            .image_dir = job->options->images,
                                            .progress = job->progress,
                                            .truth = job->options->truth ? &job->truth : NULL};
@@ -169,10 +196,17 @@ static enum orl_result measure(struct job *job, const struct orl_method *first, 
                         job->progress);
     }
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; i < methods && result == ORL_OK; i++)
-        result = evaluate(job, &first[i]);
+    size_t values = job->varied.count;
+    for (size_t i = 0; i < methods && result == ORL_OK; i++) {
+        if (values == 0)
+            result = evaluate(job, &first[i], NULL);
+        for (size_t k = 0; k < values && result == ORL_OK; k++)
+            result = evaluate(job, &first[i], job->varied.items[k]);
+    }
     if (result == ORL_OK && o->json)
-        result = write_json(job, all);
+        result = write_json(job, all || values > 0);
+    if (result == ORL_OK && o->plot)
+        result = orl_eval_plot(job->log, job->evals, job->count, o->plot);
     return result;
 }
 
@@ -181,6 +215,12 @@ static enum orl_result check_together(const struct orl_log *log, const struct op
     if (o->walk && (o->merge || o->truth))
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk compares frames with each other: "
                         "without --merge and --truth");
+    if (o->walk && (o->vary || o->plot))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary and --plot are of held-out "
+                        "photographs: without --walk");
+    if (o->vary && o->images)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary makes several pictures of one name: "
+                        "without --images");
     if (o->merge && strcmp(o->textures, "auto") != 0)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --merge keeps photographs as it needs them: "
                         "without --textures");
@@ -201,11 +241,18 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         return ORL_ERR_ARGUMENT;
     while (all && first[methods].name)
         methods++;
-    job->evals = orl_array(job->log, methods, sizeof *job->evals);
+    if (job->options->vary)
+        result = list_varied(job->log, job->options->vary, &job->varied);
+    if (result != ORL_OK)
+        return result;
+    size_t values = job->varied.count ? job->varied.count : 1;
+    job->evals = orl_array(job->log, methods * values, sizeof *job->evals);
     if (!job->evals)
         return ORL_ERR_MEMORY;
     struct orl_render_params tried = first->params; // wrong settings are found before the work
-    result = apply_settings(job, &tried);
+    result = apply_settings(job, NULL, &tried);
+    for (size_t i = 0; result == ORL_OK && i < job->varied.count; i++)
+        result = orl_render_params_set(job->log, &tried, job->varied.items[i]);
     struct orl_renderer_params limits = {
         .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
     if (result == ORL_OK)
@@ -234,6 +281,7 @@ static void finish(struct job *job)
     for (size_t i = 0; i < job->count; i++)
         orl_eval_finish(&job->evals[i]);
     free(job->evals);
+    orl_names_finish(&job->varied);
     orl_hdr_destroy(&job->hdr);
     orl_truth_finish(&job->truth);
     orl_renderer_destroy(&job->renderer);
@@ -247,6 +295,9 @@ int cmd_eval(int argc, char **argv)
     const struct arg_option table[] = {
         {"method", ARG_STRING, &o.method, "NAME", "a method, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
+        {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "once for each value of an option", 0, 0},
+        {"plot", ARG_STRING, &o.plot, "FILE", "write a chart of accuracy against time (SVG)", 0,
+         0},
         {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
         {"images", ARG_STRING, &o.images, "DIR", "write photographs, renderings, differences",
          0, 0},

@@ -242,6 +242,7 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                       .params = params, .eval = eval};
     eval->scene = scene;
     eval->method = params->method;
+    snprintf(eval->setting, sizeof eval->setting, "%s", params->setting ? params->setting : "");
     eval->has_truth = params->truth != NULL;
     snprintf(eval->device, sizeof eval->device, "%s", orl_gpu_caps(gpu)->renderer);
     enum orl_result result = orl_eval_check(job.log, scene);

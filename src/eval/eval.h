@@ -27,6 +27,7 @@ enum { ORL_EVAL_PASSES_MAX = 32 };
 struct orl_eval {
     const struct orl_scene *scene; // not owned
     const char *method;            // not owned
+    char setting[64];              // KEY=VALUE that differs between evaluations; empty: none does
     char device[128];
     struct orl_eval_view *views; // owned
     size_t view_count;
@@ -38,6 +39,7 @@ struct orl_eval {
 
 struct orl_eval_params {
     const char *method; // name for reports
+    const char *setting; // of struct orl_eval; NULL: none
     const struct orl_render_params *render;
     // Folder (made if need be) for NAME.photo.png, NAME.<method>.png and
     // NAME.<method>.diff.png: photograph, rendering and four times their difference
@@ -68,5 +70,9 @@ void orl_eval_finish(struct orl_eval *eval);
 // array of `count` of them.
 char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
                        bool array);
+// Writes an SVG of accuracy against time: a dot for each evaluation, joined where the method is the
+// same, with the value of its setting. Those of a method lie one after the other; count > 0.
+enum orl_result orl_eval_plot(const struct orl_log *log, const struct orl_eval *evals,
+                              size_t count, const char *path) ORL_CHECK_RESULT;
 
 #endif

@@ -64,6 +64,7 @@ static bool add_eval(json_t *array, const struct orl_eval *eval)
     json_t *object = json_object(), *views = json_array(), *mean = json_object();
     bool ok = set(object, "scene", json_string(eval->scene->dir)) &&
               set(object, "method", json_string(eval->method)) &&
+              (!eval->setting[0] || set(object, "setting", json_string(eval->setting))) &&
               set(object, "device", json_string(eval->device)) &&
               set(object, "size", size_json(&eval->views[0])) && add_views(views, eval) &&
               set_figures(mean, eval, &eval->mean);
