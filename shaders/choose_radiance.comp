@@ -12,6 +12,7 @@ layout(std430, binding = 1) writeonly buffer tile_lists {
 const int PROBES_X = 4, PROBES_Y = 2;
 const ivec2 TILE = ivec2(ORL_PIXEL_GROUP_X, ORL_PIXEL_GROUP_Y);
 const float LEAST_SHARE = 0.01; // of the best photograph's weight
+const float CLIPPED_SHARE = 0.1; // of its geometric weight that a photograph has at least
 
 // The most that a photograph weighs at any probe.
 float score(int i, ivec2 tile)
@@ -26,7 +27,8 @@ float score(int i, ivec2 tile)
         if (depth == 0.0)
             continue;
         Sample s = ask(shot, i, surface_point(at, abs(depth)), depth < 0.0);
-        most = max(most, weight_alone(shot, s));
+        // What clips still tells what is too dark to be true (gather_radiance.comp).
+        most = max(most, max(weight_alone(shot, s), CLIPPED_SHARE * s.weight));
     }
     return most;
 }

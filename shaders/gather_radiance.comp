@@ -158,8 +158,36 @@ void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
     } while (doubtful != 0);
 }
 
+// What is darker than others' least light is not what they show: the tree that a photograph from
+// aside shows is not the sky, whatever its exposure. So far as what does not clip is contradicted,
+// what clips counts by geometry. On surfaces that takes a majority of at least two: one alone
+// clips beside an edge as often.
+void heed_clipped(bool guessed)
+{
+    float all = 0.0, best = 0.0, least = 0.0; // geometric weights; luminance
+    EACH_SAMPLE(k) {
+        float weight = samples[k].clip < CLIPS_BELOW ? samples[k].weight : 0.0;
+        all += weight;
+        least = weight > best ? dot(samples[k].color, LUMINANCE) : least;
+        best = max(best, weight);
+    }
+    float other = 0.0, contradicted = 0.0;
+    EACH_SAMPLE(k) {
+        float weight = samples[k].clip < CLIPS_BELOW ? 0.0 : weights[k];
+        float below = log2(max(least, radiance.z) /
+                           max(dot(samples[k].color, LUMINANCE), radiance.z));
+        other += weight;
+        contradicted += weight * smoothstep(radiance.x, 2.0 * radiance.x, below);
+    }
+    other = max(other, 1e-30);
+    float majority = smoothstep(1.0, 3.0, (all - best) / other);
+    float share = contradicted / other * (guessed ? 1.0 : majority);
+    EACH_SAMPLE(k)
+        weights[k] += samples[k].clip < CLIPS_BELOW ? share * samples[k].weight : 0.0;
+}
+
 // Final weights and their sums times trust, times trust as far as clipping goes, and alone.
-vec3 weigh()
+vec3 weigh(bool guessed)
 {
     // How far each sample is to be trusted depends on how much light there was, which its
     // own noise must not decide: the median says.
@@ -169,6 +197,8 @@ vec3 weigh()
         noise[k] = noise_of(photo_at(samples[k].shot), inverse);
         weights[k] = total_weight(samples[k], noise[k]);
     }
+    if (radiance.x > 0.0)
+        heed_clipped(guessed);
     // Nearly all of it, so that none appears at once, and samples that tie with it remain.
     float limit = 0.999 * left_out();
     EACH_SAMPLE(k)
@@ -238,7 +268,7 @@ void main()
         return;
     vec3 p = surface_point(at, abs(depth));
     ask_photos(p, depth < 0.0);
-    vec3 sums = weigh();
+    vec3 sums = weigh(depth < 0.0);
     float total = sums.z;
     vec4 before = imageLoad(accumulated, at);
     bool clips = before.a + (sums.y < CLIPS_BELOW * total ? -total : total) < 0.0;

@@ -239,6 +239,32 @@ static void what_clips_takes_nothing_from_shade(void **state)
     teardown(&f);
 }
 
+static void shade_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    for (int c = 0; c < 3; c++)
+        light[c] = WALL[c] / 64;
+}
+
+// A leaf before the lens of one, say. A photograph alone that clips proves less.
+static void several_that_clip_outvote_a_dark_one(void **state)
+{
+    (void)state;
+    for (int clipped = 1; clipped <= 3; clipped += 2) {
+        struct fixture f;
+        setup_wall(&f);
+        for (int i = 0; i < clipped; i++)
+            add_photo(&f, look(0.1 * (i - 1), 0), 0, white_light);
+        add_photo(&f, look(0.3, 0), 0, shade_light);
+        struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+        struct orl_frame frame = draw(&f, &params);
+        float light = frame.color.f32[3 * MIDDLE];
+        assert_true(clipped > 1 ? light > 0.8f : light < 0.01f);
+        orl_frame_finish(&frame);
+        teardown(&f);
+    }
+}
+
 // Only one of them may count, and neither is better.
 static void photographs_that_tie_paint(void **state)
 {
@@ -615,6 +641,7 @@ int main(void)
         cmocka_unit_test(the_darkest_decides_where_all_clip),
         cmocka_unit_test(what_clips_is_as_bright_as_its_surroundings),
         cmocka_unit_test(what_clips_takes_nothing_from_shade),
+        cmocka_unit_test(several_that_clip_outvote_a_dark_one),
         cmocka_unit_test(photographs_that_tie_paint),
         cmocka_unit_test(where_all_are_black_it_is_dark),
         cmocka_unit_test(noise_does_not_outvote_light),
