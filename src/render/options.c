@@ -17,7 +17,7 @@
     .guess_blur = 0.06f, .unknown_trust = 0.5f, .outliers = 0.3f
 
 // What each pixel of blend=best asks and blends.
-#define BEST_DEFAULTS .candidates = 8.0f, .photos_per_pixel = 4.0f
+#define BEST_DEFAULTS .candidates = 6.0f, .photos_per_pixel = 4.0f
 
 const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
