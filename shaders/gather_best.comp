@@ -176,5 +176,5 @@ void main()
     imageStore(guesses, corner / 2, guess);
     if (!whole)
         unfinished_add(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x,
-                      gl_NumWorkGroups.x * gl_NumWorkGroups.y);
+                       gl_NumWorkGroups.x * gl_NumWorkGroups.y);
 }

@@ -118,7 +118,8 @@ void orl_tex_fill(struct orl_tex *tex, uint32_t word);
 // its own; the buffer must outlive it and hold at most caps->max_buffer_texels texels.
 enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *buf, GLenum format,
                                     struct orl_tex **out) ORL_CHECK_RESULT;
-// Fills the coarser levels of one layer (0 without layers) from its level 0.
+// Fills the coarser levels of one layer (0 without layers) from its level 0, which may be what
+// shaders stored; samplers see that, and all levels, from then on.
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer);
 
 // --- programs and dispatch ---

@@ -278,6 +278,9 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
 
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)
 {
+    // Level 0 may be a shader's: drivers read it as a texture, by drawing or by copying.
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                    GL_TEXTURE_UPDATE_BARRIER_BIT);
     if (tex->params.levels <= 1)
         return;
     if (!tex->params.layers) {

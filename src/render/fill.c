@@ -22,10 +22,9 @@ enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, bool radia
         {"fill_seed.comp", "SEED_LEAST", &fill->seed_least}, // from here on of radiance
         {"fill_seed.comp", "SEED_BRIGHTER", &fill->seed_brighter},
         {"fill_lift.comp", NULL, &fill->lift},
-        {"fill_seed.comp", "SEED_GUESSES", &fill->seed_guesses},
     };
     enum orl_result result = ORL_OK;
-    size_t count = ORL_COUNT(programs) - (radiance ? 0 : 4);
+    size_t count = ORL_COUNT(programs) - (radiance ? 0 : 3);
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = orl_prog_create(gpu, programs[i].file, programs[i].defines,
                                  sizeof(struct image_block), programs[i].prog);
@@ -52,7 +51,6 @@ void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill)
     orl_prog_destroy(gpu, &fill->seed_least);
     orl_prog_destroy(gpu, &fill->seed_brighter);
     orl_prog_destroy(gpu, &fill->lift);
-    orl_prog_destroy(gpu, &fill->seed_guesses);
 }
 
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height)
@@ -163,22 +161,4 @@ void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accu
         run(gpu, fill, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
             fill->level[0]);
     spread(gpu, fill);
-}
-
-void orl_fill_seed_guesses(struct orl_gpu *gpu, struct fill *fill,
-                           const struct orl_tex *accumulated, const struct orl_tex *trusted,
-                           struct orl_tex *guesses)
-{
-    struct image_block block = fill->block;
-    block.area[0] = guesses->params.width;
-    block.area[1] = guesses->params.height;
-    // What mipmaps are made with, by whichever means.
-    struct orl_dispatch d = {.prog = fill->seed_guesses, .params = &block,
-                             .images = {{accumulated, 0, GL_READ_ONLY},
-                                        {guesses, 0, GL_WRITE_ONLY}, {trusted, 0, GL_READ_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_TEXTURE_FETCH_BARRIER_BIT |
-                                        GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_pixel_groups(guesses->params.width, guesses->params.height, d.groups);
-    orl_gpu_dispatch(gpu, &d);
 }

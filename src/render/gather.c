@@ -79,27 +79,9 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
     orl_buf_destroy(gpu, &gather->unfinished);
-    orl_tex_destroy(gpu, &gather->guesses);
     free(gather->list);
     free(gather->chosen);
     memset(gather, 0, sizeof *gather);
-}
-
-enum orl_result orl_gather_resize(struct orl_gpu *gpu, struct gather *gather, int width,
-                                  int height)
-{
-    const struct orl_tex *old = gather->guesses;
-    struct orl_tex_params params = {.width = (width + 1) / 2, .height = (height + 1) / 2,
-                                    .levels = 1, .linear = true, .format = GL_RGBA32F,
-                                    .tag = "guesses"};
-    if (old && old->params.width == params.width && old->params.height == params.height)
-        return ORL_OK;
-    orl_tex_destroy(gpu, &gather->guesses);
-    // A texel of the last level is as large as the largest blur, or all of the picture.
-    int longer = width > height ? width : height;
-    while (1 << params.levels < GUESS_BLUR_MOST * longer && longer >> (params.levels + 1) > 0)
-        params.levels++;
-    return orl_tex_create(gpu, &params, &gather->guesses);
 }
 
 // photo_from_view = photo_from_world * world_from_view, in doubles: both translations
@@ -289,11 +271,9 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){r->fill.level[0], 0, GL_WRITE_ONLY};
-    d.images[3] = (struct orl_image_binding){g->guesses, 0, GL_WRITE_ONLY};
-    // The last three: mipmaps are made of the guesses, by whichever means.
+    d.images[3] = (struct orl_image_binding){r->soften.guesses, 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT;
+                GL_COMMAND_BARRIER_BIT;
     memcpy(d.groups, groups, sizeof groups);
     run(r->gpu, "gather", &d);
     return ORL_OK;

@@ -129,7 +129,7 @@ enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
 
 struct fill {
     struct orl_prog *seed_depth, *seed_color, *pull, *push, *apply_depth;
-    struct orl_prog *seed_least, *seed_brighter, *lift, *seed_guesses; // of radiance
+    struct orl_prog *seed_least, *seed_brighter, *lift; // of radiance
     int width, height, levels;
     struct image_block block; // of its passes
     // value * weight, weight; level 0 has half the size
@@ -148,14 +148,25 @@ void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_vie
 // pixels of colour, 1 summed. Of radiance: what `accumulated` says clips takes light from around
 // it first, and its weight's sign with it.
 void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated);
-// Of radiance: what `accumulated` holds on guessed depth, as `trusted` says, 2x2 pixels of colour,
-// 1 summed.
-void orl_fill_seed_guesses(struct orl_gpu *gpu, struct fill *fill,
-                           const struct orl_tex *accumulated, const struct orl_tex *trusted,
-                           struct orl_tex *guesses);
-
 // Does this fill guess depth?
 bool orl_fill_guesses(const struct orl_render_params *params);
+
+// --- what the blur of guesses takes in (soften.c) ---
+
+struct soften {
+    struct orl_prog *seed;   // of radiance
+    struct orl_tex *guesses; // mipmapped: shaders/compose.comp
+};
+
+enum orl_result orl_soften_init(struct orl_gpu *gpu, bool radiance, struct soften *soften);
+// For pictures of this size; does nothing when they had it already.
+enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
+                                  int height);
+void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften);
+// Sums and mipmaps of what is painted on guessed depth. gather_best.comp has written the sums; of
+// radiance they are made of `accumulated`, where `trusted` says so.
+void orl_soften_prepare(struct orl_gpu *gpu, const struct soften *soften,
+                        const struct orl_tex *accumulated, const struct orl_tex *trusted);
 
 // --- blending (gather.c) ---
 
@@ -173,14 +184,10 @@ struct gather {
     struct orl_tex *photo_rows; // its view, RGBA32F
     struct orl_buf *tile_lists; // choose.comp, choose_radiance.comp
     struct orl_buf *unfinished; // of the last gather_best.comp: shaders/include/unfinished.glsl
-    struct orl_tex *guesses;    // of the last draw, mipmapped: shaders/compose.comp
 };
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
                                 struct gather *gather);
-// For pictures of this size; does nothing when they had it already.
-enum orl_result orl_gather_resize(struct orl_gpu *gpu, struct gather *gather, int width,
-                                  int height);
 // The at most `most` usable photographs that can paint this view best, ascending (preselect.c).
 enum orl_result orl_preselect(const struct orl_log *log, const struct photos *photos,
                               const struct orl_view *view, const bool *skip, size_t most,
@@ -200,6 +207,7 @@ struct orl_renderer {
     struct proxy proxy;
     struct photos photos;
     struct fill fill;
+    struct soften soften;
     struct gather gather;
     struct orl_prog *compose, *compose_rest;
     struct proxy_target target;

@@ -47,6 +47,8 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
         result = orl_fill_init(gpu, scene->photo_distance > 0 ? (float)scene->photo_distance : 1.0f,
                                params->radiance, &r->fill);
     if (result == ORL_OK)
+        result = orl_soften_init(gpu, params->radiance, &r->soften);
+    if (result == ORL_OK)
         result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "compose.comp", params->radiance ? "RADIANCE" : NULL,
@@ -70,6 +72,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_proxy_finish(r->gpu, &r->proxy);
     orl_photos_finish(r->gpu, &r->photos);
     orl_fill_finish(r->gpu, &r->fill);
+    orl_soften_finish(r->gpu, &r->soften);
     orl_gather_finish(r->gpu, &r->gather);
     orl_prog_destroy(r->gpu, &r->compose);
     orl_prog_destroy(r->gpu, &r->compose_rest);
@@ -88,7 +91,7 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
     if (result == ORL_OK)
         result = orl_fill_resize(r->gpu, &r->fill, width, height);
     if (result == ORL_OK)
-        result = orl_gather_resize(r->gpu, &r->gather, width, height);
+        result = orl_soften_resize(r->gpu, &r->soften, width, height);
     const struct orl_tex *old = r->accumulated;
     if (result != ORL_OK || (old && old->params.width == width && old->params.height == height))
         return result;
@@ -125,7 +128,7 @@ static void compose(struct orl_renderer *r, const struct orl_render_params *para
                                          params->fill != ORL_FILL_NONE}};
     struct orl_dispatch d = {.prog = finished ? r->compose_rest : r->compose, .params = &block,
                              .bufs = {[2] = {.buf = finished ? r->gather.unfinished : NULL}},
-                             .textures = {r->gather.guesses},
+                             .textures = {r->soften.guesses},
                              .indirect = finished ? r->gather.unfinished : NULL,
                              .images = {{r->accumulated, 0, GL_READ_WRITE},
                                         {r->fill.level[0], 0, GL_READ_ONLY},
@@ -134,11 +137,8 @@ static void compose(struct orl_renderer *r, const struct orl_render_params *para
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_pixel_groups((r->target.width + 1) / 2, (r->target.height + 1) / 2, d.groups);
-    if ((finished || r->trusted) && orl_fill_guesses(params) && params->guess_blur > 0) {
-        if (r->trusted)
-            orl_fill_seed_guesses(r->gpu, &r->fill, r->accumulated, r->trusted, r->gather.guesses);
-        orl_tex_make_mipmaps(r->gather.guesses, 0);
-    }
+    if ((finished || r->trusted) && orl_fill_guesses(params) && params->guess_blur > 0)
+        orl_soften_prepare(r->gpu, &r->soften, r->accumulated, r->trusted);
     orl_gpu_dispatch(r->gpu, &d);
 }
 

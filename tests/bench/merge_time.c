@@ -3,17 +3,9 @@
 // rounds.
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/resource.h>
 
+#include "cpu_time.h"
 #include "hdr/hdr.h"
-
-static double cpu_s(void)
-{
-    struct rusage u;
-    getrusage(RUSAGE_SELF, &u);
-    return (double)u.ru_utime.tv_sec + (double)u.ru_stime.tv_sec +
-           1e-6 * ((double)u.ru_utime.tv_usec + (double)u.ru_stime.tv_usec);
-}
 
 static enum orl_result time_view(struct orl_hdr *const hdr[ORL_HDR_MERGE_COUNT],
                                  const struct orl_view *view, int rounds,
@@ -23,9 +15,9 @@ static enum orl_result time_view(struct orl_hdr *const hdr[ORL_HDR_MERGE_COUNT],
     for (int i = 0; i <= rounds; i++)
         for (int m = 0; result == ORL_OK && m < ORL_HDR_MERGE_COUNT; m++) {
             struct orl_frame frame = {0};
-            double start = cpu_s();
+            double start = cpu_time_s();
             result = orl_hdr_draw(hdr[m], view, NULL, &frame);
-            seconds[m] += i ? (cpu_s() - start) / rounds : 0;
+            seconds[m] += i ? (cpu_time_s() - start) / rounds : 0;
             orl_frame_finish(&frame);
         }
     return result;

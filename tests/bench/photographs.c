@@ -1,34 +1,25 @@
 // photographs SCENE WxH [METHOD]..: what a frame costs with every photograph of the scene
-// and with 20 of them, spread evenly. CPU time of the process, of all its threads, which
-// other work on the machine hardly changes: on a software renderer that is the frame; with
-// a GPU it is the driver's and ours alone. The least of several draws in turn, without
-// reading back, standing still halfway between two photographs (`still`), and the mean
-// along a short walk there, for the first time, when photographs that come into question
+// and with 20 of them, spread evenly, in CPU time (cpu_time.h). The least of several draws in
+// turn, without reading back, standing still halfway between two photographs (`still`), and the
+// mean along a short walk there, for the first time, when photographs that come into question
 // are read and their depth is drawn (`first`), and again (`walk`).
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "core/memory.h"
+#include "cpu_time.h"
 #include "render/render.h"
 #include "scene/path.h"
 
 enum { FEW = 20, ROUNDS = 7, STEPS = 12 };
 
-static double cpu_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
 static enum orl_result draw(struct orl_renderer *renderer, const struct orl_view *view,
                             const struct orl_render_params *params, double *ms)
 {
-    double start = cpu_ms();
+    double start = cpu_time_s();
     enum orl_result result = orl_renderer_draw(renderer, view, params, NULL, NULL);
-    *ms = cpu_ms() - start;
+    *ms = 1e3 * (cpu_time_s() - start);
     return result;
 }
 

@@ -2,9 +2,8 @@
 // log2 error of radiance views of a synthetic scene (truth_scene.c), near edges of light and away
 // from them. With --bound also the error that the truth itself has against the truth, over the
 // same pixels, once it is shifted by part of a pixel, or photographed half a pixel off and
-// resampled. An edge is a step of more than a stop between
-// neighbouring pixels; near it is within EDGE_PX pixels. --divide: views at 1/N of the
-// photographs' size.
+// resampled. An edge is a step of more than a stop between neighbouring pixels; near it is within
+// EDGE_PX pixels. --divide: views at 1/N of the photographs' size.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

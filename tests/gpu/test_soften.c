@@ -43,12 +43,7 @@ static struct orl_frame from_aside_with(double x, float guess_blur, bool radianc
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.guess_blur = guess_blur;
     struct orl_renderer_params kind = {.radiance = radiance};
-    struct orl_renderer *renderer;
-    struct orl_frame frame;
-    struct orl_view view = look_from(0, 0, 0, SIDE, FOCAL);
-    assert_int_equal(orl_renderer_create(gpu, &f.scene, &kind, &renderer), ORL_OK);
-    assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, &frame), ORL_OK);
-    orl_renderer_destroy(&renderer);
+    struct orl_frame frame = draw_by(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, &kind);
     teardown(&f);
     return frame;
 }

@@ -96,16 +96,24 @@ static inline void teardown(struct fixture *f)
     test_dir_remove(f->dir);
 }
 
-static inline struct orl_frame draw(struct orl_gpu *gpu, struct fixture *f, struct orl_view view,
-                                    const struct orl_render_params *params, size_t budget)
+static inline struct orl_frame draw_by(struct orl_gpu *gpu, struct fixture *f,
+                                       struct orl_view view,
+                                       const struct orl_render_params *params,
+                                       const struct orl_renderer_params *kind)
 {
     struct orl_renderer *renderer;
     struct orl_frame frame;
-    struct orl_renderer_params limits = {.max_vram_bytes = budget};
-    assert_int_equal(orl_renderer_create(gpu, &f->scene, &limits, &renderer), ORL_OK);
+    assert_int_equal(orl_renderer_create(gpu, &f->scene, kind, &renderer), ORL_OK);
     assert_int_equal(orl_renderer_draw(renderer, &view, params, NULL, &frame), ORL_OK);
     orl_renderer_destroy(&renderer);
     return frame;
+}
+
+static inline struct orl_frame draw(struct orl_gpu *gpu, struct fixture *f, struct orl_view view,
+                                    const struct orl_render_params *params, size_t budget)
+{
+    return draw_by(gpu, f, view, params,
+                   &(struct orl_renderer_params){.max_vram_bytes = budget});
 }
 
 static inline const float *color_at(const struct orl_frame *frame, int x, int y)
