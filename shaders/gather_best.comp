@@ -67,10 +67,6 @@ float limit_of(ranking r)
     return limit;
 }
 
-// A photograph with so great a penalty, an angle of some 50 degrees, shows another side of things:
-// no help where depth is guessed.
-const float GUESS_PENALTY_MOST = 0.9;
-
 void consider(int i, photo shot, spot s, inout ranking r)
 {
     vec2 pixel;
@@ -78,8 +74,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     bool inside = photo_project(shot, s.p, pixel, z);
     vec4 seen = photo_depths(shot, pixel);
     float penalty = photo_penalty(shot, s.p);
-    float beside = clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MOST), 0.0, 1.0);
-    float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * beside
+    float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
                  : flags.x == 1 ? photo_seen_share(seen, z)
                                 : 1.0;
     float sure = sees * photo_border(shot, pixel, s.guessed);

@@ -30,6 +30,16 @@ float photo_unhidden_share(photo shot, vec4 seen, float z)
     return dot(share, vec4(0.25)); // at an edge it shows some of what is behind
 }
 
+// A photograph with so great a penalty, an angle of some 50 degrees, shows another side of things:
+// no help where depth is guessed.
+const float GUESS_PENALTY_MOST = 0.9;
+
+// From 1 to 0 there.
+float photo_beside(float penalty)
+{
+    return clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MOST), 0.0, 1.0);
+}
+
 // Where photographs differ by this much, square roots of light, a guess is fully in doubt.
 const float GUESS_DIFFERENCE = 0.1;
 // Doubt in what one photograph shows alone: often enough it is right, and sharp.

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/color.h"
 #include "wall_scene.h"
 
 static struct orl_gpu *gpu;
@@ -231,20 +232,25 @@ static void guesses_end_at_the_ground(void **state)
 }
 
 // Beside the wall depth is guessed: from 16 degrees aside a photograph may paint it, from 88 not.
+// Nor as radiance.
 static void guesses_are_not_seen_from_the_side(void **state)
 {
     (void)state;
-    static const struct { double x; bool paints; } cases[] = {{3, true}, {9, false}};
+    static const struct { double x; bool radiance, paints; } cases[] = {
+        {3, false, true}, {9, false, false}, {3, true, true}, {9, true, false}};
+    static const uint8_t dim_red[3] = {128, 0, 0}, dim_green[3] = {0, 128, 0}; // nothing clips
+    const double light = (double)orl_srgb_decode(128 / 255.0f);
     for (size_t i = 0; i < ORL_COUNT(cases); i++) {
         struct fixture f;
         setup(&f, false);
-        add_photo(&f, look_from(0, 0, 0, 48, 20), red); // the wall alone
-        add_photo(&f, look_from(cases[i].x, 0, 0, 48, 20), green);
+        add_photo(&f, look_from(0, 0, 0, 48, 20), dim_red); // the wall alone
+        add_photo(&f, look_from(cases[i].x, 0, 0, 48, 20), dim_green);
         struct orl_render_params params = best();
-        struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, 48, 12), &params, 0);
+        struct orl_renderer_params kind = {.radiance = cases[i].radiance};
+        struct orl_frame frame = draw_by(gpu, &f, look_from(0, 0, 0, 48, 12), &params, &kind);
         const float *c = color_at(&frame, 44, 24); // of (6.8, 0, 4)
-        assert_float_equal(c[1], cases[i].paints, 1e-3);
-        assert_float_equal(c[0], !cases[i].paints, 1e-3);
+        assert_float_equal(c[1], cases[i].paints ? light : 0, 1e-3);
+        assert_float_equal(c[0], cases[i].paints ? 0 : light, 1e-3);
         orl_frame_finish(&frame);
         teardown(&f);
     }
