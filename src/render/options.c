@@ -8,13 +8,15 @@
 #include "render/render.h"
 
 // points_per_pixel: as few as cost under 0.02 dB (docs/performance.md).
-// distance_floor, front_layer and min_support: best of a few values when each training photograph of
-// fountain-P11 is rendered from the others; held-out photographs took no part.
+// distance_floor: best of a few values when each training photograph of fountain-P11 is rendered from
+// the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
-    .depth_tolerance = 0.01f, .splat_scale = 1.0f, .front_layer = 0.01f,                    \
-    .min_support = 8.0f, .distance_floor = 0.03f, .border_px = 8.0f,                      \
-    .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f, .guess_sharpness = 1.5f,  \
-    .guess_blur = 0.06f, .unknown_trust = 0.5f, .outliers = 0.3f
+    .depth_tolerance = 0.01f, .splat_scale = 1.0f, .distance_floor = 0.03f,                 \
+    .border_px = 8.0f, .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f,        \
+    .guess_sharpness = 1.5f, .guess_blur = 0.06f, .unknown_trust = 0.5f, .outliers = 0.3f
+
+// Our depth from splats, chosen like distance_floor; the paper's is that of the nearest alone.
+#define PROXY_DEFAULTS .front_layer = 0.01f, .min_support = 8.0f
 
 // What each pixel of blend=best asks and blends.
 #define BEST_DEFAULTS .candidates = 6.0f, .photos_per_pixel = 4.0f
@@ -23,19 +25,19 @@ const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
      "Buehler 2001's penalty, weights of our own",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_GROUND,
-      .sampling = ORL_SAMPLING_BICUBIC, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS, BEST_DEFAULTS,
-      .alignment = ORL_ALIGNMENT_ON}},
+      .sampling = ORL_SAMPLING_BICUBIC, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS, PROXY_DEFAULTS,
+      BEST_DEFAULTS, .alignment = ORL_ALIGNMENT_ON}},
     {"oriel-fast", "oriel from two photographs a pixel, of three, sampled bilinearly",
      "as oriel",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_GROUND,
       .sampling = ORL_SAMPLING_BILINEAR, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS,
-      .alignment = ORL_ALIGNMENT_ON, .candidates = 3.0f, .photos_per_pixel = 2.0f}},
+      PROXY_DEFAULTS, .alignment = ORL_ALIGNMENT_ON, .candidates = 3.0f, .photos_per_pixel = 2.0f}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
-     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_DEPTH,
+     {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_COLOR,
       .sampling = ORL_SAMPLING_BICUBIC, COMMON_DEFAULTS, BEST_DEFAULTS}},
     {"points", "the splats' own colour: the baseline", "-",
      {.color = ORL_COLOR_POINTS, .visibility = ORL_VISIBILITY_NONE, .fill = ORL_FILL_COLOR,
-      .sampling = ORL_SAMPLING_BILINEAR, COMMON_DEFAULTS, BEST_DEFAULTS}},
+      .sampling = ORL_SAMPLING_BILINEAR, COMMON_DEFAULTS, PROXY_DEFAULTS, BEST_DEFAULTS}},
     {0},
 };
 
