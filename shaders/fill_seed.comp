@@ -22,7 +22,7 @@ layout(rgba32f, binding = 2) readonly uniform image2D trusted; // z: see gather_
 layout(rgba32f, binding = 1) uniform image2D seeded; // in place
 
 const float BRIGHT_FROM = 0.65; // of the least light there is: some of it does not clip entirely
-vec3 least;
+vec3 least = vec3(0.0);
 #else
 layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
 #endif
