@@ -2,7 +2,7 @@
 // the four nearest coarser pixels whose disc they lie in (Airieau 2012, 5.1).
 // One invocation takes the four fine pixels around a corner where four coarse pixels meet:
 // those are the bilinear neighbours of all four, so they are read and prepared once.
-// LAST: the finest level, which comes out as depth and normal at pixel centres.
+// LAST: the finest level, which comes out as depth at pixel centres, with NORMALS as normal too.
 #define BLOCK_PYRAMID
 #include "include/render_blocks.h"
 #include "include/octahedron.glsl"
@@ -12,9 +12,13 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) readonly uniform image2D coarse_a;
 layout(rg32ui, binding = 1) readonly uniform uimage2D coarse_b;
 #ifdef LAST
+#ifdef NORMALS
 layout(rg32ui, binding = 2) readonly uniform uimage2D splats; // surfel_pack_own
 layout(r32f, binding = 3) writeonly uniform image2D depth_out;     // 0: none
 layout(rgba16f, binding = 4) writeonly uniform image2D normal_out; // w: 1 on a splat
+#else
+layout(r32f, binding = 3) uniform image2D depth_out; // in: surfel_own_depth
+#endif
 #else
 layout(rgba32f, binding = 2) uniform image2D fine_a;
 layout(rg32ui, binding = 3) writeonly uniform uimage2D fine_b;
@@ -93,18 +97,24 @@ void main()
                              : vec4(0.0625, 0.1875, 0.1875, 0.5625);
         vec2 target = level_centre(at, level.z);
 #ifdef LAST
+#ifdef NORMALS
         uvec2 own = imageLoad(splats, at).xy;
         float own_depth = uintBitsToFloat(own.x);
+#else
+        float own_depth = imageLoad(depth_out, at).x;
+#endif
         surfel s = filled(target, own_depth, disc, centre, ray, weight);
         bool kept = s.radius == 0.0, inside;
         s.normal = normalize(s.normal);
         float depth = surfel_depth_at(s, camera_ray(target + s.displacement), camera_ray(target),
                                       inside);
         depth = kept ? own_depth : depth;
+        imageStore(depth_out, at, vec4(depth));
+#ifdef NORMALS
         vec3 normal = kept ? octahedron_decode(unpackSnorm2x16(own.y)) : s.normal;
         bool any = !kept || own_depth > 0.0;
-        imageStore(depth_out, at, vec4(depth));
         imageStore(normal_out, at, any ? vec4(normal, kept ? 1.0 : 0.0) : vec4(0.0));
+#endif
 #else
         float own_near = imageLoad(fine_a, at).x;
         surfel s = filled(target, own_near, disc, centre, ray, weight);

@@ -1,6 +1,7 @@
 // Levels 0 and 1 of the pyramid from the winning points, 2x2 pixels an invocation.
 // CHUNKS: runs once per chunk of points and writes the pixels that this chunk won; the last run
 // leaves level 1 whole.
+// NORMALS: level 0 with normals.
 #include "include/splat.glsl"
 #include "include/octahedron.glsl"
 #include "include/surfel.glsl"
@@ -10,7 +11,11 @@ layout(rgba32f, binding = 0) readonly uniform imageBuffer positions;
 layout(rg32ui, binding = 1) readonly uniform uimageBuffer attributes; // normal, colour
 layout(r32ui, binding = 2) readonly uniform uimage2D splat_index;
 layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
-layout(rg32ui, binding = 4) writeonly uniform uimage2D splats;
+#ifdef NORMALS
+layout(rg32ui, binding = 4) writeonly uniform uimage2D splats; // surfel_pack_own
+#else
+layout(r32f, binding = 4) writeonly uniform image2D splats; // surfel_own_depth
+#endif
 layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
 layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
 #ifdef CHUNKS
@@ -72,8 +77,12 @@ void main()
         child[i] = splat(at, mine ? int(point) : 0);
         child[i].radius = mine ? child[i].radius : 0.0;
         vec2 centre = vec2(at) + 0.5;
-        uvec4 own = surfel_pack_own(child[i], splat_ray(centre + child[i].displacement),
-                                    splat_ray(centre));
+        vec2 ray = splat_ray(centre + child[i].displacement), target = splat_ray(centre);
+#ifdef NORMALS
+        uvec4 own = surfel_pack_own(child[i], ray, target);
+#else
+        vec4 own = vec4(surfel_own_depth(child[i], ray, target));
+#endif
 #ifdef CHUNKS
         if (!mine && size.w > 0)
             child[i] = surfel_unpack_splat(imageLoad(won, at));

@@ -109,11 +109,17 @@ uvec4 surfel_pack_splat(surfel s)
 }
 
 // What level 0 comes out as where it keeps its own splat: depth at the pixel's centre, 0 for
-// none, and normal. Rays: to the splat's centre and the pixel's.
-uvec4 surfel_pack_own(surfel s, vec2 centre, vec2 target)
+// none. Rays: to the splat's centre and the pixel's.
+float surfel_own_depth(surfel s, vec2 centre, vec2 target)
 {
     bool inside;
     float depth = surfel_depth_at(s, centre, target, inside);
-    return uvec4(floatBitsToUint(s.radius > 0.0 ? depth : 0.0),
+    return s.radius > 0.0 ? depth : 0.0;
+}
+
+// And normal.
+uvec4 surfel_pack_own(surfel s, vec2 centre, vec2 target)
+{
+    return uvec4(floatBitsToUint(surfel_own_depth(s, centre, target)),
                  packSnorm2x16(octahedron_encode(s.normal)), 0u, 0u);
 }

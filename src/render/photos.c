@@ -385,7 +385,7 @@ static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
                                                      view.camera.width, view.camera.height);
     if (result != ORL_OK)
         return result;
-    orl_proxy_draw(gpu, proxy, &view, options, &photos->target);
+    orl_proxy_draw(gpu, proxy, &view, options, false, &photos->target);
     guess_holes(gpu, photos, view.camera.width, view.camera.height);
     orl_tex_copy_layer(photos->target.pushed_depth, 0, view.camera.width, view.camera.height,
                        photos->depth, state->slot);

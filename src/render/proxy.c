@@ -23,12 +23,16 @@ enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *poi
     } programs[] = {
         {"splat_depth.comp", NULL, sizeof(struct splat_block), &proxy->splat_depth},
         {"splat_index.comp", NULL, sizeof(struct splat_block), &proxy->splat_index},
-        {"splat_resolve.comp", NULL, sizeof(struct splat_block), &proxy->splat_resolve},
-        {"splat_resolve.comp", "CHUNKS", sizeof(struct splat_block), &proxy->resolve_chunk},
+        {"splat_resolve.comp", NULL, sizeof(struct splat_block), &proxy->resolve[0]},
+        {"splat_resolve.comp", "NORMALS", sizeof(struct splat_block), &proxy->resolve[1]},
+        {"splat_resolve.comp", "CHUNKS", sizeof(struct splat_block), &proxy->resolve_chunk[0]},
+        {"splat_resolve.comp", "CHUNKS 1\nNORMALS", sizeof(struct splat_block),
+         &proxy->resolve_chunk[1]},
         {"points_color.comp", NULL, sizeof(struct splat_block), &proxy->color},
         {"pull.comp", NULL, sizeof(struct pyramid_block), &proxy->pull},
         {"push.comp", NULL, sizeof(struct pyramid_block), &proxy->push},
-        {"push.comp", "LAST", sizeof(struct pyramid_block), &proxy->push_last},
+        {"push.comp", "LAST", sizeof(struct pyramid_block), &proxy->push_last[0]},
+        {"push.comp", "LAST 1\nNORMALS", sizeof(struct pyramid_block), &proxy->push_last[1]},
         {"support.comp", NULL, sizeof(struct pyramid_block), &proxy->support},
     };
     enum orl_result result = ORL_OK;
@@ -46,9 +50,9 @@ void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
 {
     orl_cloud_finish(gpu, &proxy->cloud);
     struct orl_prog **const programs[] = {
-        &proxy->splat_depth, &proxy->splat_index, &proxy->splat_resolve, &proxy->resolve_chunk,
-        &proxy->color,
-        &proxy->pull, &proxy->push, &proxy->push_last, &proxy->support,
+        &proxy->splat_depth, &proxy->splat_index, &proxy->resolve[0], &proxy->resolve[1],
+        &proxy->resolve_chunk[0], &proxy->resolve_chunk[1], &proxy->color, &proxy->pull,
+        &proxy->push, &proxy->push_last[0], &proxy->push_last[1], &proxy->support,
     };
     for (size_t i = 0; i < ORL_COUNT(programs); i++)
         orl_prog_destroy(gpu, programs[i]);
@@ -189,21 +193,22 @@ static void splat(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_b
         }
 }
 
+// Level 0 goes into `depth` without normals, else into the target's splats.
 static void resolve(struct orl_gpu *gpu, const struct proxy *proxy, struct splat_block *block,
-                    struct proxy_target *t)
+                    const struct orl_tex *depth, bool normals, struct proxy_target *t)
 {
     bool chunks = proxy->cloud.chunk_count > 1;
     for (size_t i = 0; i < proxy->cloud.chunk_count; i++) {
         const struct point_chunk *chunk = &proxy->cloud.chunks[i];
         block->size[2] = chunk->count;
         block->size[3] = chunk->first;
-        struct orl_dispatch d = {.prog = chunks ? proxy->resolve_chunk : proxy->splat_resolve,
+        struct orl_dispatch d = {.prog = chunks ? proxy->resolve_chunk[normals] : proxy->resolve[normals],
                                  .params = block, .bufs = {[2] = {.buf = chunk->enlarged}},
                                  .images = {{chunk->position_texels, 0, GL_READ_ONLY},
                                             {chunk->attribute_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},
                                             {t->splat_layer, 0, GL_READ_ONLY},
-                                            {t->splats, 0, GL_WRITE_ONLY},
+                                            {normals ? t->splats : depth, 0, GL_WRITE_ONLY},
                                             {t->surfel_a[1], 0, GL_WRITE_ONLY},
                                             {t->surfel_b[1], 0, GL_WRITE_ONLY},
                                             {chunk->enlarged_texels, 0, GL_READ_ONLY}},
@@ -237,12 +242,12 @@ static void pull(struct orl_gpu *gpu, const struct proxy *proxy, struct pyramid_
     orl_gpu_dispatch(gpu, &d);
 }
 
-// Into `level` from the one above; level 0 comes out as `depth` and the normal.
+// Into `level` from the one above; level 0 comes out as `depth`, and with the normal if asked for.
 static void push(struct orl_gpu *gpu, const struct proxy *proxy, struct pyramid_block *block,
-                 struct proxy_target *t, int level, const struct orl_tex *depth)
+                 struct proxy_target *t, int level, const struct orl_tex *depth, bool normals)
 {
     const struct orl_tex *coarse = t->surfel_a[level + 1];
-    struct orl_dispatch d = {.prog = level ? proxy->push : proxy->push_last, .params = block,
+    struct orl_dispatch d = {.prog = level ? proxy->push : proxy->push_last[normals], .params = block,
                              .images = {{coarse, 0, GL_READ_ONLY},
                                         {t->surfel_b[level + 1], 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
@@ -252,7 +257,7 @@ static void push(struct orl_gpu *gpu, const struct proxy *proxy, struct pyramid_
         d.images[3] = (struct orl_image_binding){t->surfel_b[level], 0, GL_WRITE_ONLY};
     } else {
         d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY};
-        d.images[3] = (struct orl_image_binding){depth, 0, GL_WRITE_ONLY};
+        d.images[3] = (struct orl_image_binding){depth, 0, GL_READ_WRITE};
         d.images[4] = (struct orl_image_binding){t->normal, 0, GL_WRITE_ONLY};
     }
     set_level(block, level ? t->surfel_a[level] : t->splats, level);
@@ -277,29 +282,32 @@ static void drop_strays(struct orl_gpu *gpu, const struct proxy *proxy,
 }
 
 static void pull_push(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                      const struct proxy_options *options, struct proxy_target *t)
+                      int least_support, const struct orl_tex *depth, bool normals,
+                      struct proxy_target *t)
 {
     struct pyramid_block block = {.camera = {(float)view->camera.fx, (float)view->camera.fy,
                                              (float)view->camera.cx, (float)view->camera.cy}};
-    int least = (int)options->min_support;
     for (int i = 2; i < t->levels; i++)
         pull(gpu, proxy, &block, t, i);
     for (int i = t->levels - 2; i >= 0; i--)
-        push(gpu, proxy, &block, t, i, least > 0 ? t->pushed_depth : t->depth);
-    if (least > 0)
-        drop_strays(gpu, proxy, &block, least, t);
+        push(gpu, proxy, &block, t, i, depth, normals);
+    if (least_support > 0)
+        drop_strays(gpu, proxy, &block, least_support, t);
 }
 
 void orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy, const struct orl_view *view,
-                    const struct proxy_options *options, struct proxy_target *target)
+                    const struct proxy_options *options, bool normals,
+                    struct proxy_target *target)
 {
     struct splat_block block = splat_params(view, options);
+    int least_support = (int)options->min_support;
+    const struct orl_tex *depth = least_support > 0 ? target->pushed_depth : target->depth;
     orl_pass_begin(gpu, "splat");
     splat(gpu, proxy, &block, target);
     orl_pass_end(gpu);
     orl_pass_begin(gpu, "pull-push");
-    resolve(gpu, proxy, &block, target);
-    pull_push(gpu, proxy, view, options, target);
+    resolve(gpu, proxy, &block, depth, normals, target);
+    pull_push(gpu, proxy, view, least_support, depth, normals, target);
     orl_pass_end(gpu);
 }
 

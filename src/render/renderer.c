@@ -143,13 +143,16 @@ static void compose(struct orl_renderer *r, const struct orl_render_params *para
 }
 
 static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
-                            const struct orl_render_params *params, const bool *skip)
+                            const struct orl_render_params *params, const bool *skip,
+                            bool normals)
 {
     struct orl_gpu *gpu = r->gpu;
     enum orl_result result = ORL_OK;
     bool finished = false;
     struct proxy_options options = orl_proxy_options(params);
-    orl_proxy_draw(gpu, &r->proxy, view, &options, &r->target);
+    // The splats' own colours show where they are in front, which the normal tells.
+    normals = normals || params->color == ORL_COLOR_POINTS;
+    orl_proxy_draw(gpu, &r->proxy, view, &options, normals, &r->target);
     if (params->color == ORL_COLOR_PHOTOS) {
         if (orl_fill_guesses(params)) {
             orl_pass_begin(gpu, "fill");
@@ -196,7 +199,7 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
                         view->camera.width, view->camera.height, view->camera.fx, view->camera.fy);
     enum orl_result result = resize(r, view->camera.width, view->camera.height);
     if (result == ORL_OK)
-        result = draw(r, view, params, skip);
+        result = draw(r, view, params, skip, frame && !(params->leave_out & ORL_LAYER_NORMAL));
     if (result == ORL_OK)
         result = frame ? orl_read_back(r, params->leave_out, frame) : ORL_OK;
     if (result == ORL_OK)

@@ -44,7 +44,7 @@ static void draw(struct scene *s, float points_per_pixel)
 {
     orl_proxy_draw(gpu, &s->proxy, &front_view,
                    &(struct proxy_options){.splat_scale = 1, .front_layer = 0.01f,
-                                           .points_per_pixel = points_per_pixel}, &s->target);
+                                           .points_per_pixel = points_per_pixel}, true, &s->target);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
 }
 

@@ -56,7 +56,7 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     struct proxy_target target = {0};
     assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
     assert_int_equal(orl_proxy_target_resize(gpu, &proxy, &target, SIDE, SIDE), ORL_OK);
-    orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, &target);
+    orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, true, &target);
     orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof out->depth, out->depth);
     orl_tex_read(target.normal, 0, GL_RGBA, GL_FLOAT, sizeof out->normal, out->normal);
     orl_tex_read(target.splat_depth, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->bits,
@@ -64,6 +64,10 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     orl_tex_read(target.splat_index, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->index,
                  out->index);
     read_order(&proxy, out);
+    static float without_normals[SIDE * SIDE];
+    orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, false, &target);
+    orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof without_normals, without_normals);
+    assert_memory_equal(without_normals, out->depth, sizeof out->depth);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     orl_proxy_target_finish(gpu, &target);
     orl_proxy_finish(gpu, &proxy);
@@ -269,7 +273,7 @@ static void odd_sizes_lose_no_pixel(void **state)
     float depth[W * H];
     assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
     assert_int_equal(orl_proxy_target_resize(gpu, &proxy, &target, W, H), ORL_OK);
-    orl_proxy_draw(gpu, &proxy, &view, &(struct proxy_options){.splat_scale = 1}, &target);
+    orl_proxy_draw(gpu, &proxy, &view, &(struct proxy_options){.splat_scale = 1}, true, &target);
     orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < W * H; i++)
         assert_float_equal(depth[i], 1, 1e-4);
