@@ -168,7 +168,8 @@ void main()
         imageStore(accumulated, corner + ivec2(k & 1, k >> 1), color);
     }
     imageStore(seeds, corner / 2, seed);
-    imageStore(guesses, corner / 2, guess);
+    if (guess.a > 0.0) // stores cost more than a clear before
+        imageStore(guesses, corner / 2, guess);
     if (!whole)
         unfinished_add(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x,
                        gl_NumWorkGroups.x * gl_NumWorkGroups.y);

@@ -275,6 +275,7 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                 GL_COMMAND_BARRIER_BIT;
     memcpy(d.groups, groups, sizeof groups);
+    orl_tex_clear(r->soften.guesses, 0);
     run(r->gpu, "gather", &d);
     return ORL_OK;
 }
