@@ -59,7 +59,8 @@ ORL_BLOCK(gather_block)
 {
     VEC4(view_focal); // fx fy cx cy
     VEC4(options);    // x: depth tolerance, y: distance floor, z: border feather, pixels
-    IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic
+    IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic, z: pixels by which depth may
+                      // reach past silhouettes
     IVEC4(area);      // width and height of the view, z: photographs, w: tiles per row
     VEC4(radiance);   // x: stops that samples of one surface may differ, 0: any;
                       // y: variance of relative error at full exposure; z: least radiance

@@ -38,10 +38,12 @@ static enum orl_result timed_draw(struct job *job, const struct orl_view *view,
 {
     double start = orl_time_s();
     const struct orl_eval_params *params = job->params;
+    struct orl_render_params render = *params->render;
+    render.leave_out |= ORL_LAYER_NORMAL;
     enum orl_result result =
         params->draw_radiance
             ? params->draw_radiance(params->draw_priv, view, frame)
-            : orl_renderer_draw(job->renderer, view, params->render, NULL, frame);
+            : orl_renderer_draw(job->renderer, view, &render, NULL, frame);
     *ms = 1e3 * (orl_time_s() - start); // drawing ends with reading back: the pipeline is empty
     return result;
 }

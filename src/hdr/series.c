@@ -191,8 +191,11 @@ static enum orl_result draw_series(struct series_set *set, size_t k,
     exposure_range(set, range);
     for (size_t i = 0; i < set->scene.photo_count; i++)
         s->skip[i] = set->scene.photos[i].series != s->number || (skip && skip[i]);
-    enum orl_result result =
-        orl_renderer_draw(set->renderer, view, &params->render, s->skip, &picture);
+    // Depth edges must be those of all series: they would be cut and averaged differently in each.
+    struct orl_render_params render = params->render;
+    render.silhouette = 0;
+    render.antialias = ORL_ANTIALIAS_OFF;
+    enum orl_result result = orl_renderer_draw(set->renderer, view, &render, s->skip, &picture);
     if (result != ORL_OK)
         return result;
     form_opinions(&params->sensor, s, s->ev - range[0], &picture, opinions + k, set->count);

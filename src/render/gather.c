@@ -162,7 +162,7 @@ static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl
         .options = {params->depth_tolerance, params->distance_floor,
                     params->border_px / (float)r->photos.divide},
         .flags = {params->visibility == ORL_VISIBILITY_HARD,
-                  params->sampling == ORL_SAMPLING_BICUBIC},
+                  params->sampling == ORL_SAMPLING_BICUBIC, (int)(params->silhouette + 0.5f)},
         .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model),
                      orl_least_radiance(&r->photos.sensor, r->photos.ev_brightest, true)},
         .area = {view->camera.width, view->camera.height, (int)count, tiles(view->camera.width)},
@@ -268,6 +268,8 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
                              .groups = {orl_groups((size_t)across, 8), orl_groups((size_t)down, 8)},
                              .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
     run(r->gpu, "choose", &d);
+    if (block.flags[2] > 0)
+        orl_edges_cut(r->gpu, &r->edges, &d, &r->target);
     d.prog = g->best[params->sampling][block.choice[0] > 2];
     d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){r->fill.level[0], 0, GL_WRITE_ONLY};

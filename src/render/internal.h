@@ -172,6 +172,27 @@ void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften);
 void orl_soften_prepare(struct orl_gpu *gpu, const struct soften *soften,
                         const struct orl_tex *accumulated, const struct orl_tex *trusted);
 
+// --- depth edges (edges.c) ---
+
+struct edges {
+    struct orl_prog *find, *judge, *cut; // shaders/silhouette_*.comp
+    struct orl_prog *find_steps, *average, *write; // shaders/antialias*.comp
+    struct orl_buf *list;  // shaders/include/edge_list.glsl
+    struct orl_tex *votes; // R32F, of listed pixels
+};
+
+enum orl_result orl_edges_init(struct orl_gpu *gpu, struct edges *edges);
+// For pictures of this size; does nothing when they had it already.
+enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height);
+void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges);
+// Takes the target's depth back from where it reaches past silhouettes; no normal is left there.
+// `choice`: the dispatch of shaders/choose.comp, which has run.
+void orl_edges_cut(struct orl_gpu *gpu, const struct edges *edges,
+                   const struct orl_dispatch *choice, const struct proxy_target *target);
+// Averages the finished colours across the steps of `depth`.
+void orl_edges_antialias(struct orl_gpu *gpu, const struct edges *edges,
+                         const struct orl_tex *depth, struct orl_tex *color);
+
 // --- blending (gather.c) ---
 
 enum { PHOTOS_PER_FRAME_MAX = 48 }; // of blend=best
@@ -212,6 +233,7 @@ struct orl_renderer {
     struct photos photos;
     struct fill fill;
     struct soften soften;
+    struct edges edges;
     struct gather gather;
     struct orl_prog *compose, *compose_rest;
     struct proxy_target target;

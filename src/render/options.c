@@ -26,12 +26,14 @@ const struct orl_method orl_methods[] = {
      "Buehler 2001's penalty, weights of our own",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_GROUND,
       .sampling = ORL_SAMPLING_BICUBIC, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS, PROXY_DEFAULTS,
-      BEST_DEFAULTS, .alignment = ORL_ALIGNMENT_ON}},
+      BEST_DEFAULTS, .alignment = ORL_ALIGNMENT_ON, .silhouette = 2.0f,
+      .antialias = ORL_ANTIALIAS_ON}},
     {"oriel-fast", "oriel from two photographs a pixel, of three, sampled bilinearly",
      "as oriel",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_GROUND,
       .sampling = ORL_SAMPLING_BILINEAR, .blend = ORL_BLEND_BEST, COMMON_DEFAULTS,
-      PROXY_DEFAULTS, .alignment = ORL_ALIGNMENT_ON, .candidates = 3.0f, .photos_per_pixel = 2.0f}},
+      .min_support = 8.0f, .alignment = ORL_ALIGNMENT_ON, .candidates = 3.0f,
+      .photos_per_pixel = 2.0f}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
      {.color = ORL_COLOR_PHOTOS, .visibility = ORL_VISIBILITY_HARD, .fill = ORL_FILL_COLOR,
       .sampling = ORL_SAMPLING_BICUBIC, COMMON_DEFAULTS, BEST_DEFAULTS}},
@@ -45,6 +47,7 @@ static const char *const color_names[] = {"points", "photos", NULL};
 static const char *const visibility_names[] = {"none", "hard", NULL};
 static const char *const sampling_names[] = {"bilinear", "bicubic", NULL};
 static const char *const alignment_names[] = {"off", "on", NULL};
+static const char *const antialias_names[] = {"off", "on", NULL};
 static const char *const blend_names[] = {"all", "best", NULL};
 static const char *const fill_names[] = {"none", "color", "depth", "ground", NULL};
 
@@ -62,6 +65,8 @@ const struct orl_render_option orl_render_options[] = {
      "of photographs; bicubic is sharper and takes five fetches instead of one"},
     {"alignment", FIELD(alignment), alignment_names, 0, 0, "",
      "photographs are brought to one exposure and white balance, their vignetting undone"},
+    {"antialias", FIELD(antialias), antialias_names, 0, 0, "",
+     "depth edges are averaged with their neighbours, as in photographs; not of radiance"},
     {"blend", FIELD(blend), blend_names, 0, 0, "",
      "all photographs that see a pixel, or the best few, chosen per tile"},
     {"photos_per_pixel", FIELD(photos_per_pixel), NULL, 1, KEPT_MAX, "photographs",
@@ -88,6 +93,9 @@ const struct orl_render_option orl_render_options[] = {
     {"min_support", FIELD(min_support), NULL, 0, 25, "pixels of 5x5",
      "with a surface at the same depth that a pixel needs, else it is a stray point; above 0, "
      "holes with 13 around them are closed"},
+    {"silhouette", FIELD(silhouette), NULL, 0, 4, "pixels",
+     "by which depth may reach past silhouettes; where photographs agree far better on what is "
+     "behind, blend=best takes it back; 0: nowhere"},
     {"points_per_pixel", FIELD(points_per_pixel), NULL, 0, 64, "points",
      "above which splats are thinned and enlarged; 0: all are drawn"},
     {"distance_floor", FIELD(distance_floor), NULL, 1e-4, 1, "fraction of viewing distance",
@@ -107,6 +115,7 @@ const struct orl_render_tries orl_render_tries[] = {
     {"min_support", 5, {0, 4, 8, 12, 16}},
     {"front_layer", 4, {0, 0.005, 0.01, 0.02}},
     {"splat_scale", 3, {0.7, 1, 1.4}},
+    {"silhouette", 4, {0, 1, 2, 3}},
     {"guess_sharpness", 5, {0.5, 1, 2, 4, 8}},
     {"guess_blur", 5, {0, 0.03, 0.06, 0.12, 0.25}},
     {"unknown_trust", 5, {0, 0.02, 0.05, 0.15, 0.5}},

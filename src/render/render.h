@@ -20,6 +20,7 @@ enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COU
 
 enum orl_blend { ORL_BLEND_ALL, ORL_BLEND_BEST, ORL_BLEND_COUNT };
 enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON, ORL_ALIGNMENT_COUNT };
+enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON, ORL_ANTIALIAS_COUNT };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC, ORL_SAMPLING_COUNT };
 
 // Images of a frame beside its colour, as bits.
@@ -40,10 +41,13 @@ struct orl_render_params {
     enum orl_alignment_use alignment; // gains and vignetting of the scene are undone; a
                                     // renderer of radiance undoes them always
     enum orl_blend blend;           // all that see a pixel, or the best few
+    enum orl_antialias antialias;   // of depth edges; not of radiance
     float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
     float splat_scale;              // multiplies splat radii, (0, 16]
     float front_layer;              // splats this close behind the nearest one are averaged
                                     // with it, fraction of depth, [0, 0.1]
+    float silhouette;               // pixels by which depth from splats may reach past silhouettes:
+                                    // photographs tell, with blend=best, [0, 4]
     float min_support;              // pixels of the 5x5 around with a surface at this depth
                                     // that a pixel needs to count as surface, [0, 25]
     float points_per_pixel;         // above which splats are thinned, [0, 64]; 0: never

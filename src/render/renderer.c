@@ -16,7 +16,7 @@ static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *pro
         height = c->height > height ? c->height : height;
     }
     return scene->points.count * 24 + 2 * orl_proxy_target_bytes(proxy, width, height) +
-           (size_t)width * (size_t)height * (16 + 38);
+           (size_t)width * (size_t)height * (16 + 38 + 20);
 }
 
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -49,6 +49,8 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     if (result == ORL_OK)
         result = orl_soften_init(gpu, params->radiance, &r->soften);
     if (result == ORL_OK)
+        result = params->radiance ? ORL_OK : orl_edges_init(gpu, &r->edges);
+    if (result == ORL_OK)
         result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
     if (result == ORL_OK)
         result = orl_prog_create(gpu, "compose.comp", params->radiance ? "RADIANCE" : NULL,
@@ -73,6 +75,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_photos_finish(r->gpu, &r->photos);
     orl_fill_finish(r->gpu, &r->fill);
     orl_soften_finish(r->gpu, &r->soften);
+    orl_edges_finish(r->gpu, &r->edges);
     orl_gather_finish(r->gpu, &r->gather);
     orl_prog_destroy(r->gpu, &r->compose);
     orl_prog_destroy(r->gpu, &r->compose_rest);
@@ -92,6 +95,8 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
         result = orl_fill_resize(r->gpu, &r->fill, width, height);
     if (result == ORL_OK)
         result = orl_soften_resize(r->gpu, &r->soften, width, height);
+    if (result == ORL_OK && !r->photos.radiance)
+        result = orl_edges_resize(r->gpu, &r->edges, width, height);
     const struct orl_tex *old = r->accumulated;
     if (result != ORL_OK || (old && old->params.width == width && old->params.height == height))
         return result;
@@ -175,6 +180,8 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
         orl_fill_color(gpu, &r->fill, finished ? NULL : r->accumulated);
     compose(r, params, finished);
     orl_pass_end(gpu);
+    if (params->antialias == ORL_ANTIALIAS_ON && !r->photos.radiance)
+        orl_edges_antialias(gpu, &r->edges, r->target.depth, r->accumulated);
     return ORL_OK;
 }
 

@@ -42,6 +42,7 @@ static struct orl_frame from_aside_with(double x, float guess_blur, bool radianc
     add_striped(&f, photo, SIDE + (int)lrint((3 - x) / 4 * FOCAL), 2, radiance ? GREY : 255);
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.guess_blur = guess_blur;
+    params.antialias = ORL_ANTIALIAS_OFF;
     struct orl_renderer_params kind = {.radiance = radiance};
     struct orl_frame frame = draw_by(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, &kind);
     teardown(&f);

@@ -1,0 +1,129 @@
+// Depth edges: photographs tell where they are, and colours there are averaged.
+#include <math.h>
+#include <stdlib.h>
+
+#include "wall_scene.h"
+
+enum { SIDE = 128, PLATE_HALF_PX = 13 }; // of a plate 0.4 wide at z = 2, focal length 128
+static const double FOCAL = 128, PLATE_X = 0.7;
+
+static struct orl_gpu *gpu;
+
+// What stands at column x, row y of a photograph from (eye, 0, 0): the plate, or the wall's upright
+// stripes of green and black, 0.25 wide.
+static void shade(double eye, int x, int y, int side, uint8_t rgb[3])
+{
+    double ray_x = (x + 0.5 - side / 2) / FOCAL, ray_y = (y + 0.5 - side / 2) / FOCAL;
+    bool plate = fabs(eye + 2 * ray_x - PLATE_X) < 0.2 && fabs(2 * ray_y) < 0.2;
+    bool stripe = (int)floor((eye + 4 * ray_x) / 0.25) % 2 == 0;
+    memcpy(rgb, plate ? blue : stripe ? green : (const uint8_t[3]){0, 0, 0}, 3);
+}
+
+static void add_true_photo(struct fixture *f, double eye)
+{
+    enum { PHOTO_SIDE = 2 * SIDE };
+    add_photo(f, look_from(eye, 0, 0, PHOTO_SIDE, FOCAL), green);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, PHOTO_SIDE, PHOTO_SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < PHOTO_SIDE * PHOTO_SIDE; i++)
+        shade(eye, i % PHOTO_SIDE, i / PHOTO_SIDE, PHOTO_SIDE, &image.u8[3 * i]);
+    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count - 1);
+    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+    orl_image_finish(&image);
+    free(path);
+}
+
+// The plate's points reach `beyond` units past it on all sides.
+static struct orl_frame plate(double beyond, float silhouette, enum orl_antialias antialias)
+{
+    enum { WALL = 120, PLATE = 40 };
+    struct fixture f;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, WALL * WALL + PLATE * PLATE), ORL_OK);
+    set_square(&f.scene.points, 0, WALL, 6, 0, 4, green);
+    set_square(&f.scene.points, WALL * WALL, PLATE, 0.4 + 2 * beyond, PLATE_X, 2, blue);
+    static const double eyes[] = {-0.5, -0.2, 0.3, 0.9};
+    for (size_t i = 0; i < ORL_COUNT(eyes); i++)
+        add_true_photo(&f, eyes[i]);
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    params.silhouette = silhouette;
+    params.antialias = antialias;
+    struct orl_frame frame = draw(gpu, &f, look_from(PLATE_X, 0, 0, SIDE, FOCAL), &params, 0);
+    teardown(&f);
+    return frame;
+}
+
+// Pixels of the plate's row through the middle.
+static int width_of(const struct orl_frame *frame)
+{
+    int count = 0;
+    for (int x = 0; x < SIDE; x++)
+        count += frame->depth.f32[SIDE / 2 * SIDE + x] < 3;
+    return count;
+}
+
+static void depth_beyond_the_silhouette_is_taken_back(void **state)
+{
+    (void)state;
+    struct orl_frame before = plate(0.04, 0, ORL_ANTIALIAS_OFF); // 2.5 pixels
+    struct orl_frame after = plate(0.04, 3, ORL_ANTIALIAS_OFF);
+    assert_true(width_of(&before) >= 2 * PLATE_HALF_PX + 4);
+    assert_in_range(width_of(&after), 2 * PLATE_HALF_PX - 1, 2 * PLATE_HALF_PX + 1);
+    orl_frame_finish(&before);
+    orl_frame_finish(&after);
+}
+
+static void right_depth_stays(void **state)
+{
+    (void)state;
+    struct orl_frame before = plate(0, 0, ORL_ANTIALIAS_OFF);
+    struct orl_frame after = plate(0, 3, ORL_ANTIALIAS_OFF);
+    int changed = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        changed += fabsf(after.depth.f32[i] - before.depth.f32[i]) > 0.1f;
+    assert_in_range(changed, 0, 4 * 2 * PLATE_HALF_PX / 10); // of the plate's rim
+    orl_frame_finish(&before);
+    orl_frame_finish(&after);
+}
+
+static void steps_are_averaged_and_nothing_else(void **state)
+{
+    (void)state;
+    struct orl_frame hard = plate(0, 0, ORL_ANTIALIAS_OFF), soft = plate(0, 0, ORL_ANTIALIAS_ON);
+    assert_memory_equal(soft.depth.f32, hard.depth.f32, sizeof(float) * SIDE * SIDE);
+    assert_memory_equal(soft.coverage.f32, hard.coverage.f32, sizeof(float) * SIDE * SIDE);
+    int averaged = 0;
+    for (int y = 1; y < SIDE - 1; y++)
+        for (int x = 1; x < SIDE - 1; x++) {
+            bool step = false;
+            float sum[3] = {0};
+            for (int k = 0; k < 9; k++) {
+                int i = x + k % 3 - 1, j = y + k / 3 - 1;
+                float weight = (i == x ? 2 : 1) * (j == y ? 2 : 1) / 16.0f;
+                step |= (hard.depth.f32[j * SIDE + i] < 3) !=
+                        (hard.depth.f32[y * SIDE + x] < 3);
+                for (int c = 0; c < 3; c++)
+                    sum[c] += weight * sqrtf(color_at(&hard, i, j)[c]);
+            }
+            for (int c = 0; c < 3; c++)
+                assert_float_equal(color_at(&soft, x, y)[c],
+                                   step ? sum[c] * sum[c] : color_at(&hard, x, y)[c], 1e-4);
+            averaged += step;
+        }
+    assert_true(averaged > 4 * 2 * PLATE_HALF_PX);
+    orl_frame_finish(&hard);
+    orl_frame_finish(&soft);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(depth_beyond_the_silhouette_is_taken_back),
+        cmocka_unit_test(right_depth_stays),
+        cmocka_unit_test(steps_are_averaged_and_nothing_else),
+    };
+    int failed = cmocka_run_group_tests_name("edges", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
