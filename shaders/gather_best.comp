@@ -67,6 +67,10 @@ float limit_of(ranking r)
     return limit;
 }
 
+// Added on known surfaces, radians: a viewer who walks past a photograph's place would see it, and it
+// alone, flash up and go; from where photographs are equally good all weigh alike.
+const float SURFACE_PENALTY = 0.095;
+
 void consider(int i, photo shot, spot s, inout ranking r)
 {
     vec2 pixel;
@@ -77,6 +81,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
                  : flags.x == 1 ? photo_seen_share(seen, z)
                                 : 1.0;
+    penalty += s.guessed ? 0.0 : SURFACE_PENALTY;
     float sure = sees * photo_border(shot, pixel, s.guessed);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
     insert(sight(paints ? penalty / sure : NOT_SEEN, i), r);
