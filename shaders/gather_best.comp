@@ -67,10 +67,6 @@ float limit_of(ranking r)
     return limit;
 }
 
-// Added on known surfaces, radians: a viewer who walks past a photograph's place would see it, and it
-// alone, flash up and go; from where photographs are equally good all weigh alike.
-const float SURFACE_PENALTY = 0.095;
-
 void consider(int i, photo shot, spot s, inout ranking r)
 {
     vec2 pixel;

@@ -39,9 +39,10 @@ float seen_share(photo shot, vec4 seen, float z, bool guessed)
 float geometric_weight(photo shot, vec3 p, bool guessed)
 {
 #ifdef BEST
-    float penalty = photo_penalty(shot, p);
+    float penalty = photo_penalty(shot, p), more = guessed ? 0.0 : SURFACE_PENALTY;
     // What sums and products stay finite with, and no photograph gets lost with.
-    float weight = clamp(pow(0.1 / penalty, guessed ? choice.w : choice.y), 1e-10, 1e18);
+    float weight = clamp(pow((0.1 + more) / (penalty + more), guessed ? choice.w : choice.y), 1e-10,
+                         1e18);
     return guessed ? weight * photo_beside(penalty) : weight;
 #else
     float weight = airieau_weight(p, shot.eye.xyz) * (0.1 + options.y);
