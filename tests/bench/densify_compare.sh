@@ -7,7 +7,7 @@
 # CLOUD_TRUTH names the program tests/cloud_truth of the build.
 # Depth maps are fused alike (COLMAP, three photographs agreeing); OpenMVS fuses its own.
 # ONLY="oriel openmvs" restricts the comparison.
-# Held-out photographs take part in nothing but the comparison (oriel eval, airieau).
+# Held-out photographs take part in nothing but the comparison (oriel eval, airieau with depth guessed in holes).
 set -u
 [ $# -ge 3 ] || { sed -n '2,11s/^# *//p' "$0"; exit 2; }
 oriel=$(realpath "$1") scene=$(realpath "$2") out=$(realpath -m "$3") truth=${4:+$(realpath "$4")}
@@ -117,7 +117,7 @@ row() { # NAME
     if [ -n "$held_out" ]; then
         cp "$scene/scene.json" "$ws/scene.json"
         cp "$ws/fused.ply" "$ws/points.ply"
-        if "$oriel" eval "$ws" --method airieau --json "$ws/eval.json" >/dev/null 2>"$ws/eval.log"; then
+        if "$oriel" eval "$ws" --method airieau --set fill=depth --json "$ws/eval.json" >/dev/null 2>"$ws/eval.log"; then
             psnr=$(number psnr_db "$ws/eval.json")
             ssim=$(number ssim "$ws/eval.json")
         else
