@@ -314,6 +314,8 @@ static void exrheader_sees_channels_and_attributes(void **state)
     struct said said;
     if (!ask((const char *const[]){"exrheader", file, NULL}, &said)) {
         printf("skipped: exrheader (Debian's openexr) is not installed\n");
+        orl_image_finish(&color);
+        orl_image_finish(&depth);
         skip();
     }
     static const char *const lines[] = {
@@ -342,6 +344,8 @@ static void imagemagick_reads_the_same_colours(void **state)
     const char *const formats[] = {"sh", "-c", "convert -list format | grep EXR || true", NULL};
     if (!ask(formats, &said) || !strstr(said.text, "EXR")) {
         printf("skipped: no ImageMagick that reads EXR (Debian's libmagickcore-6.q16-6-extra)\n");
+        orl_image_finish(&color);
+        orl_image_finish(&depth);
         skip();
     }
     const char *const argv[] = {"convert", file, "-format",
