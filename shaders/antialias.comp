@@ -3,7 +3,7 @@
 // neighbours are still to be averaged; with WRITE from there.
 #include "include/edge_list.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = EDGE_GROUP) in;
 layout(rgba32f, binding = 0) uniform image2D color; // w: coverage
 
 vec3 average(uvec4 edge)

@@ -1,7 +1,7 @@
 // Gives pixels before an edge to what is behind it where they and their neighbours vote so.
 #include "include/edge_list.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = EDGE_GROUP) in;
 layout(r32f, binding = 0) writeonly uniform image2D view_depth;
 layout(r32f, binding = 1) readonly uniform image2D votes; // 0: has none
 layout(rgba16f, binding = 2) writeonly uniform image2D normal;

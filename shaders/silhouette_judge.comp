@@ -5,7 +5,7 @@
 #include "include/photo_choice.glsl"
 #include "include/edge_list.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = EDGE_GROUP) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 layout(r32f, binding = 1) writeonly uniform image2D votes;     // of pixels that are listed
 layout(std430, binding = 1) readonly buffer tile_lists {

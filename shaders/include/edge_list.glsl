@@ -3,7 +3,7 @@ layout(std430, binding = 2) buffer edge_list {
     uint edge_groups, one_y, one_z, edge_count; // the first three: work groups of the next passes
     uvec4 edges[]; // x: the pixel; y, z, w: the passes' own
 };
-const uint EDGE_GROUP = 64u;         // invocations of a work group of the next passes
+#define EDGE_GROUP 64 // invocations of a work group of the next passes
 const uint EDGE_GROUPS_MAX = 65535u; // that any device takes; each goes on by that
 
 void edge_add(ivec2 at, uvec3 what)

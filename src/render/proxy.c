@@ -198,12 +198,13 @@ static void resolve(struct orl_gpu *gpu, const struct proxy *proxy, struct splat
                     const struct orl_tex *depth, bool normals, struct proxy_target *t)
 {
     bool chunks = proxy->cloud.chunk_count > 1;
+    struct orl_prog *const *programs = chunks ? proxy->resolve_chunk : proxy->resolve;
     for (size_t i = 0; i < proxy->cloud.chunk_count; i++) {
         const struct point_chunk *chunk = &proxy->cloud.chunks[i];
         block->size[2] = chunk->count;
         block->size[3] = chunk->first;
-        struct orl_dispatch d = {.prog = chunks ? proxy->resolve_chunk[normals] : proxy->resolve[normals],
-                                 .params = block, .bufs = {[2] = {.buf = chunk->enlarged}},
+        struct orl_dispatch d = {.prog = programs[normals], .params = block,
+                                 .bufs = {[2] = {.buf = chunk->enlarged}},
                                  .images = {{chunk->position_texels, 0, GL_READ_ONLY},
                                             {chunk->attribute_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},

@@ -1,6 +1,5 @@
 // Depth edges: photographs tell where they are, and colours there are averaged.
 #include <math.h>
-#include <stdlib.h>
 
 #include "wall_scene.h"
 
@@ -27,10 +26,7 @@ static void add_true_photo(struct fixture *f, double eye)
     assert_int_equal(orl_image_init(NULL, &image, PHOTO_SIDE, PHOTO_SIDE, 3, ORL_PIXEL_U8), ORL_OK);
     for (int i = 0; i < PHOTO_SIDE * PHOTO_SIDE; i++)
         shade(eye, i % PHOTO_SIDE, i / PHOTO_SIDE, PHOTO_SIDE, &image.u8[3 * i]);
-    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count - 1);
-    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
-    orl_image_finish(&image);
-    free(path);
+    repaint_photo(f, &image);
 }
 
 // The plate's points reach `beyond` units past it on all sides.

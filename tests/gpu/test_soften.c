@@ -1,6 +1,5 @@
 // What is painted on guessed depth is blurred as far as it may be displaced; what has depth is not.
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/color.h"
@@ -26,10 +25,7 @@ static void add_striped(struct fixture *f, struct orl_view view, int wall_end, i
         image.u8[3 * i + 1] = 0;
         image.u8[3 * i + 2] = behind >= 0 && behind / width % 2 == 0 ? value : 0;
     }
-    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count - 1);
-    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
-    orl_image_finish(&image);
-    free(path);
+    repaint_photo(f, &image);
 }
 
 // A view of the wall's right end from x = 0, painted by one photograph from `x`.

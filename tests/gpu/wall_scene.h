@@ -69,6 +69,15 @@ static inline void setup(struct fixture *f, bool plate)
         set_square(points, WALL * WALL, PLATE, 0.4, 0.7, 2, blue);
 }
 
+// The last photograph becomes this picture, which is freed.
+static inline void repaint_photo(struct fixture *f, struct orl_image *image)
+{
+    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count - 1);
+    assert_int_equal(orl_png_write(NULL, path, image), ORL_OK);
+    orl_image_finish(image);
+    free(path);
+}
+
 static inline void add_photo(struct fixture *f, struct orl_view view, const uint8_t color[3])
 {
     struct orl_photo *photo = &f->photos[f->scene.photo_count];
@@ -82,10 +91,8 @@ static inline void add_photo(struct fixture *f, struct orl_view view, const uint
                                     ORL_PIXEL_U8), ORL_OK);
     for (int i = 0; i < view.camera.width * view.camera.height; i++)
         memcpy(&image.u8[3 * i], color, 3);
-    char *path = orl_scene_photo_path(NULL, &f->scene, f->scene.photo_count++);
-    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
-    orl_image_finish(&image);
-    free(path);
+    f->scene.photo_count++;
+    repaint_photo(f, &image);
 }
 
 static inline void teardown(struct fixture *f)
