@@ -145,10 +145,9 @@ vec3 photo_aligned(photo shot, vec2 pixel, vec3 color)
     float r2 = dot(off, off) * shot.lens.w;
     float light = 1.0 + r2 * (lens.x + r2 * (lens.y + r2 * lens.z));
     vec3 gain = shot.gain.rgb / max(light, 0.1);
-    // The largest power of color with which brighter stays brighter.
-    vec3 power = mix(vec3(3.0), min(gain / max(gain - 1.0, 1e-6), vec3(3.0)),
-                     greaterThan(gain, vec3(1.0)));
-    return gain * color / (1.0 + (gain - 1.0) * pow(min(color, vec3(1.0)), power));
+    // As much of the third power, and of the first for the rest, as leaves brighter brighter.
+    vec3 more = gain - 1.0, third = min(more, vec3(0.5)), c = min(color, vec3(1.0));
+    return gain * color / (1.0 + c * (more - third + third * c * c));
 }
 
 vec4 photo_sample(photo shot, vec2 pixel, float mip)

@@ -65,17 +65,17 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// Solves y = gain x / (1 + (gain - 1) min(x, 1)^power) for x by bisection: the right side
-// rises.
+// Solves y = gain x / (1 + x ((gain - 1 - third) + third x^2)), as photo_aligned of
+// shaders/include/photo.glsl has it, for x by bisection: the right side rises.
 static float unaligned(float gain, float y)
 {
-    float power = gain > 1 ? fminf(gain / fmaxf(gain - 1, 1e-6f), 3) : 3;
+    float third = fminf(gain - 1, 0.5f);
     float low = 0, high = 1;
     if (y >= 1)
         return y;
     for (int i = 0; i < 20; i++) {
         float x = 0.5f * (low + high);
-        if (gain * x / (1 + (gain - 1) * powf(x, power)) < y)
+        if (gain * x / (1 + x * (gain - 1 - third + third * x * x)) < y)
             low = x;
         else
             high = x;

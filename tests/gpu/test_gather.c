@@ -111,9 +111,9 @@ static void photographs_are_aligned(void **state)
     for (int c = 0; c < 3; c++) {
         double x = (double)orl_srgb_decode(color[c] / 255.0f);
         double gain = (double)f.photos[0].gain[c] / light;
-        double power = gain > 1.5 ? gain / (gain - 1) : 3;
+        double third = gain > 1.5 ? 0.5 : gain - 1, first = gain - 1 - third;
         assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[c],
-                           gain * x / (1 + (gain - 1) * pow(x, power)), 2e-3);
+                           gain * x / (1 + first * x + third * x * x * x), 2e-3);
     }
     // In the corner 0.8 of the light, and so more gain.
     assert_true(color_at(&frame, 0, 0)[0] > 1.15f * color_at(&frame, SIDE / 2, SIDE / 2)[0]);
