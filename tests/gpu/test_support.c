@@ -75,9 +75,9 @@ static void a_notch_is_closed(void **state)
     depth[6 * SIDE + 5] = depth[6 * SIDE + 4] = depth[1 * SIDE + 2] = 0;
     support(depth);
     assert_float_equal(depth[1 * SIDE + 2], 4, 1e-5);
-    // Of the 25 around, 7 at depth 4 and 6 at 4.08 remain, just enough. Means are of 1 / z, and of
-    // the 6x6 around four pixels: 10 and 12.
-    assert_float_equal(depth[6 * SIDE + 5], 22 / (10 / 4.0 + 12 / 4.08), 1e-4);
+    // Of the 25 around, 7 at depth 4 and 6 at 4.08 remain, just enough. Means are of the 6x6
+    // around four pixels: 10 and 12.
+    assert_float_equal(depth[6 * SIDE + 5], (10 * 4.0 + 12 * 4.08) / 22, 1e-4);
     assert_float_equal(depth[6 * SIDE + 6], 0, 0);
 }
 
