@@ -89,6 +89,10 @@ void main()
         centre[i] = level_centre(from, level.z + 1) + disc[i].displacement;
         ray[i] = camera_ray(centre[i]);
     }
+#ifdef LAST
+    float depths[4];
+    vec4 normals[4];
+#endif
     for (int i = 0; i < 4; i++) {
         ivec2 at = 2 * corner + 1 + ivec2(i & 1, i >> 1);
         vec4 weight = i == 0 ? vec4(0.5625, 0.1875, 0.1875, 0.0625)
@@ -108,12 +112,11 @@ void main()
         s.normal = normalize(s.normal);
         float depth = surfel_depth_at(s, camera_ray(target + s.displacement), camera_ray(target),
                                       inside);
-        depth = kept ? own_depth : depth;
-        imageStore(depth_out, at, vec4(depth));
+        depths[i] = kept ? own_depth : depth;
 #ifdef NORMALS
         vec3 normal = kept ? octahedron_decode(unpackSnorm2x16(own.y)) : s.normal;
         bool any = !kept || own_depth > 0.0;
-        imageStore(normal_out, at, any ? vec4(normal, kept ? 1.0 : 0.0) : vec4(0.0));
+        normals[i] = any ? vec4(normal, kept ? 1.0 : 0.0) : vec4(0.0);
 #endif
 #else
         float own_near = imageLoad(fine_a, at).x;
@@ -125,4 +128,13 @@ void main()
         }
 #endif
     }
+#ifdef LAST
+    for (int i = 0; i < 4; i++) { // last: see gather_best.comp
+        ivec2 at = 2 * corner + 1 + ivec2(i & 1, i >> 1);
+        imageStore(depth_out, at, vec4(depths[i]));
+#ifdef NORMALS
+        imageStore(normal_out, at, normals[i]);
+#endif
+    }
+#endif
 }

@@ -69,31 +69,40 @@ void main()
     if (2 * parent.x >= size.x || 2 * parent.y >= size.y)
         return;
     surfel child[4];
+#ifdef NORMALS
+    uvec4 own[4];
+#else
+    vec4 own[4];
+#endif
+    bool mine[4];
     for (int i = 0; i < 4; i++) {
         ivec2 at = 2 * parent + ivec2(i & 1, i >> 1);
         uint point = imageLoad(splat_index, at).x - uint(size.w);
-        bool mine = point < uint(size.z) && at.x < size.x && at.y < size.y;
+        mine[i] = point < uint(size.z) && at.x < size.x && at.y < size.y;
         // No branch: the view's parameters are then loaded once for all four pixels.
-        child[i] = splat(at, mine ? int(point) : 0);
-        child[i].radius = mine ? child[i].radius : 0.0;
+        child[i] = splat(at, mine[i] ? int(point) : 0);
+        child[i].radius = mine[i] ? child[i].radius : 0.0;
         vec2 centre = vec2(at) + 0.5;
         vec2 ray = splat_ray(centre + child[i].displacement), target = splat_ray(centre);
 #ifdef NORMALS
-        uvec4 own = surfel_pack_own(child[i], ray, target);
+        own[i] = surfel_pack_own(child[i], ray, target);
 #else
-        vec4 own = vec4(surfel_own_depth(child[i], ray, target));
+        own[i] = vec4(surfel_own_depth(child[i], ray, target));
 #endif
 #ifdef CHUNKS
-        if (!mine && size.w > 0)
+        mine[i] = mine[i] || size.w == 0;
+        if (!mine[i])
             child[i] = surfel_unpack_splat(imageLoad(won, at));
-        else
-            imageStore(splats, at, own);
         imageStore(won, at, surfel_pack_splat(child[i]));
-#else
-        imageStore(splats, at, own);
 #endif
     }
     surfel merged = surfel_merge(child, 0);
+    // Stores last: see gather_best.comp.
+    for (int i = 0; i < 4; i++)
+#ifdef CHUNKS
+        if (mine[i])
+#endif
+            imageStore(splats, 2 * parent + ivec2(i & 1, i >> 1), own[i]);
     imageStore(coarse_a, parent, surfel_pack_a(merged));
     imageStore(coarse_b, parent, surfel_pack_b(merged));
 }
