@@ -1,10 +1,14 @@
 // Averages the pixels that antialias_find.comp listed with the 3x3 around, weighing 1, 2, 1 each way,
 // in square roots of light: a bright side does not swallow a dark one. First into the list, since
-// neighbours are still to be averaged; with WRITE from there.
+// neighbours are still to be averaged; with WRITE from there. HALF: the picture is of half floats.
 #include "include/edge_list.glsl"
 
 layout(local_size_x = EDGE_GROUP) in;
-layout(rgba32f, binding = 0) uniform image2D color; // w: coverage
+#ifdef HALF
+layout(rgba16f, binding = 0) uniform image2D color; // w: coverage
+#else
+layout(rgba32f, binding = 0) uniform image2D color;
+#endif
 
 vec3 average(uvec4 edge)
 {

@@ -10,7 +10,11 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 // In: colour * weight, weight; weight negative where there is at least that much light, and as
 // much as around it if that is more (gather_radiance.comp, where fill_lift.comp found none as
 // bright). REST: see gather_best.comp. Out: colour, coverage.
+#ifdef REST
+layout(rgba16f, binding = 0) uniform image2D accumulated;
+#else
 layout(rgba32f, binding = 0) uniform image2D accumulated;
+#endif
 layout(rgba32f, binding = 1) readonly uniform image2D filled;
 layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 

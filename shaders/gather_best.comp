@@ -8,7 +8,7 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 // Finished: colour, coverage. Left to compose.comp: what nothing paints: 0, -1; what is painted on
 // guessed depth and is to be blurred: colour, -1 - log2 of the blur in pixels.
-layout(rgba32f, binding = 1) writeonly uniform image2D accumulated;
+layout(rgba16f, binding = 1) writeonly uniform image2D accumulated;
 layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sum of 2x2 of them: fill_seed.comp
 layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // and of those on guessed depth
 layout(std430, binding = 1) readonly buffer tile_lists {
@@ -20,7 +20,7 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 // has none, 0 where it saw something else.
 float photo_seen_share(vec4 seen, float z)
 {
-    vec4 off = abs(seen - z) / (z * options.x);
+    vec4 off = abs(seen - z) * (1.0 / (z * options.x));
     vec4 share = clamp(2.0 - off, 0.0, 1.0);
     float agrees = max(max(share.x, share.y), max(share.z, share.w));
     bool unknown = all(lessThanEqual(seen, vec4(0.0)));
@@ -36,7 +36,9 @@ struct spot {
 // A photograph that shows it.
 struct sight {
     float penalty;
-    int index; // of the photograph
+    int index;  // of the photograph
+    vec2 pixel; // of it
+    float mip;
 };
 
 // The best of a pixel, ascending by penalty, and the penalty of the one after the last of them.
@@ -52,8 +54,10 @@ void insert(sight s, inout ranking r)
     for (int k = 0; k < KEPT; k++) {
         bool better = s.penalty < r.best[k].penalty;
         sight other = r.best[k];
-        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.index : other.index);
-        s = sight(better ? other.penalty : s.penalty, better ? other.index : s.index);
+        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.index : other.index,
+                          better ? s.pixel : other.pixel, better ? s.mip : other.mip);
+        s = sight(better ? other.penalty : s.penalty, better ? other.index : s.index,
+                  better ? other.pixel : s.pixel, better ? other.mip : s.mip);
     }
     r.next = min(r.next, s.penalty);
 }
@@ -80,7 +84,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     penalty += s.guessed ? 0.0 : SURFACE_PENALTY;
     float sure = sees * photo_border(shot, pixel, s.guessed);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
-    insert(sight(paints ? penalty / sure : NOT_SEEN, i), r);
+    insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);
 }
 
 // One photograph's colour and its weight.
@@ -89,11 +93,7 @@ vec4 look(sight one, float least, float limit, spot s)
     // Full weight until the penalty comes near that of the first left out; a trace of it where they
     // are equal, so that photographs that tie for the last place paint.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
-    photo shot = photo_at(one.index);
-    vec2 pixel; // again: four pixels' worth of what consider knew is much to keep
-    float z;
-    photo_project(shot, s.p, pixel, z);
-    vec3 color = photo_sample(shot, pixel, photo_mip(shot, z, s.p.z)).rgb;
+    vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
     float sharpness = s.guessed ? choice.w : choice.y;
     bool counts = one.penalty < NOT_SEEN && one.penalty <= limit;
     return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
@@ -140,7 +140,7 @@ void main()
                         stored < 0.0);
         rankings[k].next = NOT_SEEN;
         for (int n = 0; n < KEPT; n++)
-            rankings[k].best[n] = sight(NOT_SEEN, 0);
+            rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
     }
     ivec2 tile = corner / CHOICE_TILE; // of all four, since its side is even
     int list = (tile.y * area.w + tile.x) * CANDIDATES, count = int(choice_more.x), c = 0;
@@ -154,7 +154,7 @@ void main()
         c++;
         i = c < count ? chosen[list + c] : -1;
     } while (i >= 0);
-    vec4 seed = vec4(0.0), guess = vec4(0.0);
+    vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     bool whole = true;
     for (int k = 0; k < 4; k++) {
         float blur;
@@ -165,9 +165,12 @@ void main()
         bool blurs = painted && spots[k].guessed && blur > 0.0;
         whole = whole && painted && !blurs;
         color.a = !painted ? -1.0 : blurs ? -1.0 - blur : spots[k].guessed ? 0.0 : 1.0;
-        // Stores outside the picture do nothing.
-        imageStore(accumulated, corner + ivec2(k & 1, k >> 1), color);
+        colors[k] = color;
     }
+    // Last: what lives on after a store costs a software renderer a load. Outside the picture they
+    // do nothing.
+    for (int k = 0; k < 4; k++)
+        imageStore(accumulated, corner + ivec2(k & 1, k >> 1), colors[k]);
     imageStore(seeds, corner / 2, seed);
     if (guess.a > 0.0) // stores cost more than a clear before
         imageStore(guesses, corner / 2, guess);

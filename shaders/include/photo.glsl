@@ -14,6 +14,7 @@ struct photo {
 };
 
 // What is not used of it is not loaded. Loading costs: share it between pixels where that can be.
+// So do divisions: here and below reciprocals that pixels share are factors of their own.
 photo photo_at(int i)
 {
     int row = i * ORL_PHOTO_VEC4S;
@@ -40,7 +41,7 @@ bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
     pixel = vec2(-1.0);
     if (!(q.z > 0.0))
         return false;
-    pixel = shot.focal.xy * q.xy / q.z + shot.focal.zw;
+    pixel = shot.focal.xy * q.xy * (1.0 / q.z) + shot.focal.zw;
     vec2 border = min(pixel, shot.size.xy - pixel);
     return min(border.x, border.y) > 0.5;
 }
@@ -59,11 +60,11 @@ float photo_border(photo shot, vec2 pixel, bool guessed)
 // The photograph's own depth at the four texels around a pixel.
 vec4 photo_depths(photo shot, vec2 pixel)
 {
-    vec2 at = pixel / shot.size.xy * shot.size.zw;
+    vec2 at = pixel * (shot.size.zw / shot.size.xy);
     // Stay within the photograph's part of its slot.
     at = clamp(at, vec2(0.5), shot.size.zw - 0.5);
     float slot = shot.eye.w;
-    return textureGather(photo_depth, vec3(at / slots.zw, slot));
+    return textureGather(photo_depth, vec3(at * (1.0 / slots.zw), slot));
 }
 
 // Mip level at which the photograph has the view's resolution.
@@ -85,7 +86,7 @@ vec4 photo_texel(vec2 at, float slot, float lod)
 
 vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
 {
-    return photo_texel(pixel / slots.xy, shot.gain.w, mip);
+    return photo_texel(pixel * (1.0 / slots.xy), shot.gain.w, mip);
 }
 
 // Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005): bilinear sampling would

@@ -10,7 +10,7 @@ float photo_penalty(photo shot, vec3 p)
     float here = length(p), there = length(to_photo);
     float angle = acos(clamp(dot(-p, to_photo) / (here * there), -1.0, 1.0));
     // Compare sizes of a pixel on the surface, not distances: focal lengths may differ.
-    float coarser = there / here * view_focal.x / shot.focal.x - 1.0;
+    float coarser = there / here * (view_focal.x / shot.focal.x) - 1.0;
     return angle + 0.1 * max(coarser, 0.0) + 0.005;
 }
 
@@ -26,9 +26,9 @@ const float GUESS_PARALLAX = 0.05;
 // How much of the photograph around a pixel has nothing standing before z.
 float photo_unhidden_share(photo shot, vec4 seen, float z)
 {
-    vec4 front = (z - seen) / (z * options.x); // in tolerances
+    vec4 front = (z - seen) * (1.0 / (z * options.x)); // in tolerances
     vec4 nearer = -1.0 / min(seen, -1e-9) - 1.0 / z;
-    vec4 behind_guess = nearer * length(shot.eye.xyz) / GUESS_PARALLAX;
+    vec4 behind_guess = nearer * (length(shot.eye.xyz) / GUESS_PARALLAX);
     front = mix(front, behind_guess, lessThan(seen, vec4(0.0)));
     vec4 share = mix(clamp(2.0 - front, 0.0, 1.0), vec4(1.0), equal(seen, vec4(0.0)));
     return dot(share, vec4(0.25)); // at an edge it shows some of what is behind

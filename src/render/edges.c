@@ -17,8 +17,10 @@ enum orl_result orl_edges_init(struct orl_gpu *gpu, struct edges *edges)
         {"silhouette_judge.comp", NULL, sizeof(struct gather_block), &edges->judge},
         {"silhouette_cut.comp", NULL, 0, &edges->cut},
         {"antialias_find.comp", NULL, sizeof(struct image_block), &edges->find_steps},
-        {"antialias.comp", NULL, 0, &edges->average},
-        {"antialias.comp", "WRITE", 0, &edges->write},
+        {"antialias.comp", NULL, 0, &edges->average[0]},
+        {"antialias.comp", "HALF", 0, &edges->average[1]},
+        {"antialias.comp", "WRITE", 0, &edges->write[0]},
+        {"antialias.comp", "WRITE 1\nHALF", 0, &edges->write[1]},
     };
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(programs); i++)
@@ -35,8 +37,10 @@ void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges)
     orl_prog_destroy(gpu, &edges->judge);
     orl_prog_destroy(gpu, &edges->cut);
     orl_prog_destroy(gpu, &edges->find_steps);
-    orl_prog_destroy(gpu, &edges->average);
-    orl_prog_destroy(gpu, &edges->write);
+    for (int half = 0; half < 2; half++) {
+        orl_prog_destroy(gpu, &edges->average[half]);
+        orl_prog_destroy(gpu, &edges->write[half]);
+    }
     orl_buf_destroy(gpu, &edges->list);
     orl_tex_destroy(gpu, &edges->votes);
 }
@@ -99,6 +103,7 @@ void orl_edges_antialias(struct orl_gpu *gpu, const struct edges *edges,
                          const struct orl_tex *depth, struct orl_tex *color)
 {
     int width = color->params.width, height = color->params.height;
+    bool half = color->params.format == GL_RGBA16F;
     struct image_block block = {.area = {width, height}};
     struct orl_dispatch d = {.params = &block, .images = {{depth, 0, GL_READ_ONLY}}};
     orl_pixel_groups((width + 1) / 2, (height + 1) / 2, d.groups);
@@ -106,9 +111,9 @@ void orl_edges_antialias(struct orl_gpu *gpu, const struct edges *edges,
     list(gpu, edges, edges->find_steps, &d);
     d.params = NULL;
     d.images[0] = (struct orl_image_binding){color, 0, GL_READ_WRITE};
-    d.prog = edges->average;
+    d.prog = edges->average[half];
     orl_gpu_dispatch(gpu, &d);
-    d.prog = edges->write;
+    d.prog = edges->write[half];
     orl_gpu_dispatch(gpu, &d);
     orl_pass_end(gpu);
 }

@@ -259,6 +259,10 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
         return result;
     orl_buf_fill(g->unfinished, 0);
     orl_buf_write(g->unfinished, 0, sizeof nothing, nothing);
+    if (count == 0) {
+        orl_tex_clear(r->accumulated, 0);
+        return ORL_OK;
+    }
     struct gather_block block = prepare_pass(r, view, params, count);
     struct orl_dispatch d = {.prog = g->choose, .params = &block,
                              .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
@@ -309,8 +313,7 @@ static enum orl_result blend_all(struct orl_renderer *r, const struct orl_view *
 // Paints from the photographs that this view can use best; the rest need not be resident.
 static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view *view,
                                   const struct orl_render_params *params,
-                                  const struct proxy_options *depth_options, const bool *skip,
-                                  bool *finished)
+                                  const struct proxy_options *depth_options, const bool *skip)
 {
     size_t most = (size_t)r->photos.slot_count, count = 0;
     most = most < PHOTOS_PER_FRAME_MAX ? most : PHOTOS_PER_FRAME_MAX;
@@ -319,25 +322,23 @@ static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view 
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = orl_photos_require(r->gpu, &r->photos, &r->proxy, r->gather.chosen[i],
                                     depth_options);
-    if (result != ORL_OK)
-        return result;
-    *finished = count > 0;
-    if (count)
-        return gather_best(r, view, params, count);
-    orl_accumulated_clear(r);
-    return ORL_OK;
+    return result == ORL_OK ? gather_best(r, view, params, count) : result;
+}
+
+bool orl_blends_at_once(const struct orl_renderer *r, const struct orl_render_params *params)
+{
+    return params->color == ORL_COLOR_PHOTOS && params->blend == ORL_BLEND_BEST &&
+           !r->photos.radiance;
 }
 
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip,
-                           bool *finished)
+                           const struct orl_render_params *params, const bool *skip)
 {
-    *finished = false;
     struct proxy_options options = orl_proxy_options(params);
     // The choice of the best asks what hides the surface even when pixels do not. Radiance
     // needs every exposure: the best by angle alone may all be clipped.
-    if (params->blend == ORL_BLEND_BEST && !r->photos.radiance)
-        return blend_best(r, view, params, &options, skip, finished);
+    if (orl_blends_at_once(r, params))
+        return blend_best(r, view, params, &options, skip);
     bool test = params->visibility == ORL_VISIBILITY_HARD;
     return blend_all(r, view, params, test ? &options : NULL, skip);
 }

@@ -176,7 +176,7 @@ void orl_soften_prepare(struct orl_gpu *gpu, const struct soften *soften,
 
 struct edges {
     struct orl_prog *find, *judge, *cut; // shaders/silhouette_*.comp
-    struct orl_prog *find_steps, *average, *write; // shaders/antialias*.comp
+    struct orl_prog *find_steps, *average[2], *write[2]; // shaders/antialias*.comp; [1]: HALF
     struct orl_buf *list;  // shaders/include/edge_list.glsl
     struct orl_tex *votes; // R32F, of listed pixels
 };
@@ -219,12 +219,12 @@ enum orl_result orl_preselect(const struct orl_log *log, const struct photos *ph
                               size_t *chosen, size_t *count) ORL_CHECK_RESULT;
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
-// Colour from the usable photographs as colour * weight, weight into r->accumulated. *finished:
-// as colour, coverage, but for r->gather.unfinished, and summed for orl_fill_color into the fill's
-// finest level.
+// Colour from the usable photographs as colour * weight, weight into r->accumulated. Or at once, by
+// blend=best, but of radiance: as colour, coverage, but for r->gather.unfinished, and summed for
+// orl_fill_color into the fill's finest level.
+bool orl_blends_at_once(const struct orl_renderer *r, const struct orl_render_params *params);
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip,
-                           bool *finished);
+                           const struct orl_render_params *params, const bool *skip);
 
 struct orl_renderer {
     struct orl_gpu *gpu;
@@ -237,7 +237,8 @@ struct orl_renderer {
     struct gather gather;
     struct orl_prog *compose, *compose_rest;
     struct proxy_target target;
-    struct orl_tex *accumulated; // colour * weight, weight; composed in place
+    struct orl_tex *accumulated; // colour * weight, weight; composed in place. Half floats where
+                                 // blended at once
     struct orl_tex *trusted;     // of radiance: weight * trust, weight, blur of guesses
     struct orl_image staging; // read_back.c
 };

@@ -87,7 +87,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     *renderer = NULL;
 }
 
-static enum orl_result resize(struct orl_renderer *r, int width, int height)
+static enum orl_result resize(struct orl_renderer *r, int width, int height, GLenum format)
 {
     enum orl_result result = orl_proxy_target_resize(r->gpu, &r->proxy, &r->target, width,
                                                      height);
@@ -98,10 +98,11 @@ static enum orl_result resize(struct orl_renderer *r, int width, int height)
     if (result == ORL_OK && !r->photos.radiance)
         result = orl_edges_resize(r->gpu, &r->edges, width, height);
     const struct orl_tex *old = r->accumulated;
-    if (result != ORL_OK || (old && old->params.width == width && old->params.height == height))
+    if (result != ORL_OK || (old && old->params.width == width && old->params.height == height &&
+                             old->params.format == format))
         return result;
     orl_tex_destroy(r->gpu, &r->accumulated);
-    struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA32F,
+    struct orl_tex_params params = {.width = width, .height = height, .format = format,
                                     .tag = "accumulated colour"};
     result = orl_tex_create(r->gpu, &params, &r->accumulated);
     if (result != ORL_OK || !r->photos.radiance)
@@ -153,7 +154,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
 {
     struct orl_gpu *gpu = r->gpu;
     enum orl_result result = ORL_OK;
-    bool finished = false;
+    bool finished = orl_blends_at_once(r, params);
     struct proxy_options options = orl_proxy_options(params);
     // The splats' own colours show where they are in front, which the normal tells.
     normals = normals || params->color == ORL_COLOR_POINTS;
@@ -166,7 +167,7 @@ static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
                            r->target.depth);
             orl_pass_end(gpu);
         }
-        result = orl_gather(r, view, params, skip, &finished);
+        result = orl_gather(r, view, params, skip);
     } else {
         orl_pass_begin(gpu, "gather");
         orl_accumulated_clear(r);
@@ -204,7 +205,8 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
     if (!orl_camera_valid(&view->camera))
         return orl_fail(log, ORL_ERR_ARGUMENT, "this camera cannot be rendered: %dx%d, focal %g %g",
                         view->camera.width, view->camera.height, view->camera.fx, view->camera.fy);
-    enum orl_result result = resize(r, view->camera.width, view->camera.height);
+    enum orl_result result = resize(r, view->camera.width, view->camera.height,
+                                    orl_blends_at_once(r, params) ? GL_RGBA16F : GL_RGBA32F);
     if (result == ORL_OK)
         result = draw(r, view, params, skip, frame && !(params->leave_out & ORL_LAYER_NORMAL));
     if (result == ORL_OK)
