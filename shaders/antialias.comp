@@ -1,4 +1,4 @@
-// Averages the pixels that antialias_find.comp listed with the 3x3 around, weighing 1, 2, 1 each way,
+// Averages the pixels that antialias_find.comp listed with the 3x3 around, weighing 0.35, 1, 0.35 each way,
 // in square roots of light: a bright side does not swallow a dark one. First into the list, since
 // neighbours are still to be averaged; with WRITE from there. HALF: the picture is of half floats.
 #include "include/edge_list.glsl"
@@ -12,7 +12,7 @@ layout(rgba32f, binding = 0) uniform image2D color;
 
 vec3 average(uvec4 edge)
 {
-    float aside = 0.5 * uintBitsToFloat(edge.y);
+    float aside = 0.35 * uintBitsToFloat(edge.y);
     vec3 sum = vec3(0.0);
     for (int n = 0; n < 9; n++) {
         ivec2 off = ivec2(n % 3, n / 3) - 1;

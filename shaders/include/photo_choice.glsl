@@ -16,7 +16,7 @@ float photo_penalty(photo shot, vec3 p)
 
 // More for all on known surfaces, radians: a viewer who walks past a photograph's place would see it,
 // and it alone, flash up and go.
-const float SURFACE_PENALTY = 0.095;
+const float SURFACE_PENALTY = 0.395;
 
 // Radians of parallax between the view and the photograph by which what is hidden lies behind a
 // guess in a hole of the photograph's depth. In angles, since guesses of what is far are rough,

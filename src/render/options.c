@@ -12,7 +12,7 @@
 // the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .distance_floor = 0.03f,                 \
-    .border_px = 8.0f, .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.5f,        \
+    .border_px = 8.0f, .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f,        \
     .guess_sharpness = 1.5f, .guess_blur = 0.06f, .unknown_trust = 0.5f, .outliers = 0.3f
 
 // Our depth from splats, chosen like distance_floor; the paper's is that of the nearest alone.

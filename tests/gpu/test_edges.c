@@ -95,7 +95,7 @@ static void steps_are_averaged_and_nothing_else(void **state)
             float sum[3] = {0};
             for (int k = 0; k < 9; k++) {
                 int i = x + k % 3 - 1, j = y + k / 3 - 1;
-                float weight = (i == x ? 2 : 1) * (j == y ? 2 : 1) / 16.0f;
+                float weight = (i == x ? 1 : 0.35f) * (j == y ? 1 : 0.35f) / (1.7f * 1.7f);
                 step |= (hard.depth.f32[j * SIDE + i] < 3) !=
                         (hard.depth.f32[y * SIDE + x] < 3);
                 for (int c = 0; c < 3; c++)

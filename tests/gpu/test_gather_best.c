@@ -32,7 +32,7 @@ static double penalty(double eye, double photo, int x, int y)
         ab += a[k] * b[k];
     }
     double coarser = sqrt(bb / aa) - 1;
-    return acos(ab / sqrt(aa * bb)) + 0.1 * fmax(coarser, 0) + 0.005 + 0.095;
+    return acos(ab / sqrt(aa * bb)) + 0.1 * fmax(coarser, 0) + 0.005 + 0.395;
 }
 
 static void weights_fade_to_zero_at_the_first_left_out(void **state)
