@@ -71,6 +71,9 @@ float limit_of(ranking r)
     return limit;
 }
 
+// Less sure than this of what is behind a guess, a photograph leaves specks of what stands before it.
+const float GUESS_SURE_LEAST = 0.1;
+
 void consider(int i, photo shot, spot s, inout ranking r)
 {
     vec2 pixel;
@@ -83,7 +86,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
                                 : 1.0;
     penalty += s.guessed ? 0.0 : SURFACE_PENALTY;
     float sure = sees * photo_border(shot, pixel, s.guessed);
-    bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > 1e-4;
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (s.guessed ? GUESS_SURE_LEAST : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);
 }
 
@@ -155,17 +158,20 @@ void main()
         i = c < count ? chosen[list + c] : -1;
     } while (i >= 0);
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
+    float blur = 0.0; // the same for all four: single sharp pixels in what is blurred look like dirt
+    for (int k = 0; k < 4; k++) {
+        float own;
+        colors[k] = blend(spots[k], rankings[k], own);
+        vec4 guessed = spots[k].guessed ? colors[k] : vec4(0.0);
+        seed += colors[k];
+        guess += guessed;
+        blur = guessed.a > 0.0 ? max(blur, own) : blur;
+    }
     bool whole = true;
     for (int k = 0; k < 4; k++) {
-        float blur;
-        vec4 color = blend(spots[k], rankings[k], blur);
-        bool painted = color.a > 0.0;
-        seed += color;
-        guess += spots[k].guessed ? color : vec4(0.0);
-        bool blurs = painted && spots[k].guessed && blur > 0.0;
+        bool painted = colors[k].a > 0.0, blurs = painted && spots[k].guessed && blur > 0.0;
         whole = whole && painted && !blurs;
-        color.a = !painted ? -1.0 : blurs ? -1.0 - blur : spots[k].guessed ? 0.0 : 1.0;
-        colors[k] = color;
+        colors[k].a = !painted ? -1.0 : blurs ? -1.0 - blur : spots[k].guessed ? 0.0 : 1.0;
     }
     // Last: what lives on after a store costs a software renderer a load. Outside the picture they
     // do nothing.
