@@ -84,7 +84,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
                  : flags.x == 1 ? photo_seen_share(seen, z)
                                 : 1.0;
-    penalty += s.guessed ? 0.0 : SURFACE_PENALTY;
+    penalty = s.guessed ? penalty : photo_surface_penalty(penalty);
     float sure = sees * photo_border(shot, pixel, s.guessed);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (s.guessed ? GUESS_SURE_LEAST : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);

@@ -14,9 +14,15 @@ float photo_penalty(photo shot, vec3 p)
     return angle + 0.1 * max(coarser, 0.0) + 0.005;
 }
 
-// More for all on known surfaces, radians: a viewer who walks past a photograph's place would see it,
-// and it alone, flash up and go.
-const float SURFACE_PENALTY = 0.395;
+// On known surfaces small penalties, up to about this many radians, differ little, and in proportion
+// to their squares: a viewer who walks past a photograph's place would else see it, and it alone,
+// flash up and go.
+const float SURFACE_PENALTY = 0.3;
+
+float photo_surface_penalty(float penalty)
+{
+    return length(vec2(penalty, SURFACE_PENALTY));
+}
 
 // Radians of parallax between the view and the photograph by which what is hidden lies behind a
 // guess in a hole of the photograph's depth. In angles, since guesses of what is far are rough,

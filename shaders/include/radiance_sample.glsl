@@ -39,10 +39,11 @@ float seen_share(photo shot, vec4 seen, float z, bool guessed)
 float geometric_weight(photo shot, vec3 p, bool guessed)
 {
 #ifdef BEST
-    float penalty = photo_penalty(shot, p), more = guessed ? 0.0 : SURFACE_PENALTY;
+    float penalty = photo_penalty(shot, p);
+    float share = guessed ? 0.1 / penalty
+                          : photo_surface_penalty(0.1) / photo_surface_penalty(penalty);
     // What sums and products stay finite with, and no photograph gets lost with.
-    float weight = clamp(pow((0.1 + more) / (penalty + more), guessed ? choice.w : choice.y), 1e-10,
-                         1e18);
+    float weight = clamp(pow(share, guessed ? choice.w : choice.y), 1e-10, 1e18);
     return guessed ? weight * photo_beside(penalty) : weight;
 #else
     float weight = airieau_weight(p, shot.eye.xyz) * (0.1 + options.y);

@@ -12,7 +12,7 @@
 // the others; held-out photographs took no part.
 #define COMMON_DEFAULTS                                                                    \
     .depth_tolerance = 0.01f, .splat_scale = 1.0f, .distance_floor = 0.03f,                 \
-    .border_px = 8.0f, .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 2.0f,        \
+    .border_px = 8.0f, .ghosts = 1.0f, .points_per_pixel = 4.0f, .sharpness = 3.0f,        \
     .guess_sharpness = 1.5f, .guess_blur = 0.06f, .unknown_trust = 0.5f, .outliers = 0.3f
 
 // Our depth from splats, chosen like distance_floor; the paper's is that of the nearest alone.
@@ -110,7 +110,7 @@ const struct orl_render_option orl_render_options[] = {
 
 // Nothing that is there to trade quality for time, such as photos_per_pixel.
 const struct orl_render_tries orl_render_tries[] = {
-    {"sharpness", 5, {0.5, 1, 2, 4, 8}},
+    {"sharpness", 6, {1, 2, 3, 4, 6, 10}},
     {"depth_tolerance", 5, {0.003, 0.005, 0.01, 0.02, 0.04}},
     {"min_support", 5, {0, 4, 8, 12, 16}},
     {"front_layer", 4, {0, 0.005, 0.01, 0.02}},

@@ -20,8 +20,8 @@ static struct orl_render_params best(void)
     return params;
 }
 
-// Penalty of photo_choice.glsl, and what gather_best.comp adds on known surfaces, for the wall point
-// at pixel (x, y), cameras side by side.
+// Penalty of photo_choice.glsl on known surfaces, for the wall point at pixel (x, y), cameras side by
+// side.
 static double penalty(double eye, double photo, int x, int y)
 {
     double px = (x + 0.5 - 24) / 40 * 4 + eye, py = (y + 0.5 - 24) / 40 * 4;
@@ -32,7 +32,7 @@ static double penalty(double eye, double photo, int x, int y)
         ab += a[k] * b[k];
     }
     double coarser = sqrt(bb / aa) - 1;
-    return acos(ab / sqrt(aa * bb)) + 0.1 * fmax(coarser, 0) + 0.005 + 0.395;
+    return hypot(acos(ab / sqrt(aa * bb)) + 0.1 * fmax(coarser, 0) + 0.005, 0.3);
 }
 
 static void weights_fade_to_zero_at_the_first_left_out(void **state)
