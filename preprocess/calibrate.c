@@ -20,6 +20,8 @@ struct calibration {
     char *best;          // owned; folder of the best model so far, below WORK
     size_t registered;   // photographs in it
     size_t points;
+    bool bent;           // has it a camera whose distortion turns back on itself?
+    bool straight;       // distortion is taken to be none from now on
     int tries;           // mapper runs, for folder names
 };
 
@@ -222,6 +224,9 @@ static enum orl_result consider(struct calibration *c, const char *path)
         (model.image_count == c->registered && model.point_count > c->points)) {
         c->registered = model.image_count;
         c->points = model.point_count;
+        c->bent = false;
+        for (size_t i = 0; i < model.camera_count; i++)
+            c->bent |= !orl_colmap_camera_reaches_corners(&model.cameras[i]);
         free(c->best);
         c->best = orl_strdup(c->job->log, path);
     }
@@ -268,6 +273,8 @@ static enum orl_result map(struct calibration *c, bool loose, const char *from)
     orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
     // A later, larger model must not be thrown away for being under ten photographs.
     orl_colmap_arg(&args, "--Mapper.min_model_size", "3");
+    if (c->straight)
+        orl_colmap_arg(&args, "--Mapper.ba_refine_extra_params", "0");
     if (from)
         orl_colmap_arg(&args, "--input_path", "%s", from);
     if (loose) {
@@ -375,6 +382,31 @@ static enum orl_result try_hard(struct calibration *c, bool sequential)
         result = try_costly(c);
         if (result == ORL_OK)
             result = join_more(c);
+    }
+    return result;
+}
+
+// Where nothing tells a lens's distortion (a small thing in the middle of each photograph, gloss) the
+// mapper may find one that no lens has, and of the photographs the middle alone would be left. Better
+// none then, if about as many photographs register.
+static enum orl_result straighten(struct calibration *c)
+{
+    const struct calibration bent = *c;
+    if (!c->bent)
+        return ORL_OK;
+    say(c, "with a distortion that no lens has; trying without");
+    c->straight = true;
+    c->best = NULL;
+    c->registered = c->points = 0;
+    enum orl_result result = map(c, false, NULL);
+    bool better = result == ORL_OK && c->best && !c->bent && 4 * c->registered >= 3 * bent.registered;
+    if (better) {
+        free(bent.best);
+    } else {
+        free(c->best);
+        c->best = bent.best;
+        c->registered = bent.registered;
+        c->points = bent.points;
     }
     return result;
 }
@@ -503,6 +535,7 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
     if ((result = begin_database(&c, sequential)) != ORL_OK ||
         (result = map(&c, false, NULL)) != ORL_OK ||
         (!all(&c) && (result = try_hard(&c, sequential)) != ORL_OK) ||
+        (result = straighten(&c)) != ORL_OK ||
         (result = finish(&c)) != ORL_OK)
         goto end;
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));

@@ -55,6 +55,9 @@ const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_
 // COLMAP's model of this camera has it. The camera must come from orl_colmap_read.
 void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],
                                double pixel[2]);
+// Does each corner of the picture see a ray? Not where the distortion of a camera estimated amiss
+// turns back on itself before.
+bool orl_colmap_camera_reaches_corners(const struct orl_colmap_camera *camera);
 
 // "W&H&C&" then W*H*C float32, channel by channel. Depth maps have one channel
 // (z in scene units, 0 = none), normal maps three (camera frame).

@@ -93,3 +93,34 @@ void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const dou
     pixel[0] = c->fx * uv[0] + c->cx;
     pixel[1] = c->fy * uv[1] + c->cy;
 }
+
+// Follows rays outwards, to a tangent of STEPS / 100, while they move towards the corner.
+static bool reaches(const struct orl_colmap_camera *camera, const double corner[2])
+{
+    enum { STEPS = 400 };
+    const struct orl_camera *c = &camera->pinhole;
+    double off[2] = {corner[0] - c->cx, corner[1] - c->cy}, ray[2] = {off[0] / c->fx, off[1] / c->fy};
+    double length = hypot(ray[0], ray[1]), distance2 = off[0] * off[0] + off[1] * off[1], last = 0;
+    for (int i = 1; i <= STEPS && length > 0; i++) {
+        double step = 0.01 * i / length, pixel[2];
+        orl_colmap_camera_project(camera, (double[2]){ray[0] * step, ray[1] * step}, pixel);
+        double along = ((pixel[0] - c->cx) * off[0] + (pixel[1] - c->cy) * off[1]) / distance2;
+        if (along >= 1)
+            return true;
+        if (!(along > last))
+            return false;
+        last = along;
+    }
+    return !(length > 0);
+}
+
+bool orl_colmap_camera_reaches_corners(const struct orl_colmap_camera *camera)
+{
+    for (int i = 0; i < 4; i++) {
+        const double corner[2] = {i & 1 ? camera->pinhole.width : 0,
+                                  i & 2 ? camera->pinhole.height : 0};
+        if (!reaches(camera, corner))
+            return false;
+    }
+    return true;
+}

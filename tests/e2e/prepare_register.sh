@@ -36,6 +36,12 @@ prints "left out     3.png: cannot be placed"
 DOUBLE_ALONE=3.png run 2 prepare "$work/p" --out "$work/few" --test-list 0,1,2
 says "of the photographs that are not held out only 1 could be placed"
 
+# A distortion that turns back on itself: the mapper runs again without any.
+DOUBLE_BENT=1 run 0 prepare "$work/p" --out "$work/bent" --verbose
+says "a distortion that no lens has"
+prints "5 used, 5 registered"
+grep -q " 0$" "$work/bent/.oriel/calibrate/model/cameras.txt" || fail "the bent camera was kept"
+
 # Masks reach COLMAP under its names, and are undistorted as photographs are.
 photos "$work/m" 0.png 1.png.png
 run 0 prepare "$work/p" --out "$work/masked" --masks "$work/m"

@@ -87,6 +87,26 @@ static void each_model_by_hand(void **state)
     }
 }
 
+// A corner at a tangent of r is reached while r + k r^3 rises so far: with k = -0.3 it turns back at
+// 1.05, where it is 0.70.
+static void bent_cameras_do_not_reach_corners(void **state)
+{
+    (void)state;
+    const struct {
+        double focal, k;
+        bool reaches;
+    } cameras[] = {{100, 0, true}, {100, 0.3, true}, {150, -0.3, true}, {138, -0.3, false},
+                   {100, -2, false}};
+    for (size_t i = 0; i < ORL_COUNT(cameras); i++) {
+        double f = cameras[i].focal;
+        const struct orl_colmap_camera camera = {
+            .model = 2, .pinhole = {.width = 160, .height = 120, .fx = f, .fy = f, .cx = 80,
+                                    .cy = 60},
+            .params = {f, 80, 60, cameras[i].k}, .param_count = 4};
+        assert_int_equal(orl_colmap_camera_reaches_corners(&camera), cameras[i].reaches);
+    }
+}
+
 static struct orl_image pattern(void)
 {
     struct orl_image image;
@@ -205,6 +225,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_model_by_hand),
+        cmocka_unit_test(bent_cameras_do_not_reach_corners),
         cmocka_unit_test(as_colmap_does),
         cmocka_unit_test(floats_as_bytes),
     };
