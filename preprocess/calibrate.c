@@ -399,7 +399,8 @@ static enum orl_result straighten(struct calibration *c)
     c->best = NULL;
     c->registered = c->points = 0;
     enum orl_result result = map(c, false, NULL);
-    bool better = result == ORL_OK && c->best && !c->bent && 4 * c->registered >= 3 * bent.registered;
+    bool better = result == ORL_OK && c->best && !c->bent &&
+                  4 * c->registered >= 3 * bent.registered;
     if (better) {
         free(bent.best);
     } else {

@@ -1,5 +1,5 @@
-// Averages the pixels that antialias_find.comp listed with the 3x3 around, weighing 0.35, 1, 0.35 each way,
-// in square roots of light: a bright side does not swallow a dark one. First into the list, since
+// Averages the pixels that antialias_find.comp listed with the 3x3 around, weighing 0.35, 1, 0.35 each
+// way, in square roots of light: a bright side does not swallow a dark one. First into the list, since
 // neighbours are still to be averaged; with WRITE from there. HALF: the picture is of half floats.
 #include "include/edge_list.glsl"
 

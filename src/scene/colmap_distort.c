@@ -99,8 +99,9 @@ static bool reaches(const struct orl_colmap_camera *camera, const double corner[
 {
     enum { STEPS = 400 };
     const struct orl_camera *c = &camera->pinhole;
-    double off[2] = {corner[0] - c->cx, corner[1] - c->cy}, ray[2] = {off[0] / c->fx, off[1] / c->fy};
-    double length = hypot(ray[0], ray[1]), distance2 = off[0] * off[0] + off[1] * off[1], last = 0;
+    double off[2] = {corner[0] - c->cx, corner[1] - c->cy};
+    double ray[2] = {off[0] / c->fx, off[1] / c->fy}, length = hypot(ray[0], ray[1]);
+    double distance2 = off[0] * off[0] + off[1] * off[1], last = 0;
     for (int i = 1; i <= STEPS && length > 0; i++) {
         double step = 0.01 * i / length, pixel[2];
         orl_colmap_camera_project(camera, (double[2]){ray[0] * step, ray[1] * step}, pixel);
