@@ -219,10 +219,11 @@ enum orl_result orl_preselect(const struct orl_log *log, const struct photos *ph
                               size_t *chosen, size_t *count) ORL_CHECK_RESULT;
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
-// Colour from the usable photographs as colour * weight, weight into r->accumulated. Or at once, by
-// blend=best, but of radiance: as colour, coverage, but for r->gather.unfinished, and summed for
-// orl_fill_color into the fill's finest level.
+// Does orl_gather leave finished pixels? By blend=best, but of radiance.
 bool orl_blends_at_once(const struct orl_renderer *r, const struct orl_render_params *params);
+// Colour from the usable photographs as colour * weight, weight into r->accumulated. Blended at
+// once: as colour, coverage, but for r->gather.unfinished, and summed for orl_fill_color into the
+// fill's finest level.
 enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
                            const struct orl_render_params *params, const bool *skip);
 

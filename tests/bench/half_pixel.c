@@ -1,7 +1,7 @@
 // half_pixel PHOTOGRAPH..: how close a photograph at half its size comes to another of the same thing
 // whose pixels lie half a pixel aside, both ways, moved back bicubically. Both are made of one
-// photograph at full size: no depth, camera, light or noise differs. What a renderer cannot do
-// better than with pixels of other photographs.
+// photograph at full size: no depth, camera, light or noise differs. It tells what resampling alone
+// costs a renderer.
 #include <stdio.h>
 
 #include "core/color.h"
@@ -11,6 +11,11 @@
 // Pixels that are left out all around, at half size, for the taps.
 enum { RIM = 2 };
 
+static uint8_t encoded(float light)
+{
+    return (uint8_t)(255 * orl_srgb_encode(light) + 0.5f);
+}
+
 // Mean light of 2x2 pixels from (x, y) on, rounded as a file would.
 static float mean_light(const struct orl_image *photo, int x, int y, int channel)
 {
@@ -19,13 +24,7 @@ static float mean_light(const struct orl_image *photo, int x, int y, int channel
         size_t at = (size_t)(y + k / 2) * (size_t)photo->width + (size_t)(x + k % 2);
         sum += orl_srgb_decode(photo->u8[3 * at + (size_t)channel] / 255.0f);
     }
-    int value = (int)(255 * orl_srgb_encode(sum / 4) + 0.5f);
-    return orl_srgb_decode((float)value / 255);
-}
-
-static uint8_t encoded(float light)
-{
-    return (uint8_t)(255 * orl_srgb_encode(light < 0 ? 0 : light) + 0.5f);
+    return orl_srgb_decode(encoded(sum / 4) / 255.0f);
 }
 
 // Half a pixel back: Catmull-Rom's weights there.
