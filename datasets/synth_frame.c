@@ -7,11 +7,11 @@
 #include "datasets/synth.h"
 
 enum {
-    TILE = 8,        // work group side, and pixels of a tile of synth_cone.comp
+    TILE = 8,        // work group side, and pixels of a tile of synth/cone.comp
     BAND_PIXELS = 65536, // one dispatch: short enough for a desktop's GPU watchdog
 };
 
-// Matches shaders/include/synth_view.glsl.
+// Matches shaders/synth/view.glsl.
 struct frame_params {
     float right[4], down[4], forward[4], eye[4];
     float camera[4];
@@ -53,9 +53,9 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
                                 .seed = params->seed, .contrast_ev = params->contrast_ev};
     int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
     const size_t block = sizeof(struct frame_params);
-    result = orl_prog_create(gpu, "synth_cone.comp", NULL, block, &synth->cone);
+    result = orl_prog_create(gpu, "synth/cone.comp", NULL, block, &synth->cone);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "synth_frame.comp",
+        result = orl_prog_create(gpu, "synth/frame.comp",
                                  params->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : NULL, block,
                                  &synth->frame);
     if (result == ORL_OK)

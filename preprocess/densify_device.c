@@ -35,17 +35,17 @@ enum program {
 static const struct {
     const char *file, *defines;
 } program_table[PROGRAM_COUNT] = {
-    [INIT_RANDOM] = {"densify_init.comp", "FROM_RANDOM"},
-    [INIT_COARSE] = {"densify_init.comp", "FROM_COARSE"},
-    [INIT_FINE] = {"densify_init.comp", "FROM_COARSE"},
-    [SWEEP_FINE] = {"densify_sweep.comp", ""},
-    [INIT_MAPS] = {"densify_init.comp", "FROM_MAPS\nGEOMETRIC"},
-    [SWEEP] = {"densify_sweep.comp", ""},
-    [SWEEP_GEOMETRIC] = {"densify_sweep.comp", "GEOMETRIC"},
-    [FIT] = {"densify_fit.comp", ""},
-    [FINISH_MATCHED] = {"densify_finish.comp", ""},
-    [FINISH_AGREED] = {"densify_finish.comp", "GEOMETRIC"},
-    [FINISH_LAST] = {"densify_finish.comp", "GEOMETRIC\nSMOOTH"},
+    [INIT_RANDOM] = {"densify/init.comp", "FROM_RANDOM"},
+    [INIT_COARSE] = {"densify/init.comp", "FROM_COARSE"},
+    [INIT_FINE] = {"densify/init.comp", "FROM_COARSE"},
+    [SWEEP_FINE] = {"densify/sweep.comp", ""},
+    [INIT_MAPS] = {"densify/init.comp", "FROM_MAPS\nGEOMETRIC"},
+    [SWEEP] = {"densify/sweep.comp", ""},
+    [SWEEP_GEOMETRIC] = {"densify/sweep.comp", "GEOMETRIC"},
+    [FIT] = {"densify/fit.comp", ""},
+    [FINISH_MATCHED] = {"densify/finish.comp", ""},
+    [FINISH_AGREED] = {"densify/finish.comp", "GEOMETRIC"},
+    [FINISH_LAST] = {"densify/finish.comp", "GEOMETRIC\nSMOOTH"},
 };
 
 struct densify_device {

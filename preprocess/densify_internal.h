@@ -2,7 +2,7 @@
 #ifndef ORL_PREPROCESS_DENSIFY_INTERNAL_H
 #define ORL_PREPROCESS_DENSIFY_INTERNAL_H
 
-#include "include/densify_block.h"
+#include "shared/densify_block.h"
 #include "preprocess/densify.h"
 #include "scene/colmap.h"
 

@@ -50,9 +50,9 @@ static enum orl_result make_program(struct orl_point_raster *r)
     char message[2048] = "";
     GLint ok = 0;
     r->program = glCreateProgram();
-    enum orl_result result = add_shader(gpu, r->program, GL_VERTEX_SHADER, "points.vert");
+    enum orl_result result = add_shader(gpu, r->program, GL_VERTEX_SHADER, "proxy/points.vert");
     if (result == ORL_OK)
-        result = add_shader(gpu, r->program, GL_FRAGMENT_SHADER, "points.frag");
+        result = add_shader(gpu, r->program, GL_FRAGMENT_SHADER, "proxy/points.frag");
     if (result != ORL_OK)
         return result;
     glLinkProgram(r->program);

@@ -188,7 +188,7 @@ static float density(float (*const p)[4], const struct orl_points *points,
     return d2 > 0 ? NEIGHBOUR / (3.14159265f * d2) : 0;
 }
 
-// shaders/splat_cull.comp says what the texels are.
+// shaders/proxy/splat_cull.comp says what the texels are.
 static void describe_block(float (*const positions)[4], const struct orl_points *points,
                            const struct key *order, size_t count, float block[BLOCK_TEXELS][4])
 {
@@ -216,7 +216,7 @@ static uint32_t pack_snorm(double value)
     return (uint32_t)(uint16_t)(int16_t)lrint(fmin(1, fmax(-1, value)) * 32767);
 }
 
-// As shaders/include/octahedron.glsl; two 16-bit snorm.
+// As shaders/proxy/octahedron.glsl; two 16-bit snorm.
 static uint32_t pack_normal(const float n[3])
 {
     double x = n[0], y = n[1], z = n[2];
@@ -347,7 +347,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
         result = upload_chunk(gpu, points, order + first, here, chunk);
     }
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "splat_cull.comp", NULL, sizeof(struct splat_block),
+        result = orl_prog_create(gpu, "proxy/splat_cull.comp", NULL, sizeof(struct splat_block),
                                  &cloud->cull);
     free(order);
     if (result != ORL_OK)

@@ -3,7 +3,7 @@
 
 #include "render/internal.h"
 
-enum { LIST = 2 }; // storage binding of shaders/include/edge_list.glsl
+enum { LIST = 2 }; // storage binding of shaders/edges/edge_list.glsl
 
 enum orl_result orl_edges_init(struct orl_gpu *gpu, struct edges *edges)
 {
@@ -13,14 +13,14 @@ enum orl_result orl_edges_init(struct orl_gpu *gpu, struct edges *edges)
         size_t params_size;
         struct orl_prog **prog;
     } programs[] = {
-        {"silhouette_find.comp", NULL, sizeof(struct gather_block), &edges->find},
-        {"silhouette_judge.comp", NULL, sizeof(struct gather_block), &edges->judge},
-        {"silhouette_cut.comp", NULL, 0, &edges->cut},
-        {"antialias_find.comp", NULL, sizeof(struct image_block), &edges->find_steps},
-        {"antialias.comp", NULL, 0, &edges->average[0]},
-        {"antialias.comp", "HALF", 0, &edges->average[1]},
-        {"antialias.comp", "WRITE", 0, &edges->write[0]},
-        {"antialias.comp", "WRITE 1\nHALF", 0, &edges->write[1]},
+        {"edges/silhouette_find.comp", NULL, sizeof(struct gather_block), &edges->find},
+        {"edges/silhouette_judge.comp", NULL, sizeof(struct gather_block), &edges->judge},
+        {"edges/silhouette_cut.comp", NULL, 0, &edges->cut},
+        {"edges/antialias_find.comp", NULL, sizeof(struct image_block), &edges->find_steps},
+        {"edges/antialias.comp", NULL, 0, &edges->average[0]},
+        {"edges/antialias.comp", "HALF", 0, &edges->average[1]},
+        {"edges/antialias.comp", "WRITE", 0, &edges->write[0]},
+        {"edges/antialias.comp", "WRITE 1\nHALF", 0, &edges->write[1]},
     };
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(programs); i++)

@@ -14,14 +14,14 @@ enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, bool radia
         const char *file, *defines;
         struct orl_prog **prog;
     } programs[] = {
-        {"fill_seed.comp", "SEED_DEPTH", &fill->seed_depth},
-        {"fill_seed.comp", NULL, &fill->seed_color},
-        {"fill_pull.comp", NULL, &fill->pull},
-        {"fill_push.comp", NULL, &fill->push},
-        {"fill_depth.comp", NULL, &fill->apply_depth},
-        {"fill_seed.comp", "SEED_LEAST", &fill->seed_least}, // from here on of radiance
-        {"fill_seed.comp", "SEED_BRIGHTER", &fill->seed_brighter},
-        {"fill_lift.comp", NULL, &fill->lift},
+        {"fill/fill_seed.comp", "SEED_DEPTH", &fill->seed_depth},
+        {"fill/fill_seed.comp", NULL, &fill->seed_color},
+        {"fill/fill_pull.comp", NULL, &fill->pull},
+        {"fill/fill_push.comp", NULL, &fill->push},
+        {"fill/fill_depth.comp", NULL, &fill->apply_depth},
+        {"fill/fill_seed.comp", "SEED_LEAST", &fill->seed_least}, // from here on of radiance
+        {"fill/fill_seed.comp", "SEED_BRIGHTER", &fill->seed_brighter},
+        {"fill/fill_lift.comp", NULL, &fill->lift},
     };
     enum orl_result result = ORL_OK;
     size_t count = ORL_COUNT(programs) - (radiance ? 0 : 3);

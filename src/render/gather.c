@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "render/internal.h"
 
-enum { PHOTO_ROWS = 7 }; // image binding of shaders/include/photo.glsl
+enum { PHOTO_ROWS = 7 }; // image binding of shaders/gather/photo.glsl
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 
@@ -22,11 +22,11 @@ static enum orl_result create_programs(struct orl_gpu *gpu, struct gather *gathe
     static const char *const few[ORL_SAMPLING_COUNT][KEPT_PROGRAMS] = {
         [ORL_SAMPLING_BILINEAR] = {"KEPT 2\n", "KEPT 4\n"},
         [ORL_SAMPLING_BICUBIC] = {"BICUBIC 1\nKEPT 2\n", "BICUBIC 1\nKEPT 4\n"}};
-    enum orl_result result = create(gpu, "choose.comp", NULL, &gather->choose);
+    enum orl_result result = create(gpu, "gather/choose.comp", NULL, &gather->choose);
     for (int i = 0; result == ORL_OK && i < ORL_SAMPLING_COUNT; i++) {
-        result = create(gpu, "gather.comp", defines[i], &gather->all[i]);
+        result = create(gpu, "gather/gather.comp", defines[i], &gather->all[i]);
         for (int k = 0; result == ORL_OK && k < KEPT_PROGRAMS; k++)
-            result = create(gpu, "gather_best.comp", few[i][k], &gather->best[i][k]);
+            result = create(gpu, "gather/gather_best.comp", few[i][k], &gather->best[i][k]);
     }
     return result;
 }
@@ -36,9 +36,9 @@ static enum orl_result create_radiance_programs(struct orl_gpu *gpu, struct gath
     static const char *const defines[ORL_BLEND_COUNT] = {[ORL_BLEND_BEST] = "BEST 1\n"};
     enum orl_result result = ORL_OK;
     for (int i = 0; result == ORL_OK && i < ORL_BLEND_COUNT; i++) {
-        result = create(gpu, "choose_radiance.comp", defines[i], &gather->choose_radiance[i]);
+        result = create(gpu, "gather/choose_radiance.comp", defines[i], &gather->choose_radiance[i]);
         if (result == ORL_OK)
-            result = create(gpu, "gather_radiance.comp", defines[i], &gather->radiance[i]);
+            result = create(gpu, "gather/gather_radiance.comp", defines[i], &gather->radiance[i]);
     }
     return result;
 }
@@ -248,7 +248,7 @@ static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view
     int across = tiles(view->camera.width), down = tiles(view->camera.height);
     unsigned groups[3]; // 2x2 pixels an invocation
     orl_pixel_groups((view->camera.width + 1) / 2, (view->camera.height + 1) / 2, groups);
-    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/include/unfinished.glsl
+    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/gather/unfinished.glsl
     enum orl_result result =
         make_room(r->gpu, "photographs of tiles",
                   (size_t)across * (size_t)down * CANDIDATES * sizeof(int), &g->tile_lists);

@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_INTERNAL_H
 #define ORL_RENDER_INTERNAL_H
 
-#include "include/render_blocks.h"
+#include "shared/render_blocks.h"
 #include "render/radiance.h"
 #include "render/render.h"
 
@@ -14,7 +14,7 @@ struct point_chunk {
     struct orl_buf *positions, *attributes, *blocks, *enlarged, *items, *args;
     struct orl_tex *position_texels;  // RGBA32F: world xyz, radius
     struct orl_tex *attribute_texels; // RG32UI: octahedral normal, colour
-    struct orl_tex *block_texels;     // RGBA32F: shaders/splat_cull.comp
+    struct orl_tex *block_texels;     // RGBA32F: shaders/proxy/splat_cull.comp
     // Of the last cull; floats, then words:
     struct orl_tex *enlarged_texels, *item_texels, *arg_texels;
     int first, count, block_count;    // count: padded to whole blocks
@@ -49,8 +49,8 @@ struct proxy_target {
     int width, height, levels;
     struct orl_tex *splat_depth;  // R32UI: bits of the nearest depth; all ones: empty
     struct orl_tex *splat_index;  // R32UI: the nearest point; all ones: empty
-    struct orl_tex *splat_layer;  // R32UI: shaders/include/splat.glsl
-    struct orl_tex *splats;       // RG32UI: level 0 of the pyramid: shaders/include/surfel.glsl; used
+    struct orl_tex *splat_layer;  // R32UI: shaders/proxy/splat.glsl
+    struct orl_tex *splats;       // RG32UI: level 0 of the pyramid: shaders/proxy/surfel.glsl; used
                                   // where normals are asked for
     struct orl_tex *chunk_splats; // RGBA32UI: what it was made from; NULL: points are one chunk
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // from level 1 on
@@ -159,7 +159,7 @@ bool orl_fill_guesses(const struct orl_render_params *params);
 
 struct soften {
     struct orl_prog *seed;   // of radiance
-    struct orl_tex *guesses; // mipmapped: shaders/compose.comp
+    struct orl_tex *guesses; // mipmapped: shaders/fill/compose.comp
 };
 
 enum orl_result orl_soften_init(struct orl_gpu *gpu, bool radiance, struct soften *soften);
@@ -177,7 +177,7 @@ void orl_soften_prepare(struct orl_gpu *gpu, const struct soften *soften,
 struct edges {
     struct orl_prog *find, *judge, *cut; // shaders/silhouette_*.comp
     struct orl_prog *find_steps, *average[2], *write[2]; // shaders/antialias*.comp; [1]: HALF
-    struct orl_buf *list;  // shaders/include/edge_list.glsl
+    struct orl_buf *list;  // shaders/edges/edge_list.glsl
     struct orl_tex *votes; // R32F, of listed pixels
 };
 
@@ -186,7 +186,7 @@ enum orl_result orl_edges_init(struct orl_gpu *gpu, struct edges *edges);
 enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height);
 void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges);
 // Takes the target's depth back from where it reaches past silhouettes; no normal is left there.
-// `choice`: the dispatch of shaders/choose.comp, which has run.
+// `choice`: the dispatch of shaders/gather/choose.comp, which has run.
 void orl_edges_cut(struct orl_gpu *gpu, const struct edges *edges,
                    const struct orl_dispatch *choice, const struct proxy_target *target);
 // Averages the finished colours across the steps of `depth`.
@@ -208,7 +208,7 @@ struct gather {
     struct orl_buf *photos;  // struct photo_data
     struct orl_tex *photo_rows; // its view, RGBA32F
     struct orl_buf *tile_lists; // choose.comp, choose_radiance.comp
-    struct orl_buf *unfinished; // of the last gather_best.comp: shaders/include/unfinished.glsl
+    struct orl_buf *unfinished; // of the last gather_best.comp: shaders/gather/unfinished.glsl
 };
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "include/render_blocks.h"
+#include "shared/render_blocks.h"
 #include "render/render.h"
 
 // points_per_pixel: as few as cost under 0.02 dB (docs/performance.md).

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "io/picture.h"
-#include "include/render_blocks.h"
+#include "shared/render_blocks.h"
 #include "render/internal.h"
 #include "render/radiance.h"
 
@@ -214,7 +214,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     if (result == ORL_OK && is_compressed(photos))
         result = orl_tex_create(gpu, &loading, &photos->loading);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "photo_holes.comp", NULL, sizeof(struct image_block),
+        result = orl_prog_create(gpu, "proxy/photo_holes.comp", NULL, sizeof(struct image_block),
                                  &photos->guess_holes);
     if (result != ORL_OK)
         orl_photos_finish(gpu, photos);

@@ -21,19 +21,19 @@ enum orl_result orl_proxy_init(struct orl_gpu *gpu, const struct orl_points *poi
         size_t params_size;
         struct orl_prog **prog;
     } programs[] = {
-        {"splat_depth.comp", NULL, sizeof(struct splat_block), &proxy->splat_depth},
-        {"splat_index.comp", NULL, sizeof(struct splat_block), &proxy->splat_index},
-        {"splat_resolve.comp", NULL, sizeof(struct splat_block), &proxy->resolve[0]},
-        {"splat_resolve.comp", "NORMALS", sizeof(struct splat_block), &proxy->resolve[1]},
-        {"splat_resolve.comp", "CHUNKS", sizeof(struct splat_block), &proxy->resolve_chunk[0]},
-        {"splat_resolve.comp", "CHUNKS 1\nNORMALS", sizeof(struct splat_block),
+        {"proxy/splat_depth.comp", NULL, sizeof(struct splat_block), &proxy->splat_depth},
+        {"proxy/splat_index.comp", NULL, sizeof(struct splat_block), &proxy->splat_index},
+        {"proxy/splat_resolve.comp", NULL, sizeof(struct splat_block), &proxy->resolve[0]},
+        {"proxy/splat_resolve.comp", "NORMALS", sizeof(struct splat_block), &proxy->resolve[1]},
+        {"proxy/splat_resolve.comp", "CHUNKS", sizeof(struct splat_block), &proxy->resolve_chunk[0]},
+        {"proxy/splat_resolve.comp", "CHUNKS 1\nNORMALS", sizeof(struct splat_block),
          &proxy->resolve_chunk[1]},
-        {"points_color.comp", NULL, sizeof(struct splat_block), &proxy->color},
-        {"pull.comp", NULL, sizeof(struct pyramid_block), &proxy->pull},
-        {"push.comp", NULL, sizeof(struct pyramid_block), &proxy->push},
-        {"push.comp", "LAST", sizeof(struct pyramid_block), &proxy->push_last[0]},
-        {"push.comp", "LAST 1\nNORMALS", sizeof(struct pyramid_block), &proxy->push_last[1]},
-        {"support.comp", NULL, sizeof(struct pyramid_block), &proxy->support},
+        {"proxy/points_color.comp", NULL, sizeof(struct splat_block), &proxy->color},
+        {"proxy/pull.comp", NULL, sizeof(struct pyramid_block), &proxy->pull},
+        {"proxy/push.comp", NULL, sizeof(struct pyramid_block), &proxy->push},
+        {"proxy/push.comp", "LAST", sizeof(struct pyramid_block), &proxy->push_last[0]},
+        {"proxy/push.comp", "LAST 1\nNORMALS", sizeof(struct pyramid_block), &proxy->push_last[1]},
+        {"proxy/support.comp", NULL, sizeof(struct pyramid_block), &proxy->support},
     };
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(programs); i++)

@@ -7,7 +7,7 @@
 #include "core/color.h"
 #include "core/memory.h"
 
-// --- trust; shaders/include/trust.glsl says the same ---
+// --- trust; shaders/gather/trust.glsl says the same ---
 
 float orl_clip_trust(const struct orl_sensor *sensor, float peak, float ev_above)
 {

@@ -66,7 +66,7 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
 }
 
 // Solves y = gain x / (1 + x ((gain - 1 - third) + third x^2)), as photo_aligned of
-// shaders/include/photo.glsl has it, for x by bisection: the right side rises.
+// shaders/gather/photo.glsl has it, for x by bisection: the right side rises.
 static float unaligned(float gain, float y)
 {
     float third = fminf(gain - 1, 0.5f);

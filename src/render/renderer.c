@@ -53,10 +53,10 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     if (result == ORL_OK)
         result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
     if (result == ORL_OK)
-        result = orl_prog_create(gpu, "compose.comp", params->radiance ? "RADIANCE" : NULL,
+        result = orl_prog_create(gpu, "fill/compose.comp", params->radiance ? "RADIANCE" : NULL,
                                  sizeof(struct image_block), &r->compose);
     if (result == ORL_OK && !params->radiance)
-        result = orl_prog_create(gpu, "compose.comp", "REST", sizeof(struct image_block),
+        result = orl_prog_create(gpu, "fill/compose.comp", "REST", sizeof(struct image_block),
                                  &r->compose_rest);
     if (result != ORL_OK) {
         orl_renderer_destroy(&r);

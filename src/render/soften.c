@@ -1,4 +1,4 @@
-// What the blur of guesses takes in: shaders/compose.comp blurs.
+// What the blur of guesses takes in: shaders/fill/compose.comp blurs.
 #include <string.h>
 
 #include "render/internal.h"
@@ -6,7 +6,7 @@
 enum orl_result orl_soften_init(struct orl_gpu *gpu, bool radiance, struct soften *soften)
 {
     memset(soften, 0, sizeof *soften);
-    return radiance ? orl_prog_create(gpu, "fill_seed.comp", "SEED_GUESSES",
+    return radiance ? orl_prog_create(gpu, "fill/fill_seed.comp", "SEED_GUESSES",
                                       sizeof(struct image_block), &soften->seed)
                     : ORL_OK;
 }

@@ -3,7 +3,7 @@
 
 #include "gpu_test.h"
 
-#include "include/render_blocks.h"
+#include "shared/render_blocks.h"
 
 enum { WIDTH = 240, HEIGHT = 160, LEFT = 100, RIGHT = 112, TOP = 70, BOTTOM = 82 };
 
@@ -21,7 +21,7 @@ static void guess(float *depth)
     struct orl_tex_params params = {.width = WIDTH, .height = HEIGHT, .format = GL_R32F,
                                     .tag = "test depth"};
     struct image_block block = {.area = {WIDTH, HEIGHT}};
-    assert_int_equal(orl_prog_create(gpu, "photo_holes.comp", NULL, sizeof block, &prog), ORL_OK);
+    assert_int_equal(orl_prog_create(gpu, "proxy/photo_holes.comp", NULL, sizeof block, &prog), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &guessed), ORL_OK);
     orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, depth);

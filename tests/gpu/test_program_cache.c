@@ -26,7 +26,7 @@ static size_t create_and_run(const char *defines)
     for (int i = 0; i < SIDE * SIDE; i++)
         depth[i] = i == 20 ? 1 : 2;
     struct orl_tex_params params = {.width = SIDE, .height = SIDE, .format = GL_R32F, .tag = "t"};
-    assert_int_equal(orl_prog_create(gpu, "support.comp", defines, sizeof(struct pyramid_block),
+    assert_int_equal(orl_prog_create(gpu, "proxy/support.comp", defines, sizeof(struct pyramid_block),
                                      &prog), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);

@@ -3,7 +3,7 @@
 
 #include "gpu_test.h"
 
-#include "include/render_blocks.h"
+#include "shared/render_blocks.h"
 
 enum { SIDE = 13, LEAST = 8 };
 
@@ -18,7 +18,7 @@ static void support(float *depth)
     struct orl_tex_params normal_params = params;
     normal_params.format = GL_RGBA16F;
     struct pyramid_block block = {.level = {SIDE, SIDE, 0, LEAST}};
-    assert_int_equal(orl_prog_create(gpu, "support.comp", NULL, sizeof block, &prog), ORL_OK);
+    assert_int_equal(orl_prog_create(gpu, "proxy/support.comp", NULL, sizeof block, &prog), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &normal_params, &normal), ORL_OK);

@@ -1,0 +1,38 @@
+// Averages the pixels that antialias_find.comp listed with the 3x3 around, weighing 0.35, 1, 0.35 each
+// way, in square roots of light: a bright side does not swallow a dark one. First into the list, since
+// neighbours are still to be averaged; with WRITE from there. HALF: the picture is of half floats.
+#include "edges/edge_list.glsl"
+
+layout(local_size_x = EDGE_GROUP) in;
+#ifdef HALF
+layout(rgba16f, binding = 0) uniform image2D color; // w: coverage
+#else
+layout(rgba32f, binding = 0) uniform image2D color;
+#endif
+
+vec3 average(uvec4 edge)
+{
+    float aside = 0.35 * uintBitsToFloat(edge.y);
+    vec3 sum = vec3(0.0);
+    for (int n = 0; n < 9; n++) {
+        ivec2 off = ivec2(n % 3, n / 3) - 1;
+        sum += sqrt(imageLoad(color, edge_pixel(edge) + off).rgb) *
+               (off.x != 0 ? aside : 1.0) * (off.y != 0 ? aside : 1.0);
+    }
+    sum /= (1.0 + 2.0 * aside) * (1.0 + 2.0 * aside);
+    return sum * sum;
+}
+
+void main()
+{
+    uint place = gl_GlobalInvocationID.x;
+    while (place < edges_listed()) {
+#ifdef WRITE
+        ivec2 at = edge_pixel(edges[place]);
+        imageStore(color, at, vec4(uintBitsToFloat(edges[place].yzw), imageLoad(color, at).a));
+#else
+        edges[place].yzw = floatBitsToUint(average(edges[place]));
+#endif
+        place += EDGE_GROUP * EDGE_GROUPS_MAX;
+    }
+}

@@ -1,0 +1,38 @@
+// Where depth steps, a pixel shows what is on both sides, as it does in a photograph. Lists those
+// pixels, and how much: antialias.comp averages. 2x2 pixels an invocation.
+#define BLOCK_IMAGE
+#include "shared/render_blocks.h"
+#include "edges/edge_list.glsl"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(r32f, binding = 0) readonly uniform image2D depth; // < 0: guessed
+
+// Second differences of inverse depth, parts of the largest: from none of it to all. Slopes have none.
+const float STEP_FROM = 0.004, STEP_FULL = 0.012;
+
+void main()
+{
+    ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
+    if (corner.x >= area.x || corner.y >= area.y)
+        return;
+    float inverse[16]; // of the 4x4 around; a guess is behind everything
+    for (int k = 0; k < 16; k++) {
+        float z = imageLoad(depth, corner + ivec2(k & 3, k >> 2) - 1).r;
+        inverse[k] = z > 0.0 ? 1.0 / z : 0.0;
+    }
+    const int along[4] = int[4](1, 3, 4, 5); // to the next, in four directions
+    for (int k = 0; k < 4; k++) {
+        ivec2 at = corner + ivec2(k & 1, k >> 1);
+        bool whole = all(greaterThan(at, ivec2(0))) && all(lessThan(at, area.xy - 1));
+        int own = 5 + (k & 1) + 4 * (k >> 1);
+        float bend = 0.0, most = inverse[own];
+        for (int n = 0; n < 4; n++) {
+            float before = inverse[own - along[n]], after = inverse[own + along[n]];
+            bend = max(bend, abs(before + after - 2.0 * inverse[own]));
+            most = max(most, max(before, after));
+        }
+        float share = (bend / max(most, 1e-30) - STEP_FROM) / (STEP_FULL - STEP_FROM);
+        if (whole && share > 0.0)
+            edge_add(at, uvec3(floatBitsToUint(min(share, 1.0)), 0u, 0u));
+    }
+}

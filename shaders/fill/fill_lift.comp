@@ -1,0 +1,29 @@
+// Gives pixels whose weight is negative, as there is at least so much light (gather_radiance.comp),
+// the light around them that is as bright, which fill_seed.comp and its like have spread as
+// logarithms: these are known then. 2x2 pixels an invocation.
+#define BLOCK_IMAGE
+#include "shared/render_blocks.h"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(rgba32f, binding = 0) readonly uniform image2D filled;
+layout(rgba32f, binding = 1) uniform image2D accumulated; // colour * weight, weight
+
+#define FILL_LEVEL filled
+#include "fill/fill.glsl"
+
+void main()
+{
+    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
+    if (2 * parent.x >= area.x || 2 * parent.y >= area.y)
+        return;
+    vec4 finer[4];
+    fill_finer(parent, finer);
+    for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
+        ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
+        vec4 sum = imageLoad(accumulated, at);
+        if (!(sum.a < 0.0) || !(finer[k].a > 0.0))
+            continue;
+        vec3 light = exp2(finer[k].rgb / finer[k].a);
+        imageStore(accumulated, at, vec4(max(sum.rgb, light * -sum.a), -sum.a));
+    }
+}

@@ -1,0 +1,67 @@
+// Finest level of the filling pyramid, at half the picture's size: what 2x2 pixels know,
+// times its weight.
+// SEED_DEPTH: inverse depth, weighted so steeply towards far surfaces that a hole takes
+// the farther one of its rim, which it shows, and nothing between the two.
+// SEED_LEAST: the light that there is at least where weights are negative (gather_radiance.comp).
+// SEED_BRIGHTER: logarithms of the light that is as bright as what SEED_LEAST has spread here: what
+// clips is not as dark as the wall beside it.
+// SEED_GUESSES: colour on guessed depth, to blur it. Otherwise: colour.
+#define BLOCK_IMAGE
+#include "shared/render_blocks.h"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+#ifdef SEED_DEPTH
+layout(r32f, binding = 0) readonly uniform image2D known;
+#else
+layout(rgba32f, binding = 0) readonly uniform image2D known; // colour * weight, weight
+#endif
+#ifdef SEED_GUESSES
+layout(rgba32f, binding = 2) readonly uniform image2D trusted; // z: see gather_radiance.comp
+#endif
+#ifdef SEED_BRIGHTER
+layout(rgba32f, binding = 1) uniform image2D seeded; // in place
+
+const float BRIGHT_FROM = 0.65; // of the least light there is: some of it does not clip entirely
+vec3 least = vec3(0.0);
+#else
+layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
+#endif
+
+vec4 seed(ivec2 at)
+{
+    vec4 value = imageLoad(known, at); // 0 outside
+#ifdef SEED_DEPTH
+    float z = value.r;
+    float weight = clamp(pow(z / scale.x, 14.0), 1e-15, 1e15); // sums stay floats
+    return z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
+#elif defined(SEED_GUESSES)
+    float weight = abs(value.a);
+    return weight > 0.0 && imageLoad(trusted, at).z > 0.0 ? vec4(value.rgb / weight, 1.0)
+                                                          : vec4(0.0);
+#elif defined(SEED_LEAST)
+    return value.a < 0.0 ? vec4(value.rgb / -value.a, 1.0) : vec4(0.0);
+#elif defined(SEED_BRIGHTER)
+    vec3 light = value.rgb / max(value.a, 1e-30);
+    vec3 share = light / max(least, 1e-9);
+    float weight = smoothstep(BRIGHT_FROM, 1.0, min(min(share.r, share.g), share.b));
+    return value.a > 0.0 ? vec4(log2(max(light, 1e-9)), 1.0) * weight : vec4(0.0);
+#else
+    return value.a > 0.0 ? value / value.a : vec4(0.0);
+#endif
+}
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= area.x || at.y >= area.y)
+        return;
+#ifdef SEED_BRIGHTER
+    vec4 around = imageLoad(seeded, at);
+    if (!(around.a > 0.0)) // nothing clips, here or anywhere
+        return;
+    least = around.rgb / around.a;
+#endif
+    ivec2 f = 2 * at;
+    imageStore(seeded, at, seed(f) + seed(f + ivec2(1, 0)) + seed(f + ivec2(0, 1)) +
+                               seed(f + ivec2(1, 1)));
+}

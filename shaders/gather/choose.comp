@@ -1,0 +1,70 @@
+// Lists, per tile of the screen, the photographs that can paint it best, so that a
+// pixel's cost does not grow with the number of photographs.
+#include "gather/photo_choice.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+layout(std430, binding = 1) writeonly buffer tile_lists {
+    int chosen[]; // CANDIDATES per tile, best first, -1: none
+};
+
+const int ACROSS = 3; // samples of a tile, each way
+
+// Depths of a tile's sample points; 0: none there.
+void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS])
+{
+    for (int i = 0; i < ACROSS * ACROSS; i++) {
+        ivec2 at = tile * CHOICE_TILE + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * CHOICE_TILE /
+                                            (2 * ACROSS);
+        at = min(at, area.xy - 1);
+        float depth = abs(imageLoad(view_depth, at).r);
+        points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
+    }
+}
+
+void main()
+{
+    ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    int row = area.w, rows = (area.y + CHOICE_TILE - 1) / CHOICE_TILE;
+    if (tile.x >= row || tile.y >= rows)
+        return;
+    vec3 points[ACROSS * ACROSS];
+    sample_depths(tile, points);
+    float best[CANDIDATES];
+    int index[CANDIDATES];
+    for (int c = 0; c < CANDIDATES; c++) {
+        best[c] = 1e30;
+        index[c] = -1;
+    }
+    int i = 0;
+    do { // the condition last: see gather_best.comp
+        // The best that it can do anywhere in the tile, and a little for how much it sees.
+        float least = 1e30, seen = 0.0;
+        photo shot = photo_at(i);
+        for (int s = 0; s < ACROSS * ACROSS; s++) {
+            vec2 pixel;
+            float z;
+            if (!(points[s].z > 0.0) || !photo_project(shot, points[s], pixel, z))
+                continue;
+            float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
+            float hidden = share > 0.9 ? 1.0 : 8.0;
+            least = min(least, photo_penalty(shot, points[s]) * hidden);
+            seen += 1.0 / hidden;
+        }
+        least = seen == 0.0 ? 1e30 : least * (1.0 + 1.0 / max(seen, 0.1));
+        int candidate = i;
+        for (int c = 0; c < CANDIDATES; c++) { // insertion
+            if (least < best[c]) {
+                float b = best[c];
+                int n = index[c];
+                best[c] = least;
+                index[c] = candidate;
+                least = b;
+                candidate = n;
+            }
+        }
+        i++;
+    } while (i < area.z);
+    for (int c = 0; c < CANDIDATES; c++)
+        chosen[(tile.y * row + tile.x) * CANDIDATES + c] = index[c];
+}

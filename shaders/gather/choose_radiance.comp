@@ -1,0 +1,65 @@
+// Lists, per tile of the screen, the photographs that say most of its radiance: a few points of
+// it ask every photograph for geometric weight, visibility and trust.
+#include "gather/radiance_sample.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+layout(std430, binding = 1) writeonly buffer tile_lists {
+    // ORL_RADIANCE_LIST per tile: photographs, best first, -1: none; bits of the best's weight.
+    int chosen[];
+};
+
+const int PROBES_X = 4, PROBES_Y = 2;
+const ivec2 TILE = ivec2(ORL_PIXEL_GROUP_X, ORL_PIXEL_GROUP_Y);
+const float LEAST_SHARE = 0.01; // of the best photograph's weight
+const float CLIPPED_SHARE = 0.1; // of its geometric weight that a photograph has at least
+
+// The most that a photograph weighs at any probe.
+float score(int i, ivec2 tile)
+{
+    float most = 0.0;
+    photo shot = photo_at(i);
+    for (int k = 0; k < PROBES_X * PROBES_Y; k++) {
+        ivec2 at = tile * TILE + (2 * ivec2(k % PROBES_X, k / PROBES_X) + 1) *
+                                     (TILE / (2 * ivec2(PROBES_X, PROBES_Y)));
+        at = min(at, area.xy - 1);
+        float depth = imageLoad(view_depth, at).r;
+        if (depth == 0.0)
+            continue;
+        Sample s = ask(shot, i, surface_point(at, abs(depth)), depth < 0.0);
+        // What clips still tells what is too dark to be true (gather_radiance.comp).
+        most = max(most, max(weight_alone(shot, s), CLIPPED_SHARE * s.weight));
+    }
+    return most;
+}
+
+void main()
+{
+    ivec2 tile = ivec2(gl_GlobalInvocationID.xy), tiles = (area.xy + TILE - 1) / TILE;
+    if (any(greaterThanEqual(tile, tiles)))
+        return;
+    float best[ORL_RADIANCE_KEPT];
+    int index[ORL_RADIANCE_KEPT];
+    for (int k = 0; k < ORL_RADIANCE_KEPT; k++) {
+        best[k] = 0.0;
+        index[k] = -1;
+    }
+    for (int i = 0; i < area.z; i++) {
+        float mine = score(i, tile);
+        int candidate = i;
+        for (int k = 0; k < ORL_RADIANCE_KEPT; k++) { // insertion
+            if (mine > best[k]) {
+                float b = best[k];
+                int n = index[k];
+                best[k] = mine;
+                index[k] = candidate;
+                mine = b;
+                candidate = n;
+            }
+        }
+    }
+    int list = ORL_RADIANCE_LIST * (tile.y * tiles.x + tile.x);
+    for (int k = 0; k < ORL_RADIANCE_KEPT; k++)
+        chosen[list + k] = best[k] >= LEAST_SHARE * best[0] ? index[k] : -1;
+    chosen[list + ORL_RADIANCE_KEPT] = floatBitsToInt(best[0]);
+}

@@ -1,0 +1,186 @@
+// Blends the best few photographs into each pixel: weights fall continuously to zero at
+// the first photograph left out, at borders and where the surface gets hidden.
+#include "gather/photo_choice.glsl"
+
+// KEPT: photographs that a pixel may blend, 2 or 4: a software renderer samples all of them.
+// An invocation makes 2x2 pixels, so that it loads each photograph's parameters once for four.
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+// Finished: colour, coverage. Left to compose.comp: what nothing paints: 0, -1; what is painted on
+// guessed depth and is to be blurred: colour, -1 - log2 of the blur in pixels.
+layout(rgba16f, binding = 1) writeonly uniform image2D accumulated;
+layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sum of 2x2 of them: fill_seed.comp
+layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // and of those on guessed depth
+layout(std430, binding = 1) readonly buffer tile_lists {
+    int chosen[];
+};
+#include "gather/unfinished.glsl"
+
+// How surely the photograph saw this surface: 1 where its depth agrees, little where it
+// has none, 0 where it saw something else.
+float photo_seen_share(vec4 seen, float z)
+{
+    vec4 off = abs(seen - z) * (1.0 / (z * options.x));
+    vec4 share = clamp(2.0 - off, 0.0, 1.0);
+    float agrees = max(max(share.x, share.y), max(share.z, share.w));
+    bool unknown = all(lessThanEqual(seen, vec4(0.0)));
+    return unknown ? choice.z : agrees;
+}
+
+// A pixel's surface point.
+struct spot {
+    vec3 p;       // z 0: none
+    bool guessed;
+};
+
+// A photograph that shows it.
+struct sight {
+    float penalty;
+    int index;  // of the photograph
+    vec2 pixel; // of it
+    float mip;
+};
+
+// The best of a pixel, ascending by penalty, and the penalty of the one after the last of them.
+struct ranking {
+    sight best[KEPT];
+    float next;
+};
+
+// Selects, and no branches, here and below: those cost a software renderer a mask on every value
+// that outlives them.
+void insert(sight s, inout ranking r)
+{
+    for (int k = 0; k < KEPT; k++) {
+        bool better = s.penalty < r.best[k].penalty;
+        sight other = r.best[k];
+        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.index : other.index,
+                          better ? s.pixel : other.pixel, better ? s.mip : other.mip);
+        s = sight(better ? other.penalty : s.penalty, better ? other.index : s.index,
+                  better ? other.pixel : s.pixel, better ? other.mip : s.mip);
+    }
+    r.next = min(r.next, s.penalty);
+}
+
+// The least penalty that is left out.
+float limit_of(ranking r)
+{
+    float limit = r.next;
+    for (int k = 1; k < KEPT; k++)
+        limit = choice.x == float(k) ? r.best[k].penalty : limit;
+    return limit;
+}
+
+// Less sure than this of what is behind a guess, a photograph leaves specks of what stands before it.
+const float GUESS_SURE_LEAST = 0.1;
+
+void consider(int i, photo shot, spot s, inout ranking r)
+{
+    vec2 pixel;
+    float z;
+    bool inside = photo_project(shot, s.p, pixel, z);
+    vec4 seen = photo_depths(shot, pixel);
+    float penalty = photo_penalty(shot, s.p);
+    float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
+                 : flags.x == 1 ? photo_seen_share(seen, z)
+                                : 1.0;
+    penalty = s.guessed ? penalty : photo_surface_penalty(penalty);
+    float sure = sees * photo_border(shot, pixel, s.guessed);
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (s.guessed ? GUESS_SURE_LEAST : 1e-4);
+    insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);
+}
+
+// One photograph's colour and its weight.
+vec4 look(sight one, float least, float limit, spot s)
+{
+    // Full weight until the penalty comes near that of the first left out; a trace of it where they
+    // are equal, so that photographs that tie for the last place paint.
+    float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
+    vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
+    float sharpness = s.guessed ? choice.w : choice.y;
+    bool counts = one.penalty < NOT_SEEN && one.penalty <= limit;
+    return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
+}
+
+// On guessed depth a photograph that differs shows something else, more often than not.
+const float GUESS_SEVERITY = 4.0;
+
+// Colour, and 1 where there is one; and the blur that it needs on guessed depth. Samples far from
+// the consensus lose weight: passers-by, leaves, reflections. Roots make the consensus of
+// photographs and not of the best one alone, and differences of light about as the eye sees them.
+vec4 blend(spot s, ranking r, out float blur)
+{
+    float limit = limit_of(r);
+    vec4 samples[KEPT], vote = vec4(0.0), sum = vec4(0.0);
+    for (int k = 0; k < KEPT; k++) {
+        samples[k] = look(r.best[k], r.best[0].penalty, limit, s);
+        vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
+    }
+    vec3 mean = vote.rgb / max(vote.a, 1e-30);
+    vec2 apart = vec2(0.0); // squares times weight, weight
+    float severity = choice_more.y * (s.guessed ? GUESS_SEVERITY : 1.0);
+    for (int k = 0; k < KEPT; k++) {
+        vec3 off = sqrt(samples[k].rgb) - mean;
+        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
+        apart += vec2(dot(off, off), 1.0) * samples[k].a;
+    }
+    apart.y = max(apart.y, 1e-30);
+    blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
+    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
+}
+
+void main()
+{
+    ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
+    if (corner.x >= area.x || corner.y >= area.y)
+        return;
+    spot spots[4];
+    ranking rankings[4];
+    for (int k = 0; k < 4; k++) {
+        ivec2 at = corner + ivec2(k & 1, k >> 1);
+        float stored = imageLoad(view_depth, at).r; // 0 outside
+        spots[k] = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
+                        stored < 0.0);
+        rankings[k].next = NOT_SEEN;
+        for (int n = 0; n < KEPT; n++)
+            rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
+    }
+    ivec2 tile = corner / CHOICE_TILE; // of all four, since its side is even
+    int list = (tile.y * area.w + tile.x) * CANDIDATES, count = int(choice_more.x), c = 0;
+    int i = chosen[list];
+    // The condition last: a software renderer runs a loop's body once more to find one at its
+    // beginning false.
+    do {
+        photo shot = photo_at(max(i, 0));
+        for (int k = 0; k < 4; k++)
+            consider(i, shot, spots[k], rankings[k]);
+        c++;
+        i = c < count ? chosen[list + c] : -1;
+    } while (i >= 0);
+    vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
+    float blur = 0.0; // the same for all four: single sharp pixels in what is blurred look like dirt
+    for (int k = 0; k < 4; k++) {
+        float own;
+        colors[k] = blend(spots[k], rankings[k], own);
+        vec4 guessed = spots[k].guessed ? colors[k] : vec4(0.0);
+        seed += colors[k];
+        guess += guessed;
+        blur = guessed.a > 0.0 ? max(blur, own) : blur;
+    }
+    bool whole = true;
+    for (int k = 0; k < 4; k++) {
+        bool painted = colors[k].a > 0.0, blurs = painted && spots[k].guessed && blur > 0.0;
+        whole = whole && painted && !blurs;
+        colors[k].a = !painted ? -1.0 : blurs ? -1.0 - blur : spots[k].guessed ? 0.0 : 1.0;
+    }
+    // Last: what lives on after a store costs a software renderer a load. Outside the picture they
+    // do nothing.
+    for (int k = 0; k < 4; k++)
+        imageStore(accumulated, corner + ivec2(k & 1, k >> 1), colors[k]);
+    imageStore(seeds, corner / 2, seed);
+    if (guess.a > 0.0) // stores cost more than a clear before
+        imageStore(guesses, corner / 2, guess);
+    if (!whole)
+        unfinished_add(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x,
+                       gl_NumWorkGroups.x * gl_NumWorkGroups.y);
+}

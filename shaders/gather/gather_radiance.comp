@@ -1,0 +1,280 @@
+// Blends photographs of several exposures into one radiance: the geometric weight of each
+// times its trust, so that clipped and noisy samples lose to better ones pixel by pixel.
+#include "gather/radiance_sample.glsl"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in; // a tile
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+// Colour * weight, weight, which is negative where most of it clips: colour is the least there
+// may be.
+layout(rgba32f, binding = 1) uniform image2D accumulated;
+// weight * trust, weight; on guessed depth 1 + log2 of the blur that it needs, in pixels, else 0.
+layout(rgba32f, binding = 2) uniform image2D trusted;
+layout(std430, binding = 1) readonly buffer tile_lists {
+    int chosen[]; // choose_radiance.comp
+};
+
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
+const float LEAST_SHARE_FOUND = 0.02; // of the tile's best: with less a pixel asks all the others
+const float DOUBT_FROM = 0.1; // excess below which a sample keeps all but 1 % of its weight
+const float CLIPS_BELOW = 0.5; // mean trust as far as clipping goes
+const float SHARP_FROM = 0.02; // of the weight: with less a sample is not read again
+
+// The heaviest samples of a pixel. Only ever indexed by loops that compilers unroll: memory that
+// each invocation addresses by itself costs more than all the rest on a software renderer.
+Sample samples[ORL_RADIANCE_KEPT];
+float weights[ORL_RADIANCE_KEPT]; // 0: no sample
+#define EACH_SAMPLE(k) for (int k = 0; k < ORL_RADIANCE_KEPT; k++)
+
+// In place of the lightest sample, if that is lighter.
+void put(Sample s, float weight)
+{
+    int least = -1;
+    float lightest = weight;
+    EACH_SAMPLE(k) {
+        bool lighter = weights[k] < lightest;
+        lightest = lighter ? weights[k] : lightest;
+        least = lighter ? k : least;
+    }
+    EACH_SAMPLE(k) {
+        bool here = k == least;
+        samples[k].color = here ? s.color : samples[k].color;
+        samples[k].clip = here ? s.clip : samples[k].clip;
+        samples[k].weight = here ? s.weight : samples[k].weight;
+        samples[k].pixel = here ? s.pixel : samples[k].pixel;
+        samples[k].mip = here ? s.mip : samples[k].mip;
+        samples[k].shot = here ? s.shot : samples[k].shot;
+        weights[k] = here ? weight : weights[k];
+    }
+}
+
+// The tile's photographs and, where a pixel finds little in them, all others: a small surface
+// that no probe of the tile met.
+void ask_photos(vec3 p, bool guessed)
+{
+    EACH_SAMPLE(k) {
+        samples[k] = Sample(vec3(0.0), 0.0, 0.0, vec2(0.0), 0.0, 0);
+        weights[k] = 0.0;
+    }
+    int list = ORL_RADIANCE_LIST * int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+    int listed[ORL_RADIANCE_KEPT];
+    EACH_SAMPLE(k)
+        listed[k] = chosen[list + k];
+    float enough = LEAST_SHARE_FOUND * intBitsToFloat(chosen[list + ORL_RADIANCE_KEPT]);
+    float heaviest = 0.0;
+    int n = 0, i = max(listed[0], 0);
+    int other = listed[0] < 0 ? 0 : -1; // where it is among all; -1: still in the list
+    do { // the condition last: see gather_best.comp
+        bool known = false;
+        EACH_SAMPLE(k)
+            known = known || listed[k] == i;
+        photo shot = photo_at(i);
+        Sample s = ask(shot, i, p, guessed);
+        float weight = known && other >= 0 ? 0.0 : weight_alone(shot, s);
+        put(s, weight);
+        heaviest = max(heaviest, weight);
+        n++;
+        i = -1;
+        EACH_SAMPLE(k)
+            i = k == n ? listed[k] : i;
+        if (i < 0 && (other >= 0 || !(heaviest > enough))) {
+            other++;
+            i = other < area.z ? other : -1;
+        }
+    } while (i >= 0);
+}
+
+// Radiance of the sample at the weighted median of brightness.
+vec3 median_color()
+{
+    float total = 0.0, brightness[ORL_RADIANCE_KEPT];
+    EACH_SAMPLE(k) {
+        brightness[k] = dot(samples[k].color, LUMINANCE);
+        total += weights[k];
+    }
+    vec3 median = vec3(0.0);
+    EACH_SAMPLE(k) {
+        float below = 0.0, mine = brightness[k];
+        EACH_SAMPLE(j)
+            below += brightness[j] < mine || (brightness[j] == mine && j < k) ? weights[j] : 0.0;
+        bool middle = below <= 0.5 * total && below + weights[k] > 0.5 * total;
+        median = middle ? samples[k].color : median;
+    }
+    return median;
+}
+
+// Largest weight that a method of the best few leaves out.
+float left_out()
+{
+#ifdef BEST
+    int kept = int(choice.x);
+    float limit = 0.0;
+    EACH_SAMPLE(k) {
+        int above = 0;
+        EACH_SAMPLE(j)
+            above += int(weights[j] > weights[k] || (weights[j] == weights[k] && j < k));
+        limit = above == kept ? weights[k] : limit;
+    }
+    return limit;
+#else
+    return 0.0;
+#endif
+}
+
+Sample sample_at(int one)
+{
+    Sample s = samples[0];
+    EACH_SAMPLE(k) {
+        bool here = k == one;
+        s.color = here ? samples[k].color : s.color;
+        s.clip = here ? samples[k].clip : s.clip;
+        s.weight = here ? samples[k].weight : s.weight;
+        s.pixel = here ? samples[k].pixel : s.pixel;
+        s.mip = here ? samples[k].mip : s.mip;
+        s.shot = here ? samples[k].shot : s.shot;
+    }
+    return s;
+}
+
+// Lessens the weights of things that moved between the photographs. noise: of the samples.
+void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
+{
+    float off[ORL_RADIANCE_KEPT], allowed[ORL_RADIANCE_KEPT]; // squared stops
+    int doubtful = 0; // bits
+    EACH_SAMPLE(k) {
+        off[k] = stops2(samples[k].color, level);
+        // 1 / ln(2)^2 makes relative error stops.
+        allowed[k] = radiance.x * radiance.x + 2.0814 * noise[k];
+        doubtful |= weights[k] > 0.0 && off[k] > DOUBT_FROM * allowed[k] ? 1 << k : 0;
+    }
+    do { // of those alone, since it is a read
+        int one = findLSB(doubtful); // -1: none
+        Sample s = sample_at(one);
+        float more = unrest(photo_at(s.shot), s);
+        EACH_SAMPLE(k) {
+            float excess = off[k] / (allowed[k] + more);
+            weights[k] *= k == one ? 1.0 / (1.0 + excess * excess) : 1.0;
+        }
+        doubtful &= doubtful - 1;
+    } while (doubtful != 0);
+}
+
+// What is darker than others' least light is not what they show: the tree that a photograph from
+// aside shows is not the sky, whatever its exposure. So far as what does not clip is contradicted,
+// what clips counts by geometry. On surfaces that takes a majority of at least two: one alone
+// clips beside an edge as often.
+void heed_clipped(bool guessed)
+{
+    float all = 0.0, best = 0.0, least = 0.0; // geometric weights; luminance
+    EACH_SAMPLE(k) {
+        float weight = samples[k].clip < CLIPS_BELOW ? samples[k].weight : 0.0;
+        all += weight;
+        least = weight > best ? dot(samples[k].color, LUMINANCE) : least;
+        best = max(best, weight);
+    }
+    float other = 0.0, contradicted = 0.0;
+    EACH_SAMPLE(k) {
+        float weight = samples[k].clip < CLIPS_BELOW ? 0.0 : weights[k];
+        float below = log2(max(least, radiance.z) /
+                           max(dot(samples[k].color, LUMINANCE), radiance.z));
+        other += weight;
+        contradicted += weight * smoothstep(radiance.x, 2.0 * radiance.x, below);
+    }
+    other = max(other, 1e-30);
+    float majority = smoothstep(1.0, 3.0, (all - best) / other);
+    float share = contradicted / other * (guessed ? 1.0 : majority);
+    EACH_SAMPLE(k)
+        weights[k] += samples[k].clip < CLIPS_BELOW ? share * samples[k].weight : 0.0;
+}
+
+// Final weights and their sums times trust, times trust as far as clipping goes, and alone.
+vec3 weigh(bool guessed)
+{
+    // How far each sample is to be trusted depends on how much light there was, which its
+    // own noise must not decide: the median says.
+    vec3 level = max(median_color(), radiance.z), inverse = 1.0 / level;
+    float noise[ORL_RADIANCE_KEPT];
+    EACH_SAMPLE(k) {
+        noise[k] = noise_of(photo_at(samples[k].shot), inverse);
+        weights[k] = total_weight(samples[k], noise[k]);
+    }
+    if (radiance.x > 0.0)
+        heed_clipped(guessed);
+    // Nearly all of it, so that none appears at once, and samples that tie with it remain.
+    float limit = 0.999 * left_out();
+    EACH_SAMPLE(k)
+        weights[k] = max(weights[k] - limit, 0.0);
+    if (radiance.x > 0.0)
+        lessen_ghosts(level, noise);
+    vec3 sums = vec3(0.0);
+    EACH_SAMPLE(k)
+        sums += weights[k] * vec3(samples[k].clip * vec2(MODEL / (MODEL + noise[k]), 1.0), 1.0);
+    return sums;
+}
+
+// Sum of colour * weight; those that count are read again with the sharper filter.
+vec3 blend(float total)
+{
+    vec3 sum = vec3(0.0);
+    int sharp = 0; // bits
+    EACH_SAMPLE(k) {
+        bool counts = flags.y == 1 && weights[k] > SHARP_FROM * total;
+        sharp |= counts ? 1 << k : 0;
+        sum += counts ? vec3(0.0) : samples[k].color * weights[k];
+    }
+    do {
+        int one = findLSB(sharp); // -1: none
+        Sample s = sample_at(one);
+        float weight = 0.0;
+        EACH_SAMPLE(k)
+            weight = k == one ? weights[k] : weight;
+        sum += photo_sharper(photo_at(s.shot), s.pixel, s.mip, s.color) * weight;
+        sharp &= sharp - 1;
+    } while (sharp != 0);
+    return sum;
+}
+
+// The blur that colour on guessed depth needs, log2 of pixels.
+float blur_of(vec3 p, float total)
+{
+#ifdef BEST
+    vec4 vote = vec4(0.0);
+    float heaviest = 0.0;
+    int best = 0;
+    EACH_SAMPLE(k) {
+        vote += vec4(sqrt(samples[k].color), 1.0) * sqrt(weights[k]);
+        best = weights[k] > heaviest ? samples[k].shot : best;
+        heaviest = max(heaviest, weights[k]);
+    }
+    vec3 mean = vote.rgb / max(vote.a, 1e-30);
+    float squares = 0.0;
+    EACH_SAMPLE(k) {
+        vec3 off = sqrt(samples[k].color) - mean;
+        squares += dot(off, off) * weights[k];
+    }
+    float all = max(total, 1e-30);
+    return guess_blur(p, photo_penalty(photo_at(best), p), sqrt(squares / all), heaviest / all);
+#else
+    return 0.0;
+#endif
+}
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= area.x || at.y >= area.y)
+        return;
+    float depth = imageLoad(view_depth, at).r;
+    if (depth == 0.0)
+        return;
+    vec3 p = surface_point(at, abs(depth));
+    ask_photos(p, depth < 0.0);
+    vec3 sums = weigh(depth < 0.0);
+    float total = sums.z;
+    vec4 before = imageLoad(accumulated, at);
+    bool clips = before.a + (sums.y < CLIPS_BELOW * total ? -total : total) < 0.0;
+    float both = abs(before.a) + total;
+    imageStore(accumulated, at, vec4(before.rgb + blend(total), clips ? -both : both));
+    vec4 trust = imageLoad(trusted, at);
+    float blur = depth < 0.0 && total > trust.y ? 1.0 + blur_of(p, total) : trust.z;
+    imageStore(trusted, at, vec4(trust.xy + vec2(sums.x, total), blur, 0.0));
+}

@@ -1,0 +1,46 @@
+// Guesses depth, negative, in holes of a photograph's depth: what is clearly behind their rim is
+// hidden there as well. Only where no half of eight directions is empty: a sky beside a building
+// is no hole in it.
+#define BLOCK_IMAGE
+#include "shared/render_blocks.h"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(r32f, binding = 0) readonly uniform image2D depth;
+layout(r32f, binding = 1) writeonly uniform image2D guessed; // the same, and guesses
+
+const int DIRECTIONS = 8, STRIDE = 2;
+const int REACH_SHARE = 24; // of the picture's longer side
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= area.x || at.y >= area.y)
+        return;
+    float here = imageLoad(depth, at).r;
+    if (here > 0.0) {
+        imageStore(guessed, at, vec4(here));
+        return;
+    }
+    int reach = max(area.x, area.y) / REACH_SHARE;
+    float sum = 0.0, total = 0.0; // of inverse depth
+    int empty = 0, longest = 0, first = 0;
+    for (int k = 0; k < DIRECTIONS; k++) {
+        int turn = k & 3, back = k < 4 ? 1 : -1;
+        ivec2 ahead = back * ivec2(turn == 2 ? 0 : turn == 3 ? -1 : 1, turn == 0 ? 0 : 1);
+        float found = 0.0;
+        int r = 0;
+        while (!(found > 0.0) && r < reach) {
+            r += STRIDE;
+            found = imageLoad(depth, at + r * ahead).r; // 0 outside
+        }
+        bool met = found > 0.0;
+        sum += met ? 1.0 / (found * float(r)) : 0.0;
+        total += met ? 1.0 / float(r) : 0.0;
+        empty = met ? 0 : empty + 1;
+        longest = max(longest, empty);
+        first += k == first && !met ? 1 : 0;
+    }
+    // The run may go on from the last direction to the first.
+    bool hole = total > 0.0 && max(longest, empty + first) < DIRECTIONS / 2;
+    imageStore(guessed, at, vec4(hole ? -total / sum : 0.0));
+}

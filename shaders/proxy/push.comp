@@ -1,0 +1,140 @@
+// One push step: empty and occluded pixels of a finer level are filled from those of
+// the four nearest coarser pixels whose disc they lie in (Airieau 2012, 5.1).
+// One invocation takes the four fine pixels around a corner where four coarse pixels meet:
+// those are the bilinear neighbours of all four, so they are read and prepared once.
+// LAST: the finest level, which comes out as depth at pixel centres, with NORMALS as normal too.
+#define BLOCK_PYRAMID
+#include "shared/render_blocks.h"
+#include "proxy/octahedron.glsl"
+#include "proxy/surfel.glsl"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(rgba32f, binding = 0) readonly uniform image2D coarse_a;
+layout(rg32ui, binding = 1) readonly uniform uimage2D coarse_b;
+#ifdef LAST
+#ifdef NORMALS
+layout(rg32ui, binding = 2) readonly uniform uimage2D splats; // surfel_pack_own
+layout(r32f, binding = 3) writeonly uniform image2D depth_out;     // 0: none
+layout(rgba16f, binding = 4) writeonly uniform image2D normal_out; // w: 1 on a splat
+#else
+layout(r32f, binding = 3) uniform image2D depth_out; // in: surfel_own_depth
+#endif
+#else
+layout(rgba32f, binding = 2) uniform image2D fine_a;
+layout(rg32ui, binding = 3) writeonly uniform uimage2D fine_b;
+#endif
+
+vec2 camera_ray(vec2 pixel)
+{
+    return (pixel - camera.zw) / camera.xy;
+}
+
+// What the discs put into the pixel whose centre is `target`, given its own near depth
+// (0: empty); no surfel where they leave it alone. centre: of the discs, level 0 pixels;
+// ray: to them, at unit depth.
+surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 ray[4], vec4 weight)
+{
+    vec2 target_ray = camera_ray(target);
+    float front = 1e38, front_far = 0.0;
+    bool hit[4];
+    for (int i = 0; i < 4; i++) {
+        bool inside;
+        float depth = surfel_depth_at(disc[i], ray[i], target_ray, inside);
+        // A disc smaller than a pixel on screen still closes empty pixels around its
+        // centre, as EWA's low-pass filter does: otherwise slanted surfaces are full of
+        // pinholes. It hides nothing there.
+        vec2 off = centre[i] - target;
+        bool closes = own_near <= 0.0 &&
+                      dot(off, off) <= SURFEL_MIN_RADIUS_PX * SURFEL_MIN_RADIUS_PX;
+        hit[i] = disc[i].radius > 0.0 && depth > 0.0 && (inside || closes);
+        bool nearer = hit[i] && disc[i].near < front;
+        front = nearer ? disc[i].near : front;
+        front_far = nearer ? disc[i].far : front_far;
+    }
+    surfel sum = surfel(front, front_far, 0.0, 0.0, vec3(0.0), vec2(0.0));
+    float total = 0.0;
+    for (int i = 0; i < 4; i++) {
+        float w = hit[i] && disc[i].near <= front_far ? weight[i] : 0.0;
+        sum.far = max(sum.far, w > 0.0 ? disc[i].far : 0.0);
+        sum.depth += w * disc[i].depth;
+        sum.radius += w * disc[i].radius;
+        sum.normal += w * disc[i].normal;
+        sum.displacement += w * (centre[i] - target);
+        total += w;
+    }
+    // A pixel with a surface of its own keeps it unless a nearer disc hides it.
+    if (total == 0.0 || (own_near > 0.0 && own_near <= front_far))
+        return NO_SURFEL;
+    float scale = 1.0 / total;
+    sum.depth *= scale;
+    sum.radius *= scale;
+    sum.displacement *= scale;
+    if (!(dot(sum.normal, sum.normal) > 1e-12))
+        sum.normal = NO_SURFEL.normal;
+    return sum;
+}
+
+void main()
+{
+    // The coarse pixel above and left of the corner; -1 at the border.
+    ivec2 corner = ivec2(gl_GlobalInvocationID.xy) - 1;
+    if (2 * corner.x + 1 >= level.x || 2 * corner.y + 1 >= level.y)
+        return;
+    surfel disc[4];
+    vec2 centre[4], ray[4];
+    for (int i = 0; i < 4; i++) {
+        ivec2 from = corner + ivec2(i & 1, i >> 1);
+        // Outside: zero, thus empty.
+        disc[i] = surfel_unpack(imageLoad(coarse_a, from), imageLoad(coarse_b, from));
+        centre[i] = level_centre(from, level.z + 1) + disc[i].displacement;
+        ray[i] = camera_ray(centre[i]);
+    }
+#ifdef LAST
+    float depths[4];
+    vec4 normals[4];
+#endif
+    for (int i = 0; i < 4; i++) {
+        ivec2 at = 2 * corner + 1 + ivec2(i & 1, i >> 1);
+        vec4 weight = i == 0 ? vec4(0.5625, 0.1875, 0.1875, 0.0625)
+                    : i == 1 ? vec4(0.1875, 0.5625, 0.0625, 0.1875)
+                    : i == 2 ? vec4(0.1875, 0.0625, 0.5625, 0.1875)
+                             : vec4(0.0625, 0.1875, 0.1875, 0.5625);
+        vec2 target = level_centre(at, level.z);
+#ifdef LAST
+#ifdef NORMALS
+        uvec2 own = imageLoad(splats, at).xy;
+        float own_depth = uintBitsToFloat(own.x);
+#else
+        float own_depth = imageLoad(depth_out, at).x;
+#endif
+        surfel s = filled(target, own_depth, disc, centre, ray, weight);
+        bool kept = s.radius == 0.0, inside;
+        s.normal = normalize(s.normal);
+        float depth = surfel_depth_at(s, camera_ray(target + s.displacement), camera_ray(target),
+                                      inside);
+        depths[i] = kept ? own_depth : depth;
+#ifdef NORMALS
+        vec3 normal = kept ? octahedron_decode(unpackSnorm2x16(own.y)) : s.normal;
+        bool any = !kept || own_depth > 0.0;
+        normals[i] = any ? vec4(normal, kept ? 1.0 : 0.0) : vec4(0.0);
+#endif
+#else
+        float own_near = imageLoad(fine_a, at).x;
+        surfel s = filled(target, own_near, disc, centre, ray, weight);
+        // Stores outside the level do nothing.
+        if (s.radius > 0.0) {
+            imageStore(fine_a, at, surfel_pack_a(s));
+            imageStore(fine_b, at, surfel_pack_b(s));
+        }
+#endif
+    }
+#ifdef LAST
+    for (int i = 0; i < 4; i++) { // last: see gather_best.comp
+        ivec2 at = 2 * corner + 1 + ivec2(i & 1, i >> 1);
+        imageStore(depth_out, at, vec4(depths[i]));
+#ifdef NORMALS
+        imageStore(normal_out, at, normals[i]);
+#endif
+    }
+#endif
+}

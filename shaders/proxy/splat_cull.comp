@@ -1,0 +1,66 @@
+// Which points of which blocks to draw: none of blocks outside the picture, and of blocks
+// that fall several points to a pixel only a first part. One invocation a block. The order of
+// the list differs from run to run; the frame does not depend on it.
+#include "proxy/splat.glsl"
+
+layout(local_size_x = ORL_POINT_GROUP) in;
+// Three texels a block: middle of its bounds, points per unit of area; their half extent,
+// points; mean normal.
+layout(rgba32f, binding = 0) readonly uniform imageBuffer blocks;
+layout(std430, binding = 0) buffer draw_arguments {
+    uint group_count, one_y, one_z, item_count;
+};
+layout(std430, binding = 1) writeonly buffer draw_items {
+    uint items[]; // first point / ORL_ITEM_POINTS
+};
+layout(std430, binding = 2) writeonly buffer block_enlarged {
+    float enlarged[]; // radii of each block that is drawn
+};
+
+// Wholly on the outer side of a plane through the eye?
+bool outside(vec3 middle, vec3 extent, vec3 plane)
+{
+    return dot(plane, middle) + dot(abs(plane), extent) < 0.0;
+}
+
+void main()
+{
+    int block = int(gl_GlobalInvocationID.x), block_count = size.z / ORL_BLOCK_POINTS;
+    if (block >= block_count)
+        return;
+    vec4 middle_density = imageLoad(blocks, 3 * block);
+    vec4 extent_count = imageLoad(blocks, 3 * block + 1);
+    vec3 normal = imageLoad(blocks, 3 * block + 2).xyz;
+    vec3 middle = splat_camera_position(middle_density.xyz), extent = extent_count.xyz;
+    // Bounds along the camera's axes, a little wider for rounding.
+    extent = vec3(dot(abs(rotation[0].xyz), extent), dot(abs(rotation[1].xyz), extent),
+                  dot(abs(rotation[2].xyz), extent));
+    extent += 1e-5 * (abs(middle) + extent);
+    vec2 last = vec2(size.xy) - focal.zw;
+    if (middle.z + extent.z <= eye.w ||
+        outside(middle, extent, vec3(focal.x, 0.0, focal.z)) ||
+        outside(middle, extent, vec3(-focal.x, 0.0, last.x)) ||
+        outside(middle, extent, vec3(0.0, focal.y, focal.w)) ||
+        outside(middle, extent, vec3(0.0, -focal.y, last.y)))
+        return;
+    // Points per pixel where the block is nearest: at least as many fall anywhere else. A
+    // surface covers as much less as it is slanted; how much the normals differ says how little
+    // their mean tells.
+    vec3 away = middle_density.xyz - eye.xyz;
+    float facing = abs(dot(normal, away)) / max(length(away), 1e-30);
+    facing = clamp(facing + 1.0 - length(normal), 0.1, 1.0);
+    float pixel_size = max(middle.z - extent.z, 0.0) / min(focal.x, focal.y);
+    float per_pixel = middle_density.w * pixel_size * pixel_size / facing;
+    float share = options.z > 0.0 ? min(options.z / max(per_pixel, 1e-30), 1.0) : 1.0;
+    uint count = uint(extent_count.w);
+    uint parts = uint(ceil(extent_count.w * share / float(ORL_ITEM_POINTS)));
+    parts = clamp(parts, 1u, (count + ORL_ITEM_POINTS - 1u) / ORL_ITEM_POINTS);
+    // The points that are drawn cover what the others would have.
+    float drawn = min(float(parts * ORL_ITEM_POINTS), extent_count.w);
+    enlarged[block] = sqrt(extent_count.w / drawn);
+    uint first = atomicAdd(item_count, parts);
+    for (uint i = 0u; i < parts; i++)
+        items[first + i] = i * uint(block_count) + uint(block);
+    uint per_group = ORL_POINT_GROUP * ORL_SPLAT_POINTS / ORL_ITEM_POINTS;
+    atomicMax(group_count, (first + parts + per_group - 1u) / per_group);
+}

@@ -1,0 +1,18 @@
+// Nearest depth per pixel. Depth bits of positive floats order as integers.
+#define SPLAT_LIST
+#include "proxy/splat.glsl"
+
+layout(local_size_x = ORL_POINT_GROUP) in;
+layout(r32ui, binding = 3) uniform uimage2D splat_depth; // all ones: empty
+
+void main()
+{
+    vec3 p[ORL_SPLAT_POINTS];
+    for (int k = 0; k < ORL_SPLAT_POINTS; k++)
+        p[k] = splat_listed_position(splat_listed_point(k));
+    for (int k = 0; k < ORL_SPLAT_POINTS; k++) {
+        vec2 pixel;
+        if (splat_pixel(p[k], pixel))
+            imageAtomicMin(splat_depth, ivec2(pixel), floatBitsToUint(p[k].z));
+    }
+}

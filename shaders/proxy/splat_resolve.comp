@@ -1,0 +1,108 @@
+// Levels 0 and 1 of the pyramid from the winning points, 2x2 pixels an invocation.
+// CHUNKS: runs once per chunk of points and writes the pixels that this chunk won; the last run
+// leaves level 1 whole.
+// NORMALS: level 0 with normals.
+#include "proxy/splat.glsl"
+#include "proxy/octahedron.glsl"
+#include "proxy/surfel.glsl"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(rgba32f, binding = 0) readonly uniform imageBuffer positions;
+layout(rg32ui, binding = 1) readonly uniform uimageBuffer attributes; // normal, colour
+layout(r32ui, binding = 2) readonly uniform uimage2D splat_index;
+layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
+#ifdef NORMALS
+layout(rg32ui, binding = 4) writeonly uniform uimage2D splats; // surfel_pack_own
+#else
+layout(r32f, binding = 4) writeonly uniform image2D splats; // surfel_own_depth
+#endif
+layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
+layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
+#ifdef CHUNKS
+layout(rgba32ui, binding = 7) uniform uimage2D won; // by earlier chunks
+layout(std430, binding = 2) readonly buffer block_enlarged {
+    float enlarged[]; // radii of each block
+};
+#else
+layout(r32f, binding = 7) readonly uniform imageBuffer block_enlarged;
+#endif
+
+float radius_factor(int block)
+{
+#ifdef CHUNKS
+    return enlarged[block];
+#else
+    return imageLoad(block_enlarged, block).x;
+#endif
+}
+
+vec2 splat_ray(vec2 pixel)
+{
+    return (pixel - focal.zw) / focal.xy;
+}
+
+surfel splat(ivec2 at, int point)
+{
+    vec4 position = imageLoad(positions, point);
+    vec3 p = splat_camera_position(position.xyz);
+    vec2 pixel;
+    splat_pixel(p, pixel);
+    uint word = imageLoad(splat_layer, at).x;
+    float count = float(word / SPLAT_LAYER_COUNT), steps = float(word % SPLAT_LAYER_COUNT);
+    float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
+    p *= 1.0 + behind * options.y;
+    vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
+    n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
+    // Remainder of a division, in floats: both are exact below 2^24, and integers divide slowly.
+    // But a quotient may be 2.5 units in its last place off: a whole one may come out one less.
+    int item = point / ORL_ITEM_POINTS, blocks = size.z / ORL_BLOCK_POINTS;
+    int block = item - blocks * int(float(item) / float(blocks));
+    block += block < 0 ? blocks : block < blocks ? 0 : -blocks;
+    float radius = position.w * options.x * radius_factor(block);
+    return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
+                  pixel - (vec2(at) + 0.5));
+}
+
+void main()
+{
+    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
+    if (2 * parent.x >= size.x || 2 * parent.y >= size.y)
+        return;
+    surfel child[4];
+#ifdef NORMALS
+    uvec4 own[4];
+#else
+    vec4 own[4];
+#endif
+    bool mine[4];
+    for (int i = 0; i < 4; i++) {
+        ivec2 at = 2 * parent + ivec2(i & 1, i >> 1);
+        uint point = imageLoad(splat_index, at).x - uint(size.w);
+        mine[i] = point < uint(size.z) && at.x < size.x && at.y < size.y;
+        // No branch: the view's parameters are then loaded once for all four pixels.
+        child[i] = splat(at, mine[i] ? int(point) : 0);
+        child[i].radius = mine[i] ? child[i].radius : 0.0;
+        vec2 centre = vec2(at) + 0.5;
+        vec2 ray = splat_ray(centre + child[i].displacement), target = splat_ray(centre);
+#ifdef NORMALS
+        own[i] = surfel_pack_own(child[i], ray, target);
+#else
+        own[i] = vec4(surfel_own_depth(child[i], ray, target));
+#endif
+#ifdef CHUNKS
+        mine[i] = mine[i] || size.w == 0;
+        if (!mine[i])
+            child[i] = surfel_unpack_splat(imageLoad(won, at));
+        imageStore(won, at, surfel_pack_splat(child[i]));
+#endif
+    }
+    surfel merged = surfel_merge(child, 0);
+    // Stores last: see gather_best.comp.
+    for (int i = 0; i < 4; i++)
+#ifdef CHUNKS
+        if (mine[i])
+#endif
+            imageStore(splats, 2 * parent + ivec2(i & 1, i >> 1), own[i]);
+    imageStore(coarse_a, parent, surfel_pack_a(merged));
+    imageStore(coarse_b, parent, surfel_pack_b(merged));
+}
