@@ -26,7 +26,6 @@ struct orl_synth {
     int width, height;
     uint32_t seed;
     double contrast_ev;
-    struct orl_prog *cone, *frame;
     struct orl_tex *start, *radiance, *truth;
 };
 
@@ -52,14 +51,7 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
     *synth = (struct orl_synth){.gpu = gpu, .width = params->width, .height = params->height,
                                 .seed = params->seed, .contrast_ev = params->contrast_ev};
     int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
-    const size_t block = sizeof(struct frame_params);
-    result = orl_prog_create(gpu, "synth/cone.comp", NULL, block, &synth->cone);
-    if (result == ORL_OK)
-        result = orl_prog_create(gpu, "synth/frame.comp",
-                                 params->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : NULL, block,
-                                 &synth->frame);
-    if (result == ORL_OK)
-        result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
+    result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
     if (result == ORL_OK)
         result = create_target(gpu, "synth radiance", params->width, params->height, GL_RGBA32F,
                                &synth->radiance);
@@ -81,8 +73,6 @@ void orl_synth_destroy(struct orl_synth **handle)
     orl_tex_destroy(synth->gpu, &synth->truth);
     orl_tex_destroy(synth->gpu, &synth->radiance);
     orl_tex_destroy(synth->gpu, &synth->start);
-    orl_prog_destroy(synth->gpu, &synth->frame);
-    orl_prog_destroy(synth->gpu, &synth->cone);
     free(synth);
     *handle = NULL;
 }
@@ -121,7 +111,9 @@ static enum orl_result dispatch_bands(struct orl_synth *synth,
         params->size[2] = row;
         params->size[3] = row + rows;
         orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
-            .prog = synth->frame, .params = params,
+            .prog = orl_prog_get(synth->gpu, "synth/frame.comp", NULL,
+                                 synth->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : NULL),
+            .params = params, .params_size = sizeof *params,
             .images = {{synth->start, 0, GL_READ_ONLY}, {synth->radiance, 0, GL_WRITE_ONLY},
                        {synth->truth, 0, GL_WRITE_ONLY}},
             .groups = {orl_groups((size_t)synth->width, TILE), orl_groups((size_t)rows, TILE)},
@@ -170,7 +162,8 @@ enum orl_result orl_synth_draw(struct orl_synth *synth, const struct orl_progres
                                              orl_camera_valid(&view->camera));
     struct frame_params params = params_of(synth, view);
     orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
-        .prog = synth->cone, .params = &params,
+        .prog = orl_prog_get(synth->gpu, "synth/cone.comp", NULL, NULL),
+        .params = &params, .params_size = sizeof params,
         .images = {{synth->start, 0, GL_WRITE_ONLY}},
         .groups = {orl_groups((size_t)synth->width, TILE * TILE),
                    orl_groups((size_t)synth->height, TILE * TILE)},

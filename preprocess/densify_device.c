@@ -51,8 +51,7 @@ static const struct {
 struct densify_device {
     struct orl_gpu *gpu;
     struct orl_densify_params params;
-    struct orl_prog *programs[PROGRAM_COUNT]; // compiled when first used
-    int padding;                              // texels around each source layer
+    int padding; // texels around each source layer
 };
 
 // The state of one level.
@@ -94,8 +93,6 @@ void orl_densify_device_destroy(struct densify_device **handle)
     struct densify_device *device = *handle;
     if (!device)
         return;
-    for (int i = 0; i < PROGRAM_COUNT; i++)
-        orl_prog_destroy(device->gpu, &device->programs[i]);
     free(device);
     *handle = NULL;
 }
@@ -105,31 +102,22 @@ static int half(int value)
     return value > 1 ? value / 2 : 1;
 }
 
-static enum orl_result use_program(struct densify_device *device, enum program which,
-                                   struct orl_prog **prog)
+static struct orl_prog *program_of(const struct densify_device *device, enum program which)
 {
     char defines[256];
     const struct orl_densify_params *p = &device->params;
-    if (!device->programs[which]) {
-        // Coarser levels have told the rough shape, and agreement with other photographs holds
-        // planes in place, so that patches may be small: they then belong to one surface up to
-        // a pixel or two from its edge.
-        bool fine = which == INIT_FINE || which == SWEEP_FINE;
-        bool small = which == INIT_MAPS || which == SWEEP_GEOMETRIC || which == FINISH_AGREED ||
-                     which == FINISH_LAST;
-        int radius = fine ? (p->window_radius + 1) / 2 : p->window_radius;
-        snprintf(defines, sizeof defines, "RADIUS %d\nSTEP %d\nSOURCES %d\nPADDING %d\n%s",
-                 small ? half(p->window_radius) : radius,
-                 small ? half(p->window_step) : p->window_step, p->sources, device->padding,
-                 program_table[which].defines);
-        enum orl_result result =
-            orl_prog_create(device->gpu, program_table[which].file, defines,
-                            sizeof(struct densify_block), &device->programs[which]);
-        if (result != ORL_OK)
-            return result;
-    }
-    *prog = device->programs[which];
-    return ORL_OK;
+    // Coarser levels have told the rough shape, and agreement with other photographs holds
+    // planes in place, so that patches may be small: they then belong to one surface up to
+    // a pixel or two from its edge.
+    bool fine = which == INIT_FINE || which == SWEEP_FINE;
+    bool small = which == INIT_MAPS || which == SWEEP_GEOMETRIC || which == FINISH_AGREED ||
+                 which == FINISH_LAST;
+    int radius = fine ? (p->window_radius + 1) / 2 : p->window_radius;
+    snprintf(defines, sizeof defines, "RADIUS %d\nSTEP %d\nSOURCES %d\nPADDING %d\n%s",
+             small ? half(p->window_radius) : radius,
+             small ? half(p->window_step) : p->window_step, p->sources, device->padding,
+             program_table[which].defines);
+    return orl_prog_get(device->gpu, program_table[which].file, NULL, defines);
 }
 
 // --- upload ---
@@ -381,8 +369,8 @@ static enum orl_result run(struct densify_device *device, const struct densify_j
                            struct level *level, enum program which, struct orl_tex *extra,
                            double done)
 {
-    struct orl_prog *prog;
-    enum orl_result result = use_program(device, which, &prog);
+    struct orl_prog *prog = program_of(device, which);
+    enum orl_result result = ORL_OK;
     int width = level->block.area[0], height = level->block.area[1];
     bool half = which == SWEEP || which == SWEEP_FINE || which == SWEEP_GEOMETRIC;
     int band = (BAND_PIXELS / width / ORL_PIXEL_GROUP_Y + 1) * ORL_PIXEL_GROUP_Y;
@@ -395,6 +383,7 @@ static enum orl_result run(struct densify_device *device, const struct densify_j
         struct orl_dispatch dispatch = {
             .prog = prog,
             .params = &level->block,
+            .params_size = sizeof level->block,
             .textures = {level->reference, level->sources, level->source_depths},
             .images = {{level->planes, 0, GL_READ_WRITE}, {level->costs, 0, GL_READ_WRITE},
                        {level->view_costs, 0, GL_READ_WRITE}, {extra, 0, GL_READ_WRITE}},

@@ -13,7 +13,7 @@ const float STEP_FROM = 0.004, STEP_FULL = 0.012;
 void main()
 {
     ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
-    if (corner.x >= area.x || corner.y >= area.y)
+    if (corner.x >= image_size.x || corner.y >= image_size.y)
         return;
     float inverse[16]; // of the 4x4 around; a guess is behind everything
     for (int k = 0; k < 16; k++) {
@@ -23,7 +23,7 @@ void main()
     const int along[4] = int[4](1, 3, 4, 5); // to the next, in four directions
     for (int k = 0; k < 4; k++) {
         ivec2 at = corner + ivec2(k & 1, k >> 1);
-        bool whole = all(greaterThan(at, ivec2(0))) && all(lessThan(at, area.xy - 1));
+        bool whole = all(greaterThan(at, ivec2(0))) && all(lessThan(at, image_size - 1));
         int own = 5 + (k & 1) + 4 * (k >> 1);
         float bend = 0.0, most = inverse[own];
         for (int n = 0; n < 4; n++) {

@@ -13,7 +13,7 @@ const float EDGE_RATIO = 1.03;
 void main()
 {
     ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
-    if (corner.x >= area.x || corner.y >= area.y)
+    if (corner.x >= view_size.x || corner.y >= view_size.y)
         return;
     float own[4], behind[4], before[4];
     vec2 inward[4]; // to where the surface of this pixel goes on
@@ -23,7 +23,6 @@ void main()
         before[k] = abs(own[k]);
         inward[k] = vec2(0.0);
     }
-    int reach = flags.z;
     for (int y = -reach; y <= reach + 1; y++)
         for (int x = -reach; x <= reach + 1; x++) {
             float other = imageLoad(view_depth, corner + ivec2(x, y)).r, far = abs(other);

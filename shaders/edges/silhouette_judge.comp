@@ -2,7 +2,9 @@
 // behind, each another part of it: they differ more than on the depth behind the edge, and the
 // best of them looks like that, not like the surface next to it. So each pixel before an edge
 // votes on belonging behind it; silhouette_cut.comp counts.
-#include "gather/photo_choice.glsl"
+#include "gather/penalty.glsl"
+#include "gather/hidden.glsl"
+#include "gather/sample/srgb.glsl"
 #include "edges/edge_list.glsl"
 
 layout(local_size_x = EDGE_GROUP) in;
@@ -38,8 +40,8 @@ opinion ask(int list, vec3 p)
     opinion o = opinion(vec3(0.0), vec3(0.0), 0.0, 0.0, -1);
     vec4 sum = vec4(0.0);
     float squares = 0.0, weights = 0.0, most = 0.0;
-    int count = int(choice_more.x), c = 0, i = chosen[list];
-    do { // the condition last: see gather_best.comp
+    int c = 0, i = chosen[list];
+    do { // the condition last: see tiled.comp
         photo shot = photo_at(max(i, 0));
         vec2 pixel;
         float z;
@@ -55,7 +57,7 @@ opinion ask(int list, vec3 p)
         o.best_color = weight > most ? color : o.best_color;
         most = max(most, weight);
         c++;
-        i = c < count ? chosen[list + c] : -1;
+        i = c < asked ? chosen[list + c] : -1;
     } while (i >= 0);
     sum.a = max(sum.a, 1e-30);
     o.voices = sum.a * sum.a / max(weights, 1e-30);
@@ -89,12 +91,12 @@ float likeness(opinion here, opinion there, ivec2 inner)
 float vote(uvec4 edge)
 {
     ivec2 at = edge_pixel(edge), tile = at / CHOICE_TILE;
-    int list = (tile.y * area.w + tile.x) * CANDIDATES;
+    int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
     opinion here = ask(list, ray(at) * imageLoad(view_depth, at).r);
     opinion there = ask(list, ray(at) * abs(uintBitsToFloat(edge.y)));
     if (min(here.voices, there.voices) < VOICES_LEAST)
         return 0.0;
-    vec2 inward = normalize(unpackHalf2x16(edge.z) + 1e-4) * (float(flags.z) + INNER);
+    vec2 inward = normalize(unpackHalf2x16(edge.z) + 1e-4) * (float(reach) + INNER);
     float differ = log2(max(here.variance, 1e-6) / (CLEARLY * there.variance + NOISE));
     return clamp(differ + likeness(here, there, at + ivec2(round(inward))), -VOTE_MOST, VOTE_MOST);
 }

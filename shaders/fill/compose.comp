@@ -1,32 +1,31 @@
 // The finished frame: blended colour, or the fill where nothing was blended. 2x2 pixels an
 // invocation.
-// REST: gather_best.comp did all but the pixels that nothing paints, and those on guessed depth, of
+// FINISHED: the painter did all but the pixels that nothing paints, and those on guessed depth, of
 // some work groups.
-// RADIANCE: gather_radiance.comp did what is blended.
+// RADIANCE: guesses are to be blurred where `trusted` says so.
 #define BLOCK_IMAGE
+#include "shared/pixel.glsl"
 #include "shared/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-// In: colour * weight, weight; weight negative where there is at least that much light, and as
-// much as around it if that is more (gather_radiance.comp, where fill_lift.comp found none as
-// bright). REST: see gather_best.comp. Out: colour, coverage.
-#ifdef REST
-layout(rgba16f, binding = 0) uniform image2D accumulated;
+// In: shared/pixel.glsl; with FINISHED, finished, else blended. Out: colour, coverage.
+#ifdef FINISHED
+layout(rgba16f, binding = 0) uniform image2D picture;
 #else
-layout(rgba32f, binding = 0) uniform image2D accumulated;
+layout(rgba32f, binding = 0) uniform image2D picture;
 #endif
 layout(rgba32f, binding = 1) readonly uniform image2D filled;
 layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 
 #define FILL_LEVEL filled
 #include "fill/fill.glsl"
-#ifdef REST
+#ifdef FINISHED
 #include "gather/unfinished.glsl"
 #endif
 #ifdef RADIANCE
-layout(rgba32f, binding = 3) readonly uniform image2D trusted; // z: see gather_radiance.comp
+layout(rgba32f, binding = 3) readonly uniform image2D trusted; // z: see gather/radiance/merge.glsl
 #endif
-#if defined(REST) || defined(RADIANCE)
+#if defined(FINISHED) || defined(RADIANCE)
 // What is painted on guessed depth: sums of 2x2, colour, 1; and mipmaps.
 layout(binding = 0) uniform sampler2D guesses;
 
@@ -34,9 +33,9 @@ layout(binding = 0) uniform sampler2D guesses;
 // than none. With others like it alone, since what has depth is in its place.
 vec3 softened(ivec2 at, vec3 sharp, float blur)
 {
-    float most = log2(GUESS_BLUR_MOST * float(max(area.x, area.y)));
+    float most = log2(GUESS_BLUR_MOST * float(max(image_size.x, image_size.y)));
     blur = clamp(blur, 0.0, max(most, 0.0));
-    vec2 where = (vec2(at) + 0.5) / vec2((area.xy + 1) / 2 * 2);
+    vec2 where = (vec2(at) + 0.5) / vec2((image_size + 1) / 2 * 2);
     vec4 around = textureLod(guesses, where, max(blur - 1.0, 0.0));
     // Next to none: a pixel alone in what a driver's mipmaps leave out.
     vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp;
@@ -47,38 +46,41 @@ vec3 softened(ivec2 at, vec3 sharp, float blur)
 void compose(uvec2 group)
 {
     ivec2 parent = ivec2(group * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy);
-    if (2 * parent.x >= area.x || 2 * parent.y >= area.y)
+    if (2 * parent.x >= image_size.x || 2 * parent.y >= image_size.y)
         return;
     vec4 finer[4];
     fill_finer(parent, finer);
     for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
         ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
-        vec4 sum = imageLoad(accumulated, at);
-        bool fills = area.w == 1 && finer[k].a > 0.0;
-        vec3 filled = fills ? finer[k].rgb / finer[k].a : vec3(0.0);
-#ifdef REST
-        if (sum.a < 0.0)
-            imageStore(accumulated, at,
-                       vec4(sum.a < -1.0 ? softened(at, sum.rgb, -1.0 - sum.a) : filled, 0.0));
+        vec4 pixel = imageLoad(picture, at);
+        bool known = fills == 1 && finer[k].a > 0.0;
+        vec3 filled = known ? finer[k].rgb / finer[k].a : vec3(0.0);
+#ifdef FINISHED
+        float blur = pixel_blur(pixel);
+        if (!pixel_is_finished(pixel))
+            imageStore(picture, at,
+                       pixel_finished(blur > 0.0 ? softened(at, pixel.rgb, blur) : filled, false));
 #else
-        float on_surface = imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
-        vec3 own = sum.a != 0.0 ? sum.rgb / abs(sum.a) : vec3(0.0);
+        bool on_surface = imageLoad(depth, at).r > 0.0;
+        float weight = pixel_weight(pixel);
+        vec3 own = weight > 0.0 ? pixel.rgb / weight : vec3(0.0);
 #ifdef RADIANCE
         float blur = imageLoad(trusted, at).z - 1.0;
         own = blur > 0.0 ? softened(at, own, blur) : own;
 #endif
+        // As much light as there is at least, and as around it if that is more.
+        own = weight > 0.0 && !pixel_at_least(pixel) ? own : max(own, filled);
         // Splat colours between splats count as covered by them.
-        imageStore(accumulated, at,
-                   vec4(sum.a > 0.0 ? own : max(own, filled),
-                        sum.a != 0.0 || area.z == 1 ? on_surface : 0.0));
+        imageStore(picture, at,
+                   pixel_finished(own, on_surface && (weight > 0.0 || points_show == 1)));
 #endif
     }
 }
 
 void main()
 {
-#ifdef REST
-    uint row = uint(area.x + 2 * ORL_PIXEL_GROUP_X - 1) / (2 * ORL_PIXEL_GROUP_X);
+#ifdef FINISHED
+    uint row = uint(image_size.x + 2 * ORL_PIXEL_GROUP_X - 1) / (2 * ORL_PIXEL_GROUP_X);
     uint place = gl_WorkGroupID.x;
     do {
         uint number = unfinished_groups[place];

@@ -21,7 +21,7 @@ float on_ground(ivec2 at)
 void main()
 {
     ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
-    if (2 * parent.x >= area.x || 2 * parent.y >= area.y)
+    if (2 * parent.x >= image_size.x || 2 * parent.y >= image_size.y)
         return;
     vec4 finer[4];
     fill_finer(parent, finer);

@@ -9,7 +9,7 @@ layout(rgba32f, binding = 1) writeonly uniform image2D coarse;
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y)
+    if (at.x >= image_size.x || at.y >= image_size.y)
         return;
     ivec2 f = 2 * at;
     imageStore(coarse, at, imageLoad(fine, f) + imageLoad(fine, f + ivec2(1, 0)) +

@@ -13,7 +13,7 @@ layout(rgba32f, binding = 1) readonly uniform image2D coarse;
 void main()
 {
     ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
-    if (2 * parent.x >= area.x || 2 * parent.y >= area.y)
+    if (2 * parent.x >= image_size.x || 2 * parent.y >= image_size.y)
         return;
     vec4 finer[4];
     fill_finer(parent, finer);

@@ -2,21 +2,22 @@
 // times its weight.
 // SEED_DEPTH: inverse depth, weighted so steeply towards far surfaces that a hole takes
 // the farther one of its rim, which it shows, and nothing between the two.
-// SEED_LEAST: the light that there is at least where weights are negative (gather_radiance.comp).
+// SEED_LEAST: the light that there is at least, where no more is known.
 // SEED_BRIGHTER: logarithms of the light that is as bright as what SEED_LEAST has spread here: what
 // clips is not as dark as the wall beside it.
 // SEED_GUESSES: colour on guessed depth, to blur it. Otherwise: colour.
 #define BLOCK_IMAGE
+#include "shared/pixel.glsl"
 #include "shared/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 #ifdef SEED_DEPTH
 layout(r32f, binding = 0) readonly uniform image2D known;
 #else
-layout(rgba32f, binding = 0) readonly uniform image2D known; // colour * weight, weight
+layout(rgba32f, binding = 0) readonly uniform image2D known; // shared/pixel.glsl, blended
 #endif
 #ifdef SEED_GUESSES
-layout(rgba32f, binding = 2) readonly uniform image2D trusted; // z: see gather_radiance.comp
+layout(rgba32f, binding = 2) readonly uniform image2D trusted; // z: see gather/radiance/merge.glsl
 #endif
 #ifdef SEED_BRIGHTER
 layout(rgba32f, binding = 1) uniform image2D seeded; // in place
@@ -32,14 +33,14 @@ vec4 seed(ivec2 at)
     vec4 value = imageLoad(known, at); // 0 outside
 #ifdef SEED_DEPTH
     float z = value.r;
-    float weight = clamp(pow(z / scale.x, 14.0), 1e-15, 1e15); // sums stay floats
+    float weight = clamp(pow(z / depth_scale, 14.0), 1e-15, 1e15); // sums stay floats
     return z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
 #elif defined(SEED_GUESSES)
-    float weight = abs(value.a);
+    float weight = pixel_weight(value);
     return weight > 0.0 && imageLoad(trusted, at).z > 0.0 ? vec4(value.rgb / weight, 1.0)
                                                           : vec4(0.0);
 #elif defined(SEED_LEAST)
-    return value.a < 0.0 ? vec4(value.rgb / -value.a, 1.0) : vec4(0.0);
+    return pixel_at_least(value) ? vec4(value.rgb / pixel_weight(value), 1.0) : vec4(0.0);
 #elif defined(SEED_BRIGHTER)
     vec3 light = value.rgb / max(value.a, 1e-30);
     vec3 share = light / max(least, 1e-9);
@@ -53,7 +54,7 @@ vec4 seed(ivec2 at)
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y)
+    if (at.x >= image_size.x || at.y >= image_size.y)
         return;
 #ifdef SEED_BRIGHTER
     vec4 around = imageLoad(seeded, at);

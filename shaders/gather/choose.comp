@@ -1,6 +1,7 @@
 // Lists, per tile of the screen, the photographs that can paint it best, so that a
 // pixel's cost does not grow with the number of photographs.
-#include "gather/photo_choice.glsl"
+#include "gather/penalty.glsl"
+#include "gather/hidden.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
@@ -16,7 +17,7 @@ void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS])
     for (int i = 0; i < ACROSS * ACROSS; i++) {
         ivec2 at = tile * CHOICE_TILE + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * CHOICE_TILE /
                                             (2 * ACROSS);
-        at = min(at, area.xy - 1);
+        at = min(at, view_size - 1);
         float depth = abs(imageLoad(view_depth, at).r);
         points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
     }
@@ -25,7 +26,7 @@ void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS])
 void main()
 {
     ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
-    int row = area.w, rows = (area.y + CHOICE_TILE - 1) / CHOICE_TILE;
+    int row = tiles_across, rows = (view_size.y + CHOICE_TILE - 1) / CHOICE_TILE;
     if (tile.x >= row || tile.y >= rows)
         return;
     vec3 points[ACROSS * ACROSS];
@@ -37,7 +38,7 @@ void main()
         index[c] = -1;
     }
     int i = 0;
-    do { // the condition last: see gather_best.comp
+    do { // the condition last: see tiled.comp
         // The best that it can do anywhere in the tile, and a little for how much it sees.
         float least = 1e30, seen = 0.0;
         photo shot = photo_at(i);
@@ -64,7 +65,7 @@ void main()
             }
         }
         i++;
-    } while (i < area.z);
+    } while (i < photo_count);
     for (int c = 0; c < CANDIDATES; c++)
         chosen[(tile.y * row + tile.x) * CANDIDATES + c] = index[c];
 }

@@ -1,4 +1,4 @@
-// Work groups of gather_best.comp that left pixels to compose.comp.
+// Work groups of gather/tiled.comp that left pixels to compose.comp.
 layout(std430, binding = 2) buffer unfinished {
     uint dispatched, one_y, one_z, unfinished_count; // the first three: work groups of compose.comp
     uint unfinished_groups[]; // then, for each group, whether it is listed

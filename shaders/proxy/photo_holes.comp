@@ -14,14 +14,14 @@ const int REACH_SHARE = 24; // of the picture's longer side
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y)
+    if (at.x >= image_size.x || at.y >= image_size.y)
         return;
     float here = imageLoad(depth, at).r;
     if (here > 0.0) {
         imageStore(guessed, at, vec4(here));
         return;
     }
-    int reach = max(area.x, area.y) / REACH_SHARE;
+    int reach = max(image_size.x, image_size.y) / REACH_SHARE;
     float sum = 0.0, total = 0.0; // of inverse depth
     int empty = 0, longest = 0, first = 0;
     for (int k = 0; k < DIRECTIONS; k++) {

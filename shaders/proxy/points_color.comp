@@ -12,10 +12,10 @@ layout(rgba32f, binding = 3) writeonly uniform image2D accumulated;
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= size.x || at.y >= size.y)
+    if (at.x >= view_size.x || at.y >= view_size.y)
         return;
-    uint point = imageLoad(splat_index, at).x - uint(size.w);
-    if (point >= uint(size.z) || imageLoad(normal, at).w < 0.5)
+    uint point = imageLoad(splat_index, at).x - uint(first_point);
+    if (point >= uint(point_count) || imageLoad(normal, at).w < 0.5)
         return;
     vec3 color = unpackUnorm4x8(imageLoad(attributes, int(point)).y).rgb;
     imageStore(accumulated, at, vec4(srgb_decode(color), 1.0));

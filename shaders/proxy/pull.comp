@@ -13,7 +13,7 @@ layout(rg32ui, binding = 3) writeonly uniform uimage2D coarse_b;
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= level.x || at.y >= level.y)
+    if (at.x >= level_size.x || at.y >= level_size.y)
         return;
     surfel child[4];
     for (int i = 0; i < 4; i++) {
@@ -21,7 +21,7 @@ void main()
         // Outside: zero, thus empty.
         child[i] = surfel_unpack(imageLoad(fine_a, from), imageLoad(fine_b, from));
     }
-    surfel merged = surfel_merge(child, level.z - 1);
+    surfel merged = surfel_merge(child, level_number - 1);
     imageStore(coarse_a, at, surfel_pack_a(merged));
     imageStore(coarse_b, at, surfel_pack_b(merged));
 }

@@ -78,7 +78,7 @@ void main()
 {
     // The coarse pixel above and left of the corner; -1 at the border.
     ivec2 corner = ivec2(gl_GlobalInvocationID.xy) - 1;
-    if (2 * corner.x + 1 >= level.x || 2 * corner.y + 1 >= level.y)
+    if (2 * corner.x + 1 >= level_size.x || 2 * corner.y + 1 >= level_size.y)
         return;
     surfel disc[4];
     vec2 centre[4], ray[4];
@@ -86,7 +86,7 @@ void main()
         ivec2 from = corner + ivec2(i & 1, i >> 1);
         // Outside: zero, thus empty.
         disc[i] = surfel_unpack(imageLoad(coarse_a, from), imageLoad(coarse_b, from));
-        centre[i] = level_centre(from, level.z + 1) + disc[i].displacement;
+        centre[i] = level_centre(from, level_number + 1) + disc[i].displacement;
         ray[i] = camera_ray(centre[i]);
     }
 #ifdef LAST
@@ -99,7 +99,7 @@ void main()
                     : i == 1 ? vec4(0.1875, 0.5625, 0.0625, 0.1875)
                     : i == 2 ? vec4(0.1875, 0.0625, 0.5625, 0.1875)
                              : vec4(0.0625, 0.1875, 0.1875, 0.5625);
-        vec2 target = level_centre(at, level.z);
+        vec2 target = level_centre(at, level_number);
 #ifdef LAST
 #ifdef NORMALS
         uvec2 own = imageLoad(splats, at).xy;

@@ -20,8 +20,8 @@ bool splat_pixel(vec3 p, out vec2 pixel)
 {
     pixel = focal.xy * p.xy / p.z + focal.zw;
     // Compare as floats: a far-off value does not fit an int.
-    return p.z > eye.w && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < float(size.x) &&
-           pixel.y < float(size.y);
+    return p.z > eye.w && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < float(view_size.x) &&
+           pixel.y < float(view_size.y);
 }
 
 #ifdef SPLAT_LIST
@@ -39,7 +39,7 @@ int splat_listed_point(int k)
         return -1;
     uint point = imageLoad(items, int(index)).x * ORL_ITEM_POINTS +
                  gl_LocalInvocationID.x % ORL_ITEM_POINTS;
-    return int(point) < size.z ? int(point) : -1;
+    return int(point) < point_count ? int(point) : -1;
 }
 
 // Its position in the camera's frame; behind the eye for none. No branch, so that the

@@ -25,7 +25,7 @@ bool outside(vec3 middle, vec3 extent, vec3 plane)
 
 void main()
 {
-    int block = int(gl_GlobalInvocationID.x), block_count = size.z / ORL_BLOCK_POINTS;
+    int block = int(gl_GlobalInvocationID.x), block_count = point_count / ORL_BLOCK_POINTS;
     if (block >= block_count)
         return;
     vec4 middle_density = imageLoad(blocks, 3 * block);
@@ -36,7 +36,7 @@ void main()
     extent = vec3(dot(abs(rotation[0].xyz), extent), dot(abs(rotation[1].xyz), extent),
                   dot(abs(rotation[2].xyz), extent));
     extent += 1e-5 * (abs(middle) + extent);
-    vec2 last = vec2(size.xy) - focal.zw;
+    vec2 last = vec2(view_size) - focal.zw;
     if (middle.z + extent.z <= eye.w ||
         outside(middle, extent, vec3(focal.x, 0.0, focal.z)) ||
         outside(middle, extent, vec3(-focal.x, 0.0, last.x)) ||
@@ -51,7 +51,7 @@ void main()
     facing = clamp(facing + 1.0 - length(normal), 0.1, 1.0);
     float pixel_size = max(middle.z - extent.z, 0.0) / min(focal.x, focal.y);
     float per_pixel = middle_density.w * pixel_size * pixel_size / facing;
-    float share = options.z > 0.0 ? min(options.z / max(per_pixel, 1e-30), 1.0) : 1.0;
+    float share = points_per_pixel > 0.0 ? min(points_per_pixel / max(per_pixel, 1e-30), 1.0) : 1.0;
     uint count = uint(extent_count.w);
     uint parts = uint(ceil(extent_count.w * share / float(ORL_ITEM_POINTS)));
     parts = clamp(parts, 1u, (count + ORL_ITEM_POINTS - 1u) / ORL_ITEM_POINTS);

@@ -23,9 +23,9 @@ void main()
         ivec2 at = drawn ? ivec2(pixel) : ivec2(0);
         uint front_bits = imageLoad(splat_depth, at).x;
         float front = uintBitsToFloat(front_bits);
-        float behind = p[k].z - front, thickness = front * options.y;
+        float behind = p[k].z - front, thickness = front * front_layer;
         if (drawn && floatBitsToUint(p[k].z) == front_bits)
-            imageAtomicMin(splat_index, at, uint(size.w + point[k]));
+            imageAtomicMin(splat_index, at, uint(first_point + point[k]));
         if (drawn && behind < thickness) {
             uint steps = uint(behind / thickness * SPLAT_LAYER_STEPS);
             imageAtomicAdd(splat_layer, at, SPLAT_LAYER_COUNT + steps);

@@ -50,15 +50,15 @@ surfel splat(ivec2 at, int point)
     uint word = imageLoad(splat_layer, at).x;
     float count = float(word / SPLAT_LAYER_COUNT), steps = float(word % SPLAT_LAYER_COUNT);
     float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
-    p *= 1.0 + behind * options.y;
+    p *= 1.0 + behind * front_layer;
     vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
     n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
     // Remainder of a division, in floats: both are exact below 2^24, and integers divide slowly.
     // But a quotient may be 2.5 units in its last place off: a whole one may come out one less.
-    int item = point / ORL_ITEM_POINTS, blocks = size.z / ORL_BLOCK_POINTS;
+    int item = point / ORL_ITEM_POINTS, blocks = point_count / ORL_BLOCK_POINTS;
     int block = item - blocks * int(float(item) / float(blocks));
     block += block < 0 ? blocks : block < blocks ? 0 : -blocks;
-    float radius = position.w * options.x * radius_factor(block);
+    float radius = position.w * splat_scale * radius_factor(block);
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
 }
@@ -66,7 +66,7 @@ surfel splat(ivec2 at, int point)
 void main()
 {
     ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
-    if (2 * parent.x >= size.x || 2 * parent.y >= size.y)
+    if (2 * parent.x >= view_size.x || 2 * parent.y >= view_size.y)
         return;
     surfel child[4];
 #ifdef NORMALS
@@ -77,8 +77,8 @@ void main()
     bool mine[4];
     for (int i = 0; i < 4; i++) {
         ivec2 at = 2 * parent + ivec2(i & 1, i >> 1);
-        uint point = imageLoad(splat_index, at).x - uint(size.w);
-        mine[i] = point < uint(size.z) && at.x < size.x && at.y < size.y;
+        uint point = imageLoad(splat_index, at).x - uint(first_point);
+        mine[i] = point < uint(point_count) && at.x < view_size.x && at.y < view_size.y;
         // No branch: the view's parameters are then loaded once for all four pixels.
         child[i] = splat(at, mine[i] ? int(point) : 0);
         child[i].radius = mine[i] ? child[i].radius : 0.0;
@@ -90,7 +90,7 @@ void main()
         own[i] = vec4(surfel_own_depth(child[i], ray, target));
 #endif
 #ifdef CHUNKS
-        mine[i] = mine[i] || size.w == 0;
+        mine[i] = mine[i] || first_point == 0;
         if (!mine[i])
             child[i] = surfel_unpack_splat(imageLoad(won, at));
         imageStore(won, at, surfel_pack_splat(child[i]));

@@ -14,7 +14,7 @@ const float MOST = 13.0;
 void main()
 {
     ivec2 at = 2 * ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= level.x || at.y >= level.y)
+    if (at.x >= level_size.x || at.y >= level_size.y)
         return;
     // Depths that agree with each of the four: with a hole, all that there are.
     float depth[4], least[4], most[4], agree[4];
@@ -28,7 +28,7 @@ void main()
     }
     for (int y = 0; y < 6; y++)
         for (int x = 0; x < 6; x++) {
-            float z = imageLoad(depth_in, clamp(at + ivec2(x, y) - 2, ivec2(0), level.xy - 1)).x;
+            float z = imageLoad(depth_in, clamp(at + ivec2(x, y) - 2, ivec2(0), level_size - 1)).x;
             known += z > 0.0 ? 1.0 : 0.0;
             sum += z;
             near = min(near, z > 0.0 ? z : near);
@@ -40,7 +40,7 @@ void main()
             }
         }
     for (int i = 0; i < 4; i++) {
-        bool keep = depth[i] > 0.0 && agree[i] >= float(level.w);
+        bool keep = depth[i] > 0.0 && agree[i] >= float(least_support);
         bool close = depth[i] == 0.0 && agree[i] >= MOST && far < 1.06 * near;
         imageStore(depth_out, at + ivec2(i & 1, i >> 1),
                    vec4(keep ? depth[i] : close ? sum / known : 0.0));

@@ -1,15 +1,22 @@
-// Parameter blocks shared by C and GLSL: std140, every member a multiple of 16
-// bytes, so that both sides agree without padding rules.
+// Parameter blocks shared by C and GLSL: std140. Scalars lie side by side there as in C; vectors of
+// four start at multiples of 16 bytes, of two at multiples of 8, so members are ordered and filled
+// up such that both sides agree.
 #ifndef ORL_INTEROP_H
 #define ORL_INTEROP_H
 
 #ifdef __STDC_VERSION__
 #define ORL_BLOCK(name) struct name
+#define FLOAT(name) float name
+#define INT(name) int name
+#define IVEC2(name) int name[2]
 #define VEC4(name) float name[4]
 #define VEC4S(name, count) float name[count][4]
 #define IVEC4(name) int name[4]
 #else
 #define ORL_BLOCK(name) layout(std140, binding = 0) uniform name
+#define FLOAT(name) float name
+#define INT(name) int name
+#define IVEC2(name) ivec2 name
 #define VEC4(name) vec4 name
 #define VEC4S(name, count) vec4 name[count]
 #define IVEC4(name) ivec4 name

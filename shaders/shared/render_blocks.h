@@ -17,9 +17,13 @@ ORL_BLOCK(splat_block)
     VEC4S(rotation, 3); // rows of cam_from_world's rotation
     VEC4(eye);          // camera centre, world; w: nearest depth drawn
     VEC4(focal);        // fx fy cx cy, pixels
-    VEC4(options);      // x: radius scale, y: front layer's thickness, fraction of depth,
-                        // z: points per pixel above which blocks are thinned, 0: never
-    IVEC4(size);        // width, height, points in this chunk, index of its first point
+    IVEC2(view_size);   // pixels
+    INT(point_count);   // of this chunk
+    INT(first_point);   // its index
+    FLOAT(splat_scale); // options of these names
+    FLOAT(front_layer);
+    FLOAT(points_per_pixel);
+    FLOAT(unused);
 };
 #endif
 
@@ -28,7 +32,9 @@ ORL_BLOCK(splat_block)
 ORL_BLOCK(pyramid_block)
 {
     VEC4(camera); // fx fy cx cy, pixels of level 0
-    IVEC4(level); // width, height and number of the written level, least support
+    IVEC2(level_size);  // of the written level
+    INT(level_number);
+    INT(least_support); // opt.min_support, whole
 };
 #endif
 
@@ -53,27 +59,42 @@ struct photo_data {
 };
 #endif
 
+// The options of struct orl_render_params, as `opt`. C has struct render_options of
+// src/render/option_list.h, to be included before; GLSL gets RENDER_OPTIONS, the same members, as a
+// define that src/render/gather.c makes of the same list.
+#if defined(BLOCK_GATHER)
+struct render_options {
+    RENDER_OPTIONS
+};
+#define RENDER_OPTIONS_MEMBER render_options opt
+#elif defined(__STDC_VERSION__)
+#define RENDER_OPTIONS_MEMBER _Alignas(16) struct render_options opt
+#endif
+
 // Photographs blended into the frame.
-#if defined(__STDC_VERSION__) || defined(BLOCK_GATHER)
+#if defined(ORL_RENDER_OPTIONS) || defined(BLOCK_GATHER)
 ORL_BLOCK(gather_block)
 {
-    VEC4(view_focal); // fx fy cx cy
-    VEC4(options);    // x: depth tolerance, y: distance floor, z: border feather, pixels
-    IVEC4(flags);     // x: 1 = test visibility, y: 1 = bicubic, z: pixels by which depth may
-                      // reach past silhouettes
-    IVEC4(area);      // width and height of the view, z: photographs, w: tiles per row
-    VEC4(radiance);   // x: stops that samples of one surface may differ, 0: any;
-                      // y: variance of relative error at full exposure; z: least radiance
-                      // that can be told from darkness
-    VEC4(choice);     // x: photographs per pixel, y: sharpness, z: trust in photographs
-                      // without depth, w: sharpness on guessed depth
-    VEC4(choice_more); // x: photographs of the tile's list that a pixel asks,
-                       // y: severity with outliers, 1 / squared root of light; 0: none,
-                       // z: largest mip level, w: blur on guessed depth per radian, radians
-    VEC4(ground);      // of image_block
-    VEC4(slots);       // width, height of a slot; of a depth slot
+    VEC4(view_focal);    // fx fy cx cy
+    VEC4(ground);        // of image_block
+    VEC4(slot_size);     // width, height of a photograph's slot; of a depth slot
+    IVEC2(view_size);    // pixels
+    INT(photo_count);    // of this dispatch
+    INT(tiles_across);   // tiles in a row of the view
+    INT(reach);          // opt.silhouette, whole pixels
+    INT(kept);           // opt.photos_per_pixel, whole
+    INT(asked);          // opt.candidates, whole
+    FLOAT(last_mip);     // largest mip level
+    FLOAT(border_px);    // opt.border_px in pixels of the photographs as they are on the device
+    FLOAT(outlier_severity); // 1 / opt.outliers^2; 0: no sample is an outlier
+    FLOAT(blur_per_radian);  // opt.guess_blur where depth is guessed, else 0; radians
+    FLOAT(model_variance);   // of relative error at full exposure, of radiance
+    FLOAT(least_radiance);   // that can be told from darkness
+    RENDER_OPTIONS_MEMBER;
 };
 #endif
+
+#define ORL_BICUBIC 1 // of opt.sampling
 
 // Choice of photographs per tile.
 #define CHOICE_TILE 16 // pixels
@@ -86,10 +107,15 @@ ORL_BLOCK(gather_block)
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)
 ORL_BLOCK(image_block)
 {
-    IVEC4(area); // width, height of the written level; z, w: the pass's own
-    VEC4(scale); // x: a typical depth of the scene
-    VEC4(focal); // fx fy cx cy
-    VEC4(ground); // dot(xyz, ray) is its inverse depth; w: the least that counts
+    IVEC2(image_size);  // of the written level
+    INT(points_show);   // compose: splats' own colours, between which holes count as covered
+    INT(fills);         // compose: pixels that nothing paints take their neighbours' colours
+    VEC4(focal);        // fx fy cx cy
+    VEC4(ground);       // dot(xyz, ray) is its inverse depth; w: the least that counts
+    FLOAT(depth_scale); // a typical depth of the scene
+    FLOAT(unused_1);
+    FLOAT(unused_2);
+    FLOAT(unused_3);
 };
 #endif
 

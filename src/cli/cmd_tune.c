@@ -28,12 +28,9 @@ static void print_trial(void *priv, const struct orl_tune_trial *trial)
     fflush(stdout);
 }
 
-// The method's number of this key.
-static double value_of(const struct orl_render_params *params, const char *key)
+static double value_of(const struct orl_render_params *params,
+                       const struct orl_render_option *option)
 {
-    const struct orl_render_option *option = orl_render_options;
-    while (strcmp(option->key, key) != 0)
-        option++;
     float value;
     memcpy(&value, (const char *)params + option->offset, sizeof value);
     return (double)value;
@@ -44,13 +41,13 @@ static json_t *settings_json(const struct orl_render_params *best,
                              const struct orl_render_params *method)
 {
     json_t *settings = json_object();
-    for (const struct orl_render_tries *t = orl_render_tries; t->key; t++) {
-        double value = value_of(best, t->key);
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        double value = o->try_count ? value_of(best, o) : 0;
         char text[32];
-        if (value == value_of(method, t->key))
+        if (o->try_count == 0 || value == value_of(method, o))
             continue;
         snprintf(text, sizeof text, "%.6g", value); // 0.1, not the float next to it
-        json_object_set_new(settings, t->key, json_real(atof(text)));
+        json_object_set_new(settings, o->key, json_real(atof(text)));
     }
     return settings;
 }

@@ -99,7 +99,7 @@ static bool is_aligned(const struct orl_render_params *params, const struct orl_
     for (int c = 0; c < 3; c++)
         changed = changed || photo->gain[c] != 1 || photo->vignette[c] != 0;
     return changed && params->alignment == ORL_ALIGNMENT_ON &&
-           params->color == ORL_COLOR_PHOTOS;
+           orl_render_option_read(orl_render_option_find("alignment"), params);
 }
 
 static enum orl_result read_photograph(const struct job *job, size_t photo,

@@ -175,11 +175,8 @@ static enum orl_result note_trial(struct job *job, const struct orl_tune_trial *
 
 // --- the search ---
 
-static float *field(struct orl_render_params *params, const struct orl_render_tries *tries)
+static float *field(struct orl_render_params *params, const struct orl_render_option *option)
 {
-    const struct orl_render_option *option = orl_render_options;
-    while (strcmp(option->key, tries->key) != 0)
-        option++;
     return (float *)((char *)params + option->offset);
 }
 
@@ -189,13 +186,13 @@ static bool out_of_time(const struct job *job)
 }
 
 // Tries one value; `kept` when it is better, `same` when it changes nothing at all.
-static enum orl_result try_value(struct job *job, const struct orl_render_tries *tries,
+static enum orl_result try_value(struct job *job, const struct orl_render_option *option,
                                  double value, bool *kept, bool *same)
 {
     struct orl_tune *tune = job->tune;
     struct orl_render_params render = tune->best;
-    struct orl_tune_trial trial = {.key = tries->key, .value = value};
-    *field(&render, tries) = (float)value;
+    struct orl_tune_trial trial = {.key = option->key, .value = value};
+    *field(&render, option) = (float)value;
     enum orl_result result = run_trial(job, &render, &trial);
     if (result != ORL_OK)
         return result;
@@ -209,11 +206,11 @@ static enum orl_result try_value(struct job *job, const struct orl_render_tries 
 }
 
 // The next of the option's tries beyond its value; NAN: none.
-static double next_try(const struct orl_render_tries *tries, double from, int direction)
+static double next_try(const struct orl_render_option *option, double from, int direction)
 {
     double next = NAN;
-    for (int i = 0; i < tries->count; i++) {
-        double value = tries->values[i];
+    for (int i = 0; i < option->try_count; i++) {
+        double value = option->tries[i];
         // What is stored is a float: 0.1 is not beyond itself.
         if ((value - from) * direction <= 1e-6 * fabs(from))
             continue;
@@ -223,7 +220,7 @@ static double next_try(const struct orl_render_tries *tries, double from, int di
     return next;
 }
 
-static enum orl_result tune_option(struct job *job, const struct orl_render_tries *tries,
+static enum orl_result tune_option(struct job *job, const struct orl_render_option *option,
                                    bool *better)
 {
     enum orl_result result = ORL_OK;
@@ -231,33 +228,33 @@ static enum orl_result tune_option(struct job *job, const struct orl_render_trie
     for (int direction = 1; direction >= -1 && !moved; direction -= 2) {
         bool kept = true, same = false;
         while (result == ORL_OK && kept && !out_of_time(job)) {
-            double value = next_try(tries, (double)*field(&job->tune->best, tries), direction);
+            double value = next_try(option, (double)*field(&job->tune->best, option), direction);
             if (isnan(value))
                 break;
-            result = try_value(job, tries, value, &kept, &same);
+            result = try_value(job, option, value, &kept, &same);
             moved = moved || (result == ORL_OK && kept);
         }
-        if (result != ORL_OK || same) // an option that this method does not use
+        if (result != ORL_OK || same) // an option that changes nothing in these views
             break;
     }
     *better = *better || moved;
     return result;
 }
 
-static bool is_chosen(const struct job *job, const struct orl_render_tries *tries)
+static bool is_chosen(const struct job *job, const struct orl_render_option *option)
 {
     const struct orl_names *keys = job->params->keys;
-    return !keys || !keys->count || orl_names_contain(keys, tries->key);
+    if (option->try_count == 0 || !orl_render_option_read(option, job->params->start))
+        return false;
+    return !keys || !keys->count || orl_names_contain(keys, option->key);
 }
 
 static enum orl_result check_keys(const struct job *job)
 {
     const struct orl_names *keys = job->params->keys;
     for (size_t i = 0; keys && i < keys->count; i++) {
-        const struct orl_render_tries *t = orl_render_tries;
-        while (t->key && strcmp(t->key, keys->items[i]) != 0)
-            t++;
-        if (!t->key)
+        const struct orl_render_option *option = orl_render_option_find(keys->items[i]);
+        if (!option || option->try_count == 0)
             return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: not an option that can be tuned",
                             keys->items[i]);
     }
@@ -276,9 +273,9 @@ static enum orl_result search(struct job *job)
     for (int round = 0; result == ORL_OK && better && round < ROUNDS_MAX && !out_of_time(job);
          round++) {
         better = false;
-        for (const struct orl_render_tries *t = orl_render_tries; result == ORL_OK && t->key; t++)
-            if (is_chosen(job, t))
-                result = tune_option(job, t, &better);
+        for (const struct orl_render_option *o = orl_render_options; result == ORL_OK && o->key; o++)
+            if (is_chosen(job, o))
+                result = tune_option(job, o, &better);
     }
     tune->complete = !out_of_time(job);
     return result;
@@ -304,8 +301,8 @@ enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     enum orl_result result = check_keys(&job);
     if (result == ORL_OK)
         result = load_targets(&job);
-    for (const struct orl_render_tries *t = orl_render_tries; t->key; t++)
-        job.total += is_chosen(&job, t) ? 3.0 * (double)job.target_count : 0; // about
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+        job.total += is_chosen(&job, o) ? 3.0 * (double)job.target_count : 0; // about
     if (result == ORL_OK)
         result = search(&job);
     if (result == ORL_OK)

@@ -150,10 +150,12 @@ void orl_gpu_destroy(struct orl_gpu **handle)
     struct orl_gpu *gpu = *handle;
     if (!gpu)
         return;
-    if (gpu->live_bufs || gpu->live_texs || gpu->live_progs)
-        orl_logf(gpu->log, ORL_LOG_ERROR, "%zu buffers, %zu textures, %zu programs still alive",
-                 gpu->live_bufs, gpu->live_texs, gpu->live_progs);
+    if (gpu->live_bufs || gpu->live_texs)
+        orl_logf(gpu->log, ORL_LOG_ERROR, "%zu buffers, %zu textures still alive",
+                 gpu->live_bufs, gpu->live_texs);
     if (gpu->current) {
+        orl_gpu_free_programs(gpu);
+        orl_gpu_free_raster(gpu);
         orl_gpu_free_queries(gpu);
         eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(gpu->display, gpu->context);

@@ -125,21 +125,33 @@ void orl_tex_make_mipmaps(struct orl_tex *tex, int layer);
 // --- programs and dispatch ---
 
 struct orl_prog;
-// Compiles the compute shader `file` (relative to shaders/), after expanding
-// #include "..." and adding #version 450 core and `defines` ("A 1\nB 2\n" become
-// #define lines; NULL: none). params_size: size of the std140 block at uniform
-// binding 0, 0 if it has none.
-enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const char *defines,
-                                size_t params_size, struct orl_prog **out) ORL_CHECK_RESULT;
+// A part of a program that may be exchanged: where its files say #include <name>, they get the
+// shader file `file`.
+struct orl_slot {
+    const char *name, *file;
+};
+// The compute program of the shader `file` (relative to shaders/), after expanding
+// #include "..." and <...> and adding #version 450 core and `defines` ("A 1\nB 2\n" become
+// #define lines; NULL: none). slots: ended by a NULL name; NULL: none. Made when it is first
+// asked for, kept and owned by the gpu. One that does not compile is a sticky failure, whose
+// cause is in the log, of every dispatch of it.
+struct orl_prog *orl_prog_get(struct orl_gpu *gpu, const char *file, const struct orl_slot *slots,
+                              const char *defines);
+// The same of the graphics pipeline (raster.h).
+struct orl_prog *orl_prog_get_raster(struct orl_gpu *gpu, const char *vertex_file,
+                                     const char *fragment_file, const char *defines);
 // Programs so far that an earlier run had compiled.
 size_t orl_gpu_cached_programs(const struct orl_gpu *gpu);
-void orl_prog_destroy(struct orl_gpu *gpu, struct orl_prog **prog);
+// The `index`-th shader file below `folder`, in the order of their names; NULL: there are no
+// more. The string is static.
+const char *orl_shader_file(const char *folder, size_t index);
 
 enum { ORL_BINDINGS_MAX = 8 };
 struct orl_image_binding {
     const struct orl_tex *tex; // NULL: not bound
     int level;
     GLenum access;             // GL_READ_ONLY, GL_WRITE_ONLY or GL_READ_WRITE
+    int layer;                 // of an array: 0: all of them, n: the one of index n - 1 alone
 };
 struct orl_buf_binding {
     const struct orl_buf *buf; // NULL: not bound
@@ -148,7 +160,8 @@ struct orl_buf_binding {
 // One compute dispatch; array index = binding point of its kind.
 struct orl_dispatch {
     struct orl_prog *prog;
-    const void *params;        // params_size bytes for the uniform block
+    const void *params;        // the std140 block at uniform binding 0
+    size_t params_size;        // bytes of it; at least those of the program's block
     struct orl_buf_binding bufs[ORL_BINDINGS_MAX];
     const struct orl_tex *textures[ORL_BINDINGS_MAX];
     struct orl_image_binding images[ORL_BINDINGS_MAX];

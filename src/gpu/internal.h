@@ -24,7 +24,10 @@ struct orl_gpu {
     size_t cached_progs; // taken from it
     bool failed;      // sticky: a GL error or a high-severity message
     bool current;     // the context could be made current
-    size_t live_bufs, live_texs, live_progs, live_bytes;
+    struct orl_prog **progs; // made so far, owned
+    size_t prog_count, prog_capacity;
+    GLuint vertex_array, framebuffer; // of raster.c; 0: not made
+    size_t live_bufs, live_texs, live_bytes;
     struct orl_gpu_memory memory[ORL_MEMORY_ROWS_MAX];
     size_t memory_count;
 
@@ -40,14 +43,15 @@ struct orl_gpu {
 };
 
 // Expanded source of shaders/`file`: version, defines, includes, #line. Owned by
-// the caller (free). files: names by #line source number, for messages.
+// the caller (orl_shader_source_finish). files: names by #line source number, for messages.
 struct shader_source {
     char *text;
     size_t length, capacity;
-    const char *files[32];
+    const char *files[48];
     size_t file_count;
 };
-enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
+enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
+                                       const struct orl_slot *slots, const char *defines,
                                        struct shader_source *source);
 void orl_shader_source_finish(struct shader_source *source);
 
@@ -59,6 +63,11 @@ bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *sou
                             GLuint program);
 void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *source,
                              GLuint program);
+
+// program.c: makes it current with these parameters; false, sticky, where that cannot be.
+bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params, size_t size);
+void orl_gpu_free_programs(struct orl_gpu *gpu);
+void orl_gpu_free_raster(struct orl_gpu *gpu);
 
 // Logs every pending GL error as made by `where`; true if there were none.
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);

@@ -1,95 +1,167 @@
-// Compute programs and their dispatch.
+// Programs by key, and compute dispatch.
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/process.h"
 #include "gpu/internal.h"
 
+enum { STAGES_MAX = 2 };
+
 struct orl_prog {
-    GLuint id, params_buf;
-    size_t params_size;
-    const char *file; // string of the shader table
+    char *key;         // owned: files, slots and defines
+    GLuint id;         // 0: it does not compile, which was said once
+    GLuint params_buf; // made by the first dispatch
+    size_t params_size; // that the program's block at binding 0 needs; 0: it has none
 };
 
-static void log_sources(struct orl_gpu *gpu, const struct shader_source *source)
+struct stage {
+    GLenum type;
+    const char *file;
+};
+
+static void log_failure(struct orl_gpu *gpu, const struct shader_source *source,
+                        const char *what, const char *message)
 {
+    orl_logf(gpu->log, ORL_LOG_ERROR, "shaders/%s does not %s:\n%s", source->files[0], what,
+             message);
     for (size_t i = 0; i < source->file_count; i++)
         orl_logf(gpu->log, ORL_LOG_ERROR, "  source %zu is shaders/%s", i, source->files[i]);
 }
 
-static enum orl_result compile(struct orl_gpu *gpu, const char *file,
-                               const struct shader_source *source, GLuint program)
+static bool attach(struct orl_gpu *gpu, GLenum type, const struct shader_source *source,
+                   GLuint program)
 {
     char message[2048] = "";
     GLint ok = 0;
-    GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
+    GLuint shader = glCreateShader(type);
     const GLchar *text = source->text;
     glShaderSource(shader, 1, &text, NULL);
     glCompileShader(shader);
     glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    if (!ok) {
-        glGetShaderInfoLog(shader, sizeof message, NULL, message);
-    } else {
+    if (ok) {
         glAttachShader(program, shader);
-        glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT,
-                            gpu->program_cache != NULL);
-        glLinkProgram(program);
-        glGetProgramiv(program, GL_LINK_STATUS, &ok);
-        if (!ok)
-            glGetProgramInfoLog(program, sizeof message, NULL, message);
-        glDetachShader(program, shader);
+    } else {
+        glGetShaderInfoLog(shader, sizeof message, NULL, message);
+        log_failure(gpu, source, "compile", message);
     }
-    glDeleteShader(shader);
-    if (ok)
-        return ORL_OK;
-    orl_logf(gpu->log, ORL_LOG_ERROR, "shaders/%s does not compile:\n%s", file, message);
-    log_sources(gpu, source);
-    return ORL_ERR_GPU;
+    glDeleteShader(shader); // once the program lets go of it
+    return ok;
 }
 
-enum orl_result orl_prog_create(struct orl_gpu *gpu, const char *file, const char *defines,
-                                size_t params_size, struct orl_prog **out)
+static bool link(struct orl_gpu *gpu, const struct shader_source *source, GLuint program)
 {
-    *out = NULL;
-    struct shader_source source;
-    enum orl_result result = orl_shader_source_load(gpu, file, defines, &source);
-    if (result != ORL_OK)
-        return result;
+    char message[2048] = "";
+    GLint ok = 0;
+    glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, gpu->program_cache != NULL);
+    glLinkProgram(program);
+    glGetProgramiv(program, GL_LINK_STATUS, &ok);
+    if (!ok) {
+        glGetProgramInfoLog(program, sizeof message, NULL, message);
+        log_failure(gpu, source, "link", message);
+    }
+    return ok;
+}
+
+// Bytes of the uniform block at binding 0.
+static size_t find_params_size(GLuint program)
+{
+    GLint count = 0, binding = 0, size = 0;
+    glGetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &count);
+    for (GLuint i = 0; i < (GLuint)count; i++) {
+        glGetActiveUniformBlockiv(program, i, GL_UNIFORM_BLOCK_BINDING, &binding);
+        glGetActiveUniformBlockiv(program, i, GL_UNIFORM_BLOCK_DATA_SIZE, &size);
+        if (binding == 0)
+            return (size_t)size;
+    }
+    return 0;
+}
+
+static bool make(struct orl_gpu *gpu, const struct stage *stages, size_t count,
+                 const struct orl_slot *slots, const char *defines, struct orl_prog *prog)
+{
+    struct shader_source sources[STAGES_MAX] = {0};
     double start = orl_time_s();
-    struct orl_prog *prog = orl_array(gpu->log, 1, sizeof *prog);
-    if (!prog) {
-        result = ORL_ERR_MEMORY;
-        goto end;
-    }
-    gpu->live_progs++;
-    prog->file = source.files[0];
-    prog->params_size = params_size;
+    bool ok = true, cached = false;
+    for (size_t i = 0; ok && i < count; i++)
+        ok = orl_shader_source_load(gpu, stages[i].file, slots, defines, &sources[i]) == ORL_OK;
     prog->id = glCreateProgram();
-    bool cached = orl_program_cache_load(gpu, &source, prog->id);
-    if (!cached) {
-        result = compile(gpu, file, &source, prog->id);
-        if (result != ORL_OK)
-            goto end;
-        orl_program_cache_store(gpu, &source, prog->id);
+    // Compute programs are what takes long to compile.
+    bool cacheable = count == 1;
+    if (ok && cacheable)
+        cached = orl_program_cache_load(gpu, &sources[0], prog->id);
+    for (size_t i = 0; ok && !cached && i < count; i++)
+        ok = attach(gpu, stages[i].type, &sources[i], prog->id);
+    if (ok && !cached)
+        ok = link(gpu, &sources[0], prog->id);
+    if (ok && !cached && cacheable)
+        orl_program_cache_store(gpu, &sources[0], prog->id);
+    if (ok) {
+        glObjectLabel(GL_PROGRAM, prog->id, -1, stages[0].file);
+        prog->params_size = find_params_size(prog->id);
+        orl_logf(gpu->log, ORL_LOG_DEBUG, "shaders/%s %s in %.0f ms", stages[0].file,
+                 cached ? "loaded" : "compiled", 1e3 * (orl_time_s() - start));
+    } else {
+        glDeleteProgram(prog->id);
+        prog->id = 0;
     }
-    glObjectLabel(GL_PROGRAM, prog->id, -1, prog->file);
-    if (params_size) {
-        glCreateBuffers(1, &prog->params_buf);
-        glNamedBufferStorage(prog->params_buf, (GLsizeiptr)params_size, NULL,
-                             GL_DYNAMIC_STORAGE_BIT);
+    for (size_t i = 0; i < count; i++)
+        orl_shader_source_finish(&sources[i]);
+    return orl_gpu_check_errors(gpu, stages[0].file) && ok;
+}
+
+// All that a program follows from, as one string.
+static char *make_key(const struct orl_log *log, const struct stage *stages, size_t count,
+                      const struct orl_slot *slots, const char *defines)
+{
+    char *key = orl_format(log, "%s\n%s\n%s", stages[0].file, count > 1 ? stages[1].file : "",
+                           defines ? defines : "");
+    for (const struct orl_slot *s = slots; key && s && s->name; s++) {
+        char *longer = orl_format(log, "%s\n%s=%s", key, s->name, s->file);
+        free(key);
+        key = longer;
     }
-    if (!orl_gpu_check_errors(gpu, file)) {
-        result = ORL_ERR_GPU;
-        goto end;
+    return key;
+}
+
+static struct orl_prog *get(struct orl_gpu *gpu, const struct stage *stages, size_t count,
+                            const struct orl_slot *slots, const char *defines)
+{
+    struct orl_prog *prog = NULL;
+    char *key = make_key(gpu->log, stages, count, slots, defines);
+    for (size_t i = 0; key && i < gpu->prog_count; i++)
+        if (strcmp(gpu->progs[i]->key, key) == 0) {
+            free(key);
+            return gpu->progs[i];
+        }
+    if (key && orl_grow(gpu->log, (void **)&gpu->progs, &gpu->prog_capacity, gpu->prog_count + 1,
+                        sizeof *gpu->progs) == ORL_OK)
+        prog = orl_array(gpu->log, 1, sizeof *prog);
+    if (!prog) {
+        free(key);
+        gpu->failed = true;
+        return NULL;
     }
-    orl_logf(gpu->log, ORL_LOG_DEBUG, "shaders/%s %s in %.0f ms", file,
-             cached ? "loaded" : "compiled", 1e3 * (orl_time_s() - start));
-    *out = prog;
-    prog = NULL;
-end:
-    orl_prog_destroy(gpu, &prog);
-    orl_shader_source_finish(&source);
-    return result;
+    prog->key = key;
+    gpu->progs[gpu->prog_count++] = prog;
+    if (!make(gpu, stages, count, slots, defines, prog))
+        gpu->failed = true;
+    return prog;
+}
+
+struct orl_prog *orl_prog_get(struct orl_gpu *gpu, const char *file, const struct orl_slot *slots,
+                              const char *defines)
+{
+    const struct stage stage = {GL_COMPUTE_SHADER, file};
+    return get(gpu, &stage, 1, slots, defines);
+}
+
+struct orl_prog *orl_prog_get_raster(struct orl_gpu *gpu, const char *vertex_file,
+                                     const char *fragment_file, const char *defines)
+{
+    const struct stage stages[] = {{GL_VERTEX_SHADER, vertex_file},
+                                   {GL_FRAGMENT_SHADER, fragment_file}};
+    return get(gpu, stages, ORL_COUNT(stages), NULL, defines);
 }
 
 size_t orl_gpu_cached_programs(const struct orl_gpu *gpu)
@@ -97,26 +169,49 @@ size_t orl_gpu_cached_programs(const struct orl_gpu *gpu)
     return gpu->cached_progs;
 }
 
-void orl_prog_destroy(struct orl_gpu *gpu, struct orl_prog **handle)
+void orl_gpu_free_programs(struct orl_gpu *gpu)
 {
-    struct orl_prog *prog = *handle;
-    if (!prog)
-        return;
-    glDeleteProgram(prog->id);
-    if (prog->params_buf)
+    for (size_t i = 0; i < gpu->prog_count; i++) {
+        struct orl_prog *prog = gpu->progs[i];
+        glDeleteProgram(prog->id);
         glDeleteBuffers(1, &prog->params_buf);
-    gpu->live_progs--;
-    free(prog);
-    *handle = NULL;
+        free(prog->key);
+        free(prog);
+    }
+    free(gpu->progs);
+    gpu->progs = NULL;
+    gpu->prog_count = gpu->prog_capacity = 0;
+}
+
+bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params, size_t size)
+{
+    if (!prog || !prog->id) {
+        gpu->failed = true;
+        return false;
+    }
+    if (prog->params_size > size) {
+        orl_logf(gpu->log, ORL_LOG_ERROR, "shaders/%.*s: its block has %zu bytes, not %zu",
+                 (int)strcspn(prog->key, "\n"), prog->key, prog->params_size, size);
+        gpu->failed = true;
+        return false;
+    }
+    glUseProgram(prog->id);
+    if (!prog->params_size)
+        return true;
+    if (!prog->params_buf) {
+        glCreateBuffers(1, &prog->params_buf);
+        glNamedBufferStorage(prog->params_buf, (GLsizeiptr)prog->params_size, NULL,
+                             GL_DYNAMIC_STORAGE_BIT);
+    }
+    glNamedBufferSubData(prog->params_buf, 0, (GLsizeiptr)prog->params_size, params);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, prog->params_buf);
+    return true;
 }
 
 void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
 {
-    glUseProgram(d->prog->id);
-    if (d->prog->params_size) {
-        glNamedBufferSubData(d->prog->params_buf, 0, (GLsizeiptr)d->prog->params_size, d->params);
-        glBindBufferBase(GL_UNIFORM_BUFFER, 0, d->prog->params_buf);
-    }
+    if (!orl_prog_use(gpu, d->prog, d->params, d->params_size))
+        return;
     for (GLuint i = 0; i < ORL_BINDINGS_MAX; i++) {
         const struct orl_buf_binding *b = &d->bufs[i];
         if (b->buf)
@@ -126,8 +221,10 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
             glBindTextureUnit(i, d->textures[i]->id);
         const struct orl_image_binding *image = &d->images[i];
         if (image->tex)
-            glBindImageTexture(i, image->tex->id, image->level, image->tex->params.layers > 0, 0,
-                               image->access, image->tex->params.format);
+            glBindImageTexture(i, image->tex->id, image->level,
+                               image->tex->params.layers > 0 && image->layer == 0,
+                               image->layer > 0 ? image->layer - 1 : 0, image->access,
+                               image->tex->params.format);
     }
     if (d->indirect) {
         glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, d->indirect->id);
@@ -139,7 +236,8 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
     if (d->barrier)
         glMemoryBarrier(d->barrier);
     if (glGetError() != GL_NO_ERROR) {
-        orl_logf(gpu->log, ORL_LOG_ERROR, "shaders/%s: dispatch failed", d->prog->file);
+        orl_logf(gpu->log, ORL_LOG_ERROR, "shaders/%.*s: dispatch failed",
+                 (int)strcspn(d->prog->key, "\n"), d->prog->key);
         gpu->failed = true;
     }
 }

@@ -56,11 +56,29 @@ static enum orl_result append_line_mark(struct orl_gpu *gpu, struct shader_sourc
     return append(gpu, source, mark, (size_t)length);
 }
 
+// What a line includes; NULL: nothing. `quoted` has room for a name.
+static const char *included_file(const char *line, const struct orl_slot *slots, char quoted[128])
+{
+    char slot[64];
+    if (sscanf(line, "#include \"%127[^\"\n]\"", quoted) == 1)
+        return quoted;
+    if (sscanf(line, "#include <%63[^>\n]>", slot) != 1)
+        return NULL;
+    for (const struct orl_slot *s = slots; s && s->name; s++)
+        if (strcmp(s->name, slot) == 0)
+            return s->file;
+    snprintf(quoted, 128, "<%s>", slot); // not known, which the message tells
+    return quoted;
+}
+
 static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source, const char *file,
-                              int depth)
+                              const struct orl_slot *slots, int depth)
 {
     const char *text, *name = file;
     uint8_t *owned;
+    for (size_t i = 0; i < source->file_count; i++)
+        if (strcmp(source->files[i], file) == 0)
+            return ORL_OK; // once is enough
     if (depth > INCLUDE_DEPTH_MAX || source->file_count == ORL_COUNT(source->files))
         return orl_fail(gpu->log, ORL_ERR_FORMAT, "shader %s: includes too deep or too many", file);
     enum orl_result result = find_text(gpu, file, &name, &text, &owned);
@@ -73,9 +91,10 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
     for (const char *line = text; result == ORL_OK && *line; number++) {
         const char *end = strchr(line, '\n');
         size_t length = end ? (size_t)(end - line) + 1 : strlen(line);
-        char included[128];
-        if (sscanf(line, "#include \"%127[^\"\n]\"", included) == 1) {
-            result = expand(gpu, source, included, depth + 1);
+        char quoted[128];
+        const char *included = included_file(line, slots, quoted);
+        if (included) {
+            result = expand(gpu, source, included, slots, depth + 1);
             if (result == ORL_OK)
                 result = append_line_mark(gpu, source, number + 1, index);
         } else {
@@ -89,7 +108,8 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
     return result;
 }
 
-enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, const char *defines,
+enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
+                                       const struct orl_slot *slots, const char *defines,
                                        struct shader_source *source)
 {
     static const char head[] = "#version 450 core\n";
@@ -105,10 +125,19 @@ enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file, co
         line += length + (line[length] == '\n');
     }
     if (result == ORL_OK)
-        result = expand(gpu, source, file, 0);
+        result = expand(gpu, source, file, slots, 0);
     if (result != ORL_OK)
         orl_shader_source_finish(source);
     return result;
+}
+
+const char *orl_shader_file(const char *folder, size_t index)
+{
+    size_t length = strlen(folder);
+    for (const struct orl_shader_file *row = orl_shader_table; row->name; row++)
+        if (strncmp(row->name, folder, length) == 0 && row->name[length] == '/' && index-- == 0)
+            return row->name;
+    return NULL;
 }
 
 void orl_shader_source_finish(struct shader_source *source)

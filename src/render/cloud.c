@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/internal.h"
+#include "render/cloud.h"
 
 enum {
     // 256 MiB of positions, a half of the 65535 work groups that one dispatch may have. More
@@ -346,9 +346,6 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
         chunk->count = chunk->block_count * BLOCK;
         result = upload_chunk(gpu, points, order + first, here, chunk);
     }
-    if (result == ORL_OK)
-        result = orl_prog_create(gpu, "proxy/splat_cull.comp", NULL, sizeof(struct splat_block),
-                                 &cloud->cull);
     free(order);
     if (result != ORL_OK)
         orl_cloud_finish(gpu, cloud);
@@ -370,7 +367,6 @@ void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
             orl_buf_destroy(gpu, bufs[k]);
     }
     free(cloud->chunks);
-    orl_prog_destroy(gpu, &cloud->cull);
     memset(cloud, 0, sizeof *cloud);
 }
 
@@ -379,10 +375,11 @@ void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
     static const uint32_t nothing[4] = {0, 1, 1, 0};
     for (size_t i = 0; i < cloud->chunk_count; i++) {
         const struct point_chunk *chunk = &cloud->chunks[i];
-        block->size[2] = chunk->count;
-        block->size[3] = chunk->first;
+        block->point_count = chunk->count;
+        block->first_point = chunk->first;
         orl_buf_write(chunk->args, 0, sizeof nothing, nothing);
-        struct orl_dispatch d = {.prog = cloud->cull, .params = block,
+        struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/splat_cull.comp", NULL, NULL),
+                                 .params = block, .params_size = sizeof *block,
                                  .bufs = {{.buf = chunk->args}, {.buf = chunk->items},
                                           {.buf = chunk->enlarged}},
                                  .images = {{chunk->block_texels, 0, GL_READ_ONLY}},

@@ -1,63 +1,21 @@
 // Image-space pull-push of Gortler 1996: background depth and colour for pixels that
 // nothing covers.
-#include <string.h>
+#include "render/fill.h"
 
-#include "render/internal.h"
-#include "scene/ground.h"
+#include "core/memory.h"
 
-enum orl_result orl_fill_init(struct orl_gpu *gpu, float depth_scale, bool radiance,
-                              struct fill *fill)
-{
-    memset(fill, 0, sizeof *fill);
-    fill->block.scale[0] = depth_scale;
-    const struct {
-        const char *file, *defines;
-        struct orl_prog **prog;
-    } programs[] = {
-        {"fill/fill_seed.comp", "SEED_DEPTH", &fill->seed_depth},
-        {"fill/fill_seed.comp", NULL, &fill->seed_color},
-        {"fill/fill_pull.comp", NULL, &fill->pull},
-        {"fill/fill_push.comp", NULL, &fill->push},
-        {"fill/fill_depth.comp", NULL, &fill->apply_depth},
-        {"fill/fill_seed.comp", "SEED_LEAST", &fill->seed_least}, // from here on of radiance
-        {"fill/fill_seed.comp", "SEED_BRIGHTER", &fill->seed_brighter},
-        {"fill/fill_lift.comp", NULL, &fill->lift},
-    };
-    enum orl_result result = ORL_OK;
-    size_t count = ORL_COUNT(programs) - (radiance ? 0 : 3);
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        result = orl_prog_create(gpu, programs[i].file, programs[i].defines,
-                                 sizeof(struct image_block), programs[i].prog);
-    if (result != ORL_OK)
-        orl_fill_finish(gpu, fill);
-    return result;
-}
-
-static void free_levels(struct orl_gpu *gpu, struct fill *fill)
+void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill)
 {
     for (size_t i = 0; i < ORL_COUNT(fill->level); i++)
         orl_tex_destroy(gpu, &fill->level[i]);
     fill->width = fill->height = fill->levels = 0;
 }
 
-void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill)
-{
-    free_levels(gpu, fill);
-    orl_prog_destroy(gpu, &fill->seed_depth);
-    orl_prog_destroy(gpu, &fill->seed_color);
-    orl_prog_destroy(gpu, &fill->pull);
-    orl_prog_destroy(gpu, &fill->push);
-    orl_prog_destroy(gpu, &fill->apply_depth);
-    orl_prog_destroy(gpu, &fill->seed_least);
-    orl_prog_destroy(gpu, &fill->seed_brighter);
-    orl_prog_destroy(gpu, &fill->lift);
-}
-
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height)
 {
     if (fill->width == width && fill->height == height)
         return ORL_OK;
-    free_levels(gpu, fill);
+    orl_fill_finish(gpu, fill);
     enum orl_result result = ORL_OK;
     // From half the size down to one pixel, rounded up: image loads outside a level read 0.
     for (int w = (width + 1) / 2, h = (height + 1) / 2; result == ORL_OK;
@@ -71,7 +29,7 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
             break;
     }
     if (result != ORL_OK) {
-        free_levels(gpu, fill);
+        orl_fill_finish(gpu, fill);
         return result;
     }
     fill->width = width;
@@ -79,86 +37,82 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return ORL_OK;
 }
 
-bool orl_fill_guesses(const struct orl_render_params *params)
-{
-    return params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND;
-}
+// One program from texture to texture, over `covered`; `per_invocation`: pixels each way.
+struct step {
+    const char *file, *defines;
+    int per_invocation;
+};
 
-static void run(struct orl_gpu *gpu, const struct fill *fill, struct orl_prog *prog,
-                const struct orl_tex *first, GLenum first_access, const struct orl_tex *second,
-                GLenum second_access, const struct orl_tex *covered)
+static void run(const struct frame *frame, struct step step, const struct orl_tex *first,
+                GLenum first_access, const struct orl_tex *second, GLenum second_access,
+                const struct orl_tex *covered)
 {
-    // These take 2x2 pixels an invocation.
-    bool four = prog == fill->push || prog == fill->apply_depth || prog == fill->lift;
-    int width = covered->params.width, height = covered->params.height;
-    struct image_block block = fill->block;
-    block.area[0] = width;
-    block.area[1] = height;
-    struct orl_dispatch d = {.prog = prog, .params = &block,
+    int width = covered->params.width, height = covered->params.height, n = step.per_invocation;
+    struct image_block block = frame->fill->block;
+    block.image_size[0] = width;
+    block.image_size[1] = height;
+    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, step.file, NULL, step.defines),
+                             .params = &block, .params_size = sizeof block,
                              .images = {{first, 0, first_access}, {second, 0, second_access}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups(four ? (width + 1) / 2 : width, four ? (height + 1) / 2 : height, d.groups);
-    orl_gpu_dispatch(gpu, &d);
+    orl_pixel_groups((width + n - 1) / n, (height + n - 1) / n, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
 }
 
-static void spread(struct orl_gpu *gpu, struct fill *fill)
+// What level 0 knows, over all of it (Gortler 1996, pull-push).
+static void spread(const struct frame *frame)
 {
-    for (int i = 1; i < fill->levels; i++)
-        run(gpu, fill, fill->pull, fill->level[i - 1], GL_READ_ONLY, fill->level[i], GL_WRITE_ONLY,
-            fill->level[i]);
-    for (int i = fill->levels - 2; i >= 0; i--)
-        run(gpu, fill, fill->push, fill->level[i], GL_READ_WRITE, fill->level[i + 1], GL_READ_ONLY,
-            fill->level[i]);
+    static const struct step pull = {"fill/fill_pull.comp", NULL, 1};
+    static const struct step push = {"fill/fill_push.comp", NULL, 2};
+    struct orl_tex *const *level = frame->fill->level;
+    for (int i = 1; i < frame->fill->levels; i++)
+        run(frame, pull, level[i - 1], GL_READ_ONLY, level[i], GL_WRITE_ONLY, level[i]);
+    for (int i = frame->fill->levels - 2; i >= 0; i--)
+        run(frame, push, level[i], GL_READ_WRITE, level[i + 1], GL_READ_ONLY, level[i]);
 }
 
-// Farther than so many times the photographs' height, what stands on the ground hides it.
-static const double GROUND_REACH = 20;
-
-static void set_ground(struct image_block *block, const struct orl_view *view,
-                       const struct orl_ground *ground)
+static void seed(const struct frame *frame, const char *what, const struct orl_tex *from,
+                 GLenum access)
 {
-    const struct orl_camera *c = &view->camera;
-    const float focal[4] = {(float)c->fx, (float)c->fy, (float)c->cx, (float)c->cy};
-    double inverse[3];
-    memcpy(block->focal, focal, sizeof focal);
-    memset(block->ground, 0, sizeof block->ground);
-    if (!ground || !orl_ground_along_rays(ground, view, inverse))
-        return;
-    for (int k = 0; k < 3; k++)
-        block->ground[k] = (float)inverse[k];
-    block->ground[3] = (float)(1 / (GROUND_REACH * ground->height));
+    struct orl_tex *finest = frame->fill->level[0];
+    run(frame, (struct step){"fill/fill_seed.comp", what, 1}, from, GL_READ_ONLY, finest, access,
+        finest);
 }
 
-void orl_fill_depth(struct orl_gpu *gpu, struct fill *fill, const struct orl_view *view,
-                    const struct orl_ground *ground, struct orl_tex *depth)
+void orl_fill_depth(const struct frame *frame)
 {
-    set_ground(&fill->block, view, ground);
-    run(gpu, fill, fill->seed_depth, depth, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
-        fill->level[0]);
-    spread(gpu, fill);
-    run(gpu, fill, fill->apply_depth, fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
+    static const struct step apply = {"fill/fill_depth.comp", NULL, 2};
+    struct image_block *block = &frame->fill->block;
+    struct orl_tex *depth = frame->surface.depth;
+    double distance = frame->scene->photo_distance;
+    block->depth_scale = distance > 0 ? (float)distance : 1.0f;
+    orl_set_focal(&frame->view->camera, block->focal);
+    orl_frame_ground(frame, block->ground);
+    orl_pass_begin(frame->gpu, "fill");
+    seed(frame, "SEED_DEPTH", depth, GL_WRITE_ONLY);
+    spread(frame);
+    run(frame, apply, frame->fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
+    orl_pass_end(frame->gpu);
 }
 
 // What clips in every photograph is as bright as what around it is bright enough.
-static void lift(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
+static void lift(const struct frame *frame)
 {
-    run(gpu, fill, fill->seed_least, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
-        fill->level[0]);
-    spread(gpu, fill);
-    run(gpu, fill, fill->seed_brighter, accumulated, GL_READ_ONLY, fill->level[0], GL_READ_WRITE,
-        fill->level[0]);
-    spread(gpu, fill);
-    run(gpu, fill, fill->lift, fill->level[0], GL_READ_ONLY, accumulated, GL_READ_WRITE,
-        accumulated);
+    static const struct step apply = {"fill/fill_lift.comp", NULL, 2};
+    seed(frame, "SEED_LEAST", frame->picture, GL_WRITE_ONLY);
+    spread(frame);
+    seed(frame, "SEED_BRIGHTER", frame->picture, GL_READ_WRITE);
+    spread(frame);
+    run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->picture, GL_READ_WRITE,
+        frame->picture);
 }
 
-void orl_fill_color(struct orl_gpu *gpu, struct fill *fill, struct orl_tex *accumulated)
+void orl_fill_color(const struct frame *frame)
 {
-    if (accumulated && fill->lift)
-        lift(gpu, fill, accumulated);
-    if (accumulated)
-        run(gpu, fill, fill->seed_color, accumulated, GL_READ_ONLY, fill->level[0], GL_WRITE_ONLY,
-            fill->level[0]);
-    spread(gpu, fill);
+    if (frame->radiance)
+        lift(frame);
+    if (!frame->finishes)
+        seed(frame, NULL, frame->picture, GL_WRITE_ONLY);
+    spread(frame);
 }

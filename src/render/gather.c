@@ -1,63 +1,45 @@
-// Colour from photographs.
+#include "render/gather.h"
+
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/internal.h"
-
-enum { PHOTO_ROWS = 7 }; // image binding of shaders/gather/photo.glsl
+#include "render/photos.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
+_Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
 
-static enum orl_result create(struct orl_gpu *gpu, const char *file, const char *defines,
-                              struct orl_prog **prog)
-{
-    return orl_prog_create(gpu, file, defines, sizeof(struct gather_block), prog);
-}
+// --- what shaders are told ---
 
-static enum orl_result create_programs(struct orl_gpu *gpu, struct gather *gather)
+// RENDER_OPTIONS: the options' declarations, in the order of struct render_options.
+static char *declare_options(const struct orl_log *log)
 {
-    static const char *const defines[ORL_SAMPLING_COUNT] = {[ORL_SAMPLING_BICUBIC] = "BICUBIC 1\n"};
-    static const char *const few[ORL_SAMPLING_COUNT][KEPT_PROGRAMS] = {
-        [ORL_SAMPLING_BILINEAR] = {"KEPT 2\n", "KEPT 4\n"},
-        [ORL_SAMPLING_BICUBIC] = {"BICUBIC 1\nKEPT 2\n", "BICUBIC 1\nKEPT 4\n"}};
-    enum orl_result result = create(gpu, "gather/choose.comp", NULL, &gather->choose);
-    for (int i = 0; result == ORL_OK && i < ORL_SAMPLING_COUNT; i++) {
-        result = create(gpu, "gather/gather.comp", defines[i], &gather->all[i]);
-        for (int k = 0; result == ORL_OK && k < KEPT_PROGRAMS; k++)
-            result = create(gpu, "gather/gather_best.comp", few[i][k], &gather->best[i][k]);
+    char *text = orl_strdup(log, "RENDER_OPTIONS");
+    for (const struct orl_render_option *o = orl_render_options; text && o->key; o++) {
+        if (o->kind == ORL_OPTION_SLOT)
+            continue;
+        char *longer = orl_format(log, "%s %s %s;", text,
+                                  o->kind == ORL_OPTION_NUMBER ? "float" : "int", o->key);
+        free(text);
+        text = longer;
     }
-    return result;
+    return text;
 }
 
-static enum orl_result create_radiance_programs(struct orl_gpu *gpu, struct gather *gather)
-{
-    static const char *const defines[ORL_BLEND_COUNT] = {[ORL_BLEND_BEST] = "BEST 1\n"};
-    enum orl_result result = ORL_OK;
-    for (int i = 0; result == ORL_OK && i < ORL_BLEND_COUNT; i++) {
-        result = create(gpu, "gather/choose_radiance.comp", defines[i], &gather->choose_radiance[i]);
-        if (result == ORL_OK)
-            result = create(gpu, "gather/gather_radiance.comp", defines[i], &gather->radiance[i]);
-    }
-    return result;
-}
-
-enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool radiance,
-                                struct gather *gather)
+enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     memset(gather, 0, sizeof *gather);
     gather->list = orl_array(log, photo_count, sizeof *gather->list);
-    gather->chosen = orl_array(log, photo_count, sizeof *gather->chosen);
-    enum orl_result result = gather->list && gather->chosen ? ORL_OK : ORL_ERR_MEMORY;
+    gather->options = declare_options(log);
+    enum orl_result result = gather->list && gather->options ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_buf_create(gpu, "photographs of a frame",
                                 photo_count * sizeof *gather->list, NULL, &gather->photos);
     if (result == ORL_OK)
         result = orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows);
-    if (result == ORL_OK)
-        result = radiance ? create_radiance_programs(gpu, gather) : create_programs(gpu, gather);
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
     return result;
@@ -65,22 +47,12 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, bool ra
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
 {
-    for (int i = 0; i < ORL_SAMPLING_COUNT; i++) {
-        orl_prog_destroy(gpu, &gather->all[i]);
-        for (int k = 0; k < KEPT_PROGRAMS; k++)
-            orl_prog_destroy(gpu, &gather->best[i][k]);
-    }
-    for (int i = 0; i < ORL_BLEND_COUNT; i++) {
-        orl_prog_destroy(gpu, &gather->choose_radiance[i]);
-        orl_prog_destroy(gpu, &gather->radiance[i]);
-    }
-    orl_prog_destroy(gpu, &gather->choose);
     orl_tex_destroy(gpu, &gather->photo_rows);
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
     orl_buf_destroy(gpu, &gather->unfinished);
     free(gather->list);
-    free(gather->chosen);
+    free(gather->options);
     memset(gather, 0, sizeof *gather);
 }
 
@@ -106,33 +78,26 @@ static void relative_pose(const struct orl_pose *photo, const struct orl_pose *v
     }
 }
 
-static void set_focal(float out[4], const struct orl_camera *c)
+static void describe_photo(const struct frame *frame, size_t index, struct photo_data *data)
 {
-    out[0] = (float)c->fx;
-    out[1] = (float)c->fy;
-    out[2] = (float)c->cx;
-    out[3] = (float)c->cy;
-}
-
-static void describe_photo(const struct photos *photos, size_t index, const struct orl_view *view,
-                           bool aligned, struct photo_data *data)
-{
+    const struct photos *photos = frame->photos;
     const struct orl_photo *photo = &photos->scene->photos[index];
     const struct photo_state *state = &photos->states[index];
-    relative_pose(&photo->view.cam_from_world, &view->cam_from_world, data);
+    bool aligned = frame->params->alignment == ORL_ALIGNMENT_ON;
+    relative_pose(&photo->view.cam_from_world, &frame->view->cam_from_world, data);
     data->eye[3] = (float)state->slot;
-    set_focal(data->focal, &state->color_camera);
+    orl_set_focal(&state->color_camera, data->focal);
     data->size[0] = (float)state->color_camera.width;
     data->size[1] = (float)state->color_camera.height;
     data->size[2] = (float)state->depth_camera.width;
     data->size[3] = (float)state->depth_camera.height;
     for (int c = 0; c < 3; c++) {
-        data->gain[c] = aligned || photos->radiance ? photo->gain[c] : 1;
+        data->gain[c] = aligned || frame->radiance ? photo->gain[c] : 1;
         data->lens[c] = aligned ? photo->vignette[c] : 0;
     }
     data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
     data->gain[3] = (float)state->slot;
-    if (!photos->radiance)
+    if (!frame->radiance)
         return;
     for (int c = 0; c < 3; c++)
         data->gain[c] *= state->white;
@@ -142,47 +107,90 @@ static void describe_photo(const struct photos *photos, size_t index, const stru
     data->noise[2] = state->rounded;
 }
 
-static int tiles(int side)
+static void copy_options(const struct orl_render_params *params, struct render_options *opt)
 {
-    return (side + CHOICE_TILE - 1) / CHOICE_TILE;
+#define NO_COPY(field, preset, readers, help)
+#define COPY_CHOICE(field, type, names, preset, readers, help) opt->field = (int)params->field;
+#define COPY_NUMBER(field, preset, least, most, unit, readers, tries, help) \
+    opt->field = params->field;
+    ORL_RENDER_OPTIONS(NO_COPY, COPY_CHOICE, COPY_NUMBER)
+#undef NO_COPY
+#undef COPY_CHOICE
+#undef COPY_NUMBER
 }
 
-// What every gather pass is told; writes the photographs of this dispatch.
-static struct gather_block prepare_pass(struct orl_renderer *r, const struct orl_view *view,
-                                        const struct orl_render_params *params, size_t count)
+struct gather_block orl_gather_prepare(const struct frame *frame, const size_t *indices,
+                                       size_t count)
 {
-    struct gather *g = &r->gather;
-    const struct orl_tex_params *color = &r->photos.color->params;
-    const struct orl_tex_params *depth = &r->photos.depth->params;
+    struct gather *g = frame->gather;
+    const struct photos *photos = frame->photos;
+    const struct orl_render_params *params = frame->params;
+    const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth->params;
     for (size_t i = 0; i < count; i++)
-        describe_photo(&r->photos, g->chosen[i], view, params->alignment == ORL_ALIGNMENT_ON,
-                       &g->list[i]);
+        describe_photo(frame, indices[i], &g->list[i]);
     orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
     struct gather_block block = {
-        .options = {params->depth_tolerance, params->distance_floor,
-                    params->border_px / (float)r->photos.divide},
-        .flags = {params->visibility == ORL_VISIBILITY_HARD,
-                  params->sampling == ORL_SAMPLING_BICUBIC, (int)(params->silhouette + 0.5f)},
-        .radiance = {params->ghosts, (float)(r->photos.sensor.model * r->photos.sensor.model),
-                     orl_least_radiance(&r->photos.sensor, r->photos.ev_brightest, true)},
-        .area = {view->camera.width, view->camera.height, (int)count, tiles(view->camera.width)},
-        .choice = {floorf(params->photos_per_pixel + 0.5f), params->sharpness,
-                   params->unknown_trust, params->guess_sharpness},
-        .choice_more = {floorf(params->candidates + 0.5f),
-                        params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
-                        (float)(color->levels - 1),
-                        orl_fill_guesses(params) ? params->guess_blur : 0},
-        .slots = {(float)color->width, (float)color->height, (float)depth->width,
-                  (float)depth->height},
+        .slot_size = {(float)color->width, (float)color->height, (float)depth->width,
+                      (float)depth->height},
+        .view_size = {frame->view->camera.width, frame->view->camera.height},
+        .photo_count = (int)count,
+        .tiles_across = (frame->view->camera.width + CHOICE_TILE - 1) / CHOICE_TILE,
+        .reach = (int)(params->silhouette + 0.5f),
+        .kept = (int)(params->photos_per_pixel + 0.5f),
+        .asked = (int)(params->candidates + 0.5f),
+        .last_mip = (float)(color->levels - 1),
+        .border_px = params->border_px / (float)photos->divide,
+        .outlier_severity = params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
+        .blur_per_radian = orl_frame_guesses(frame) ? params->guess_blur : 0,
+        .model_variance = (float)(photos->sensor.model * photos->sensor.model),
+        .least_radiance = orl_least_radiance(&photos->sensor, photos->ev_brightest, true),
     };
-    set_focal(block.view_focal, &view->camera);
-    memcpy(block.ground, r->fill.block.ground, sizeof block.ground);
+    orl_set_focal(&frame->view->camera, block.view_focal);
+    orl_frame_ground(frame, block.ground);
+    copy_options(params, &block.opt);
     return block;
 }
 
-// Room for `bytes` in *buf, which loses what it holds.
-static enum orl_result make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
-                                 struct orl_buf **buf)
+struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
+                                 const struct orl_slot *slots, const char *defines)
+{
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s", frame->gather->options,
+                            defines ? defines : "");
+    struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;
+    free(text);
+    return prog;
+}
+
+// Radiance has rules of its own for what is visible and how samples combine, whatever the method:
+// light that bleeds over an edge may be a thousand times as bright as what is there.
+void orl_gather_slots(const struct frame *frame, struct gather_slots *out)
+{
+    const struct orl_render_params *p = frame->params;
+    bool tested = strcmp(p->visibility, "none") != 0;
+    const char *visibility = frame->radiance && tested ? "gather/radiance/light.glsl" : NULL;
+    const char *combine = frame->radiance ? "gather/radiance/merge.glsl" : NULL;
+    const struct {
+        const char *slot, *name, *instead;
+    } rows[] = {
+        {"sample", frame->radiance ? "radiance" : "srgb", NULL},
+        {"visibility", p->visibility, visibility},
+        {"weight", p->weight, NULL},
+        {"combine", p->combine, combine},
+    };
+    _Static_assert(ORL_COUNT(rows) < GATHER_SLOTS, "the last slot is the end");
+    memset(out, 0, sizeof *out);
+    for (size_t i = 0; i < ORL_COUNT(rows); i++) {
+        if (rows[i].instead)
+            snprintf(out->files[i], sizeof out->files[i], "%s", rows[i].instead);
+        else
+            snprintf(out->files[i], sizeof out->files[i], "gather/%s/%s.glsl", rows[i].slot,
+                     rows[i].name);
+        out->slots[i] = (struct orl_slot){rows[i].slot, out->files[i]};
+    }
+}
+
+enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
+                              struct orl_buf **buf)
 {
     if (*buf && (*buf)->size >= bytes)
         return ORL_OK;
@@ -190,155 +198,117 @@ static enum orl_result make_room(struct orl_gpu *gpu, const char *tag, size_t by
     return orl_buf_create(gpu, tag, bytes, NULL, buf);
 }
 
-static void run(struct orl_gpu *gpu, const char *pass, const struct orl_dispatch *d)
-{
-    orl_pass_begin(gpu, pass);
-    orl_gpu_dispatch(gpu, d);
-    orl_pass_end(gpu);
-}
+// --- the generic painter ---
 
-// Lists the photographs of each group of pixels; the rest of the dispatch as for the gather.
-static enum orl_result choose_radiance(struct orl_renderer *r, enum orl_blend blend,
+// Lists the photographs that say most of each group of pixels; the rest of the dispatch as for the
+// gather.
+static enum orl_result choose_radiance(const struct frame *frame, const struct gather_slots *slots,
                                        struct orl_dispatch d)
 {
     size_t across = d.groups[0], down = d.groups[1];
     enum orl_result result =
-        make_room(r->gpu, "photographs of tiles",
-                  across * down * ORL_RADIANCE_LIST * sizeof(int), &r->gather.tile_lists);
+        orl_make_room(frame->gpu, "photographs of tiles",
+                      across * down * ORL_RADIANCE_LIST * sizeof(int), &frame->gather->tile_lists);
     if (result != ORL_OK)
         return result;
-    d.prog = r->gather.choose_radiance[blend];
-    d.bufs[1].buf = r->gather.tile_lists;
+    d.prog = orl_gather_prog(frame, "gather/radiance/choose.comp", slots->slots, NULL);
+    d.bufs[1].buf = frame->gather->tile_lists;
     d.groups[0] = orl_groups(across, 8);
     d.groups[1] = orl_groups(down, 8);
     d.barrier = GL_SHADER_STORAGE_BARRIER_BIT;
-    run(r->gpu, "choose", &d);
+    orl_pass_begin(frame->gpu, "choose");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
     return ORL_OK;
 }
 
-static enum orl_result gather_all(struct orl_renderer *r, const struct orl_view *view,
-                                  const struct orl_render_params *params, size_t count)
+// One sweep over one turn: `count` photographs that are resident together.
+static enum orl_result gather(const struct frame *frame, const size_t *photos, size_t count,
+                              int sweep)
 {
-    struct gather_block block = prepare_pass(r, view, params, count);
-    struct orl_dispatch d = {.prog = r->gather.all[params->sampling], .params = &block,
-                             .textures = {r->photos.color, r->photos.depth},
-                             .images = {{r->target.depth, 0, GL_READ_ONLY},
-                                        {r->accumulated, 0, GL_READ_WRITE},
-                                        {r->trusted, 0, GL_READ_WRITE},
-                                        [PHOTO_ROWS] = {r->gather.photo_rows, 0, GL_READ_ONLY}},
-                             // Storage: the next turn's choice overwrites this one's lists.
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_SHADER_STORAGE_BARRIER_BIT};
-    orl_pixel_groups(view->camera.width, view->camera.height, d.groups);
-    if (r->photos.radiance) {
-        enum orl_result result = choose_radiance(r, params->blend, d);
+    struct gather_slots slots;
+    struct gather_block block = orl_gather_prepare(frame, photos, count);
+    char defines[64];
+    bool limited = frame->radiance && orl_painter_of(frame->params)->finishes;
+    snprintf(defines, sizeof defines, "SWEEP %d\n%s%s", sweep,
+             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
+             limited ? "LIMITED 1\n" : "");
+    orl_gather_slots(frame, &slots);
+    struct orl_dispatch d = {
+        .prog = orl_gather_prog(frame, "gather/gather.comp", slots.slots, defines),
+        .params = &block, .params_size = sizeof block,
+        .textures = {frame->photos->color, frame->photos->depth},
+        .images = {{frame->surface.depth, 0, GL_READ_ONLY},
+                   {frame->picture, 0, GL_READ_WRITE},
+                   {frame->radiance ? frame->trusted : frame->states[0], 0, GL_READ_WRITE},
+                   {frame->states[1], 0, GL_READ_WRITE},
+                   [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
+        // Storage: the next turn's choice overwrites this one's lists.
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
+    orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
+    if (frame->radiance) {
+        enum orl_result result = choose_radiance(frame, &slots, d);
         if (result != ORL_OK)
             return result;
-        d.prog = r->gather.radiance[params->blend];
-        d.bufs[1].buf = r->gather.tile_lists;
+        d.bufs[1].buf = frame->gather->tile_lists;
     }
-    run(r->gpu, "gather", &d);
+    orl_pass_begin(frame->gpu, "gather");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
     return ORL_OK;
 }
 
-static enum orl_result gather_best(struct orl_renderer *r, const struct orl_view *view,
-                                   const struct orl_render_params *params, size_t count)
+// All photographs in turns of as many as are resident together.
+static enum orl_result sweep_over(const struct frame *frame, int sweep)
 {
-    struct gather *g = &r->gather;
-    int across = tiles(view->camera.width), down = tiles(view->camera.height);
-    unsigned groups[3]; // 2x2 pixels an invocation
-    orl_pixel_groups((view->camera.width + 1) / 2, (view->camera.height + 1) / 2, groups);
-    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/gather/unfinished.glsl
-    enum orl_result result =
-        make_room(r->gpu, "photographs of tiles",
-                  (size_t)across * (size_t)down * CANDIDATES * sizeof(int), &g->tile_lists);
-    if (result == ORL_OK)
-        result = make_room(r->gpu, "groups with unfinished pixels",
-                           sizeof nothing + 8 * (size_t)groups[0] * groups[1], &g->unfinished);
-    if (result != ORL_OK)
-        return result;
-    orl_buf_fill(g->unfinished, 0);
-    orl_buf_write(g->unfinished, 0, sizeof nothing, nothing);
-    if (count == 0) {
-        orl_tex_clear(r->accumulated, 0);
-        return ORL_OK;
-    }
-    struct gather_block block = prepare_pass(r, view, params, count);
-    struct orl_dispatch d = {.prog = g->choose, .params = &block,
-                             .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
-                             .textures = {r->photos.color, r->photos.depth},
-                             .images = {{r->target.depth, 0, GL_READ_ONLY},
-                                        [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
-                             .groups = {orl_groups((size_t)across, 8), orl_groups((size_t)down, 8)},
-                             .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
-    run(r->gpu, "choose", &d);
-    if (block.flags[2] > 0)
-        orl_edges_cut(r->gpu, &r->edges, &d, &r->target);
-    d.prog = g->best[params->sampling][block.choice[0] > 2];
-    d.images[1] = (struct orl_image_binding){r->accumulated, 0, GL_WRITE_ONLY};
-    d.images[2] = (struct orl_image_binding){r->fill.level[0], 0, GL_WRITE_ONLY};
-    d.images[3] = (struct orl_image_binding){r->soften.guesses, 0, GL_WRITE_ONLY};
-    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                GL_COMMAND_BARRIER_BIT;
-    memcpy(d.groups, groups, sizeof groups);
-    orl_tex_clear(r->soften.guesses, 0);
-    run(r->gpu, "gather", &d);
-    return ORL_OK;
-}
-
-// Paints from all usable photographs, as many at once as are resident together.
-static enum orl_result blend_all(struct orl_renderer *r, const struct orl_view *view,
-                                 const struct orl_render_params *params,
-                                 const struct proxy_options *depth_options, const bool *skip)
-{
-    size_t count = 0;
-    orl_accumulated_clear(r);
-    for (size_t i = 0; i < r->scene->photo_count; i++) {
-        if (!r->photos.states[i].usable || (skip && skip[i]))
-            continue;
+    size_t turn = (size_t)frame->photos->slot_count;
+    bool depth = strcmp(frame->params->visibility, "none") != 0;
+    for (size_t first = 0; first < frame->chosen_count; first += turn) {
+        size_t left = frame->chosen_count - first, count = left < turn ? left : turn;
         enum orl_result result = ORL_OK;
-        if (count == (size_t)r->photos.slot_count) {
-            result = gather_all(r, view, params, count);
-            count = 0;
-        }
+        for (size_t i = 0; result == ORL_OK && i < count; i++)
+            result = orl_photos_require(frame, frame->chosen[first + i], depth);
         if (result == ORL_OK)
-            result = orl_photos_require(r->gpu, &r->photos, &r->proxy, i, depth_options);
+            result = gather(frame, frame->chosen + first, count, sweep);
         if (result != ORL_OK)
             return result;
-        r->gather.chosen[count++] = i;
     }
-    return count ? gather_all(r, view, params, count) : ORL_OK;
+    return ORL_OK;
 }
 
-// Paints from the photographs that this view can use best; the rest need not be resident.
-static enum orl_result blend_best(struct orl_renderer *r, const struct orl_view *view,
-                                  const struct orl_render_params *params,
-                                  const struct proxy_options *depth_options, const bool *skip)
+static void clear(const struct frame *frame)
 {
-    size_t most = (size_t)r->photos.slot_count, count = 0;
-    most = most < PHOTOS_PER_FRAME_MAX ? most : PHOTOS_PER_FRAME_MAX;
-    enum orl_result result = orl_preselect(orl_gpu_log(r->gpu), &r->photos, view, skip, most,
-                                           r->gather.chosen, &count);
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        result = orl_photos_require(r->gpu, &r->photos, &r->proxy, r->gather.chosen[i],
-                                    depth_options);
-    return result == ORL_OK ? gather_best(r, view, params, count) : result;
+    struct orl_tex *const targets[] = {frame->picture, frame->trusted, frame->states[0],
+                                       frame->states[1]};
+    for (size_t i = 0; i < ORL_COUNT(targets); i++)
+        if (targets[i])
+            orl_tex_clear(targets[i], 0);
 }
 
-bool orl_blends_at_once(const struct orl_renderer *r, const struct orl_render_params *params)
+static enum orl_result paint_gather(struct frame *frame)
 {
-    return params->color == ORL_COLOR_PHOTOS && params->blend == ORL_BLEND_BEST &&
-           !r->photos.radiance;
+    int sweeps = frame->radiance ? 1 : orl_combine_of(frame->params)->sweeps;
+    clear(frame);
+    enum orl_result result =
+        orl_selection_of(frame->params)->choose(frame, (size_t)frame->photos->slot_count);
+    for (int sweep = 0; result == ORL_OK && sweep < sweeps; sweep++)
+        result = sweep_over(frame, sweep);
+    return result;
 }
 
-enum orl_result orl_gather(struct orl_renderer *r, const struct orl_view *view,
-                           const struct orl_render_params *params, const bool *skip)
+const struct painter orl_paint_gather = {.name = "gather", .needs = "", .paint = paint_gather};
+
+// --- no photographs ---
+
+static enum orl_result paint_points(struct frame *frame)
 {
-    struct proxy_options options = orl_proxy_options(params);
-    // The choice of the best asks what hides the surface even when pixels do not. Radiance
-    // needs every exposure: the best by angle alone may all be clipped.
-    if (orl_blends_at_once(r, params))
-        return blend_best(r, view, params, &options, skip);
-    bool test = params->visibility == ORL_VISIBILITY_HARD;
-    return blend_all(r, view, params, test ? &options : NULL, skip);
+    const struct proxy *proxy = frame->proxy;
+    orl_pass_begin(frame->gpu, "gather");
+    clear(frame);
+    proxy->kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, frame->picture);
+    orl_pass_end(frame->gpu);
+    return ORL_OK;
 }
+
+const struct painter orl_paint_points = {
+    .name = "points", .needs = "proxy=splats", .normals = true, .paint = paint_points};

@@ -5,9 +5,8 @@
 
 #include "core/memory.h"
 #include "io/picture.h"
+#include "render/photos.h"
 #include "shared/render_blocks.h"
-#include "render/internal.h"
-#include "render/radiance.h"
 
 enum {
     DIVIDE_MAX = 4,
@@ -213,9 +212,6 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         result = orl_tex_create(gpu, &depth, &photos->depth);
     if (result == ORL_OK && is_compressed(photos))
         result = orl_tex_create(gpu, &loading, &photos->loading);
-    if (result == ORL_OK)
-        result = orl_prog_create(gpu, "proxy/photo_holes.comp", NULL, sizeof(struct image_block),
-                                 &photos->guess_holes);
     if (result != ORL_OK)
         orl_photos_finish(gpu, photos);
     return result;
@@ -227,8 +223,6 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
     orl_tex_destroy(gpu, &photos->depth);
     orl_tex_destroy(gpu, &photos->loading);
     free(photos->states);
-    orl_proxy_target_finish(gpu, &photos->target);
-    orl_prog_destroy(gpu, &photos->guess_holes);
     memset(photos, 0, sizeof *photos);
 }
 
@@ -362,55 +356,40 @@ end:
     return result;
 }
 
-// From the target's depth into its pushed_depth, which is of no more use.
-static void guess_holes(struct orl_gpu *gpu, const struct photos *photos, int width, int height)
+// The surface that the photograph sees, into its slot, with the holes guessed.
+static enum orl_result make_depth(const struct frame *frame, size_t index)
 {
-    struct image_block block = {.area = {width, height}};
-    struct orl_dispatch d = {.prog = photos->guess_holes, .params = &block,
-                             .images = {{photos->target.depth, 0, GL_READ_ONLY},
-                                        {photos->target.pushed_depth, 0, GL_WRITE_ONLY}},
-                             .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_pixel_groups(width, height, d.groups);
-    orl_gpu_dispatch(gpu, &d);
-}
-
-static enum orl_result make_depth(struct orl_gpu *gpu, struct photos *photos,
-                                  const struct proxy *proxy, size_t index,
-                                  const struct proxy_options *options)
-{
+    struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[index];
     struct orl_view view = {.camera = state->depth_camera,
                             .cam_from_world = photos->scene->photos[index].view.cam_from_world};
-    enum orl_result result = orl_proxy_target_resize(gpu, proxy, &photos->target,
-                                                     view.camera.width, view.camera.height);
+    struct surface surface;
+    enum orl_result result = orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false,
+                                            &frame->proxy->photo_target, &surface);
     if (result != ORL_OK)
         return result;
-    orl_proxy_draw(gpu, proxy, &view, options, false, &photos->target);
-    guess_holes(gpu, photos, view.camera.width, view.camera.height);
-    orl_tex_copy_layer(photos->target.pushed_depth, 0, view.camera.width, view.camera.height,
-                       photos->depth, state->slot);
-    state->depth_options = *options;
+    struct image_block block = {.image_size = {surface.width, surface.height}};
+    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "proxy/photo_holes.comp", NULL, NULL),
+                             .params = &block, .params_size = sizeof block,
+                             .images = {{surface.depth, 0, GL_READ_ONLY},
+                                        {photos->depth, 0, GL_WRITE_ONLY, state->slot + 1}},
+                             .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
+    orl_pixel_groups(surface.width, surface.height, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+    state->depth_key = frame->proxy_key;
     state->has_depth = true;
     return ORL_OK;
 }
 
-static bool same_options(const struct proxy_options *a, const struct proxy_options *b)
+enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool depth)
 {
-    return a->splat_scale == b->splat_scale && a->front_layer == b->front_layer &&
-           a->min_support == b->min_support && a->points_per_pixel == b->points_per_pixel;
-}
-
-enum orl_result orl_photos_require(struct orl_gpu *gpu, struct photos *photos,
-                                   const struct proxy *proxy, size_t photo,
-                                   const struct proxy_options *depth_options)
-{
+    struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
     state->last_use = ++photos->clock;
     enum orl_result result = ORL_OK;
     if (state->slot < 0)
-        result = load_color(gpu, photos, photo);
-    if (result == ORL_OK && depth_options &&
-        (!state->has_depth || !same_options(&state->depth_options, depth_options)))
-        result = make_depth(gpu, photos, proxy, photo, depth_options);
+        result = load_color(frame->gpu, photos, photo);
+    if (result == ORL_OK && depth && (!state->has_depth || state->depth_key != frame->proxy_key))
+        result = make_depth(frame, photo);
     return result;
 }

@@ -4,11 +4,11 @@
 
 #include "core/image.h"
 #include "gpu/gpu.h"
+#include "render/option_list.h"
 #include "scene/scene.h"
 
 // --- methods and options ---
 
-enum orl_visibility { ORL_VISIBILITY_NONE, ORL_VISIBILITY_HARD, ORL_VISIBILITY_COUNT };
 enum orl_fill {
     ORL_FILL_NONE,
     ORL_FILL_COLOR,
@@ -16,12 +16,11 @@ enum orl_fill {
     ORL_FILL_GROUND, // depth, but no farther than the scene's ground
     ORL_FILL_COUNT
 };
-enum orl_color_source { ORL_COLOR_POINTS, ORL_COLOR_PHOTOS, ORL_COLOR_SOURCE_COUNT };
-
-enum orl_blend { ORL_BLEND_ALL, ORL_BLEND_BEST, ORL_BLEND_COUNT };
-enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON, ORL_ALIGNMENT_COUNT };
-enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON, ORL_ANTIALIAS_COUNT };
-enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC, ORL_SAMPLING_COUNT };
+enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON };
+enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON };
+enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC };
+// What photographs give: colours as they are, or radiance (struct orl_renderer_params).
+enum orl_sample { ORL_SAMPLE_SRGB, ORL_SAMPLE_RADIANCE };
 
 // Images of a frame beside its colour, as bits.
 enum orl_layer {
@@ -31,62 +30,52 @@ enum orl_layer {
     ORL_LAYER_CONFIDENCE = 8,
 };
 
-// Every key of --set; the table in options.c gives range, unit, cost and help. And, no key:
+enum { ORL_OPTION_NAME_BYTES = 32 };
+
+// Every key of --set; option_list.h gives range, unit, readers and help. And, no keys:
 struct orl_render_params {
-    unsigned leave_out; // layers not to be read back: their images stay empty; 0: all are
-    enum orl_color_source color;    // points: the splats' own colour; photos: blended photographs
-    enum orl_visibility visibility; // of surface points in photographs
-    enum orl_fill fill;             // of pixels that no splat covers
-    enum orl_sampling sampling;     // of photographs
-    enum orl_alignment_use alignment; // gains and vignetting of the scene are undone; a
-                                    // renderer of radiance undoes them always
-    enum orl_blend blend;           // all that see a pixel, or the best few
-    enum orl_antialias antialias;   // of depth edges; not of radiance
-    float depth_tolerance;          // same surface, fraction of depth, (0, 0.5]
-    float splat_scale;              // multiplies splat radii, (0, 16]
-    float front_layer;              // splats this close behind the nearest one are averaged
-                                    // with it, fraction of depth, [0, 0.1]
-    float silhouette;               // pixels by which depth from splats may reach past silhouettes:
-                                    // photographs tell, with blend=best, [0, 4]
-    float min_support;              // pixels of the 5x5 around with a surface at this depth
-                                    // that a pixel needs to count as surface, [0, 25]
-    float points_per_pixel;         // above which splats are thinned, [0, 64]; 0: never
-    float distance_floor;           // of Airieau's delta, fraction of viewing distance, (0, 1]
-    float border_px;                // photographs fade out over this width, [0, 1024] pixels
-    float ghosts;                   // of a radiance renderer: samples that differ from the
-                                    // others by this many stops beyond noise and what light
-                                    // varies around them count half, [0, 16]; 0: all count
-    float photos_per_pixel;         // blended by `best`, [1, 4]
-    float candidates;               // of a tile, that each pixel asks, [1, 8]
-    float outliers;                 // of `best`: a sample this far from the consensus counts
-                                    // half, square root of light, [0, 1]; 0: all count
-    float sharpness;                // of `best`: weight = (least penalty / penalty)^sharpness
-    float guess_sharpness;          // the same where depth is guessed
-    float guess_blur;               // of `best`: colour on guessed depth may lie this share of the
-                                    // parallax from its place and is blurred as far, [0, 1]
-    float unknown_trust;            // share of trust in photographs without depth there, [0, 1]
+    unsigned leave_out;     // layers not to be read back: their images stay empty; 0: all are
+    enum orl_sample sample; // tells which options are read; a renderer knows its own
+#define ORL_SLOT_FIELD(field, preset, readers, help) char field[ORL_OPTION_NAME_BYTES];
+#define ORL_CHOICE_FIELD(field, type, names, preset, readers, help) enum type field;
+#define ORL_NUMBER_FIELD(field, preset, least, most, unit, readers, tries, help) float field;
+    ORL_RENDER_OPTIONS(ORL_SLOT_FIELD, ORL_CHOICE_FIELD, ORL_NUMBER_FIELD)
+#undef ORL_SLOT_FIELD
+#undef ORL_CHOICE_FIELD
+#undef ORL_NUMBER_FIELD
 };
+
+enum orl_option_kind { ORL_OPTION_SLOT, ORL_OPTION_CHOICE, ORL_OPTION_NUMBER };
+enum { ORL_TRIES_MAX = 6 };
 
 // One row of the option table.
 struct orl_render_option {
     const char *key;
-    size_t offset;             // in struct orl_render_params
-    const char *const *names;  // of an enum, ended by NULL; NULL: a float
-    double min, max;           // of a float
-    const char *unit, *help;
+    enum orl_option_kind kind;
+    size_t offset;       // in struct orl_render_params
+    const char *names;   // of a choice, separated by spaces, in the order of its enum
+    double least, most;  // of a number
+    const char *unit;    // of a number
+    const char *readers; // option_list.h
+    const char *help;
+    double tries[ORL_TRIES_MAX]; // of a number: what oriel tune tries, ascending
+    int try_count;               // 0: it is left alone
 };
 // Ended by a NULL key.
 extern const struct orl_render_option orl_render_options[];
+// The option of this key; NULL: there is none.
+const struct orl_render_option *orl_render_option_find(const char *key);
+// The `index`-th name that a slot or a choice may have; false: there are no more.
+bool orl_render_option_name(const struct orl_render_option *option, size_t index,
+                            char name[ORL_OPTION_NAME_BYTES]);
+// Does anything read this option, with these choices?
+bool orl_render_option_read(const struct orl_render_option *option,
+                            const struct orl_render_params *params);
+// The option's value as --set takes it.
+void orl_render_option_print(const struct orl_render_option *option,
+                             const struct orl_render_params *params, char *text, size_t size);
 
-// Values of an option that oriel tune tries, ascending; options without a row are left alone.
-struct orl_render_tries {
-    const char *key;
-    int count;
-    double values[6];
-};
-// Ended by a NULL key.
-extern const struct orl_render_tries orl_render_tries[];
-
+// A method is a row of choices. Its name and what was published of it, and its parameters.
 struct orl_method {
     const char *name, *description, *source;
     struct orl_render_params params;
@@ -95,9 +84,19 @@ struct orl_method {
 extern const struct orl_method orl_methods[];
 // NULL, with the list of names in the log, when unknown.
 const struct orl_method *orl_method_find(const struct orl_log *log, const char *name);
-// "key=value"; ORL_ERR_ARGUMENT lists what is allowed.
+// Sets each of "key=value", then checks all of them. ORL_ERR_ARGUMENT, which lists what is
+// allowed: an unknown key, a value out of range, a key that nothing reads with the choices that
+// result, choices that do not go together.
+enum orl_result orl_render_params_assign(const struct orl_log *log,
+                                         struct orl_render_params *params,
+                                         const char *const *assignments,
+                                         size_t count) ORL_CHECK_RESULT;
+// The same of one.
 enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_render_params *params,
                                       const char *assignment) ORL_CHECK_RESULT;
+// Do the choices go together? ORL_ERR_ARGUMENT says which do not.
+enum orl_result orl_render_params_check(const struct orl_log *log,
+                                        const struct orl_render_params *params) ORL_CHECK_RESULT;
 
 // The method's parameters with what oriel tune found for the scene. ORL_ERR_FORMAT: the
 // scene has settings that this program does not know.

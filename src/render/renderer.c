@@ -1,10 +1,32 @@
-// The frame: proxy, visibility, gather, fill, read back.
-#include <math.h>
+// The frame: surface, painter, post passes, read back.
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/internal.h"
+#include "render/compose.h"
+#include "render/edges.h"
+#include "render/fill.h"
+#include "render/gather.h"
+#include "render/method.h"
+#include "render/photos.h"
+#include "render/proxy.h"
+#include "render/read_back.h"
+#include "render/soften.h"
+
+// What outlives a frame.
+struct orl_renderer {
+    struct orl_gpu *gpu;
+    const struct orl_scene *scene;
+    struct proxy proxy;
+    struct photos photos;
+    struct fill fill;
+    struct soften soften;
+    struct edges edges;
+    struct gather gather;
+    struct orl_tex *picture, *trusted, *states[2]; // of struct frame
+    size_t *chosen;           // its memory
+    struct orl_image staging; // read_back.h
+};
 
 // What stays after photographs: points, and targets of the usual sizes.
 static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *proxy)
@@ -15,8 +37,18 @@ static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *pro
         width = c->width > width ? c->width : width;
         height = c->height > height ? c->height : height;
     }
-    return scene->points.count * 24 + 2 * orl_proxy_target_bytes(proxy, width, height) +
+    return scene->points.count * 24 + 2 * proxy->kind->target_bytes(proxy->state, width, height) +
            (size_t)width * (size_t)height * (16 + 38 + 20);
+}
+
+static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
+{
+    size_t fixed = fixed_bytes(r->scene, &r->proxy);
+    size_t budget = max_vram_bytes > fixed ? max_vram_bytes - fixed : 1;
+    orl_logf(orl_gpu_log(r->gpu), ORL_LOG_INFO,
+             "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
+             "photographs", max_vram_bytes >> 20, fixed >> 20, budget >> 20);
+    return budget;
 }
 
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -32,38 +64,20 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
         return ORL_ERR_MEMORY;
     r->gpu = gpu;
     r->scene = scene;
-    size_t budget = 0;
-    enum orl_result result = orl_proxy_init(gpu, &scene->points, &r->proxy);
-    if (result == ORL_OK && params->max_vram_bytes) {
-        size_t fixed = fixed_bytes(scene, &r->proxy);
-        budget = params->max_vram_bytes > fixed ? params->max_vram_bytes - fixed : 1;
-        orl_logf(log, ORL_LOG_INFO,
-                 "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
-                 "photographs", params->max_vram_bytes >> 20, fixed >> 20, budget >> 20);
-    }
+    r->chosen = orl_array(log, scene->photo_count, sizeof *r->chosen);
+    enum orl_result result = r->chosen ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_photos_init(gpu, scene, params, budget, &r->photos);
+        result = orl_proxy_create(gpu, scene, &orl_proxy_splats, &r->proxy);
     if (result == ORL_OK)
-        result = orl_fill_init(gpu, scene->photo_distance > 0 ? (float)scene->photo_distance : 1.0f,
-                               params->radiance, &r->fill);
+        result = orl_photos_init(gpu, scene, params,
+                                 params->max_vram_bytes ? photo_budget(r, params->max_vram_bytes)
+                                                        : 0, &r->photos);
     if (result == ORL_OK)
-        result = orl_soften_init(gpu, params->radiance, &r->soften);
-    if (result == ORL_OK)
-        result = params->radiance ? ORL_OK : orl_edges_init(gpu, &r->edges);
-    if (result == ORL_OK)
-        result = orl_gather_init(gpu, scene->photo_count, params->radiance, &r->gather);
-    if (result == ORL_OK)
-        result = orl_prog_create(gpu, "fill/compose.comp", params->radiance ? "RADIANCE" : NULL,
-                                 sizeof(struct image_block), &r->compose);
-    if (result == ORL_OK && !params->radiance)
-        result = orl_prog_create(gpu, "fill/compose.comp", "REST", sizeof(struct image_block),
-                                 &r->compose_rest);
-    if (result != ORL_OK) {
+        result = orl_gather_init(gpu, scene->photo_count, &r->gather);
+    if (result != ORL_OK)
         orl_renderer_destroy(&r);
-        return result;
-    }
     *out = r;
-    return ORL_OK;
+    return result;
 }
 
 void orl_renderer_destroy(struct orl_renderer **renderer)
@@ -77,113 +91,87 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_soften_finish(r->gpu, &r->soften);
     orl_edges_finish(r->gpu, &r->edges);
     orl_gather_finish(r->gpu, &r->gather);
-    orl_prog_destroy(r->gpu, &r->compose);
-    orl_prog_destroy(r->gpu, &r->compose_rest);
-    orl_proxy_target_finish(r->gpu, &r->target);
     orl_image_finish(&r->staging);
-    orl_tex_destroy(r->gpu, &r->accumulated);
+    orl_tex_destroy(r->gpu, &r->picture);
     orl_tex_destroy(r->gpu, &r->trusted);
+    orl_tex_destroy(r->gpu, &r->states[0]);
+    orl_tex_destroy(r->gpu, &r->states[1]);
+    free(r->chosen);
     free(r);
     *renderer = NULL;
 }
 
-static enum orl_result resize(struct orl_renderer *r, int width, int height, GLenum format)
+// *tex of this size and format; `wanted`: else it goes.
+static enum orl_result retarget(struct orl_gpu *gpu, const char *tag, bool wanted, int width,
+                                int height, GLenum format, struct orl_tex **tex)
 {
-    enum orl_result result = orl_proxy_target_resize(r->gpu, &r->proxy, &r->target, width,
-                                                     height);
-    if (result == ORL_OK)
-        result = orl_fill_resize(r->gpu, &r->fill, width, height);
+    const struct orl_tex *old = *tex;
+    if (wanted && old && old->params.width == width && old->params.height == height &&
+        old->params.format == format)
+        return ORL_OK;
+    orl_tex_destroy(gpu, tex);
+    struct orl_tex_params params = {.width = width, .height = height, .format = format,
+                                    .tag = tag};
+    return wanted ? orl_tex_create(gpu, &params, tex) : ORL_OK;
+}
+
+static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
+{
+    int width = frame->view->camera.width, height = frame->view->camera.height;
+    int states = frame->radiance || frame->finishes ? 0 : orl_combine_of(frame->params)->states;
+    const struct {
+        const char *tag;
+        bool wanted;
+        GLenum format;
+        struct orl_tex **tex;
+    } targets[] = {
+        {"accumulated colour", true, frame->finishes ? GL_RGBA16F : GL_RGBA32F, &r->picture},
+        {"accumulated trust", frame->radiance, GL_RGBA32F, &r->trusted},
+        {"combination", states > 0, GL_RGBA32F, &r->states[0]},
+        {"combination", states > 1, GL_RGBA32F, &r->states[1]},
+    };
+    enum orl_result result = orl_fill_resize(r->gpu, &r->fill, width, height);
     if (result == ORL_OK)
         result = orl_soften_resize(r->gpu, &r->soften, width, height);
-    if (result == ORL_OK && !r->photos.radiance)
+    if (result == ORL_OK && !frame->radiance)
         result = orl_edges_resize(r->gpu, &r->edges, width, height);
-    const struct orl_tex *old = r->accumulated;
-    if (result != ORL_OK || (old && old->params.width == width && old->params.height == height &&
-                             old->params.format == format))
-        return result;
-    orl_tex_destroy(r->gpu, &r->accumulated);
-    struct orl_tex_params params = {.width = width, .height = height, .format = format,
-                                    .tag = "accumulated colour"};
-    result = orl_tex_create(r->gpu, &params, &r->accumulated);
-    if (result != ORL_OK || !r->photos.radiance)
-        return result;
-    orl_tex_destroy(r->gpu, &r->trusted);
-    params.tag = "trust";
-    return orl_tex_create(r->gpu, &params, &r->trusted);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(targets); i++)
+        result = retarget(r->gpu, targets[i].tag, targets[i].wanted, width, height,
+                          targets[i].format, targets[i].tex);
+    return result;
 }
 
-struct proxy_options orl_proxy_options(const struct orl_render_params *params)
+static enum orl_result draw(struct frame *frame, bool normals)
 {
-    return (struct proxy_options){.splat_scale = params->splat_scale,
-                                  .front_layer = params->front_layer,
-                                  .min_support = params->min_support,
-                                  .points_per_pixel = params->points_per_pixel};
-}
-
-void orl_accumulated_clear(struct orl_renderer *r)
-{
-    orl_tex_clear(r->accumulated, 0);
-    if (r->trusted)
-        orl_tex_clear(r->trusted, 0);
-}
-
-static void compose(struct orl_renderer *r, const struct orl_render_params *params, bool finished)
-{
-    struct image_block block = {.area = {r->target.width, r->target.height,
-                                         params->color == ORL_COLOR_POINTS,
-                                         params->fill != ORL_FILL_NONE}};
-    struct orl_dispatch d = {.prog = finished ? r->compose_rest : r->compose, .params = &block,
-                             .bufs = {[2] = {.buf = finished ? r->gather.unfinished : NULL}},
-                             .textures = {r->soften.guesses},
-                             .indirect = finished ? r->gather.unfinished : NULL,
-                             .images = {{r->accumulated, 0, GL_READ_WRITE},
-                                        {r->fill.level[0], 0, GL_READ_ONLY},
-                                        {r->target.depth, 0, GL_READ_ONLY},
-                                        {r->trusted, 0, GL_READ_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_pixel_groups((r->target.width + 1) / 2, (r->target.height + 1) / 2, d.groups);
-    if ((finished || r->trusted) && orl_fill_guesses(params) && params->guess_blur > 0)
-        orl_soften_prepare(r->gpu, &r->soften, r->accumulated, r->trusted);
-    orl_gpu_dispatch(r->gpu, &d);
-}
-
-static enum orl_result draw(struct orl_renderer *r, const struct orl_view *view,
-                            const struct orl_render_params *params, const bool *skip,
-                            bool normals)
-{
-    struct orl_gpu *gpu = r->gpu;
-    enum orl_result result = ORL_OK;
-    bool finished = orl_blends_at_once(r, params);
-    struct proxy_options options = orl_proxy_options(params);
-    // The splats' own colours show where they are in front, which the normal tells.
-    normals = normals || params->color == ORL_COLOR_POINTS;
-    orl_proxy_draw(gpu, &r->proxy, view, &options, normals, &r->target);
-    if (params->color == ORL_COLOR_PHOTOS) {
-        if (orl_fill_guesses(params)) {
-            orl_pass_begin(gpu, "fill");
-            orl_fill_depth(gpu, &r->fill, view,
-                           params->fill == ORL_FILL_GROUND ? &r->scene->ground : NULL,
-                           r->target.depth);
-            orl_pass_end(gpu);
-        }
-        result = orl_gather(r, view, params, skip);
-    } else {
-        orl_pass_begin(gpu, "gather");
-        orl_accumulated_clear(r);
-        orl_proxy_color(gpu, &r->proxy, view, &r->target, r->accumulated);
-        orl_pass_end(gpu);
-    }
+    const struct painter *painter = orl_painter_of(frame->params);
+    enum orl_result result =
+        orl_proxy_draw(frame->gpu, frame->proxy, frame->view, frame->params,
+                       normals || painter->normals, &frame->proxy->view_target, &frame->surface);
     if (result != ORL_OK)
         return result;
-    orl_pass_begin(gpu, "fill");
-    if (params->fill != ORL_FILL_NONE)
-        orl_fill_color(gpu, &r->fill, finished ? NULL : r->accumulated);
-    compose(r, params, finished);
-    orl_pass_end(gpu);
-    if (params->antialias == ORL_ANTIALIAS_ON && !r->photos.radiance)
-        orl_edges_antialias(gpu, &r->edges, r->target.depth, r->accumulated);
-    return ORL_OK;
+    if (orl_frame_guesses(frame) && painter != &orl_paint_points)
+        orl_fill_depth(frame);
+    result = painter->paint(frame);
+    for (const struct post_pass *pass = orl_post_passes; result == ORL_OK && pass->name; pass++) {
+        if (!pass->applies(frame))
+            continue;
+        orl_pass_begin(frame->gpu, pass->name);
+        pass->run(frame);
+        orl_pass_end(frame->gpu);
+    }
+    return result;
+}
+
+static struct frame start_frame(struct orl_renderer *r, const struct orl_view *view,
+                                const struct orl_render_params *params, const bool *skip)
+{
+    return (struct frame){
+        .gpu = r->gpu, .scene = r->scene, .view = view, .params = params, .skip = skip,
+        .radiance = r->photos.radiance,
+        .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
+        .proxy = &r->proxy, .proxy_key = orl_proxy_key(&r->proxy, params), .photos = &r->photos,
+        .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges,
+        .chosen = r->chosen};
 }
 
 void orl_frame_finish(struct orl_frame *frame)
@@ -197,23 +185,29 @@ void orl_frame_finish(struct orl_frame *frame)
 
 enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view *view,
                                   const struct orl_render_params *params, const bool *skip,
-                                  struct orl_frame *frame)
+                                  struct orl_frame *out)
 {
     const struct orl_log *log = orl_gpu_log(r->gpu);
-    if (frame)
-        memset(frame, 0, sizeof *frame);
+    if (out)
+        memset(out, 0, sizeof *out);
     if (!orl_camera_valid(&view->camera))
         return orl_fail(log, ORL_ERR_ARGUMENT, "this camera cannot be rendered: %dx%d, focal %g %g",
                         view->camera.width, view->camera.height, view->camera.fx, view->camera.fy);
-    enum orl_result result = resize(r, view->camera.width, view->camera.height,
-                                    orl_blends_at_once(r, params) ? GL_RGBA16F : GL_RGBA32F);
+    enum orl_result result = orl_render_params_check(log, params);
+    if (result != ORL_OK)
+        return result;
+    struct frame frame = start_frame(r, view, params, skip);
+    result = resize(r, &frame);
+    frame.picture = r->picture;
+    frame.trusted = r->trusted;
+    memcpy(frame.states, r->states, sizeof frame.states);
     if (result == ORL_OK)
-        result = draw(r, view, params, skip, frame && !(params->leave_out & ORL_LAYER_NORMAL));
-    if (result == ORL_OK)
-        result = frame ? orl_read_back(r, params->leave_out, frame) : ORL_OK;
+        result = draw(&frame, out && !(params->leave_out & ORL_LAYER_NORMAL));
+    if (result == ORL_OK && out)
+        result = orl_read_back(&frame, &r->staging, out);
     if (result == ORL_OK)
         result = orl_gpu_finish(r->gpu);
-    if (result != ORL_OK && frame)
-        orl_frame_finish(frame);
+    if (result != ORL_OK && out)
+        orl_frame_finish(out);
     return result;
 }

@@ -1,19 +1,9 @@
-// What the blur of guesses takes in: shaders/fill/compose.comp blurs.
-#include <string.h>
+#include "render/soften.h"
 
-#include "render/internal.h"
-
-enum orl_result orl_soften_init(struct orl_gpu *gpu, bool radiance, struct soften *soften)
-{
-    memset(soften, 0, sizeof *soften);
-    return radiance ? orl_prog_create(gpu, "fill/fill_seed.comp", "SEED_GUESSES",
-                                      sizeof(struct image_block), &soften->seed)
-                    : ORL_OK;
-}
+#include "shared/render_blocks.h"
 
 void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
 {
-    orl_prog_destroy(gpu, &soften->seed);
     orl_tex_destroy(gpu, &soften->guesses);
 }
 
@@ -34,17 +24,19 @@ enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, in
     return orl_tex_create(gpu, &params, &soften->guesses);
 }
 
-void orl_soften_prepare(struct orl_gpu *gpu, const struct soften *soften,
-                        const struct orl_tex *accumulated, const struct orl_tex *trusted)
+void orl_soften_prepare(const struct frame *frame)
 {
-    int width = soften->guesses->params.width, height = soften->guesses->params.height;
-    struct image_block block = {.area = {width, height}};
-    struct orl_dispatch d = {.prog = soften->seed, .params = &block,
-                             .images = {{accumulated, 0, GL_READ_ONLY},
-                                        {soften->guesses, 0, GL_WRITE_ONLY},
-                                        {trusted, 0, GL_READ_ONLY}}};
-    orl_pixel_groups(width, height, d.groups);
-    if (soften->seed)
-        orl_gpu_dispatch(gpu, &d);
-    orl_tex_make_mipmaps(soften->guesses, 0);
+    struct orl_tex *guesses = frame->soften->guesses;
+    int width = guesses->params.width, height = guesses->params.height;
+    if (frame->radiance) {
+        struct image_block block = {.image_size = {width, height}};
+        struct orl_dispatch d = {
+            .prog = orl_prog_get(frame->gpu, "fill/fill_seed.comp", NULL, "SEED_GUESSES"),
+            .params = &block, .params_size = sizeof block,
+            .images = {{frame->picture, 0, GL_READ_ONLY}, {guesses, 0, GL_WRITE_ONLY},
+                       {frame->trusted, 0, GL_READ_ONLY}}};
+        orl_pixel_groups(width, height, d.groups);
+        orl_gpu_dispatch(frame->gpu, &d);
+    }
+    orl_tex_make_mipmaps(guesses, 0);
 }

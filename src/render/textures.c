@@ -1,7 +1,7 @@
 // How photographs are kept on the device.
 #include <string.h>
 
-#include "render/internal.h"
+#include "render/photos.h"
 
 enum orl_result orl_textures_find(const struct orl_log *log, const char *name,
                                   enum orl_textures *textures)

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gpu_test.h"
-#include "render/internal.h"
+#include "render/splats.h"
 
 static struct orl_gpu *gpu;
 
@@ -24,34 +24,39 @@ static double random_value(uint32_t *state)
 struct scene {
     struct orl_points points;
     struct proxy proxy;
-    struct proxy_target target;
+    struct surface surface;
 };
+
+static const struct cloud *cloud_of(const struct scene *s)
+{
+    return s->proxy.state;
+}
 
 static void open_scene(struct scene *s)
 {
-    assert_int_equal(orl_proxy_init(gpu, &s->points, &s->proxy), ORL_OK);
-    assert_int_equal(orl_proxy_target_resize(gpu, &s->proxy, &s->target, SIDE, SIDE), ORL_OK);
+    const struct orl_scene scene = {.points = s->points};
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, &s->proxy), ORL_OK);
 }
 
 static void close_scene(struct scene *s)
 {
-    orl_proxy_target_finish(gpu, &s->target);
     orl_proxy_finish(gpu, &s->proxy);
     orl_points_finish(&s->points);
 }
 
 static void draw(struct scene *s, float points_per_pixel)
 {
-    orl_proxy_draw(gpu, &s->proxy, &front_view,
-                   &(struct proxy_options){.splat_scale = 1, .front_layer = 0.01f,
-                                           .points_per_pixel = points_per_pixel}, true, &s->target);
+    const struct orl_render_params params = {.splat_scale = 1, .front_layer = 0.01f,
+                                             .points_per_pixel = points_per_pixel};
+    assert_int_equal(orl_proxy_draw(gpu, &s->proxy, &front_view, &params, true,
+                                    &s->proxy.view_target, &s->surface), ORL_OK);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
 }
 
 // Items listed by the last draw; marks them.
 static size_t read_list(const struct scene *s, bool *listed, size_t capacity)
 {
-    const struct point_chunk *chunk = &s->proxy.cloud.chunks[0];
+    const struct point_chunk *chunk = &cloud_of(s)->chunks[0];
     uint32_t args[4];
     static uint32_t items[COUNT];
     orl_buf_read(chunk->args, 0, sizeof args, args);
@@ -85,7 +90,7 @@ static void blocks_outside_are_skipped(void **state)
     s.points.position[9][2] = 1e30f;
     open_scene(&s);
     draw(&s, 0);
-    const struct point_chunk *chunk = &s.proxy.cloud.chunks[0];
+    const struct point_chunk *chunk = &cloud_of(&s)->chunks[0];
     static bool listed[COUNT];
     size_t items = read_list(&s, listed, COUNT);
     static float positions[COUNT + ORL_BLOCK_POINTS][4];
@@ -135,7 +140,7 @@ static void dense_blocks_are_thinned_without_holes(void **state)
     double share = (double)read_list(&s, listed, sizeof listed) * ORL_ITEM_POINTS / (SIDE * SIDE);
     print_message("%.2f points a pixel for 4\n", share);
     assert_true(share >= 4 && share < 9);
-    orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_float_equal(depth[i], 2.0005, 0.001);
     close_scene(&s);
@@ -152,8 +157,8 @@ static void runs_are_the_same(void **state)
     for (int run = 0; run < 5; run++) {
         int to = run > 0 ? 1 : 0;
         draw(&s, 3);
-        orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth[to], depth[to]);
-        orl_tex_read(s.target.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[to], normal[to]);
+        orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[to], depth[to]);
+        orl_tex_read(s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[to], normal[to]);
         if (run == 0)
             continue;
         assert_memory_equal(depth[0], depth[1], sizeof depth[0]);
@@ -174,10 +179,10 @@ static void chunks_draw_as_one(void **state)
         make_wall(&s);
         caps->max_buffer_texels = run ? 50000 : texels;
         open_scene(&s);
-        assert_int_equal(s.proxy.cloud.chunk_count, run ? 6 : 1);
+        assert_int_equal(cloud_of(&s)->chunk_count, run ? 6 : 1);
         draw(&s, 3);
-        orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
-        orl_tex_read(s.target.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
+        orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
+        orl_tex_read(s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
         close_scene(&s);
     }
     caps->max_buffer_texels = texels;
@@ -194,7 +199,7 @@ static void no_points_are_no_depth(void **state)
     s.points.position[0][1] = INFINITY;
     open_scene(&s);
     draw(&s, 4);
-    orl_tex_read(s.target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_float_equal(depth[i], 0, 0);
     close_scene(&s);

@@ -16,16 +16,15 @@ static bool in_hole(int x, int y)
 
 static void guess(float *depth)
 {
-    struct orl_prog *prog;
     struct orl_tex *tex, *guessed;
     struct orl_tex_params params = {.width = WIDTH, .height = HEIGHT, .format = GL_R32F,
                                     .tag = "test depth"};
-    struct image_block block = {.area = {WIDTH, HEIGHT}};
-    assert_int_equal(orl_prog_create(gpu, "proxy/photo_holes.comp", NULL, sizeof block, &prog), ORL_OK);
+    struct image_block block = {.image_size = {WIDTH, HEIGHT}};
     assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &guessed), ORL_OK);
     orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, depth);
-    struct orl_dispatch d = {.prog = prog, .params = &block,
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/photo_holes.comp", NULL, NULL),
+                             .params = &block, .params_size = sizeof block,
                              .images = {{tex, 0, GL_READ_ONLY}, {guessed, 0, GL_WRITE_ONLY}},
                              .groups = {orl_groups(WIDTH, ORL_PIXEL_GROUP_X),
                                         orl_groups(HEIGHT, ORL_PIXEL_GROUP_Y), 1},
@@ -35,7 +34,6 @@ static void guess(float *depth)
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     orl_tex_destroy(gpu, &tex);
     orl_tex_destroy(gpu, &guessed);
-    orl_prog_destroy(gpu, &prog);
 }
 
 static void test_hole_in_a_surface(void **state)

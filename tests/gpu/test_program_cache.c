@@ -1,6 +1,7 @@
 // Linked programs kept between devices: found again, and compiled anew when damaged.
 #include "gpu_test.h"
-#include "render/internal.h"
+#include "core/file.h"
+#include "shared/render_blocks.h"
 
 static char *dir;
 
@@ -20,21 +21,19 @@ static size_t create_and_run(const char *defines)
 {
     enum { SIDE = 8 };
     struct orl_gpu *gpu = open_device(dir);
-    struct orl_prog *prog = NULL;
     struct orl_tex *in = NULL, *out = NULL, *normal = NULL;
     float depth[SIDE * SIDE];
     for (int i = 0; i < SIDE * SIDE; i++)
         depth[i] = i == 20 ? 1 : 2;
     struct orl_tex_params params = {.width = SIDE, .height = SIDE, .format = GL_R32F, .tag = "t"};
-    assert_int_equal(orl_prog_create(gpu, "proxy/support.comp", defines, sizeof(struct pyramid_block),
-                                     &prog), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
     params.format = GL_RGBA16F;
     assert_int_equal(orl_tex_create(gpu, &params, &normal), ORL_OK);
     orl_tex_write(in, 0, 0, GL_RED, GL_FLOAT, depth);
-    struct pyramid_block block = {.level = {SIDE, SIDE, 0, 8}};
-    struct orl_dispatch d = {.prog = prog, .params = &block, .groups = {1, 1, 1},
+    struct pyramid_block block = {.level_size = {SIDE, SIDE}, .least_support = 8};
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, defines),
+                             .params = &block, .params_size = sizeof block, .groups = {1, 1, 1},
                              .images = {{in, 0, GL_READ_ONLY}, {out, 0, GL_WRITE_ONLY},
                                         {normal, 0, GL_WRITE_ONLY}},
                              .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
@@ -44,7 +43,6 @@ static size_t create_and_run(const char *defines)
         assert_float_equal(depth[i], i == 20 ? 0 : 2, 0);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     size_t cached = orl_gpu_cached_programs(gpu);
-    orl_prog_destroy(gpu, &prog);
     orl_tex_destroy(gpu, &in);
     orl_tex_destroy(gpu, &out);
     orl_tex_destroy(gpu, &normal);

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gpu_test.h"
-#include "render/internal.h"
+#include "render/splats.h"
 
 static struct orl_gpu *gpu;
 
@@ -33,7 +33,8 @@ struct drawn {
 static void read_order(const struct proxy *proxy, struct drawn *out)
 {
     static uint32_t attributes[POINTS_MAX][2];
-    const struct point_chunk *chunk = &proxy->cloud.chunks[0];
+    const struct cloud *cloud = proxy->state;
+    const struct point_chunk *chunk = &cloud->chunks[0];
     assert_true(chunk->count <= POINTS_MAX);
     orl_buf_read(chunk->attributes, 0, (size_t)chunk->count * sizeof *attributes, attributes);
     for (int i = 0; i < chunk->count; i++)
@@ -52,24 +53,27 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
         points.color[i][1] = (uint8_t)(i >> 8);
         points.radius[i] = list[i].radius;
     }
+    const struct orl_scene scene = {.points = points};
+    const struct orl_render_params params = {.splat_scale = 1};
     struct proxy proxy;
-    struct proxy_target target = {0};
-    assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
-    assert_int_equal(orl_proxy_target_resize(gpu, &proxy, &target, SIDE, SIDE), ORL_OK);
-    orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, true, &target);
-    orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof out->depth, out->depth);
-    orl_tex_read(target.normal, 0, GL_RGBA, GL_FLOAT, sizeof out->normal, out->normal);
-    orl_tex_read(target.splat_depth, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->bits,
+    struct surface surface;
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_draw(gpu, &proxy, view, &params, true, &proxy.view_target, &surface),
+                     ORL_OK);
+    const struct splat_target *target = proxy.view_target;
+    orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof out->depth, out->depth);
+    orl_tex_read(surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof out->normal, out->normal);
+    orl_tex_read(target->splat_depth, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->bits,
                  out->bits);
-    orl_tex_read(target.splat_index, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->index,
+    orl_tex_read(target->splat_index, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, sizeof out->index,
                  out->index);
     read_order(&proxy, out);
     static float without_normals[SIDE * SIDE];
-    orl_proxy_draw(gpu, &proxy, view, &(struct proxy_options){.splat_scale = 1}, false, &target);
-    orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof without_normals, without_normals);
+    assert_int_equal(orl_proxy_draw(gpu, &proxy, view, &params, false, &proxy.view_target, &surface),
+                     ORL_OK);
+    orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof without_normals, without_normals);
     assert_memory_equal(without_normals, out->depth, sizeof out->depth);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
-    orl_proxy_target_finish(gpu, &target);
     orl_proxy_finish(gpu, &proxy);
     orl_points_finish(&points);
 }
@@ -268,16 +272,17 @@ static void odd_sizes_lose_no_pixel(void **state)
     struct orl_view view = {.camera = {.width = W, .height = H, .fx = 30, .fy = 30, .cx = 18.5,
                                        .cy = 11.5},
                             .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+    const struct orl_scene scene = {.points = points};
+    const struct orl_render_params params = {.splat_scale = 1};
     struct proxy proxy;
-    struct proxy_target target = {0};
+    struct surface surface;
     float depth[W * H];
-    assert_int_equal(orl_proxy_init(gpu, &points, &proxy), ORL_OK);
-    assert_int_equal(orl_proxy_target_resize(gpu, &proxy, &target, W, H), ORL_OK);
-    orl_proxy_draw(gpu, &proxy, &view, &(struct proxy_options){.splat_scale = 1}, true, &target);
-    orl_tex_read(target.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_draw(gpu, &proxy, &view, &params, true, &proxy.view_target, &surface),
+                     ORL_OK);
+    orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < W * H; i++)
         assert_float_equal(depth[i], 1, 1e-4);
-    orl_proxy_target_finish(gpu, &target);
     orl_proxy_finish(gpu, &proxy);
     orl_points_finish(&points);
 }

@@ -11,19 +11,18 @@ static struct orl_gpu *gpu;
 
 static void support(float *depth)
 {
-    struct orl_prog *prog;
     struct orl_tex *in, *out, *normal;
     struct orl_tex_params params = {.width = SIDE, .height = SIDE, .format = GL_R32F,
                                     .tag = "test depth"};
     struct orl_tex_params normal_params = params;
     normal_params.format = GL_RGBA16F;
-    struct pyramid_block block = {.level = {SIDE, SIDE, 0, LEAST}};
-    assert_int_equal(orl_prog_create(gpu, "proxy/support.comp", NULL, sizeof block, &prog), ORL_OK);
+    struct pyramid_block block = {.level_size = {SIDE, SIDE}, .least_support = LEAST};
     assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &normal_params, &normal), ORL_OK);
     orl_tex_write(in, 0, 0, GL_RED, GL_FLOAT, depth);
-    struct orl_dispatch d = {.prog = prog, .params = &block,
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, NULL),
+                             .params = &block, .params_size = sizeof block,
                              .images = {{in, 0, GL_READ_ONLY}, {out, 0, GL_WRITE_ONLY},
                                         {normal, 0, GL_WRITE_ONLY}},
                              .groups = {orl_groups((SIDE + 1) / 2, ORL_PIXEL_GROUP_X),
@@ -35,7 +34,6 @@ static void support(float *depth)
     orl_tex_destroy(gpu, &in);
     orl_tex_destroy(gpu, &out);
     orl_tex_destroy(gpu, &normal);
-    orl_prog_destroy(gpu, &prog);
 }
 
 static void fill(float *depth, int right, float z)

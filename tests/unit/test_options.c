@@ -1,33 +1,99 @@
-// The tables of options: what oriel tune tries can be set, and scenes' settings are used.
+// The option table: what is tried can be set, presets survive their text, what nothing reads is
+// refused, and scenes' settings are used.
 #include <string.h>
 
 #include "render/render.h"
 #include "test.h"
 
-static const struct orl_render_option *find(const char *key)
-{
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
-        if (strcmp(o->key, key) == 0)
-            return o;
-    return NULL;
-}
-
 static void tries_can_be_set(void **state)
 {
     (void)state;
-    for (const struct orl_render_tries *t = orl_render_tries; t->key; t++) {
-        const struct orl_render_option *option = find(t->key);
-        assert_non_null(option);
-        assert_null(option->names);
-        assert_in_range(t->count, 2, ORL_COUNT(t->values));
-        for (int i = 0; i < t->count; i++) {
-            struct orl_render_params params = orl_methods[0].params;
-            char assignment[64];
-            snprintf(assignment, sizeof assignment, "%s=%.9g", t->key, t->values[i]);
-            assert_int_equal(orl_render_params_set(NULL, &params, assignment), ORL_OK);
-            assert_true(i == 0 || t->values[i] > t->values[i - 1]);
+    int tried = 0;
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        tried += o->try_count > 0;
+        for (int i = 0; i < o->try_count; i++) {
+            assert_true(o->tries[i] >= o->least && o->tries[i] <= o->most);
+            assert_true(i == 0 || o->tries[i] > o->tries[i - 1]);
         }
     }
+    assert_true(tried > 8);
+}
+
+// Every preset, written as text and set on another, is itself again, byte by byte.
+static void presets_survive_their_text(void **state)
+{
+    (void)state;
+    for (const struct orl_method *m = orl_methods; m->name; m++) {
+        struct orl_render_params params = orl_methods[m == orl_methods].params;
+        char text[64][96];
+        const char *assignments[64];
+        size_t count = 0;
+        for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+            char value[64];
+            orl_render_option_print(o, &m->params, value, sizeof value);
+            if (!orl_render_option_read(o, &m->params)) { // a default, which text may not set
+                memcpy((char *)&params + o->offset, (const char *)&m->params + o->offset,
+                       o->kind == ORL_OPTION_SLOT ? ORL_OPTION_NAME_BYTES : sizeof(float));
+                continue;
+            }
+            snprintf(text[count], sizeof text[count], "%s=%s", o->key, value);
+            assignments[count] = text[count];
+            count++;
+        }
+        assert_int_equal(orl_render_params_assign(NULL, &params, assignments, count), ORL_OK);
+        assert_memory_equal(&params, &m->params, sizeof params);
+    }
+}
+
+// Every option is read by some method, and where none does it is refused.
+static void options_that_nothing_reads_are_refused(void **state)
+{
+    (void)state;
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        size_t readers = 0;
+        for (const struct orl_method *m = orl_methods; m->name; m++) {
+            struct orl_render_params params = m->params;
+            params.sample =
+                strstr(o->readers, "radiance") ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB;
+            char value[64], assignment[128];
+            orl_render_option_print(o, &params, value, sizeof value);
+            snprintf(assignment, sizeof assignment, "%s=%s", o->key, value);
+            bool read = orl_render_option_read(o, &params);
+            readers += read;
+            assert_int_equal(orl_render_params_set(NULL, &params, assignment),
+                             read ? ORL_OK : ORL_ERR_ARGUMENT);
+        }
+        assert_true(readers > 0);
+    }
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    assert_int_equal(orl_render_params_set(NULL, &params, "candidates=3"), ORL_ERR_ARGUMENT);
+    assert_int_equal(orl_render_params_set(NULL, &params, "ghosts=2"), ORL_ERR_ARGUMENT);
+    params.sample = ORL_SAMPLE_RADIANCE;
+    assert_int_equal(orl_render_params_set(NULL, &params, "ghosts=2"), ORL_OK);
+}
+
+// Several at once may choose what reads the others, in any order; a failure changes nothing.
+static void several_are_set_at_once(void **state)
+{
+    (void)state;
+    static const char *const both[] = {"sharpness=2", "weight=lumigraph"};
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    const struct orl_render_params before = params;
+    assert_int_equal(orl_render_params_assign(NULL, &params, both, 1), ORL_ERR_ARGUMENT);
+    assert_memory_equal(&params, &before, sizeof params);
+    assert_int_equal(orl_render_params_assign(NULL, &params, both, 2), ORL_OK);
+    assert_float_equal(params.sharpness, 2, 0);
+    assert_string_equal(params.weight, "lumigraph");
+}
+
+static void choices_must_go_together(void **state)
+{
+    (void)state;
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    assert_int_equal(orl_render_params_set(NULL, &params, "weight=airieau"), ORL_ERR_ARGUMENT);
+    assert_int_equal(orl_render_params_set(NULL, &params, "paint=gather"), ORL_ERR_ARGUMENT);
+    static const char *const generic[] = {"paint=gather", "combine=mean", "weight=airieau"};
+    assert_int_equal(orl_render_params_assign(NULL, &params, generic, 3), ORL_OK);
 }
 
 static void scenes_settings_are_used(void **state)
@@ -56,6 +122,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tries_can_be_set),
+        cmocka_unit_test(presets_survive_their_text),
+        cmocka_unit_test(options_that_nothing_reads_are_refused),
+        cmocka_unit_test(several_are_set_at_once),
+        cmocka_unit_test(choices_must_go_together),
         cmocka_unit_test(scenes_settings_are_used),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

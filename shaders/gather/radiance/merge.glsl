@@ -1,18 +1,20 @@
-// Blends photographs of several exposures into one radiance: the geometric weight of each
-// times its trust, so that clipped and noisy samples lose to better ones pixel by pixel.
-#include "gather/radiance_sample.glsl"
+// Combines photographs of several exposures into one radiance: the geometric weight of each times
+// its trust, so that clipped and noisy samples lose to better ones pixel by pixel. Each pixel asks
+// the photographs of its tile, which radiance/choose.comp lists, and keeps the heaviest samples.
+// LIMITED: no more than opt.photos_per_pixel count, as in methods of the best few.
+#include "gather/radiance/samples.glsl"
+#ifdef LIMITED
+#include "gather/penalty.glsl"
+#include "gather/guess_blur.glsl"
+#endif
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in; // a tile
-layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-// Colour * weight, weight, which is negative where most of it clips: colour is the least there
-// may be.
-layout(rgba32f, binding = 1) uniform image2D accumulated;
-// weight * trust, weight; on guessed depth 1 + log2 of the blur that it needs, in pixels, else 0.
-layout(rgba32f, binding = 2) uniform image2D trusted;
+// state_0: weight * trust, weight; on guessed depth 1 + log2 of the blur that it needs, in pixels,
+// else 0.
 layout(std430, binding = 1) readonly buffer tile_lists {
-    int chosen[]; // choose_radiance.comp
+    int chosen[]; // radiance/choose.comp
 };
 
+const bool SOFT_BORDER = true;
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 const float LEAST_SHARE_FOUND = 0.02; // of the tile's best: with less a pixel asks all the others
 const float DOUBT_FROM = 0.1; // excess below which a sample keeps all but 1 % of its weight
@@ -47,41 +49,59 @@ void put(Sample s, float weight)
     }
 }
 
-// The tile's photographs and, where a pixel finds little in them, all others: a small surface
-// that no probe of the tile met.
-void ask_photos(vec3 p, bool guessed)
+// --- whom a pixel asks: the tile's photographs and, where it finds little in them, all others: a
+// small surface that no probe of the tile met ---
+
+int listed[ORL_RADIANCE_KEPT], asked_count, other; // other: where it is among all; -1: in the list
+float enough, heaviest;
+bool on_guess;
+
+void combine_begin(ivec2 at)
 {
     EACH_SAMPLE(k) {
         samples[k] = Sample(vec3(0.0), 0.0, 0.0, vec2(0.0), 0.0, 0);
         weights[k] = 0.0;
     }
     int list = ORL_RADIANCE_LIST * int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
-    int listed[ORL_RADIANCE_KEPT];
     EACH_SAMPLE(k)
         listed[k] = chosen[list + k];
-    float enough = LEAST_SHARE_FOUND * intBitsToFloat(chosen[list + ORL_RADIANCE_KEPT]);
-    float heaviest = 0.0;
-    int n = 0, i = max(listed[0], 0);
-    int other = listed[0] < 0 ? 0 : -1; // where it is among all; -1: still in the list
-    do { // the condition last: see gather_best.comp
-        bool known = false;
-        EACH_SAMPLE(k)
-            known = known || listed[k] == i;
-        photo shot = photo_at(i);
-        Sample s = ask(shot, i, p, guessed);
-        float weight = known && other >= 0 ? 0.0 : weight_alone(shot, s);
-        put(s, weight);
-        heaviest = max(heaviest, weight);
-        n++;
-        i = -1;
-        EACH_SAMPLE(k)
-            i = k == n ? listed[k] : i;
-        if (i < 0 && (other >= 0 || !(heaviest > enough))) {
-            other++;
-            i = other < area.z ? other : -1;
-        }
-    } while (i >= 0);
+    enough = LEAST_SHARE_FOUND * intBitsToFloat(chosen[list + ORL_RADIANCE_KEPT]);
+    heaviest = 0.0;
+    asked_count = 0;
+    on_guess = imageLoad(view_depth, at).r < 0.0;
 }
+
+int photo_first()
+{
+    other = listed[0] < 0 ? 0 : -1;
+    return max(listed[0], 0);
+}
+
+int photo_next(int before)
+{
+    int i = -1;
+    asked_count++;
+    EACH_SAMPLE(k)
+        i = k == asked_count ? listed[k] : i;
+    if (i < 0 && (other >= 0 || !(heaviest > enough))) {
+        other++;
+        i = other < photo_count ? other : -1;
+    }
+    return i;
+}
+
+void combine_add(photo shot, Answer a)
+{
+    bool known = false;
+    EACH_SAMPLE(k)
+        known = known || listed[k] == a.shot;
+    Sample s = sample_of(shot, a, on_guess);
+    float weight = known && other >= 0 ? 0.0 : weight_alone(shot, s);
+    put(s, weight);
+    heaviest = max(heaviest, weight);
+}
+
+// --- what their samples come to ---
 
 // Radiance of the sample at the weighted median of brightness.
 vec3 median_color()
@@ -105,8 +125,7 @@ vec3 median_color()
 // Largest weight that a method of the best few leaves out.
 float left_out()
 {
-#ifdef BEST
-    int kept = int(choice.x);
+#ifdef LIMITED
     float limit = 0.0;
     EACH_SAMPLE(k) {
         int above = 0;
@@ -143,7 +162,7 @@ void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
     EACH_SAMPLE(k) {
         off[k] = stops2(samples[k].color, level);
         // 1 / ln(2)^2 makes relative error stops.
-        allowed[k] = radiance.x * radiance.x + 2.0814 * noise[k];
+        allowed[k] = opt.ghosts * opt.ghosts + 2.0814 * noise[k];
         doubtful |= weights[k] > 0.0 && off[k] > DOUBT_FROM * allowed[k] ? 1 << k : 0;
     }
     do { // of those alone, since it is a read
@@ -174,10 +193,10 @@ void heed_clipped(bool guessed)
     float other = 0.0, contradicted = 0.0;
     EACH_SAMPLE(k) {
         float weight = samples[k].clip < CLIPS_BELOW ? 0.0 : weights[k];
-        float below = log2(max(least, radiance.z) /
-                           max(dot(samples[k].color, LUMINANCE), radiance.z));
+        float below = log2(max(least, least_radiance) /
+                           max(dot(samples[k].color, LUMINANCE), least_radiance));
         other += weight;
-        contradicted += weight * smoothstep(radiance.x, 2.0 * radiance.x, below);
+        contradicted += weight * smoothstep(opt.ghosts, 2.0 * opt.ghosts, below);
     }
     other = max(other, 1e-30);
     float majority = smoothstep(1.0, 3.0, (all - best) / other);
@@ -191,19 +210,19 @@ vec3 weigh(bool guessed)
 {
     // How far each sample is to be trusted depends on how much light there was, which its
     // own noise must not decide: the median says.
-    vec3 level = max(median_color(), radiance.z), inverse = 1.0 / level;
+    vec3 level = max(median_color(), least_radiance), inverse = 1.0 / level;
     float noise[ORL_RADIANCE_KEPT];
     EACH_SAMPLE(k) {
         noise[k] = noise_of(photo_at(samples[k].shot), inverse);
         weights[k] = total_weight(samples[k], noise[k]);
     }
-    if (radiance.x > 0.0)
+    if (opt.ghosts > 0.0)
         heed_clipped(guessed);
     // Nearly all of it, so that none appears at once, and samples that tie with it remain.
     float limit = 0.999 * left_out();
     EACH_SAMPLE(k)
         weights[k] = max(weights[k] - limit, 0.0);
-    if (radiance.x > 0.0)
+    if (opt.ghosts > 0.0)
         lessen_ghosts(level, noise);
     vec3 sums = vec3(0.0);
     EACH_SAMPLE(k)
@@ -217,7 +236,7 @@ vec3 blend(float total)
     vec3 sum = vec3(0.0);
     int sharp = 0; // bits
     EACH_SAMPLE(k) {
-        bool counts = flags.y == 1 && weights[k] > SHARP_FROM * total;
+        bool counts = opt.sampling == ORL_BICUBIC && weights[k] > SHARP_FROM * total;
         sharp |= counts ? 1 << k : 0;
         sum += counts ? vec3(0.0) : samples[k].color * weights[k];
     }
@@ -236,7 +255,7 @@ vec3 blend(float total)
 // The blur that colour on guessed depth needs, log2 of pixels.
 float blur_of(vec3 p, float total)
 {
-#ifdef BEST
+#ifdef LIMITED
     vec4 vote = vec4(0.0);
     float heaviest = 0.0;
     int best = 0;
@@ -258,23 +277,15 @@ float blur_of(vec3 p, float total)
 #endif
 }
 
-void main()
+void combine_end(ivec2 at, vec3 p, bool guessed)
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= area.x || at.y >= area.y)
-        return;
-    float depth = imageLoad(view_depth, at).r;
-    if (depth == 0.0)
-        return;
-    vec3 p = surface_point(at, abs(depth));
-    ask_photos(p, depth < 0.0);
-    vec3 sums = weigh(depth < 0.0);
+    vec3 sums = weigh(guessed);
     float total = sums.z;
     vec4 before = imageLoad(accumulated, at);
     bool clips = before.a + (sums.y < CLIPS_BELOW * total ? -total : total) < 0.0;
-    float both = abs(before.a) + total;
-    imageStore(accumulated, at, vec4(before.rgb + blend(total), clips ? -both : both));
-    vec4 trust = imageLoad(trusted, at);
-    float blur = depth < 0.0 && total > trust.y ? 1.0 + blur_of(p, total) : trust.z;
-    imageStore(trusted, at, vec4(trust.xy + vec2(sums.x, total), blur, 0.0));
+    imageStore(accumulated, at,
+               pixel_blended(before.rgb + blend(total), pixel_weight(before) + total, clips));
+    vec4 trust = imageLoad(state_0, at);
+    float blur = guessed && total > trust.y ? 1.0 + blur_of(p, total) : trust.z;
+    imageStore(state_0, at, vec4(trust.xy + vec2(sums.x, total), blur, 0.0));
 }

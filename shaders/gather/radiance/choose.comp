@@ -1,6 +1,10 @@
 // Lists, per tile of the screen, the photographs that say most of its radiance: a few points of
 // it ask every photograph for geometric weight, visibility and trust.
-#include "gather/radiance_sample.glsl"
+#include <sample>
+#include <visibility>
+#include <weight>
+#include "gather/ask.glsl"
+#include "gather/radiance/samples.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
@@ -22,12 +26,14 @@ float score(int i, ivec2 tile)
     for (int k = 0; k < PROBES_X * PROBES_Y; k++) {
         ivec2 at = tile * TILE + (2 * ivec2(k % PROBES_X, k / PROBES_X) + 1) *
                                      (TILE / (2 * ivec2(PROBES_X, PROBES_Y)));
-        at = min(at, area.xy - 1);
+        at = min(at, view_size - 1);
         float depth = imageLoad(view_depth, at).r;
         if (depth == 0.0)
             continue;
-        Sample s = ask(shot, i, surface_point(at, abs(depth)), depth < 0.0);
-        // What clips still tells what is too dark to be true (gather_radiance.comp).
+        bool guessed = depth < 0.0;
+        Answer a = ask(shot, i, surface_point(at, abs(depth)), guessed, true);
+        Sample s = sample_of(shot, a, guessed);
+        // What clips still tells what is too dark to be true (radiance/merge.glsl).
         most = max(most, max(weight_alone(shot, s), CLIPPED_SHARE * s.weight));
     }
     return most;
@@ -35,7 +41,7 @@ float score(int i, ivec2 tile)
 
 void main()
 {
-    ivec2 tile = ivec2(gl_GlobalInvocationID.xy), tiles = (area.xy + TILE - 1) / TILE;
+    ivec2 tile = ivec2(gl_GlobalInvocationID.xy), tiles = (view_size + TILE - 1) / TILE;
     if (any(greaterThanEqual(tile, tiles)))
         return;
     float best[ORL_RADIANCE_KEPT];
@@ -44,7 +50,7 @@ void main()
         best[k] = 0.0;
         index[k] = -1;
     }
-    for (int i = 0; i < area.z; i++) {
+    for (int i = 0; i < photo_count; i++) {
         float mine = score(i, tile);
         int candidate = i;
         for (int k = 0; k < ORL_RADIANCE_KEPT; k++) { // insertion

@@ -1,10 +1,33 @@
-// Which photographs a frame may use at all, so that its cost does not grow with the scene.
+#include "render/select.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/internal.h"
+#include "render/frame.h"
+#include "shared/penalty.h"
+
+enum { PHOTOS_PER_FRAME_MAX = 48 }; // of preselect
+
+static bool may_use(const struct frame *frame, size_t photo)
+{
+    return frame->photos->states[photo].usable && !(frame->skip && frame->skip[photo]);
+}
+
+static enum orl_result choose_all(struct frame *frame, size_t most)
+{
+    (void)most; // more than are on the device at once are asked in turns
+    frame->chosen_count = 0;
+    for (size_t i = 0; i < frame->scene->photo_count; i++)
+        if (may_use(frame, i))
+            frame->chosen[frame->chosen_count++] = i;
+    return ORL_OK;
+}
+
+const struct selection orl_select_all = {"all", choose_all};
+
+// --- those that can paint the view best, so that its cost does not grow with the scene ---
 
 enum {
     ACROSS = 5,      // sample directions, each way
@@ -28,18 +51,18 @@ static void sample_point(const struct orl_view *view, int index, double typical,
     orl_view_unproject(view, (x + 0.5) * c->width / ACROSS, (y + 0.5) * c->height / ACROSS, z, out);
 }
 
-// Inverse of the penalty of photo_choice.glsl; 0 where the photograph does not see the point.
-static double score(const struct orl_photo *photo, const double eye[3], const double point[3])
+double orl_photo_penalty(const struct orl_view *photo, const double eye[3], double view_focal,
+                         const double point[3])
 {
     double q[3], centre[3], u[3], v[3];
-    orl_pose_apply(&photo->view.cam_from_world, point, q);
-    const struct orl_camera *c = &photo->view.camera;
+    orl_pose_apply(&photo->cam_from_world, point, q);
+    const struct orl_camera *c = &photo->camera;
     if (!(q[2] > 0))
-        return 0;
+        return -1;
     double x = c->fx * q[0] / q[2] + c->cx, y = c->fy * q[1] / q[2] + c->cy;
     if (!(x > 0 && y > 0 && x < c->width && y < c->height))
-        return 0;
-    orl_pose_centre(&photo->view.cam_from_world, centre);
+        return -1;
+    orl_pose_centre(&photo->cam_from_world, centre);
     double uu = 0, vv = 0, uv = 0;
     for (int k = 0; k < 3; k++) {
         u[k] = eye[k] - point[k];
@@ -50,8 +73,7 @@ static double score(const struct orl_photo *photo, const double eye[3], const do
     }
     double cosine = uv / sqrt(uu * vv);
     double angle = acos(cosine < -1 ? -1 : cosine > 1 ? 1 : cosine);
-    double coarser = sqrt(vv / uu) - 1;
-    return 1 / (angle + 0.1 * (coarser > 0 ? coarser : 0) + 0.005);
+    return ORL_PENALTY(angle, sqrt(vv / uu) * (view_focal / c->fx) - 1);
 }
 
 // Marks the best PER_SAMPLE of one sample point.
@@ -95,39 +117,54 @@ static int by_photo(const void *a, const void *b)
     return (x->photo > y->photo) - (x->photo < y->photo);
 }
 
-enum orl_result orl_preselect(const struct orl_log *log, const struct photos *photos,
-                              const struct orl_view *view, const bool *skip, size_t most,
-                              size_t *chosen, size_t *count)
+// Sorts the candidates, the best first: those that some sample point names, then by their sums.
+static void rank(const struct frame *frame, struct candidate *candidates, double *scores,
+                 size_t count)
 {
-    const struct orl_scene *scene = photos->scene;
-    struct candidate *candidates = orl_array(log, scene->photo_count, sizeof *candidates);
-    double *scores = orl_array(log, scene->photo_count, sizeof *scores);
+    const struct orl_scene *scene = frame->scene;
+    double eye[3], typical = scene->photo_distance > 0 ? scene->photo_distance : 1;
+    orl_pose_centre(&frame->view->cam_from_world, eye);
+    for (int s = 0; s < ACROSS * ACROSS * DEPTHS; s++) {
+        double point[3];
+        sample_point(frame->view, s, typical, point);
+        for (size_t i = 0; i < count; i++) {
+            double penalty = orl_photo_penalty(&scene->photos[candidates[i].photo].view, eye,
+                                               frame->view->camera.fx, point);
+            scores[i] = penalty > 0 ? 1 / penalty : 0;
+        }
+        name_best(candidates, scores, count);
+    }
+    qsort(candidates, count, sizeof *candidates, better);
+}
+
+static enum orl_result choose_best(struct frame *frame, size_t most)
+{
+    // The best by angle may all be clipped: radiance needs every exposure.
+    if (frame->radiance)
+        return choose_all(frame, most);
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    size_t photo_count = frame->scene->photo_count, usable = 0;
+    most = most < PHOTOS_PER_FRAME_MAX ? most : PHOTOS_PER_FRAME_MAX;
+    struct candidate *candidates = orl_array(log, photo_count, sizeof *candidates);
+    double *scores = orl_array(log, photo_count, sizeof *scores);
     enum orl_result result = candidates && scores ? ORL_OK : ORL_ERR_MEMORY;
     if (result != ORL_OK)
         goto end;
-    size_t usable = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        if (photos->states[i].usable && !(skip && skip[i]))
+    for (size_t i = 0; i < photo_count; i++)
+        if (may_use(frame, i))
             candidates[usable++] = (struct candidate){.photo = i};
     if (usable > most) {
-        double eye[3], typical = scene->photo_distance > 0 ? scene->photo_distance : 1;
-        orl_pose_centre(&view->cam_from_world, eye);
-        for (int s = 0; s < ACROSS * ACROSS * DEPTHS; s++) {
-            double point[3];
-            sample_point(view, s, typical, point);
-            for (size_t i = 0; i < usable; i++)
-                scores[i] = score(&scene->photos[candidates[i].photo], eye, point);
-            name_best(candidates, scores, usable);
-        }
-        qsort(candidates, usable, sizeof *candidates, better);
+        rank(frame, candidates, scores, usable);
         usable = most;
         qsort(candidates, usable, sizeof *candidates, by_photo);
     }
     for (size_t i = 0; i < usable; i++)
-        chosen[i] = candidates[i].photo;
-    *count = usable;
+        frame->chosen[i] = candidates[i].photo;
+    frame->chosen_count = usable;
 end:
     free(candidates);
     free(scores);
     return result;
 }
+
+const struct selection orl_select_preselect = {"preselect", choose_best};

@@ -1,31 +1,23 @@
 // Blends the best few photographs into each pixel: weights fall continuously to zero at
 // the first photograph left out, at borders and where the surface gets hidden.
-#include "gather/photo_choice.glsl"
+#include "gather/penalty.glsl"
+#include "gather/hidden.glsl"
+#include "gather/guess_blur.glsl"
+#include "gather/sample/srgb.glsl"
+#include "shared/pixel.glsl"
+#include <visibility>
 
 // KEPT: photographs that a pixel may blend, 2 or 4: a software renderer samples all of them.
 // An invocation makes 2x2 pixels, so that it loads each photograph's parameters once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-// Finished: colour, coverage. Left to compose.comp: what nothing paints: 0, -1; what is painted on
-// guessed depth and is to be blurred: colour, -1 - log2 of the blur in pixels.
-layout(rgba16f, binding = 1) writeonly uniform image2D accumulated;
+layout(rgba16f, binding = 1) writeonly uniform image2D painted; // shared/pixel.glsl, finished
 layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sum of 2x2 of them: fill_seed.comp
 layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // and of those on guessed depth
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
 #include "gather/unfinished.glsl"
-
-// How surely the photograph saw this surface: 1 where its depth agrees, little where it
-// has none, 0 where it saw something else.
-float photo_seen_share(vec4 seen, float z)
-{
-    vec4 off = abs(seen - z) * (1.0 / (z * options.x));
-    vec4 share = clamp(2.0 - off, 0.0, 1.0);
-    float agrees = max(max(share.x, share.y), max(share.z, share.w));
-    bool unknown = all(lessThanEqual(seen, vec4(0.0)));
-    return unknown ? choice.z : agrees;
-}
 
 // A pixel's surface point.
 struct spot {
@@ -67,7 +59,7 @@ float limit_of(ranking r)
 {
     float limit = r.next;
     for (int k = 1; k < KEPT; k++)
-        limit = choice.x == float(k) ? r.best[k].penalty : limit;
+        limit = kept == k ? r.best[k].penalty : limit;
     return limit;
 }
 
@@ -81,9 +73,9 @@ void consider(int i, photo shot, spot s, inout ranking r)
     bool inside = photo_project(shot, s.p, pixel, z);
     vec4 seen = photo_depths(shot, pixel);
     float penalty = photo_penalty(shot, s.p);
-    float sees = s.guessed      ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
-                 : flags.x == 1 ? photo_seen_share(seen, z)
-                                : 1.0;
+    // Of guesses even where the method asks for no visibility: they are behind everything.
+    float sees = s.guessed ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
+                           : visible_surface(shot, seen, z);
     penalty = s.guessed ? penalty : photo_surface_penalty(penalty);
     float sure = sees * photo_border(shot, pixel, s.guessed);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (s.guessed ? GUESS_SURE_LEAST : 1e-4);
@@ -97,7 +89,7 @@ vec4 look(sight one, float least, float limit, spot s)
     // are equal, so that photographs that tie for the last place paint.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
     vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
-    float sharpness = s.guessed ? choice.w : choice.y;
+    float sharpness = s.guessed ? opt.guess_sharpness : opt.sharpness;
     bool counts = one.penalty < NOT_SEEN && one.penalty <= limit;
     return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
 }
@@ -118,7 +110,7 @@ vec4 blend(spot s, ranking r, out float blur)
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
     vec2 apart = vec2(0.0); // squares times weight, weight
-    float severity = choice_more.y * (s.guessed ? GUESS_SEVERITY : 1.0);
+    float severity = outlier_severity * (s.guessed ? GUESS_SEVERITY : 1.0);
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(samples[k].rgb) - mean;
         sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
@@ -132,7 +124,7 @@ vec4 blend(spot s, ranking r, out float blur)
 void main()
 {
     ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
-    if (corner.x >= area.x || corner.y >= area.y)
+    if (corner.x >= view_size.x || corner.y >= view_size.y)
         return;
     spot spots[4];
     ranking rankings[4];
@@ -146,7 +138,7 @@ void main()
             rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
     }
     ivec2 tile = corner / CHOICE_TILE; // of all four, since its side is even
-    int list = (tile.y * area.w + tile.x) * CANDIDATES, count = int(choice_more.x), c = 0;
+    int list = (tile.y * tiles_across + tile.x) * CANDIDATES, c = 0;
     int i = chosen[list];
     // The condition last: a software renderer runs a loop's body once more to find one at its
     // beginning false.
@@ -155,7 +147,7 @@ void main()
         for (int k = 0; k < 4; k++)
             consider(i, shot, spots[k], rankings[k]);
         c++;
-        i = c < count ? chosen[list + c] : -1;
+        i = c < asked ? chosen[list + c] : -1;
     } while (i >= 0);
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     float blur = 0.0; // the same for all four: single sharp pixels in what is blurred look like dirt
@@ -169,14 +161,17 @@ void main()
     }
     bool whole = true;
     for (int k = 0; k < 4; k++) {
-        bool painted = colors[k].a > 0.0, blurs = painted && spots[k].guessed && blur > 0.0;
-        whole = whole && painted && !blurs;
-        colors[k].a = !painted ? -1.0 : blurs ? -1.0 - blur : spots[k].guessed ? 0.0 : 1.0;
+        bool has_color = colors[k].a > 0.0;
+        bool blurs = has_color && spots[k].guessed && blur > 0.0;
+        whole = whole && has_color && !blurs;
+        colors[k] = !has_color ? pixel_unpainted()
+                    : blurs    ? pixel_to_blur(colors[k].rgb, blur)
+                               : pixel_finished(colors[k].rgb, !spots[k].guessed);
     }
     // Last: what lives on after a store costs a software renderer a load. Outside the picture they
     // do nothing.
     for (int k = 0; k < 4; k++)
-        imageStore(accumulated, corner + ivec2(k & 1, k >> 1), colors[k]);
+        imageStore(painted, corner + ivec2(k & 1, k >> 1), colors[k]);
     imageStore(seeds, corner / 2, seed);
     if (guess.a > 0.0) // stores cost more than a clear before
         imageStore(guesses, corner / 2, guess);

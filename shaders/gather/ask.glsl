@@ -1,0 +1,35 @@
+// Asking a photograph about a surface point, whatever the method. Included after its <visibility>
+// and <weight>.
+#include "gather/photo.glsl"
+
+// What a photograph can say, without a look at its colours.
+struct Answer {
+    int shot;     // the photograph
+    vec2 pixel;   // where the point lies in it
+    float mip;
+    float weight; // 0: it does not show the point
+};
+
+// Photograph i, which is `shot`, about p in the view's camera frame. soft_border: it fades out over
+// a wider border where depth is only guessed. Selects rather than branches: software renderers run
+// both sides of a condition.
+Answer ask(photo shot, int i, vec3 p, bool guessed, bool soft_border)
+{
+    Answer a;
+    a.shot = i;
+    float z;
+    bool inside = photo_project(shot, p, a.pixel, z);
+    z = inside ? z : p.z; // no logarithm of less than 0
+    a.mip = photo_mip(shot, z, p.z);
+    vec4 seen = photo_depths(shot, a.pixel);
+    float visible = guessed ? visible_guess(shot, seen, z) : visible_surface(shot, seen, z);
+    float weight = weight_of(shot, p, guessed) *
+                   photo_border(shot, a.pixel, guessed && soft_border) * visible;
+    a.weight = inside ? weight : 0.0;
+    return a;
+}
+
+vec3 surface_point(ivec2 at, float depth)
+{
+    return vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
+}

@@ -1,0 +1,25 @@
+// The weighted mean of all samples. Streams: sums go on where the last turn left them.
+#include "gather/each.glsl"
+
+// Among all photographs no border shows.
+const bool SOFT_BORDER = false;
+
+vec4 sum, before;
+
+void combine_begin(ivec2 at)
+{
+    before = imageLoad(accumulated, at);
+    sum = before;
+}
+
+void combine_add(photo shot, Answer a)
+{
+    vec3 color = photo_sample(shot, a.pixel, a.mip).rgb;
+    sum += a.weight > 0.0 ? vec4(color, 1.0) * a.weight : vec4(0.0);
+}
+
+void combine_end(ivec2 at, vec3 p, bool guessed)
+{
+    if (sum.a > before.a)
+        imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));
+}

@@ -1,0 +1,17 @@
+// Visibility of radiance, whatever the method's, unless that is none.
+#include "gather/hidden.glsl"
+
+// How much of a sample is the surface at z, squared: what lies before it may be a thousand
+// times as bright.
+float visible_surface(photo shot, vec4 seen, float z)
+{
+    vec4 same = clamp(2.0 - abs(seen - z) / (z * opt.depth_tolerance), 0.0, 1.0);
+    float share = dot(mix(same, vec4(opt.unknown_trust), lessThanEqual(seen, vec4(0.0))),
+                      vec4(0.25));
+    return share * share;
+}
+
+float visible_guess(photo shot, vec4 seen, float z)
+{
+    return photo_unhidden_share(shot, seen, z);
+}

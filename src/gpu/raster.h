@@ -1,0 +1,34 @@
+// Drawing by the graphics pipeline: triangles or points with a depth test, into several targets.
+#ifndef ORL_GPU_RASTER_H
+#define ORL_GPU_RASTER_H
+
+#include "gpu/gpu.h"
+
+enum { ORL_RASTER_TARGETS_MAX = 4, ORL_RASTER_INPUTS_MAX = 4 };
+
+// One vertex input; array index = its location in the vertex program.
+struct orl_raster_input {
+    const struct orl_buf *buf; // NULL: not used
+    size_t offset, stride;     // bytes
+    int components;            // 1 to 4
+    GLenum type;               // GL_FLOAT, GL_UNSIGNED_BYTE (of which 255 reads as 1) or
+                               // GL_UNSIGNED_INT (which reads as an integer)
+};
+
+// One draw into textures of one size, which are cleared first: colours to 0, depth to 1.
+struct orl_raster {
+    struct orl_prog *prog;     // of orl_prog_get_raster
+    const void *params;        // the uniform block at binding 0
+    size_t params_size;
+    struct orl_raster_input inputs[ORL_RASTER_INPUTS_MAX];
+    const struct orl_buf *indices; // 32-bit; NULL: vertices in their order
+    GLenum primitive;              // GL_TRIANGLES or GL_POINTS
+    size_t count;                  // of indices, or of vertices
+    const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by the fragment program's locations
+    const struct orl_tex *depth;   // GL_DEPTH_COMPONENT32F; NULL: no depth test
+    GLbitfield barrier;            // glMemoryBarrier bits after it
+};
+// Errors are sticky, as of orl_gpu_dispatch.
+void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *raster);
+
+#endif

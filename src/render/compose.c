@@ -1,0 +1,62 @@
+#include "render/compose.h"
+
+#include "render/edges.h"
+#include "render/fill.h"
+#include "render/gather.h"
+#include "render/method.h"
+#include "render/soften.h"
+
+static bool always(const struct frame *frame)
+{
+    (void)frame;
+    return true;
+}
+
+static bool fills(const struct frame *frame)
+{
+    return frame->params->fill != ORL_FILL_NONE;
+}
+
+static bool softens(const struct frame *frame)
+{
+    return (frame->finishes || frame->radiance) && orl_frame_guesses(frame) &&
+           frame->params->guess_blur > 0;
+}
+
+static bool antialiases(const struct frame *frame)
+{
+    return frame->params->antialias == ORL_ANTIALIAS_ON && !frame->radiance;
+}
+
+static void compose(const struct frame *frame)
+{
+    struct orl_buf *unfinished = frame->finishes ? frame->gather->unfinished : NULL;
+    const char *defines = frame->finishes ? "FINISHED" : frame->radiance ? "RADIANCE" : NULL;
+    struct image_block block = {
+        .image_size = {frame->surface.width, frame->surface.height},
+        .points_show = orl_painter_of(frame->params) == &orl_paint_points,
+        .fills = fills(frame),
+    };
+    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
+                             .params = &block, .params_size = sizeof block,
+                             .bufs = {[2] = {.buf = unfinished}},
+                             .textures = {frame->soften->guesses},
+                             .indirect = unfinished,
+                             .images = {{frame->picture, 0, GL_READ_WRITE},
+                                        {frame->fill->level[0], 0, GL_READ_ONLY},
+                                        {frame->surface.depth, 0, GL_READ_ONLY},
+                                        {frame->trusted, 0, GL_READ_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_TEXTURE_UPDATE_BARRIER_BIT};
+    // 2x2 pixels an invocation.
+    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+}
+
+const struct post_pass orl_post_passes[] = {
+    {"fill", fills, orl_fill_color},
+    {"soften", softens, orl_soften_prepare},
+    {"compose", always, compose},
+    {"antialias", antialiases, orl_edges_antialias},
+    {0},
+};

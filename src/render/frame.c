@@ -1,0 +1,42 @@
+#include "render/frame.h"
+
+#include <string.h>
+
+#include "scene/ground.h"
+#include "shared/interop.h"
+
+// Farther than so many times the photographs' height, what stands on the ground hides it.
+static const double GROUND_REACH = 20;
+
+void orl_pixel_groups(int width, int height, unsigned groups[3])
+{
+    groups[0] = orl_groups((size_t)width, ORL_PIXEL_GROUP_X);
+    groups[1] = orl_groups((size_t)height, ORL_PIXEL_GROUP_Y);
+    groups[2] = 1;
+}
+
+bool orl_frame_guesses(const struct frame *frame)
+{
+    return frame->params->fill == ORL_FILL_DEPTH || frame->params->fill == ORL_FILL_GROUND;
+}
+
+void orl_frame_ground(const struct frame *frame, float out[4])
+{
+    const struct orl_ground *ground = &frame->scene->ground;
+    double inverse[3];
+    memset(out, 0, 4 * sizeof *out);
+    if (frame->params->fill != ORL_FILL_GROUND ||
+        !orl_ground_along_rays(ground, frame->view, inverse))
+        return;
+    for (int k = 0; k < 3; k++)
+        out[k] = (float)inverse[k];
+    out[3] = (float)(1 / (GROUND_REACH * ground->height));
+}
+
+void orl_set_focal(const struct orl_camera *camera, float focal[4])
+{
+    focal[0] = (float)camera->fx;
+    focal[1] = (float)camera->fy;
+    focal[2] = (float)camera->cx;
+    focal[3] = (float)camera->cy;
+}

@@ -1,0 +1,167 @@
+// All methods: one row each. What the names in a row stand for is in the tables below them.
+#include <stdio.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/gather.h"
+#include "render/method.h"
+#include "render/proxy.h"
+#include "render/select.h"
+#include "render/tiled.h"
+
+#define SLOT_DEFAULT(field, preset, readers, help) .field = preset,
+#define CHOICE_DEFAULT(field, type, names, preset, readers, help) .field = preset,
+#define NUMBER_DEFAULT(field, preset, least, most, unit, readers, tries, help) .field = preset,
+// A row says what differs from these.
+#define DEFAULTS ORL_RENDER_OPTIONS(SLOT_DEFAULT, CHOICE_DEFAULT, NUMBER_DEFAULT)
+
+// Photographs of the tiles that see a surface best, and what nothing covers from guessed depth.
+#define TILED \
+    .paint = "tiled", .select = "preselect", .visibility = "soft", .weight = "lumigraph", \
+    .combine = "robust", .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON
+
+const struct orl_method orl_methods[] = {
+    {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
+     "Buehler 2001's penalty, weights of our own",
+     {DEFAULTS TILED, .front_layer = 0.01f, .min_support = 8, .silhouette = 2,
+      .antialias = ORL_ANTIALIAS_ON}},
+    {"oriel-fast", "oriel from two photographs a pixel, of three, sampled bilinearly", "as oriel",
+     {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .min_support = 8, .candidates = 3,
+      .photos_per_pixel = 2}},
+    {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
+     {DEFAULTS}},
+    {"points", "the splats' own colour: the baseline", "-",
+     {DEFAULTS .paint = "points", .front_layer = 0.01f, .min_support = 8}},
+    {0},
+};
+
+// --- what the names stand for ---
+
+static const struct selection *const selections[] = {&orl_select_all, &orl_select_preselect};
+static const struct painter *const painters[] = {&orl_paint_gather, &orl_paint_tiled,
+                                                 &orl_paint_points};
+static const struct proxy_kind *const proxies[] = {&orl_proxy_splats};
+static const struct combine combines[] = {
+    {"mean", .sweeps = 1},
+    {"robust", .sweeps = 0},
+};
+
+const struct selection *orl_selection_of(const struct orl_render_params *params)
+{
+    size_t i = 0;
+    while (i + 1 < ORL_COUNT(selections) && strcmp(selections[i]->name, params->select) != 0)
+        i++;
+    return selections[i];
+}
+
+const struct combine *orl_combine_of(const struct orl_render_params *params)
+{
+    size_t i = 0;
+    while (i + 1 < ORL_COUNT(combines) && strcmp(combines[i].name, params->combine) != 0)
+        i++;
+    return &combines[i];
+}
+
+const struct painter *orl_painter_of(const struct orl_render_params *params)
+{
+    size_t i = 0;
+    while (i + 1 < ORL_COUNT(painters) && strcmp(painters[i]->name, params->paint) != 0)
+        i++;
+    return painters[i];
+}
+
+const struct proxy_kind *orl_proxy_kind_of(const struct orl_render_params *params)
+{
+    size_t i = 0;
+    while (i + 1 < ORL_COUNT(proxies) && strcmp(proxies[i]->name, params->proxy) != 0)
+        i++;
+    return proxies[i];
+}
+
+// Name of the `index`-th shader file of a slot; NULL: there are no more. `length`: without folder
+// and extension.
+static const char *file_name(const char *key, size_t index, int *length)
+{
+    char folder[64];
+    snprintf(folder, sizeof folder, "gather/%s", key);
+    const char *file = orl_shader_file(folder, index);
+    if (!file)
+        return NULL;
+    file += strlen(folder) + 1;
+    *length = (int)strcspn(file, ".");
+    return file;
+}
+
+bool orl_slot_name(const char *key, size_t index, char name[ORL_OPTION_NAME_BYTES])
+{
+    const char *found = NULL;
+    int length = ORL_OPTION_NAME_BYTES;
+    if (strcmp(key, "select") == 0)
+        found = index < ORL_COUNT(selections) ? selections[index]->name : NULL;
+    else if (strcmp(key, "paint") == 0)
+        found = index < ORL_COUNT(painters) ? painters[index]->name : NULL;
+    else if (strcmp(key, "proxy") == 0)
+        found = index < ORL_COUNT(proxies) ? proxies[index]->name : NULL;
+    else if (strcmp(key, "combine") == 0)
+        found = index < ORL_COUNT(combines) ? combines[index].name : NULL;
+    else
+        found = file_name(key, index, &length);
+    memset(name, 0, ORL_OPTION_NAME_BYTES);
+    snprintf(name, ORL_OPTION_NAME_BYTES, "%.*s", length, found ? found : "");
+    return found;
+}
+
+// --- methods by name ---
+
+const struct orl_method *orl_method_find(const struct orl_log *log, const char *name)
+{
+    char list[256] = "";
+    for (const struct orl_method *m = orl_methods; m->name; m++) {
+        if (strcmp(m->name, name) == 0)
+            return m;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, " %s", m->name);
+    }
+    orl_logf(log, ORL_LOG_ERROR, "method %s is not known; there are:%s", name, list);
+    return NULL;
+}
+
+enum orl_result orl_render_params_check(const struct orl_log *log,
+                                        const struct orl_render_params *params)
+{
+    const struct painter *painter = orl_painter_of(params);
+    char needed[2 * ORL_OPTION_NAME_BYTES];
+    for (const char *list = painter->needs; *list; list += *list == ' ') {
+        size_t length = strcspn(list, " ");
+        snprintf(needed, sizeof needed, "%.*s", (int)length, list);
+        if (!orl_render_params_equal(params, needed))
+            return orl_fail(log, ORL_ERR_ARGUMENT, "paint=%s goes with %s alone", painter->name,
+                            needed);
+        list += length;
+    }
+    if (painter == &orl_paint_gather && orl_combine_of(params)->sweeps == 0)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "combine=%s goes with paint=tiled alone",
+                        params->combine);
+    return ORL_OK;
+}
+
+enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
+                                        const struct orl_scene *scene,
+                                        struct orl_render_params *params)
+{
+    enum orl_result result = ORL_OK;
+    *params = method->params;
+    for (size_t i = 0; result == ORL_OK && i < scene->tuned_count; i++) {
+        const struct orl_tuned *tuned = &scene->tuned[i];
+        char assignment[128];
+        if (strcmp(tuned->method, method->name) != 0)
+            continue;
+        snprintf(assignment, sizeof assignment, "%s=%.9g", tuned->key, tuned->value);
+        result = orl_render_params_set(log, params, assignment);
+        if (result != ORL_OK)
+            result = orl_fail(log, ORL_ERR_FORMAT,
+                              "%s/scene.json: \"tuned\" of %s does not fit this program; run "
+                              "oriel tune again", scene->dir, method->name);
+    }
+    return result;
+}

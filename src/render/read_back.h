@@ -1,0 +1,11 @@
+// Private to src/render: a finished frame from the device to host memory.
+#ifndef ORL_RENDER_READ_BACK_H
+#define ORL_RENDER_READ_BACK_H
+
+#include "render/frame.h"
+
+// All layers but params->leave_out; `staging` is kept for frames of the same kind.
+enum orl_result orl_read_back(const struct frame *frame, struct orl_image *staging,
+                              struct orl_frame *out);
+
+#endif

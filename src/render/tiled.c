@@ -1,0 +1,98 @@
+#include "render/tiled.h"
+
+#include <string.h>
+
+#include "render/edges.h"
+#include "render/fill.h"
+#include "render/gather.h"
+#include "render/photos.h"
+#include "render/soften.h"
+
+// Lists of photographs by tile, and of groups of pixels that are left unfinished.
+static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
+{
+    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/gather/unfinished.glsl
+    struct gather *g = frame->gather;
+    enum orl_result result = orl_make_room(frame->gpu, "photographs of tiles",
+                                           tiles * CANDIDATES * sizeof(int), &g->tile_lists);
+    if (result == ORL_OK)
+        result = orl_make_room(frame->gpu, "groups with unfinished pixels",
+                               sizeof nothing + 8 * groups, &g->unfinished);
+    if (result != ORL_OK)
+        return result;
+    orl_buf_fill(g->unfinished, 0);
+    orl_buf_write(g->unfinished, 0, sizeof nothing, nothing);
+    return ORL_OK;
+}
+
+// From the photographs of each tile; the dispatch is the one that has listed them.
+static void gather_tiles(const struct frame *frame, bool many, struct orl_dispatch d)
+{
+    struct gather_slots slots;
+    orl_gather_slots(frame, &slots);
+    // A program for pixels of two photographs and one for those of more.
+    bool bicubic = frame->params->sampling == ORL_SAMPLING_BICUBIC;
+    const char *defines = bicubic ? many ? "BICUBIC 1\nKEPT 4" : "BICUBIC 1\nKEPT 2"
+                                  : many ? "KEPT 4" : "KEPT 2";
+    d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
+    d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY, 0};
+    d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY, 0};
+    d.images[3] = (struct orl_image_binding){frame->soften->guesses, 0, GL_WRITE_ONLY, 0};
+    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                GL_COMMAND_BARRIER_BIT;
+    // 2x2 pixels an invocation.
+    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
+    orl_tex_clear(frame->soften->guesses, 0);
+    orl_pass_begin(frame->gpu, "gather");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
+}
+
+static enum orl_result paint_chosen(const struct frame *frame)
+{
+    struct gather *g = frame->gather;
+    size_t across = orl_groups((size_t)frame->surface.width, CHOICE_TILE);
+    size_t down = orl_groups((size_t)frame->surface.height, CHOICE_TILE);
+    unsigned groups[3];
+    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, groups);
+    enum orl_result result = make_lists(frame, across * down, (size_t)groups[0] * groups[1]);
+    if (result != ORL_OK)
+        return result;
+    if (frame->chosen_count == 0) {
+        orl_tex_clear(frame->picture, 0);
+        return ORL_OK;
+    }
+    struct gather_block block = orl_gather_prepare(frame, frame->chosen, frame->chosen_count);
+    struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL, NULL),
+                             .params = &block, .params_size = sizeof block,
+                             .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
+                             .textures = {frame->photos->color, frame->photos->depth},
+                             .images = {{frame->surface.depth, 0, GL_READ_ONLY},
+                                        [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
+                             .groups = {orl_groups(across, 8), orl_groups(down, 8)},
+                             .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
+    orl_pass_begin(frame->gpu, "choose");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
+    if (block.reach > 0)
+        orl_edges_cut(frame, &d);
+    gather_tiles(frame, block.kept > 2, d);
+    return ORL_OK;
+}
+
+static enum orl_result paint(struct frame *frame)
+{
+    if (frame->radiance)
+        return orl_paint_gather.paint(frame);
+    // The choice of the best asks what hides the surface even when pixels do not.
+    enum orl_result result =
+        orl_selection_of(frame->params)->choose(frame, (size_t)frame->photos->slot_count);
+    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++)
+        result = orl_photos_require(frame, frame->chosen[i], true);
+    return result == ORL_OK ? paint_chosen(frame) : result;
+}
+
+const struct painter orl_paint_tiled = {
+    .name = "tiled", .needs = "select=preselect weight=lumigraph combine=robust",
+    .finishes = true, .paint = paint,
+};
