@@ -30,6 +30,8 @@ const struct orl_method orl_methods[] = {
       .photos_per_pixel = 2}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
      {DEFAULTS}},
+    {"ulr", "the best four photographs by angle and resolution",
+     "Buehler 2001, 4.2, as SIBR's ulrv2", {DEFAULTS .weight = "ulr", .combine = "top", .border_px = 0}},
     {"points", "the splats' own colour: the baseline", "-",
      {DEFAULTS .paint = "points", .front_layer = 0.01f, .min_support = 8}},
     {0},
@@ -43,6 +45,7 @@ static const struct painter *const painters[] = {&orl_paint_gather, &orl_paint_t
 static const struct proxy_kind *const proxies[] = {&orl_proxy_splats};
 static const struct combine combines[] = {
     {"mean", .sweeps = 1},
+    {"top", .sweeps = 2, .states = 2},
     {"robust", .sweeps = 0},
 };
 

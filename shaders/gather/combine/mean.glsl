@@ -4,12 +4,11 @@
 // Among all photographs no border shows.
 const bool SOFT_BORDER = false;
 
-vec4 sum, before;
+vec4 sum;
 
 void combine_begin(ivec2 at)
 {
-    before = imageLoad(accumulated, at);
-    sum = before;
+    sum = imageLoad(accumulated, at);
 }
 
 void combine_add(photo shot, Answer a)
@@ -20,6 +19,6 @@ void combine_add(photo shot, Answer a)
 
 void combine_end(ivec2 at, vec3 p, bool guessed)
 {
-    if (sum.a > before.a)
+    if (sum.a > 0.0)
         imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));
 }

@@ -1,0 +1,61 @@
+// The four samples of greatest weight, each weighing 1 - w5 / w, w5 being the fifth's weight: a
+// photograph that another replaces has faded out by then (Buehler 2001, 4.2). Two sweeps: the first
+// finds the five greatest weights of a pixel, the second adds the samples.
+#include "gather/each.glsl"
+
+const bool SOFT_BORDER = false;
+const int KEPT = 5;
+// Of full weight: samples that tie for the fifth place paint where there are no others.
+const float TRACE = 1e-5;
+
+#if SWEEP == 0
+
+float best[KEPT]; // descending
+
+void combine_begin(ivec2 at)
+{
+    vec4 first = imageLoad(state_0, at);
+    best = float[](first.x, first.y, first.z, first.w, imageLoad(state_1, at).x);
+}
+
+void combine_add(photo shot, Answer a)
+{
+    float weight = a.weight;
+    for (int k = 0; k < KEPT; k++) {
+        float other = best[k];
+        best[k] = max(weight, other);
+        weight = min(weight, other);
+    }
+}
+
+void combine_end(ivec2 at, vec3 p, bool guessed)
+{
+    imageStore(state_0, at, vec4(best[0], best[1], best[2], best[3]));
+    imageStore(state_1, at, vec4(best[4]));
+}
+
+#else
+
+float limit;
+vec4 sum;
+
+void combine_begin(ivec2 at)
+{
+    limit = imageLoad(state_1, at).x;
+    sum = imageLoad(accumulated, at);
+}
+
+void combine_add(photo shot, Answer a)
+{
+    vec3 color = photo_sample(shot, a.pixel, a.mip).rgb;
+    bool counts = a.weight > 0.0 && a.weight >= limit;
+    sum += counts ? vec4(color, 1.0) * (1.0 + TRACE - limit / a.weight) : vec4(0.0);
+}
+
+void combine_end(ivec2 at, vec3 p, bool guessed)
+{
+    if (sum.a > 0.0)
+        imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));
+}
+
+#endif

@@ -1,0 +1,166 @@
+// Methods made of slots, against answers found by hand.
+#include <math.h>
+
+#include "render/select.h"
+#include "scene/points.h"
+#include "wall_scene.h"
+
+enum { SIDE = 48 };
+
+static struct orl_gpu *gpu;
+
+// Noise, so that no two photographs and no two pixels are alike.
+static void add_noise_photo(struct fixture *f, struct orl_view view, uint32_t seed)
+{
+    struct orl_image image;
+    add_photo(f, view, red);
+    assert_int_equal(orl_image_init(NULL, &image, view.camera.width, view.camera.height, 3,
+                                    ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < 3 * view.camera.width * view.camera.height; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        image.u8[i] = (uint8_t)(seed >> 24);
+    }
+    repaint_photo(f, &image);
+}
+
+// Penalty of method ulr for the wall point that the middle pixel sees, of a photograph at x.
+static double ulr_penalty(double x)
+{
+    double there = hypot(4, x), angle = atan2(fabs(x), 4);
+    return angle + 0.1 * fmax(1e-4, (there - 4) / there);
+}
+
+// Six photographs side by side: the four nearest paint, by 1 - p / p5.
+static void the_best_four_fade_by_the_fifth(void **state)
+{
+    (void)state;
+    static const double places[6] = {-0.2, 0.3, -0.5, 0.7, 0.9, -1.1};
+    struct fixture f;
+    setup(&f, false);
+    // An odd size: the middle pixel looks straight ahead.
+    struct orl_view view = look_from(0, 0, 0, SIDE + 1, 40);
+    double sum[3] = {0}, weights = 0, fifth = ulr_penalty(places[4]);
+    for (int i = 0; i < 6; i++) {
+        const uint8_t *color = i == 0 ? red : i == 1 ? green : i < 4 ? blue : red;
+        add_photo(&f, look_from(places[i], 0, 0, SIDE, 40), color);
+        double weight = fmax(0, 1 - ulr_penalty(places[i]) / fifth);
+        weights += weight;
+        for (int c = 0; c < 3; c++)
+            sum[c] += weight * (color[c] == 255);
+    }
+    struct orl_render_params params = orl_method_find(NULL, "ulr")->params;
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[c], sum[c] / weights, 2e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// At a photograph's own place, that photograph; with fewer than five, all that see.
+static void few_photographs_paint_too(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    add_photo(&f, look_from(0.5, 0, 0, SIDE, 40), green);
+    add_photo(&f, look_from(-0.5, 0, 0, SIDE, 40), red);
+    struct orl_render_params params = orl_method_find(NULL, "ulr")->params;
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+    const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
+    assert_float_equal(middle[0], 0.5, 0.01);
+    assert_float_equal(middle[1], 0.5, 0.01);
+    assert_float_equal(frame.coverage.f32[SIDE / 2 * SIDE + SIDE / 2], 1, 0);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Photographs that are on the device one at a time give the same bits as all at once.
+static void turns_change_nothing(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"airieau", "ulr"};
+    struct fixture f;
+    setup(&f, true);
+    struct orl_view view = look_from(0.1, 0, 0, SIDE, 40);
+    for (int i = 0; i < 7; i++)
+        add_noise_photo(&f, look_from(0.35 * i - 1, 0.1 * i - 0.3, 0, SIDE, 40), (uint32_t)i);
+    for (size_t m = 0; m < ORL_COUNT(methods); m++) {
+        struct orl_render_params params = orl_method_find(NULL, methods[m])->params;
+        // Too little memory makes photographs smaller first, as small as this.
+        const struct orl_renderer_params whole = {.photo_divide = 4, .textures = ORL_TEXTURES_FULL};
+        struct orl_renderer_params tight = whole;
+        tight.max_vram_bytes = 1;
+        struct orl_frame a = draw_by(gpu, &f, view, &params, &whole);
+        struct orl_frame b = draw_by(gpu, &f, view, &params, &tight);
+        assert_memory_equal(a.color.data, b.color.data, orl_image_bytes(&a.color));
+        assert_memory_equal(a.coverage.data, b.coverage.data, orl_image_bytes(&a.coverage));
+        orl_frame_finish(&a);
+        orl_frame_finish(&b);
+    }
+    teardown(&f);
+}
+
+// Two photographs of other focal lengths and distances: their shares in a pixel tell the shader's
+// penalties, which are those that the processor chooses photographs by.
+static void both_sides_have_one_penalty(void **state)
+{
+    (void)state;
+    static const char *const choices[] = {"weight=lumigraph", "sharpness=1", "border_px=0",
+                                          "visibility=none"};
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, SIDE + 1, 40);
+    add_photo(&f, look_from(-0.6, 0, -1, SIDE, 25), red);
+    add_photo(&f, look_from(0.4, 0.3, 0.5, SIDE, 70), green);
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    assert_int_equal(orl_render_params_assign(NULL, &params, choices, ORL_COUNT(choices)), ORL_OK);
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+    const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
+    static const double eye[3] = {0, 0, 0}, point[3] = {0, 0, 4};
+    double penalty[2];
+    for (int i = 0; i < 2; i++)
+        penalty[i] = orl_photo_penalty(&f.photos[i].view, eye, 40, point);
+    assert_true(penalty[0] > 1.2 * penalty[1]); // coarser: it is the focal lengths that matter
+    // On surfaces, the root of penalty^2 + 0.3^2.
+    assert_float_equal(middle[0] / middle[1], hypot(penalty[1], 0.3) / hypot(penalty[0], 0.3),
+                       1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Every method paints radiance too.
+static void every_method_gives_radiance(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    add_photo(&f, look_from(0.3, 0, 0, SIDE, 40), green);
+    add_photo(&f, look_from(-0.3, 0, 0, SIDE, 40), green);
+    for (const struct orl_method *m = orl_methods; m->name; m++) {
+        const struct orl_renderer_params radiance = {.radiance = true};
+        struct orl_frame frame = draw_by(gpu, &f, view, &m->params, &radiance);
+        const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
+        bool own = strcmp(m->params.paint, "points") == 0; // the wall's splats are red
+        assert_float_equal(middle[own ? 0 : 1], 1, 0.02);
+        assert_float_equal(middle[2], 0, 0.02);
+        orl_frame_finish(&frame);
+    }
+    teardown(&f);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_best_four_fade_by_the_fifth),
+        cmocka_unit_test(few_photographs_paint_too),
+        cmocka_unit_test(turns_change_nothing),
+        cmocka_unit_test(both_sides_have_one_penalty),
+        cmocka_unit_test(every_method_gives_radiance),
+    };
+    int failed = cmocka_run_group_tests_name("methods", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
