@@ -1,0 +1,84 @@
+// Prints docs/reference/options.md from the option table.
+#include <stdio.h>
+
+#include "render/render.h"
+
+static void print_reader(const char *readers)
+{
+    if (!*readers) {
+        printf("every frame");
+        return;
+    }
+    printf("`");
+    for (const char *c = readers; *c; c++)
+        *c == ' ' ? printf("`, `") : putchar(*c);
+    printf("`");
+}
+
+static void print_values(const struct orl_render_option *option)
+{
+    char name[ORL_OPTION_NAME_BYTES];
+    if (option->kind == ORL_OPTION_NUMBER) {
+        printf("%g to %g%s%s", option->least, option->most, *option->unit ? " " : "",
+               option->unit);
+        return;
+    }
+    for (size_t i = 0; orl_render_option_name(option, i, name); i++)
+        printf("%s`%s`", i ? ", " : "", name);
+}
+
+static void print_options(void)
+{
+    printf("| option | values | read by | what it does | `oriel tune` tries |\n"
+           "|---|---|---|---|---|\n");
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        printf("| `%s` | ", o->key);
+        print_values(o);
+        printf(" | ");
+        print_reader(o->readers);
+        printf(" | %s | ", o->help);
+        for (int i = 0; i < o->try_count; i++)
+            printf("%s%g", i ? ", " : "", o->tries[i]);
+        printf(" |\n");
+    }
+}
+
+static void print_methods(void)
+{
+    printf("| option |");
+    for (const struct orl_method *m = orl_methods; m->name; m++)
+        printf(" %s |", m->name);
+    printf("\n|---|");
+    for (const struct orl_method *m = orl_methods; m->name; m++)
+        printf("---|");
+    printf("\n");
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        printf("| `%s` |", o->key);
+        for (const struct orl_method *m = orl_methods; m->name; m++) {
+            char text[ORL_OPTION_NAME_BYTES];
+            orl_render_option_print(o, &m->params, text, sizeof text);
+            double value;
+            if (!orl_render_option_read(o, &m->params))
+                printf(" |");
+            else if (o->kind == ORL_OPTION_NUMBER && sscanf(text, "%lf", &value) == 1)
+                printf(" %g |", value); // 0.1, not the float next to it
+            else
+                printf(" %s |", text);
+        }
+        printf("\n");
+    }
+}
+
+int main(void)
+{
+    printf("# Options of rendering\n\n"
+           "`--set KEY=VALUE` of `oriel render`, `eval`, `bench` and `hdr` takes these. An option "
+           "that nothing reads with the\nmethod's choices is an error that names its readers. This "
+           "page is made from the option table\n(`src/render/option_list.h`) by the program "
+           "`options_page` of the tests; a test fails when the two differ.\n\n"
+           "## What each option means\n\n");
+    print_options();
+    printf("\n## What each method sets\n\nEmpty: the method does not read it.\n\n");
+    print_methods();
+    return 0;
+}
