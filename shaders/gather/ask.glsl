@@ -10,21 +10,21 @@ struct Answer {
     float weight; // 0: it does not show the point
 };
 
-// Photograph i, which is `shot`, about p in the view's camera frame. soft_border: it fades out over
-// a wider border where depth is only guessed. Selects rather than branches: software renderers run
+// Photograph i, which is `shot`, about a point. soft_border: it fades out over a wider border where
+// depth is only guessed. Selects rather than branches: software renderers run
 // both sides of a condition.
-Answer ask(photo shot, int i, vec3 p, bool guessed, bool soft_border)
+Answer ask(photo shot, int i, Point at, bool soft_border)
 {
     Answer a;
     a.shot = i;
     float z;
-    bool inside = photo_project(shot, p, a.pixel, z);
-    z = inside ? z : p.z; // no logarithm of less than 0
-    a.mip = photo_mip(shot, z, p.z);
+    bool inside = photo_project(shot, at.p, a.pixel, z);
+    z = inside ? z : at.p.z; // no logarithm of less than 0
+    a.mip = photo_mip(shot, z, at.p.z);
     vec4 seen = photo_depths(shot, a.pixel);
-    float visible = guessed ? visible_guess(shot, seen, z) : visible_surface(shot, seen, z);
-    float weight = weight_of(shot, p, guessed) *
-                   photo_border(shot, a.pixel, guessed && soft_border) * visible;
+    float visible = at.guessed ? visible_guess(shot, at, seen, z) : visible_surface(shot, at, seen, z);
+    float weight = weight_of(shot, at) *
+                   photo_border(shot, a.pixel, at.guessed && soft_border) * visible;
     a.weight = inside ? weight : 0.0;
     return a;
 }

@@ -6,13 +6,14 @@
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
 layout(rgba32f, binding = 1) uniform image2D accumulated;      // shared/pixel.glsl, blended
+layout(rgba16f, binding = 4) readonly uniform image2D view_normal; // drawn where this is read
 layout(rgba32f, binding = 2) uniform image2D state_0;          // the combination's own
 layout(rgba32f, binding = 3) uniform image2D state_1;
 
 // The method:
 #include <sample>     // vec4 photo_sample(shot, pixel, mip): colour and trust
-#include <visibility> // float visible_surface(shot, seen, z), visible_guess: 0 to 1
-#include <weight>     // float weight_of(shot, p, guessed): in any unit
+#include <visibility> // float visible_surface(shot, point, seen, z), visible_guess: 0 to 1
+#include <weight>     // float weight_of(shot, point): in any unit
 #include "gather/ask.glsl"
 #include <combine>    // combine_begin, _add, _end; photo_first, photo_next: whom a pixel asks
 
@@ -24,13 +25,13 @@ void main()
     float depth = imageLoad(view_depth, at).r;
     if (depth == 0.0)
         return;
-    vec3 p = surface_point(at, abs(depth));
+    Point point = Point(surface_point(at, abs(depth)), imageLoad(view_normal, at).xyz, depth < 0.0);
     combine_begin(at);
     int i = photo_first();
     do { // the condition last: see tiled.comp
         photo shot = photo_at(i);
-        combine_add(shot, ask(shot, i, p, depth < 0.0, SOFT_BORDER));
+        combine_add(shot, ask(shot, i, point, SOFT_BORDER));
         i = photo_next(i);
     } while (i >= 0);
-    combine_end(at, p, depth < 0.0);
+    combine_end(at, point);
 }

@@ -1,12 +1,17 @@
 // What a photograph's own depth says of a surface point: is it seen, or hidden, and how surely?
 #include "gather/photo.glsl"
 
-// Does one of the four texels around agree with z? Shadow test (Airieau 2012, 5.2), so that
-// slanted surfaces match themselves. Photographs without depth there pass.
-bool photo_sees(vec4 seen, float z)
+// Does one of the four texels around agree with z? All four are compared, so that slanted surfaces
+// match themselves.
+bool photo_agrees(vec4 seen, float z)
 {
-    return any(lessThanEqual(abs(seen - z), vec4(opt.depth_tolerance * z))) ||
-           all(lessThanEqual(seen, vec4(0.0)));
+    return any(lessThanEqual(abs(seen - z), vec4(opt.depth_tolerance * z)));
+}
+
+// Has the photograph no depth there, or an estimate only?
+bool photo_knows_nothing(vec4 seen)
+{
+    return all(lessThanEqual(seen, vec4(0.0)));
 }
 
 // Does none of these depths lie clearly in front of z? For points only known to be

@@ -8,7 +8,7 @@ layout(rgba32f, binding = 7) readonly uniform imageBuffer photo_rows;
 
 // A photograph; see struct photo_data.
 struct photo {
-    vec4 from_view[3], eye, focal, size, gain, lens, noise;
+    vec4 from_view[3], eye, focal, size, gain, lens, noise, selected;
 };
 
 // What is not used of it is not loaded. Loading costs: share it between pixels where that can be.
@@ -20,8 +20,16 @@ photo photo_at(int i)
                          imageLoad(photo_rows, row + 2)),
                  imageLoad(photo_rows, row + 3), imageLoad(photo_rows, row + 4),
                  imageLoad(photo_rows, row + 5), imageLoad(photo_rows, row + 6),
-                 imageLoad(photo_rows, row + 7), imageLoad(photo_rows, row + 8));
+                 imageLoad(photo_rows, row + 7), imageLoad(photo_rows, row + 8),
+                 imageLoad(photo_rows, row + 9));
 }
+
+// A point of the surface that a pixel shows.
+struct Point {
+    vec3 p;       // the view's camera frame; z 0: none
+    vec3 normal;  // the same frame, towards the viewer; 0 where it is not known, or not asked for
+    bool guessed; // its depth is an estimate: nothing covers the pixel
+};
 
 // Mipmapped. sRGB, whose reads are linear light; of radiance linear exposure * trust *
 // ORL_RADIANCE_SCALE, and trust: what is clipped leaves no mark on its neighbours.

@@ -75,7 +75,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float penalty = photo_penalty(shot, s.p);
     // Of guesses even where the method asks for no visibility: they are behind everything.
     float sees = s.guessed ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
-                           : visible_surface(shot, seen, z);
+                           : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
     penalty = s.guessed ? penalty : photo_surface_penalty(penalty);
     float sure = sees * photo_border(shot, pixel, s.guessed);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (s.guessed ? GUESS_SURE_LEAST : 1e-4);

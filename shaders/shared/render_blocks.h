@@ -46,7 +46,7 @@ ORL_BLOCK(pyramid_block)
 #define ORL_RADIANCE_LIST (ORL_RADIANCE_KEPT + 1) // and the best one's weight
 
 // A photograph as the gather passes see it; an array of these is a storage buffer.
-#define ORL_PHOTO_VEC4S 9
+#define ORL_PHOTO_VEC4S 10
 #if defined(__STDC_VERSION__)
 struct photo_data {
     VEC4S(from_view, 3); // rows: rotation | translation, photograph's camera from the view's
@@ -56,6 +56,7 @@ struct photo_data {
     VEC4(gain);          // rgb gain on linear colour; w: slot again, for sampling to load one less
     VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
     VEC4(noise);         // of radiance: variance per light, of reading out; z: 1 if rounded
+    VEC4(selected);      // x: what the selection weighs it
 };
 #endif
 

@@ -140,6 +140,8 @@ struct orl_prog *orl_prog_get(struct orl_gpu *gpu, const char *file, const struc
 // The same of the graphics pipeline (raster.h).
 struct orl_prog *orl_prog_get_raster(struct orl_gpu *gpu, const char *vertex_file,
                                      const char *fragment_file, const char *defines);
+// Does the program read or write the image or buffer of this name, once compiled?
+bool orl_prog_reads(const struct orl_prog *prog, const char *name);
 // Programs so far that an earlier run had compiled.
 size_t orl_gpu_cached_programs(const struct orl_gpu *gpu);
 // The `index`-th shader file below `folder`, in the order of their names; NULL: there are no

@@ -164,6 +164,12 @@ struct orl_prog *orl_prog_get_raster(struct orl_gpu *gpu, const char *vertex_fil
     return get(gpu, stages, ORL_COUNT(stages), NULL, defines);
 }
 
+bool orl_prog_reads(const struct orl_prog *prog, const char *name)
+{
+    return prog && prog->id &&
+           glGetProgramResourceIndex(prog->id, GL_UNIFORM, name) != GL_INVALID_INDEX;
+}
+
 size_t orl_gpu_cached_programs(const struct orl_gpu *gpu)
 {
     return gpu->cached_progs;

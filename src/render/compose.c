@@ -53,10 +53,33 @@ static void compose(const struct frame *frame)
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
+static bool takes_median(const struct frame *frame)
+{
+    return frame->params->median != ORL_MEDIAN_OFF && !frame->finishes;
+}
+
+// Into states[0], and back.
+static void median(const struct frame *frame)
+{
+    bool holes = frame->params->median == ORL_MEDIAN_HOLES;
+    struct image_block block = {.image_size = {frame->surface.width, frame->surface.height}};
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(frame->gpu, "fill/median.comp", NULL, holes ? "HOLES" : NULL),
+        .params = &block, .params_size = sizeof block,
+        .images = {{frame->picture, 0, GL_READ_ONLY}, {frame->states[0], 0, GL_WRITE_ONLY},
+                   {frame->surface.depth, 0, GL_READ_ONLY}},
+        .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
+    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_tex_copy_layer(frame->states[0], 0, frame->surface.width, frame->surface.height,
+                       frame->picture, 0);
+}
+
 const struct post_pass orl_post_passes[] = {
     {"fill", fills, orl_fill_color},
     {"soften", softens, orl_soften_prepare},
     {"compose", always, compose},
+    {"median", takes_median, median},
     {"antialias", antialiases, orl_edges_antialias},
     {0},
 };

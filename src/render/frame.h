@@ -30,11 +30,14 @@ struct frame {
     struct edges *edges;
     // Photographs of the scene that this frame asks, ascending; the renderer's memory.
     size_t *chosen;
+    float *chosen_weight;      // what the selection weighs each
     size_t chosen_count;
+    const double *centre;      // of the scene's bounding box, world
     // shaders/shared/pixel.glsl, finished in the end. Half floats where the painter finishes pixels.
     struct orl_tex *picture;
     struct orl_tex *trusted;   // of radiance: weight * trust, weight, blur of guesses; else NULL
-    struct orl_tex *states[2]; // RGBA32F, what a combination keeps between sweeps; else NULL
+    struct orl_tex *states[2]; // RGBA32F, what a combination keeps between sweeps, and what a
+                               // filter writes; else NULL
 };
 
 // Work groups that cover width x height pixels.

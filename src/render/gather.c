@@ -119,15 +119,16 @@ static void copy_options(const struct orl_render_params *params, struct render_o
 #undef COPY_NUMBER
 }
 
-struct gather_block orl_gather_prepare(const struct frame *frame, const size_t *indices,
-                                       size_t count)
+struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count)
 {
     struct gather *g = frame->gather;
     const struct photos *photos = frame->photos;
     const struct orl_render_params *params = frame->params;
     const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth->params;
-    for (size_t i = 0; i < count; i++)
-        describe_photo(frame, indices[i], &g->list[i]);
+    for (size_t i = 0; i < count; i++) {
+        describe_photo(frame, frame->chosen[first + i], &g->list[i]);
+        g->list[i].selected[0] = frame->chosen_weight[first + i];
+    }
     orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
     struct gather_block block = {
         .slot_size = {(float)color->width, (float)color->height, (float)depth->width,
@@ -222,26 +223,42 @@ static enum orl_result choose_radiance(const struct frame *frame, const struct g
     return ORL_OK;
 }
 
-// One sweep over one turn: `count` photographs that are resident together.
-static enum orl_result gather(const struct frame *frame, const size_t *photos, size_t count,
-                              int sweep)
+static struct orl_prog *generic_program(const struct frame *frame,
+                                        const struct gather_slots *slots, int sweep)
 {
-    struct gather_slots slots;
-    struct gather_block block = orl_gather_prepare(frame, photos, count);
     char defines[64];
     bool limited = frame->radiance && orl_painter_of(frame->params)->finishes;
     snprintf(defines, sizeof defines, "SWEEP %d\n%s%s", sweep,
              frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
              limited ? "LIMITED 1\n" : "");
+    return orl_gather_prog(frame, "gather/gather.comp", slots->slots, defines);
+}
+
+static bool reads_normals(const struct frame *frame)
+{
+    struct gather_slots slots;
+    orl_gather_slots(frame, &slots);
+    for (int sweep = 0; sweep < 2; sweep++)
+        if (orl_prog_reads(generic_program(frame, &slots, sweep), "view_normal"))
+            return true;
+    return false;
+}
+
+// One sweep over one turn: the photographs of frame->chosen from `first` on, which are resident.
+static enum orl_result gather(const struct frame *frame, size_t first, size_t count, int sweep)
+{
+    struct gather_slots slots;
+    struct gather_block block = orl_gather_prepare(frame, first, count);
     orl_gather_slots(frame, &slots);
     struct orl_dispatch d = {
-        .prog = orl_gather_prog(frame, "gather/gather.comp", slots.slots, defines),
+        .prog = generic_program(frame, &slots, sweep),
         .params = &block, .params_size = sizeof block,
         .textures = {frame->photos->color, frame->photos->depth},
         .images = {{frame->surface.depth, 0, GL_READ_ONLY},
                    {frame->picture, 0, GL_READ_WRITE},
                    {frame->radiance ? frame->trusted : frame->states[0], 0, GL_READ_WRITE},
                    {frame->states[1], 0, GL_READ_WRITE},
+                   {frame->surface.normal, 0, GL_READ_ONLY},
                    [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
         // Storage: the next turn's choice overwrites this one's lists.
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
@@ -269,7 +286,7 @@ static enum orl_result sweep_over(const struct frame *frame, int sweep)
         for (size_t i = 0; result == ORL_OK && i < count; i++)
             result = orl_photos_require(frame, frame->chosen[first + i], depth);
         if (result == ORL_OK)
-            result = gather(frame, frame->chosen + first, count, sweep);
+            result = gather(frame, first, count, sweep);
         if (result != ORL_OK)
             return result;
     }
@@ -296,7 +313,8 @@ static enum orl_result paint_gather(struct frame *frame)
     return result;
 }
 
-const struct painter orl_paint_gather = {.name = "gather", .needs = "", .paint = paint_gather};
+const struct painter orl_paint_gather = {
+    .name = "gather", .needs = "", .reads_normals = reads_normals, .paint = paint_gather};
 
 // --- no photographs ---
 
@@ -310,5 +328,12 @@ static enum orl_result paint_points(struct frame *frame)
     return ORL_OK;
 }
 
+// The splats' own colours show where they are in front, which the normal tells.
+static bool always(const struct frame *frame)
+{
+    (void)frame;
+    return true;
+}
+
 const struct painter orl_paint_points = {
-    .name = "points", .needs = "proxy=splats", .normals = true, .paint = paint_points};
+    .name = "points", .needs = "proxy=splats", .reads_normals = always, .paint = paint_points};

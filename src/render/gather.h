@@ -20,10 +20,9 @@ struct gather {
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather);
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
-// What every program about photographs is told; writes those of this dispatch, which must be
-// resident: indices of the scene.
-struct gather_block orl_gather_prepare(const struct frame *frame, const size_t *photos,
-                                       size_t count);
+// What every program about photographs is told; writes those of this dispatch, frame->chosen from
+// `first` on, which must be resident.
+struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count);
 // A program of the shader `file` with the options' declaration, and `defines` besides (NULL: none).
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines);

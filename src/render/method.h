@@ -29,7 +29,7 @@ struct painter {
     const char *needs; // choices that it takes alone, as option_list.h's readers; all must hold
     bool finishes;     // leaves finished pixels but those that it lists (shaders/shared/pixel.glsl);
                        // not of radiance
-    bool normals;      // needs the surface's normals
+    bool (*reads_normals)(const struct frame *frame); // the surface's; NULL: never
     enum orl_result (*paint)(struct frame *frame);
 };
 

@@ -29,9 +29,20 @@ const struct orl_method orl_methods[] = {
      {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .min_support = 8, .candidates = 3,
       .photos_per_pixel = 2}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
-     {DEFAULTS}},
+     {DEFAULTS .visibility = "lenient"}},
     {"ulr", "the best four photographs by angle and resolution",
      "Buehler 2001, 4.2, as SIBR's ulrv2", {DEFAULTS .weight = "ulr", .combine = "top", .border_px = 0}},
+    {"orzan-view", "the four photographs nearest by direction, outliers left out",
+     "Orzan 2005, 4.3",
+     {DEFAULTS .select = "nearest", .visibility = "none", .weight = "selected",
+      .combine = "sigma", .border_px = 0}},
+    {"orzan-surface", "all photographs that the surface faces, outliers left out",
+     "Orzan 2005, 4.4",
+     {DEFAULTS .visibility = "facing", .weight = "normal", .combine = "sigma", .border_px = 0}},
+    {"orzan-shadow", "the best five photographs by shadow maps, outliers left out, holes by medians",
+     "Orzan 2005, 4.5",
+     {DEFAULTS .select = "nearest", .nearest = 5, .visibility = "shadow", .weight = "normal",
+      .combine = "sigma", .median = ORL_MEDIAN_HOLES, .border_px = 0}},
     {"points", "the splats' own colour: the baseline", "-",
      {DEFAULTS .paint = "points", .front_layer = 0.01f, .min_support = 8}},
     {0},
@@ -39,13 +50,15 @@ const struct orl_method orl_methods[] = {
 
 // --- what the names stand for ---
 
-static const struct selection *const selections[] = {&orl_select_all, &orl_select_preselect};
+static const struct selection *const selections[] = {&orl_select_all, &orl_select_nearest,
+                                                    &orl_select_preselect};
 static const struct painter *const painters[] = {&orl_paint_gather, &orl_paint_tiled,
                                                  &orl_paint_points};
 static const struct proxy_kind *const proxies[] = {&orl_proxy_splats};
 static const struct combine combines[] = {
     {"mean", .sweeps = 1},
     {"top", .sweeps = 2, .states = 2},
+    {"sigma", .sweeps = 2, .states = 2},
     {"robust", .sweeps = 0},
 };
 

@@ -22,16 +22,19 @@
         "the best few photographs of each tile of the screen, and `points` takes the colours " \
         "of the splats.") \
     SLOT(select, "all", "paint=gather paint=tiled", \
-        "The photographs that a frame may use: all of them, or the 48 that can paint the view " \
-        "best.") \
+        "The photographs that a frame may use: all of them, the `nearest` by their direction " \
+        "from the scene's centre, or the 48 that can paint the view best (`preselect`).") \
     SLOT(visibility, "hard", "paint=gather paint=tiled", \
-        "Which photographs see a surface point: all (`none`), or those whose own depth map " \
-        "agrees, with a `hard` or a `soft` limit.") \
+        "Which photographs see a surface point: all (`none`), those whose own depth map agrees, " \
+        "with a `hard` or a `soft` limit, those and the ones without depth there (`lenient`), " \
+        "those that the surface faces (`facing`), or that it faces and whose depth map agrees " \
+        "(`shadow`).") \
     SLOT(weight, "airieau", "paint=gather paint=tiled", \
         "How much a photograph counts that sees a surface point.") \
     SLOT(combine, "mean", "paint=gather paint=tiled", \
         "How the samples of a pixel become one colour: their weighted mean, the mean of the " \
-        "four of greatest weight, or a mean that is robust against outliers.") \
+        "four of greatest weight (`top`), the mean of those that pass a test of their standard " \
+        "deviation (`sigma`), or a mean that is robust against outliers.") \
     CHOICE(fill, orl_fill, "none color depth ground", ORL_FILL_COLOR, "", \
         "What pixels without a surface show: black, the colours of their neighbours, " \
         "photographs projected to a guessed depth, or the same with the depth no farther than " \
@@ -45,6 +48,14 @@
         "undone. Radiance is always aligned.") \
     CHOICE(antialias, orl_antialias, "off on", ORL_ANTIALIAS_OFF, "sample=srgb", \
         "Colours are averaged across depth discontinuities, as a camera does.") \
+    CHOICE(median, orl_median, "off holes all", ORL_MEDIAN_OFF, "paint=gather", \
+        "A median filter of the painted picture, over 3x3 pixels of it all, or over the 5x5 " \
+        "neighbours of surfaces that no photograph painted (`holes`).") \
+    NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest", ORL_NO_TRIES, \
+        "How many photographs a frame uses.") \
+    NUMBER(sigma, 1.17f, 0, 100, "standard deviations", "combine=sigma", ORL_NO_TRIES, \
+        "A sample that lies farther from the mean in any channel is left out, where three " \
+        "photographs or more see the point.") \
     NUMBER(photos_per_pixel, 4, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
         "The most photographs that are blended into a pixel.") \
     NUMBER(candidates, 6, 1, 8, "photographs", "paint=tiled", ORL_NO_TRIES, \
@@ -55,7 +66,8 @@
         "no outliers.") \
     NUMBER(sharpness, 3, 0, 64, "", "weight=lumigraph", ORL_TRIES(1, 2, 3, 4, 6, 10), \
         "How strongly the better photograph is preferred. With 0 all weigh the same.") \
-    NUMBER(depth_tolerance, 0.01f, 1e-5, 0.5, "fraction of depth", "visibility=hard visibility=soft paint=tiled", \
+    NUMBER(depth_tolerance, 0.01f, 1e-5, 0.5, "fraction of depth", "visibility=hard visibility=lenient " \
+        "visibility=soft visibility=shadow paint=tiled", \
         ORL_TRIES(0.003, 0.005, 0.01, 0.02, 0.04), \
         "How far two depths may differ and still count as the same surface.") \
     NUMBER(min_support, 0, 0, 25, "pixels of 5x5", "proxy=splats", ORL_TRIES(0, 4, 8, 12, 16), \
@@ -79,7 +91,7 @@
     NUMBER(unknown_trust, 0.5f, 0, 1, "share", "visibility=soft sample=radiance", \
         ORL_TRIES(0, 0.02, 0.05, 0.15, 0.5), \
         "How far a photograph is trusted that has no depth where the surface would be.") \
-    NUMBER(distance_floor, 0.03f, 1e-4, 1, "fraction of viewing distance", "weight=airieau", \
+    NUMBER(distance_floor, 0.03f, 1e-7, 1, "fraction of viewing distance", "weight=airieau", \
         ORL_TRIES(0.01, 0.03, 0.1, 0.3), \
         "Keeps Airieau's difference of distances away from zero.") \
     NUMBER(border_px, 8, 0, 1024, "pixels of the photograph", "paint=gather paint=tiled", \

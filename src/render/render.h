@@ -18,6 +18,7 @@ enum orl_fill {
 };
 enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON };
 enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON };
+enum orl_median { ORL_MEDIAN_OFF, ORL_MEDIAN_HOLES, ORL_MEDIAN_ALL };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC };
 // What photographs give: colours as they are, or radiance (struct orl_renderer_params).
 enum orl_sample { ORL_SAMPLE_SRGB, ORL_SAMPLE_RADIANCE };

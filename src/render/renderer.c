@@ -1,4 +1,5 @@
 // The frame: surface, painter, post passes, read back.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,6 +26,8 @@ struct orl_renderer {
     struct gather gather;
     struct orl_tex *picture, *trusted, *states[2]; // of struct frame
     size_t *chosen;           // its memory
+    float *chosen_weight;
+    double centre[3];         // of the points' bounding box
     struct orl_image staging; // read_back.h
 };
 
@@ -51,6 +54,19 @@ static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
     return budget;
 }
 
+static void find_centre(const struct orl_points *points, double centre[3])
+{
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < points->count; i++) {
+            double x = (double)points->position[i][k];
+            low = x < low ? x : low;
+            high = x > high ? x : high;
+        }
+        centre[k] = low <= high ? 0.5 * (low + high) : 0;
+    }
+}
+
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                     const struct orl_renderer_params *params,
                                     struct orl_renderer **out)
@@ -65,7 +81,9 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     r->gpu = gpu;
     r->scene = scene;
     r->chosen = orl_array(log, scene->photo_count, sizeof *r->chosen);
-    enum orl_result result = r->chosen ? ORL_OK : ORL_ERR_MEMORY;
+    r->chosen_weight = orl_array(log, scene->photo_count, sizeof *r->chosen_weight);
+    enum orl_result result = r->chosen && r->chosen_weight ? ORL_OK : ORL_ERR_MEMORY;
+    find_centre(&scene->points, r->centre);
     if (result == ORL_OK)
         result = orl_proxy_create(gpu, scene, &orl_proxy_splats, &r->proxy);
     if (result == ORL_OK)
@@ -97,6 +115,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_tex_destroy(r->gpu, &r->states[0]);
     orl_tex_destroy(r->gpu, &r->states[1]);
     free(r->chosen);
+    free(r->chosen_weight);
     free(r);
     *renderer = NULL;
 }
@@ -119,6 +138,8 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
 {
     int width = frame->view->camera.width, height = frame->view->camera.height;
     int states = frame->radiance || frame->finishes ? 0 : orl_combine_of(frame->params)->states;
+    if (frame->params->median != ORL_MEDIAN_OFF)
+        states = states > 1 ? states : 1;
     const struct {
         const char *tag;
         bool wanted;
@@ -146,7 +167,8 @@ static enum orl_result draw(struct frame *frame, bool normals)
     const struct painter *painter = orl_painter_of(frame->params);
     enum orl_result result =
         orl_proxy_draw(frame->gpu, frame->proxy, frame->view, frame->params,
-                       normals || painter->normals, &frame->proxy->view_target, &frame->surface);
+                       normals || (painter->reads_normals && painter->reads_normals(frame)),
+                       &frame->proxy->view_target, &frame->surface);
     if (result != ORL_OK)
         return result;
     if (orl_frame_guesses(frame) && painter != &orl_paint_points)
@@ -171,7 +193,7 @@ static struct frame start_frame(struct orl_renderer *r, const struct orl_view *v
         .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
         .proxy = &r->proxy, .proxy_key = orl_proxy_key(&r->proxy, params), .photos = &r->photos,
         .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges,
-        .chosen = r->chosen};
+        .chosen = r->chosen, .chosen_weight = r->chosen_weight, .centre = r->centre};
 }
 
 void orl_frame_finish(struct orl_frame *frame)

@@ -19,13 +19,83 @@ static enum orl_result choose_all(struct frame *frame, size_t most)
 {
     (void)most; // more than are on the device at once are asked in turns
     frame->chosen_count = 0;
-    for (size_t i = 0; i < frame->scene->photo_count; i++)
-        if (may_use(frame, i))
-            frame->chosen[frame->chosen_count++] = i;
+    for (size_t i = 0; i < frame->scene->photo_count; i++) {
+        if (!may_use(frame, i))
+            continue;
+        frame->chosen_weight[frame->chosen_count] = 1;
+        frame->chosen[frame->chosen_count++] = i;
+    }
     return ORL_OK;
 }
 
 const struct selection orl_select_all = {"all", choose_all};
+
+// --- those of least angle at the scene's centre (Orzan 2005, 4.3.2) ---
+
+// Angle between the view and the photograph, seen from the centre, radians.
+static double deviation(const struct frame *frame, size_t photo)
+{
+    double eye[3], other[3], uu = 0, vv = 0, uv = 0;
+    orl_pose_centre(&frame->view->cam_from_world, eye);
+    orl_pose_centre(&frame->scene->photos[photo].view.cam_from_world, other);
+    for (int k = 0; k < 3; k++) {
+        double u = eye[k] - frame->centre[k], v = other[k] - frame->centre[k];
+        uu += u * u;
+        vv += v * v;
+        uv += u * v;
+    }
+    double cosine = uv / sqrt(uu * vv);
+    return cosine >= 1 ? 0 : cosine > -1 ? acos(cosine) : 3.141592653589793; // also NaN
+}
+
+struct direction {
+    size_t photo;
+    double penalty;
+};
+
+static int by_penalty(const void *a, const void *b)
+{
+    const struct direction *x = a, *y = b;
+    if (x->penalty != y->penalty)
+        return x->penalty < y->penalty ? -1 : 1;
+    return (x->photo > y->photo) - (x->photo < y->photo);
+}
+
+static int by_index(const void *a, const void *b)
+{
+    const struct direction *x = a, *y = b;
+    return (x->photo > y->photo) - (x->photo < y->photo);
+}
+
+// Each weighs 1 - p / p', p' being the penalty of the first that is left out: it has faded out by
+// the time another replaces it. All weigh 1 where none is left out.
+static enum orl_result choose_nearest(struct frame *frame, size_t most)
+{
+    (void)most; // more than are on the device at once are asked in turns
+    size_t count = 0, kept = (size_t)(frame->params->nearest + 0.5f);
+    struct direction *all = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count,
+                                      sizeof *all);
+    if (!all)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < frame->scene->photo_count; i++)
+        if (may_use(frame, i))
+            all[count++] = (struct direction){i, deviation(frame, i)};
+    qsort(all, count, sizeof *all, by_penalty);
+    double threshold = count > kept ? all[kept].penalty : INFINITY;
+    kept = count < kept ? count : kept;
+    qsort(all, kept, sizeof *all, by_index);
+    for (size_t i = 0; i < kept; i++) {
+        // As oriel's: photographs that tie with the first left out paint where there are no others.
+        double weight = threshold > 0 ? 1.00001 - all[i].penalty / threshold : 1;
+        frame->chosen[i] = all[i].photo;
+        frame->chosen_weight[i] = (float)weight;
+    }
+    frame->chosen_count = kept;
+    free(all);
+    return ORL_OK;
+}
+
+const struct selection orl_select_nearest = {"nearest", choose_nearest};
 
 // --- those that can paint the view best, so that its cost does not grow with the scene ---
 
@@ -158,8 +228,10 @@ static enum orl_result choose_best(struct frame *frame, size_t most)
         usable = most;
         qsort(candidates, usable, sizeof *candidates, by_photo);
     }
-    for (size_t i = 0; i < usable; i++)
+    for (size_t i = 0; i < usable; i++) {
         frame->chosen[i] = candidates[i].photo;
+        frame->chosen_weight[i] = 1;
+    }
     frame->chosen_count = usable;
 end:
     free(candidates);

@@ -5,7 +5,7 @@
 #include "render/method.h"
 #include "render/photos.h"
 
-extern const struct selection orl_select_all, orl_select_preselect;
+extern const struct selection orl_select_all, orl_select_nearest, orl_select_preselect;
 
 // The penalty of shaders/shared/penalty.h of a photograph for a point of the world that it shows;
 // negative where it does not. view_focal: fx of the view, pixels.

@@ -62,7 +62,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
         orl_tex_clear(frame->picture, 0);
         return ORL_OK;
     }
-    struct gather_block block = orl_gather_prepare(frame, frame->chosen, frame->chosen_count);
+    struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);
     struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL, NULL),
                              .params = &block, .params_size = sizeof block,
                              .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},

@@ -56,7 +56,7 @@ static void the_best_four_fade_by_the_fifth(void **state)
     teardown(&f);
 }
 
-// At a photograph's own place, that photograph; with fewer than five, all that see.
+// Fewer than five photographs share by equal weights.
 static void few_photographs_paint_too(void **state)
 {
     (void)state;
@@ -79,7 +79,7 @@ static void few_photographs_paint_too(void **state)
 static void turns_change_nothing(void **state)
 {
     (void)state;
-    static const char *const methods[] = {"airieau", "ulr"};
+    static const char *const methods[] = {"airieau", "ulr", "orzan-surface"};
     struct fixture f;
     setup(&f, true);
     struct orl_view view = look_from(0.1, 0, 0, SIDE, 40);

@@ -17,7 +17,7 @@ void combine_add(photo shot, Answer a)
     sum += a.weight > 0.0 ? vec4(color, 1.0) * a.weight : vec4(0.0);
 }
 
-void combine_end(ivec2 at, vec3 p, bool guessed)
+void combine_end(ivec2 at, Point point)
 {
     if (sum.a > 0.0)
         imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));

@@ -28,7 +28,7 @@ void combine_add(photo shot, Answer a)
     }
 }
 
-void combine_end(ivec2 at, vec3 p, bool guessed)
+void combine_end(ivec2 at, Point point)
 {
     imageStore(state_0, at, vec4(best[0], best[1], best[2], best[3]));
     imageStore(state_1, at, vec4(best[4]));
@@ -52,7 +52,7 @@ void combine_add(photo shot, Answer a)
     sum += counts ? vec4(color, 1.0) * (1.0 + TRACE - limit / a.weight) : vec4(0.0);
 }
 
-void combine_end(ivec2 at, vec3 p, bool guessed)
+void combine_end(ivec2 at, Point point)
 {
     if (sum.a > 0.0)
         imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));

@@ -8,6 +8,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+layout(rgba16f, binding = 4) readonly uniform image2D view_normal;
 layout(std430, binding = 1) writeonly buffer tile_lists {
     // ORL_RADIANCE_LIST per tile: photographs, best first, -1: none; bits of the best's weight.
     int chosen[];
@@ -30,9 +31,10 @@ float score(int i, ivec2 tile)
         float depth = imageLoad(view_depth, at).r;
         if (depth == 0.0)
             continue;
-        bool guessed = depth < 0.0;
-        Answer a = ask(shot, i, surface_point(at, abs(depth)), guessed, true);
-        Sample s = sample_of(shot, a, guessed);
+        Point point = Point(surface_point(at, abs(depth)), imageLoad(view_normal, at).xyz,
+                            depth < 0.0);
+        Answer a = ask(shot, i, point, true);
+        Sample s = sample_of(shot, a, point.guessed);
         // What clips still tells what is too dark to be true (radiance/merge.glsl).
         most = max(most, max(weight_alone(shot, s), CLIPPED_SHARE * s.weight));
     }

@@ -277,15 +277,15 @@ float blur_of(vec3 p, float total)
 #endif
 }
 
-void combine_end(ivec2 at, vec3 p, bool guessed)
+void combine_end(ivec2 at, Point point)
 {
-    vec3 sums = weigh(guessed);
+    vec3 sums = weigh(point.guessed);
     float total = sums.z;
     vec4 before = imageLoad(accumulated, at);
     bool clips = before.a + (sums.y < CLIPS_BELOW * total ? -total : total) < 0.0;
     imageStore(accumulated, at,
                pixel_blended(before.rgb + blend(total), pixel_weight(before) + total, clips));
     vec4 trust = imageLoad(state_0, at);
-    float blur = guessed && total > trust.y ? 1.0 + blur_of(p, total) : trust.z;
+    float blur = point.guessed && total > trust.y ? 1.0 + blur_of(point.p, total) : trust.z;
     imageStore(state_0, at, vec4(trust.xy + vec2(sums.x, total), blur, 0.0));
 }

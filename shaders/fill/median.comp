@@ -1,0 +1,61 @@
+// The median of each channel over the 3x3 pixels around, of those that photographs painted: Orzan
+// 2005, 4.4.4 and 4.5.2. HOLES: of surfaces that none painted alone, each from its 5x5 neighbours.
+#define BLOCK_IMAGE
+#include "shared/render_blocks.h"
+
+#ifdef HOLES
+#define REACH 2
+#else
+#define REACH 1
+#endif
+const int SIDE = 2 * REACH + 1, COUNT = SIDE * SIDE;
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(rgba32f, binding = 0) readonly uniform image2D picture; // colour, coverage
+layout(rgba32f, binding = 1) writeonly uniform image2D filtered;
+layout(r32f, binding = 2) readonly uniform image2D depth; // <= 0: no surface
+
+// The value that as many are below as above; ties count by their place.
+float median(float values[COUNT], bool known[COUNT], int count)
+{
+    float middle = 0.0;
+    for (int i = 0; i < COUNT; i++) {
+        int below = 0;
+        for (int j = 0; j < COUNT; j++)
+            below += known[j] && (values[j] < values[i] || (values[j] == values[i] && j < i)) ? 1 : 0;
+        middle = known[i] && below == count / 2 ? values[i] : middle;
+    }
+    return middle;
+}
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= image_size.x || at.y >= image_size.y)
+        return;
+    vec4 own = imageLoad(picture, at);
+    bool surface = imageLoad(depth, at).r > 0.0;
+#ifdef HOLES
+    bool wanted = surface && !(own.a > 0.0);
+#else
+    bool wanted = surface;
+#endif
+    if (!wanted) {
+        imageStore(filtered, at, own);
+        return;
+    }
+    float red[COUNT], green[COUNT], blue[COUNT];
+    bool known[COUNT];
+    int count = 0;
+    for (int k = 0; k < COUNT; k++) {
+        vec4 other = imageLoad(picture, at + ivec2(k % SIDE, k / SIDE) - REACH); // 0 outside
+        red[k] = other.r;
+        green[k] = other.g;
+        blue[k] = other.b;
+        known[k] = other.a > 0.0;
+        count += known[k] ? 1 : 0;
+    }
+    vec3 color = vec3(median(red, known, count), median(green, known, count),
+                      median(blue, known, count));
+    imageStore(filtered, at, count > 0 ? vec4(color, own.a) : own);
+}

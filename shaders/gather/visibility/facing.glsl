@@ -1,0 +1,12 @@
+// A photograph sees what faces it, occluded or not: Orzan 2005, 4.4.1. The normal is that of the
+// surface at the pixel, in place of the triangle's.
+
+float visible_surface(photo shot, Point at, vec4 seen, float z)
+{
+    return dot(at.normal, at.p - shot.eye.xyz) < 0.0 ? 1.0 : 0.0;
+}
+
+float visible_guess(photo shot, Point at, vec4 seen, float z)
+{
+    return 1.0;
+}

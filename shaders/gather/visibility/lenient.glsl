@@ -1,0 +1,12 @@
+// As hard, but a photograph whose depth map has nothing there passes.
+#include "gather/hidden.glsl"
+
+float visible_surface(photo shot, Point at, vec4 seen, float z)
+{
+    return photo_agrees(seen, z) || photo_knows_nothing(seen) ? 1.0 : 0.0;
+}
+
+float visible_guess(photo shot, Point at, vec4 seen, float z)
+{
+    return photo_unhidden(seen, z) ? 1.0 : 0.0;
+}

@@ -1,0 +1,13 @@
+// The cosine of the angle between the two lines of sight: Airieau 2012, section 4, epipolar
+// consistency.
+
+float weight_of(photo shot, Point at)
+{
+    return max(dot(normalize(-at.p), normalize(shot.eye.xyz - at.p)), 0.0);
+}
+
+// Of a photograph a tenth of a radian away.
+float weight_unit(bool guessed)
+{
+    return cos(0.1);
+}

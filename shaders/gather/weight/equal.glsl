@@ -1,0 +1,11 @@
+// Every photograph that sees the point counts the same: Li 2003, equation 1.
+
+float weight_of(photo shot, Point at)
+{
+    return 1.0;
+}
+
+float weight_unit(bool guessed)
+{
+    return 1.0;
+}

@@ -1,0 +1,11 @@
+// What the selection weighs the whole photograph: Orzan 2005, 4.3.2.
+
+float weight_of(photo shot, Point at)
+{
+    return shot.selected.x;
+}
+
+float weight_unit(bool guessed)
+{
+    return 1.0;
+}
