@@ -49,18 +49,19 @@ bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
         return false;
     pixel = shot.focal.xy * q.xy * (1.0 / q.z) + shot.focal.zw;
     vec2 border = min(pixel, shot.size.xy - pixel);
-    return min(border.x, border.y) > 0.5;
+    // From its own place a photograph shows whole: rounding must not cost it the outermost pixels.
+    return min(border.x, border.y) > 0.499;
 }
 
 // Skies of other days, and what is not where depth is guessed, must not end in a line.
 const float GUESS_BORDERS = 4.0;
 
-// Falls from 1 to 0 towards the photograph's border.
+// Falls from 1 to 0 towards the photograph's border; without a width it does not.
 float photo_border(photo shot, vec2 pixel, bool guessed)
 {
     vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
     float width = max(guessed ? GUESS_BORDERS * border_px : border_px, 0.5);
-    return clamp(min(border.x, border.y) / width, 0.0, 1.0);
+    return border_px > 0.0 ? clamp(min(border.x, border.y) / width, 0.0, 1.0) : 1.0;
 }
 
 // The photograph's own depth at the four texels around a pixel.

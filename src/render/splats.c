@@ -28,8 +28,8 @@ static void destroy(struct orl_gpu *gpu, void **state)
     *state = NULL;
 }
 
-// Pyramid levels: enough for discs of some 2^8 pixels; finer than that no point cloud
-// made from photographs is. At least two: level 0 is made with level 1, and pushed from it.
+// Pyramid levels, down to a pixel or two: level 0 is made with level 1, and pushed from it, so that
+// there are two at least.
 static int pyramid_levels(int width, int height)
 {
     int levels = 2;

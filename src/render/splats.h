@@ -5,7 +5,7 @@
 #include "render/cloud.h"
 #include "render/proxy.h"
 
-enum { PYRAMID_LEVELS_MAX = 9 };
+enum { PYRAMID_LEVELS_MAX = 16 }; // for pictures of up to 2^16 pixels each way
 
 // What splats are drawn through for one picture size.
 struct splat_target {

@@ -129,6 +129,66 @@ static void both_sides_have_one_penalty(void **state)
     teardown(&f);
 }
 
+// Airieau 2012, section 4: where the lines of sight are a photograph's own, the picture is that
+// photograph.
+static void at_its_own_place_a_photograph_shows(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    for (int i = 0; i < 5; i++)
+        add_noise_photo(&f, look_from(0.3 * i, 0, -0.6 * i, SIDE, 40), (uint32_t)i);
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+    struct orl_image srgb, photo;
+    char *path = orl_scene_photo_path(NULL, &f.scene, 0);
+    assert_int_equal(orl_tone_srgb(NULL, &frame.color, &srgb), ORL_OK);
+    assert_int_equal(orl_picture_read(NULL, path, 3, &photo), ORL_OK);
+    double squares = 0, count = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        double off = (double)srgb.u8[i] - photo.u8[i];
+        squares += frame.coverage.f32[i / 3] > 0 ? off * off : 0;
+        count += frame.coverage.f32[i / 3] > 0;
+    }
+    assert_true(count > 2 * SIDE * SIDE);
+    assert_true(10 * log10(255 * 255 * count / squares) > 45);
+    free(path);
+    orl_image_finish(&srgb);
+    orl_image_finish(&photo);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// A photograph whose own depth map has nothing where the point would be is rejected, unless the
+// method is lenient. Small splats leave holes in the depth of the photograph that stands nearer.
+static void without_depth_a_photograph_is_rejected(void **state)
+{
+    (void)state;
+    static const char *const lenient[] = {"visibility=lenient", "weight=equal"};
+    static const char *const strict[] = {"weight=equal"};
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    add_photo(&f, view, red);
+    add_photo(&f, look_from(0, 0, 3.6, SIDE, 40), green);
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    params.splat_scale = 0.2f;
+    struct orl_render_params other = params;
+    assert_int_equal(orl_render_params_assign(NULL, &params, strict, 1), ORL_OK);
+    assert_int_equal(orl_render_params_assign(NULL, &other, lenient, 2), ORL_OK);
+    struct orl_frame a = draw(gpu, &f, view, &params, 0), b = draw(gpu, &f, view, &other, 0);
+    double rejected = 0, passed = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        rejected += a.coverage.f32[i] > 0 ? (double)a.color.f32[3 * i + 1] : 0;
+        passed += b.coverage.f32[i] > 0 ? (double)b.color.f32[3 * i + 1] : 0;
+    }
+    assert_true(passed > 1.1 * rejected);
+    orl_frame_finish(&a);
+    orl_frame_finish(&b);
+    teardown(&f);
+}
+
 // Every method paints radiance too.
 static void every_method_gives_radiance(void **state)
 {
@@ -158,6 +218,8 @@ int main(void)
         cmocka_unit_test(few_photographs_paint_too),
         cmocka_unit_test(turns_change_nothing),
         cmocka_unit_test(both_sides_have_one_penalty),
+        cmocka_unit_test(at_its_own_place_a_photograph_shows),
+        cmocka_unit_test(without_depth_a_photograph_is_rejected),
         cmocka_unit_test(every_method_gives_radiance),
     };
     int failed = cmocka_run_group_tests_name("methods", tests, NULL, NULL);
