@@ -1,9 +1,9 @@
-// Device memory by owner: what each tag's live buffers and textures take.
+// Device memory by owner: the bytes of the live buffers and textures of each tag.
 #include <string.h>
 
 #include "gpu/internal.h"
 
-// The last row takes all tags that there is no row left for.
+// When all rows are in use, the last row collects all further tags.
 static struct orl_gpu_memory *find_row(struct orl_gpu *gpu, const char *tag)
 {
     for (size_t i = 0; i < gpu->memory_count; i++)
