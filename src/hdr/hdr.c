@@ -20,7 +20,7 @@ enum orl_result orl_hdr_merge_find(const struct orl_log *log, const char *name,
     return orl_fail(log, ORL_ERR_ARGUMENT, "merge %s is not known; there are: fused series", name);
 }
 
-// Exposures of the photographs in use, in stops.
+// Range of exposures of the photographs in use, in stops.
 static double exposure_range(const struct orl_scene *scene, const bool *use)
 {
     double low = INFINITY, high = -INFINITY;
