@@ -5,7 +5,7 @@
 #include "scene/ground.h"
 #include "shared/interop.h"
 
-// Farther than so many times the photographs' height, what stands on the ground hides it.
+// Beyond this many times the height of the photographs, objects on the ground occlude it.
 static const double GROUND_REACH = 20;
 
 void orl_pixel_groups(int width, int height, unsigned groups[3])

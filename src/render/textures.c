@@ -1,4 +1,4 @@
-// How photographs are kept on the device.
+// Texture formats of photographs on the device.
 #include <string.h>
 
 #include "render/photos.h"
