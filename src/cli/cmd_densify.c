@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
-#include "preprocess/densify.h"
+#include "preprocess/densify/densify.h"
 #include "scene/colmap.h"
 
 struct options {

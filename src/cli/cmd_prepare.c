@@ -14,12 +14,12 @@ struct options {
     bool resume;
 };
 
-// Index of `text` in the list; -1, logged with what is allowed, when it is not there.
+// Index of `text` in `names`, which end with NULL; -1, logged with what is allowed, when it is not there.
 static int choose(const struct orl_log *log, const char *option, const char *text,
-                  const char *const *names, size_t count)
+                  const char *const *names)
 {
     char all[256] = "";
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; names[i]; i++) {
         if (strcmp(names[i], text) == 0)
             return (int)i;
         size_t used = strlen(all);
@@ -32,14 +32,10 @@ static int choose(const struct orl_log *log, const char *option, const char *tex
 static bool choose_all(const struct orl_log *log, const struct options *o,
                        struct orl_prepare_params *params)
 {
-    static const char *const qualities[] = {"draft", "standard", "high"};
-    static const char *const sharings[] = {"auto", "single", "each"};
-    static const char *const matchings[] = {"auto", "exhaustive", "sequential"};
-    static const char *const densifiers[] = {"auto", "gl", "colmap"};
-    int quality = choose(log, "quality", o->quality, qualities, 3);
-    int sharing = choose(log, "camera-sharing", o->sharing, sharings, 3);
-    int matching = choose(log, "matching", o->matching, matchings, 3);
-    int densifier = choose(log, "densifier", o->densifier, densifiers, 3);
+    int quality = choose(log, "quality", o->quality, orl_quality_names);
+    int sharing = choose(log, "camera-sharing", o->sharing, orl_camera_sharing_names);
+    int matching = choose(log, "matching", o->matching, orl_matching_names);
+    int densifier = choose(log, "densifier", o->densifier, orl_densifier_names);
     if (quality < 0 || sharing < 0 || matching < 0 || densifier < 0)
         return false;
     params->quality = (enum orl_quality)quality;

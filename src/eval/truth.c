@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "io/exr.h"
-#include "io/undistort.h"
+#include "io/remap.h"
 #include "scene/manifest.h"
 
 // Length of a name without its extension.

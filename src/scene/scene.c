@@ -7,9 +7,9 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/colmap.h"
-#include "scene/ground.h"
+#include "scene/ground_plane.h"
 #include "scene/manifest.h"
-#include "scene/radii.h"
+#include "scene/point_radii.h"
 
 static enum orl_result set_photo(const struct orl_log *log, const char *dir,
                                  const struct orl_colmap_model *model,

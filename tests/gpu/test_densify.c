@@ -6,7 +6,7 @@
 #include "gpu_test.h"
 
 #include "io/picture.h"
-#include "preprocess/densify.h"
+#include "preprocess/densify/densify.h"
 #include "scene/colmap.h"
 
 enum { VIEWS_MAX = 4, GRID = 6 };

@@ -3,9 +3,10 @@
 #include <math.h>
 
 #include "core/color.h"
-#include "preprocess/align.h"
-#include "preprocess/expose.h"
-#include "preprocess/response.h"
+#include "preprocess/expose/align.h"
+#include "preprocess/expose/gain_guess.h"
+#include "preprocess/job/exposure_list.h"
+#include "preprocess/expose/response.h"
 #include "test.h"
 
 enum { PHOTOS = 6, POINTS = 3000, SEEN = 4 };

@@ -1,0 +1,265 @@
+// What the stages are, what the result of each depends on, and what is known of those done
+// before (.oriel/stages.json).
+#include "preprocess/stages.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <xxhash.h>
+
+#include "core/process.h"
+#include "preprocess/calibrate/calibrate.h"
+#include "preprocess/calibrate/undistort.h"
+#include "preprocess/cloud/fuse.h"
+#include "preprocess/cloud/radii.h"
+#include "preprocess/densify/densify.h"
+#include "preprocess/densify_stage.h"
+#include "preprocess/expose/expose.h"
+#include "preprocess/photos/collect.h"
+#include "preprocess/photos/normalise.h"
+#include "scene/manifest.h"
+
+// --- what the result of a stage depends on, besides the stages before it ---
+
+static json_t *photo_hashes(const struct orl_job *job)
+{
+    json_t *photos = json_object();
+    for (size_t i = 0; i < job->source_count; i++)
+        json_object_set_new(photos, job->sources[i].name,
+                            json_sprintf("%016" PRIx64, job->sources[i].hash));
+    return photos;
+}
+
+static json_t *mask_hashes(const struct orl_job *job)
+{
+    json_t *masks = json_object();
+    for (size_t i = 0; i < job->source_count; i++)
+        if (job->sources[i].mask)
+            json_object_set_new(masks, job->sources[i].name,
+                                json_sprintf("%016" PRIx64, job->sources[i].mask_hash));
+    return masks;
+}
+
+static json_t *test_names(const struct orl_job *job)
+{
+    json_t *names = json_array();
+    for (size_t i = 0; i < job->source_count; i++)
+        if (job->sources[i].test)
+            json_array_append_new(names, json_string(job->sources[i].name));
+    return names;
+}
+
+static json_t *calibrate_settings(const struct orl_job *job)
+{
+    const struct orl_prepare_params *p = job->params;
+    return json_pack("{s:s, s:s, s:s, s:i, s:o, s:o*}", "quality", orl_quality_names[p->quality],
+                     "sharing", orl_camera_sharing_names[p->sharing], "matching",
+                     orl_matching_names[p->matching], "seed", (int)p->seed, "masks",
+                     mask_hashes(job), "normalised",
+                     orl_normalise_wanted(job) ? json_string(job->exposures_hash) : NULL);
+}
+
+static json_t *undistort_settings(const struct orl_job *job)
+{
+    return json_pack("{s:i}", "max_size", orl_prepare_max_size(job->params));
+}
+
+static json_t *densify_settings(const struct orl_job *job)
+{
+    const struct orl_prepare_params *p = job->params;
+    // Without a limit the key stays what it was before there was one.
+    return json_pack("{s:s, s:s, s:i, s:o, s:o*}", "quality", orl_quality_names[p->quality],
+                     "densifier", orl_densifier_names[p->densifier], "seed", (int)p->seed, "test",
+                     test_names(job), "max_vram",
+                     p->max_vram_bytes ? json_integer((json_int_t)p->max_vram_bytes) : NULL);
+}
+
+static json_t *expose_settings(const struct orl_job *job)
+{
+    return json_pack("{s:o, s:s}", "test", test_names(job), "exposures", job->exposures_hash);
+}
+
+static json_t *no_settings(const struct orl_job *job)
+{
+    (void)job;
+    return json_object();
+}
+
+// --- the stages ---
+
+struct stage {
+    const char *name;
+    int version; // raised when the stage's result changes for the same settings
+    enum orl_stage_id needs;
+    json_t *(*settings)(const struct orl_job *job);
+    enum orl_result (*run)(struct orl_job *job, json_t *record);
+    const char *output; // without it the stage is not done
+};
+
+static const struct stage stages[ORL_STAGE_COUNT] = {
+    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, NULL},
+    [ORL_STAGE_CALIBRATE] = {"calibrate", 1, ORL_STAGE_COLLECT, calibrate_settings,
+                             orl_stage_calibrate, ".oriel/calibrate/model"},
+    [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
+                             orl_stage_undistort, "images"},
+    [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
+                           orl_stage_densify, NULL},
+    [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
+                        ".oriel/fused.ply"},
+    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii, "points.ply"},
+    [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose,
+                          NULL},
+};
+
+static enum orl_result set_keys(struct orl_job *job)
+{
+    for (int i = 0; i < ORL_STAGE_COUNT; i++) {
+        json_t *inputs = json_pack("{s:s, s:i, s:s, s:o}", "stage", stages[i].name, "version",
+                                   stages[i].version, "after", job->keys[stages[i].needs],
+                                   "settings", stages[i].settings(job));
+        char *text = inputs ? json_dumps(inputs, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
+        json_decref(inputs);
+        if (!text)
+            return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
+        snprintf(job->keys[i], sizeof job->keys[i], "%016" PRIx64,
+                 (uint64_t)XXH3_64bits(text, strlen(text)));
+        free(text);
+    }
+    return ORL_OK;
+}
+
+static json_t *done_stages(const struct orl_job *job)
+{
+    return json_object_get(job->stages, "done");
+}
+
+static enum orl_result save_stages(const struct orl_job *job)
+{
+    char *path = orl_job_path(job, ".oriel/stages.json");
+    enum orl_result result = path ? orl_json_write(job->log, path, job->stages) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static enum orl_result new_stages(struct orl_job *job)
+{
+    json_t *plan = json_array();
+    for (int i = 0; i < ORL_STAGE_COUNT; i++)
+        json_array_append_new(plan, json_string(stages[i].name));
+    job->stages = json_pack("{s:i, s:o, s:{}}", "version", ORL_MANIFEST_VERSION, "plan", plan,
+                            "done");
+    return job->stages ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+enum orl_result orl_stages_load(struct orl_job *job)
+{
+    char *path = orl_job_path(job, ".oriel/stages.json");
+    enum orl_result result = !path ? ORL_ERR_MEMORY
+                             : orl_path_is_file(path) ? orl_json_read(job->log, path, &job->stages)
+                                                      : new_stages(job);
+    if (result == ORL_OK && !json_is_object(done_stages(job)))
+        result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: \"done\" is missing", path);
+    free(path);
+    return result;
+}
+
+static bool has_record(const struct orl_job *job, enum orl_stage_id id)
+{
+    const json_t *record = json_object_get(done_stages(job), stages[id].name);
+    const char *key = json_string_value(json_object_get(record, "key"));
+    return key && strcmp(key, job->keys[id]) == 0 &&
+           (!stages[id].output || orl_job_has(job, stages[id].output));
+}
+
+static void find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])
+{
+    current[ORL_STAGE_COLLECT] = true;
+    for (int i = 1; i < ORL_STAGE_COUNT; i++)
+        current[i] = current[stages[i].needs] && has_record(job, (enum orl_stage_id)i);
+    // The depth maps may be deleted once they are fused.
+    if (!current[ORL_STAGE_FUSE] && !orl_job_has(job, "stereo/.oriel-key"))
+        current[ORL_STAGE_DENSIFY] = false;
+}
+
+// Before anything of a stage changes, the folder stops being a scene, and the records
+// of the stage and of all that builds on it go.
+static enum orl_result invalidate(const struct orl_job *job, const bool *current)
+{
+    bool all = true, changed = false;
+    for (int i = 0; i < ORL_STAGE_COUNT; i++) {
+        all = all && current[i];
+        if (!current[i] && json_object_del(done_stages(job), stages[i].name) == 0)
+            changed = true;
+    }
+    if (all)
+        return ORL_OK;
+    enum orl_result result = orl_job_remove(job, "scene.json");
+    if (result == ORL_OK && changed)
+        orl_logf(job->log, ORL_LOG_INFO,
+                 "photographs or settings have changed: some stages are done again");
+    return result == ORL_OK ? save_stages(job) : result;
+}
+
+static double cpu_seconds(const struct rusage *usage)
+{
+    return (double)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) +
+           1e-6 * (double)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
+}
+
+static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id)
+{
+    struct rusage before, after;
+    json_t *record = json_object();
+    if (!record)
+        return ORL_ERR_MEMORY;
+    double start = orl_time_s();
+    getrusage(RUSAGE_SELF, &before);
+    job->child_cpu_s = 0;
+    job->child_peak_bytes = 0;
+    json_object_set_new(record, "key", json_string(job->keys[id]));
+    enum orl_result result = stages[id].run(job, record);
+    getrusage(RUSAGE_SELF, &after);
+    json_object_set_new(record, "wall_s", json_real(orl_time_s() - start));
+    json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(&before) +
+                                                   job->child_cpu_s));
+    // Of Oriel it is the peak since it started; children are new processes.
+    json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
+    json_object_set_new(record, "child_peak_rss_mib",
+                        json_real((double)job->child_peak_bytes / (1 << 20)));
+    if (result == ORL_OK) {
+        json_object_set(done_stages(job), stages[id].name, record);
+        result = save_stages(job);
+    }
+    json_decref(record);
+    return result;
+}
+
+enum orl_result orl_stages_run(struct orl_job *job)
+{
+    bool current[ORL_STAGE_COUNT];
+    find_current(job, current);
+    enum orl_result result = invalidate(job, current);
+    for (int i = 1; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
+        if (orl_progress_cancelled(job->progress))
+            result = ORL_ERR_CANCELLED;
+        else if (current[i])
+            orl_logf(job->log, ORL_LOG_INFO, "%s: done already", stages[i].name);
+        else
+            result = run_stage(job, (enum orl_stage_id)i);
+    }
+    return result;
+}
+
+enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
+{
+    enum orl_result result = set_keys(job);
+    if (result != ORL_OK)
+        return result;
+    json_object_set_new(done_stages(job), "collect",
+                        json_pack("{s:s, s:f, s:o, s:O}", "key", job->keys[ORL_STAGE_COLLECT],
+                                  "wall_s", wall_s, "photographs", photo_hashes(job), "skipped",
+                                  job->skipped));
+    return save_stages(job);
+}
