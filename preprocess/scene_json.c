@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/json.h"
 #include "preprocess/cloud/ground.h"
 #include "scene/manifest.h"
 

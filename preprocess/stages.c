@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <xxhash.h>
 
+#include "core/json.h"
 #include "core/process.h"
 #include "preprocess/calibrate/calibrate.h"
 #include "preprocess/calibrate/undistort.h"

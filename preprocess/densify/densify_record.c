@@ -5,9 +5,9 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "preprocess/densify/densify_internal.h"
-#include "scene/manifest.h"
 
 static const char *const map_dirs[] = {"stereo/depth_maps", "stereo/normal_maps",
                                        "stereo/confidence_maps"};

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/summary.h"
+#include "core/json.h"
 #include "scene/manifest.h"
 
 static bool same_camera(const struct orl_camera *a, const struct orl_camera *b)

@@ -1,11 +1,12 @@
-// "tuned" of scene.json: settings of a method that suit the scene.
+#include "scene/tuned_settings.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
-#include "scene/manifest.h"
 
 enum { SETTINGS_MAX = 256, NAME_BYTES_MAX = 64 };
 
@@ -25,8 +26,8 @@ static enum orl_result add(const struct orl_log *log, const char *path, const ch
     return tuned->method && tuned->key ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-enum orl_result orl_manifest_read_tuned(const struct orl_log *log, const char *path,
-                                        const json_t *root, struct orl_scene *scene)
+enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, const json_t *root,
+                               struct orl_scene *scene)
 {
     json_t *all = json_object_get(root, "tuned"), *record, *value;
     const char *method, *key;
@@ -47,8 +48,8 @@ enum orl_result orl_manifest_read_tuned(const struct orl_log *log, const char *p
     return result;
 }
 
-enum orl_result orl_manifest_write_tuned(const struct orl_log *log, const char *dir,
-                                         const char *method, json_t *record)
+enum orl_result orl_tuned_write(const struct orl_log *log, const char *dir, const char *method,
+                                json_t *record)
 {
     json_t *root = NULL, *all;
     char *path = orl_path_join(log, dir, "scene.json");
