@@ -120,9 +120,11 @@ static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *t
                                   json_t *record)
 {
     struct orl_densify_params params = densify_settings(job);
+    enum orl_result result = orl_job_sparse(job, &params.model);
     struct orl_gpu *own = NULL, *gpu = job->params->gpu;
     char *masks = orl_job_path(job, ".oriel/masks");
-    enum orl_result result = masks ? ORL_OK : ORL_ERR_MEMORY;
+    if (!masks)
+        result = ORL_ERR_MEMORY;
     if (result == ORL_OK && !gpu) {
         result = orl_gpu_create(job->log,
                                 &(struct orl_gpu_params){.shader_dir = job->params->shader_dir},

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/json.h"
-#include "preprocess/cloud/ground.h"
 #include "scene/manifest.h"
 
 static enum orl_result add_checksum(const struct orl_job *job, json_t *sums, const char *name)
@@ -41,7 +40,7 @@ static json_t *settings(const struct orl_prepare_params *p)
 static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
-                                             "skipped"};
+                                             "skipped", "ground"};
     json_t *stages = json_object();
     for (size_t k = 0; k < json_array_size(plan); k++) {
         const char *name = json_string_value(json_array_get(plan, k));
@@ -105,36 +104,18 @@ static json_t *left_out(const struct orl_job *job, const json_t *done)
     return list;
 }
 
-// The ground, and what oriel tune found, in a scene that is still the same.
-static enum orl_result keep(const struct orl_job *job, const char *path, json_t *root)
+// What oriel tune found, in a scene that is still the same.
+static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
 {
-    static const char *const keys[] = {"ground", "tuned"};
     json_t *old = NULL;
     if (!orl_path_is_file(path)) // removed before a stage was done again
         return ORL_OK;
     enum orl_result result = orl_json_read(job->log, path, &old);
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(keys); i++) {
-        json_t *value = json_object_get(old, keys[i]);
-        if (value && json_object_set(root, keys[i], value) != 0)
-            result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
-    }
+    json_t *tuned = json_object_get(old, "tuned");
+    if (tuned && json_object_set(root, "tuned", tuned) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     json_decref(old);
     return result;
-}
-
-// Of the scene that is written already, which is whole without it.
-static enum orl_result add_ground(const struct orl_job *job, const char *path, json_t *root)
-{
-    struct orl_scene *scene;
-    enum orl_result result = orl_scene_open(job->log, job->dir, &scene);
-    if (result != ORL_OK)
-        return result;
-    result = orl_ground_refine(job->log, scene);
-    if (result == ORL_OK &&
-        json_object_set_new(root, "ground", orl_manifest_ground(&scene->ground)) != 0)
-        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
-    orl_scene_destroy(&scene);
-    return result == ORL_OK ? orl_json_write(job->log, path, root) : result;
 }
 
 enum orl_result orl_scene_json_write(struct orl_job *job)
@@ -150,21 +131,20 @@ enum orl_result orl_scene_json_write(struct orl_job *job)
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
         if (orl_job_has(job, files[i])) // a sparse model may be text
             result = add_checksum(job, sums, files[i]);
-    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o}", "format",
+    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O}", "format",
                              "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                              "oriel " ORL_VERSION, "settings", settings(job->params), "counts",
                              counts(job, done, photos), "photographs", photos, "responses",
                              stage_value(done, "expose", "responses"), "left_out",
                              left_out(job, done), "stages", copy_stages(plan, done),
-                             "checksums", sums);
+                             "checksums", sums, "ground",
+                             stage_value(done, "ground", "ground"));
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     if (result == ORL_OK)
-        result = keep(job, path, root);
+        result = keep_tuned(job, path, root);
     if (result == ORL_OK)
         result = orl_json_write(job->log, path, root);
-    if (result == ORL_OK && !json_object_get(root, "ground"))
-        result = add_ground(job, path, root);
     json_decref(root);
     free(path);
     return result;

@@ -14,6 +14,7 @@
 #include "preprocess/calibrate/calibrate.h"
 #include "preprocess/calibrate/undistort.h"
 #include "preprocess/cloud/fuse.h"
+#include "preprocess/cloud/ground.h"
 #include "preprocess/cloud/radii.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/densify_stage.h"
@@ -110,6 +111,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
     [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
                         ".oriel/fused.ply"},
     [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii, "points.ply"},
+    [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, NULL},
     [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose,
                           NULL},
 };
@@ -144,24 +146,24 @@ static enum orl_result save_stages(const struct orl_job *job)
     return result;
 }
 
-static enum orl_result new_stages(struct orl_job *job)
-{
-    json_t *plan = json_array();
-    for (int i = 0; i < ORL_STAGE_COUNT; i++)
-        json_array_append_new(plan, json_string(stages[i].name));
-    job->stages = json_pack("{s:i, s:o, s:{}}", "version", ORL_MANIFEST_VERSION, "plan", plan,
-                            "done");
-    return job->stages ? ORL_OK : ORL_ERR_MEMORY;
-}
-
 enum orl_result orl_stages_load(struct orl_job *job)
 {
     char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = !path ? ORL_ERR_MEMORY
-                             : orl_path_is_file(path) ? orl_json_read(job->log, path, &job->stages)
-                                                      : new_stages(job);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(path))
+        result = orl_json_read(job->log, path, &job->stages);
+    else if (result == ORL_OK)
+        job->stages = json_pack("{s:i, s:[], s:{}}", "version", ORL_MANIFEST_VERSION, "plan",
+                                "done");
     if (result == ORL_OK && !json_is_object(done_stages(job)))
         result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: \"done\" is missing", path);
+    // The plan is this program's, whatever wrote the file.
+    json_t *plan = json_array();
+    for (int i = 0; i < ORL_STAGE_COUNT; i++)
+        json_array_append_new(plan, json_string(stages[i].name));
+    if (result == ORL_OK && json_object_set(job->stages, "plan", plan) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the stages");
+    json_decref(plan);
     free(path);
     return result;
 }

@@ -16,14 +16,18 @@
 
 enum { EXHAUSTIVE_MAX = 120, COSTLY_MAX = 60 };
 
+// A model that the mapper made.
+struct candidate {
+    char *path; // owned; its folder, below WORK; NULL: there is none
+    struct orl_colmap_model model;
+    bool bent;  // has it a camera whose distortion turns back on itself?
+};
+
 struct calibration {
     struct orl_job *job;
     int *group;          // per photograph: its camera
     int group_count;
-    char *best;          // owned; folder of the best model so far, below WORK
-    size_t registered;   // photographs in it
-    size_t points;
-    bool bent;           // has it a camera whose distortion turns back on itself?
+    struct candidate best; // so far
     bool straight;       // distortion is taken to be none from now on
     int tries;           // mapper runs, for folder names
 };
@@ -215,26 +219,38 @@ static enum orl_result match(const struct calibration *c, bool sequential, bool 
 
 // --- the mapper ---
 
+static void candidate_finish(struct candidate *candidate)
+{
+    free(candidate->path);
+    orl_colmap_finish(&candidate->model);
+    *candidate = (struct candidate){0};
+}
+
+static bool is_better(const struct candidate *a, const struct candidate *b)
+{
+    return !b->path || a->model.image_count > b->model.image_count ||
+           (a->model.image_count == b->model.image_count &&
+            a->model.point_count > b->model.point_count);
+}
+
 // Takes the model in `path` if it is better than the best so far. One that cannot
 // be read does not count: the mapper may have left it half-written.
 static enum orl_result consider(struct calibration *c, const char *path)
 {
-    struct orl_colmap_model model;
-    enum orl_result result = orl_colmap_read(c->job->log, path, &model);
+    struct candidate candidate = {0};
+    enum orl_result result = orl_colmap_read(c->job->log, path, &candidate.model);
     if (result != ORL_OK)
         return result;
-    if (model.image_count > c->registered ||
-        (model.image_count == c->registered && model.point_count > c->points)) {
-        c->registered = model.image_count;
-        c->points = model.point_count;
-        c->bent = false;
-        for (size_t i = 0; i < model.camera_count; i++)
-            c->bent |= !orl_colmap_camera_reaches_corners(&model.cameras[i]);
-        free(c->best);
-        c->best = orl_strdup(c->job->log, path);
+    for (size_t i = 0; i < candidate.model.camera_count; i++)
+        candidate.bent |= !orl_colmap_camera_reaches_corners(&candidate.model.cameras[i]);
+    candidate.path = orl_strdup(c->job->log, path);
+    if (candidate.path && is_better(&candidate, &c->best)) {
+        struct candidate worse = c->best;
+        c->best = candidate;
+        candidate = worse;
     }
-    orl_colmap_finish(&model);
-    return c->best ? ORL_OK : ORL_ERR_MEMORY;
+    candidate_finish(&candidate);
+    return c->best.path ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 // `out` is a model itself, or holds some in numbered folders.
@@ -303,20 +319,26 @@ end:
 
 // --- attempts ---
 
+// Photographs in the best model so far.
+static size_t registered(const struct calibration *c)
+{
+    return c->best.model.image_count;
+}
+
 static bool enough(const struct calibration *c)
 {
-    return c->registered >= 3 && 2 * c->registered >= c->job->source_count;
+    return registered(c) >= 3 && 2 * registered(c) >= c->job->source_count;
 }
 
 static bool all(const struct calibration *c)
 {
-    return c->registered == c->job->source_count;
+    return registered(c) == c->job->source_count;
 }
 
 static void say(const struct calibration *c, const char *what)
 {
     orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: %zu of %zu photographs register; %s",
-             c->registered, c->job->source_count, what);
+             registered(c), c->job->source_count, what);
 }
 
 // Marks the database as whole for these inputs and settings.
@@ -358,10 +380,10 @@ static enum orl_result try_costly(struct calibration *c)
 // The poses of the model found are good: photographs with fewer matches may join it.
 static enum orl_result join_more(struct calibration *c)
 {
-    if (c->registered < 3 || all(c))
+    if (registered(c) < 3 || all(c))
         return ORL_OK;
     say(c, "letting photographs with fewer matches join");
-    char *from = orl_strdup(c->job->log, c->best);
+    char *from = orl_strdup(c->job->log, c->best.path);
     enum orl_result result = from ? map(c, true, from) : ORL_ERR_MEMORY;
     free(from);
     return result;
@@ -377,7 +399,7 @@ static enum orl_result try_hard(struct calibration *c, bool sequential)
             result = map(c, false, NULL);
     }
     // Where most are missing another pair may be the better start.
-    if (result == ORL_OK && 5 * c->registered < 4 * c->job->source_count) {
+    if (result == ORL_OK && 5 * registered(c) < 4 * c->job->source_count) {
         say(c, "starting from narrower baselines and fewer inliers");
         result = map(c, true, NULL);
     }
@@ -394,24 +416,18 @@ static enum orl_result try_hard(struct calibration *c, bool sequential)
 // none then, if about as many photographs register.
 static enum orl_result straighten(struct calibration *c)
 {
-    const struct calibration bent = *c;
-    if (!c->bent)
+    struct candidate bent = c->best;
+    if (!bent.bent)
         return ORL_OK;
     say(c, "with a distortion that no lens has; trying without");
     c->straight = true;
-    c->best = NULL;
-    c->registered = c->points = 0;
+    c->best = (struct candidate){0};
     enum orl_result result = map(c, false, NULL);
-    bool better = result == ORL_OK && c->best && !c->bent &&
-                  4 * c->registered >= 3 * bent.registered;
-    if (better) {
-        free(bent.best);
-    } else {
-        free(c->best);
-        c->best = bent.best;
-        c->registered = bent.registered;
-        c->points = bent.points;
-    }
+    bool better = result == ORL_OK && c->best.path && !c->best.bent &&
+                  4 * registered(c) >= 3 * bent.model.image_count;
+    candidate_finish(better ? &bent : &c->best);
+    if (!better)
+        c->best = bent;
     return result;
 }
 
@@ -471,14 +487,14 @@ static enum orl_result fail_to_place(const struct calibration *c)
                       "scene stand too far apart";
     return orl_fail(job->log, ORL_ERR_DATA,
                     "only %zu of %zu photographs could be placed relative to each other, and three "
-                    "are needed: %s (what was done is kept in %s)", c->registered,
+                    "are needed: %s (what was done is kept in %s)", registered(c),
                     job->source_count, why, job->dir);
 }
 
 static enum orl_result finish(struct calibration *c)
 {
-    struct orl_job *job = c->job;
-    if (c->registered < 3)
+    const struct orl_job *job = c->job;
+    if (registered(c) < 3)
         return fail_to_place(c);
     char *model = orl_job_path(job, WORK "/model");
     if (!model)
@@ -486,7 +502,7 @@ static enum orl_result finish(struct calibration *c)
     enum orl_result result = orl_dir_remove(job->log, model);
     if (result == ORL_OK)
         result = orl_job_remove(job, NORMALISED);
-    if (result == ORL_OK && rename(c->best, model) != 0)
+    if (result == ORL_OK && rename(c->best.path, model) != 0)
         result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", model, strerror(errno));
     free(model);
     for (int i = 0; result == ORL_OK && i < c->tries; i++) {
@@ -494,31 +510,23 @@ static enum orl_result finish(struct calibration *c)
         result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
         free(path);
     }
-    orl_job_forget(&job->calibrated);
     return result == ORL_OK ? orl_job_replace(job, WORK, DONE) : result;
 }
 
-static enum orl_result name_left_out(struct orl_job *job, json_t *record)
+static void name_left_out(const struct calibration *c, json_t *record)
 {
-    const struct orl_colmap_model *model;
-    enum orl_result result = orl_job_calibrated(job, &model);
-    if (result != ORL_OK)
-        return result;
+    const struct orl_colmap_model *model = &c->best.model;
     json_t *left_out = json_array();
-    for (size_t i = 0; i < job->source_count; i++) {
-        bool found = false;
-        for (size_t k = 0; !found && k < model->image_count; k++)
-            found = strcmp(model->images[k].name, job->sources[i].name) == 0;
-        if (found)
+    for (size_t i = 0; i < c->job->source_count; i++) {
+        const char *name = c->job->sources[i].name;
+        if (orl_colmap_image_by_name(model, name))
             continue;
-        orl_logf(job->log, ORL_LOG_WARNING, "%s: cannot be placed, left out",
-                 job->sources[i].name);
-        json_array_append_new(left_out, json_string(job->sources[i].name));
+        orl_logf(c->job->log, ORL_LOG_WARNING, "%s: cannot be placed, left out", name);
+        json_array_append_new(left_out, json_string(name));
     }
     json_object_set_new(record, "registered", json_integer((json_int_t)model->image_count));
     json_object_set_new(record, "sparse_points", json_integer((json_int_t)model->point_count));
     json_object_set_new(record, "left_out", left_out);
-    return ORL_OK;
 }
 
 enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
@@ -544,9 +552,10 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
     json_object_set_new(record, "cameras", json_integer(c.group_count));
     json_object_set_new(record, "matching", json_string(sequential ? "sequential" : "exhaustive"));
-    result = name_left_out(job, record);
+    name_left_out(&c, record);
+    orl_job_set_calibrated(job, &c.best.model);
 end:
     free(c.group);
-    free(c.best);
+    candidate_finish(&c.best);
     return result;
 }

@@ -1,7 +1,8 @@
-// The scene's ground made exact by what photographs show on it.
+// Ground: the plane that photographs were taken from above.
 #ifndef ORL_PREPROCESS_GROUND_H
 #define ORL_PREPROCESS_GROUND_H
 
+#include "preprocess/job/job.h"
 #include "scene/scene.h"
 
 // Shifts and tilts scene->ground a little, so that training photographs agree better on what lies
@@ -10,5 +11,8 @@
 // ground.
 enum orl_result orl_ground_refine(const struct orl_log *log,
                                   struct orl_scene *scene) ORL_CHECK_RESULT;
+// Looks for the ground among the points, refines it, and sets "ground" of `record`: null where
+// there is none. Runs before the depth maps go.
+enum orl_result orl_stage_ground(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 
 #endif

@@ -33,7 +33,8 @@ struct densifier {
     int shrink;                       // halvings of the photographs
     const struct orl_progress *progress;
     char *images_dir, *depth_dir, *normal_dir, *confidence_dir, *sparse_dir; // owned
-    struct orl_colmap_model model;
+    const struct orl_colmap_model *model;
+    struct orl_colmap_model own_model; // where the caller gave none
     struct densify_photos photos;
     struct densify_plan *plans;
     struct densify_device *device;
@@ -170,7 +171,7 @@ static uint32_t name_seed(uint32_t seed, const char *name)
 static enum orl_result make_seeds(const struct densifier *d, size_t photo, struct densify_job *job)
 {
     const struct orl_image *luma = &job->reference->levels[job->levels - 1];
-    const struct orl_colmap_image *image = &d->model.images[d->photos.images[photo]];
+    const struct orl_colmap_image *image = &d->model->images[d->photos.images[photo]];
     struct orl_view view = {.camera = orl_densify_level_camera(&job->reference->camera,
                                                                job->levels - 1),
                             .cam_from_world = job->view.cam_from_world};
@@ -186,7 +187,7 @@ static enum orl_result make_seeds(const struct densifier *d, size_t photo, struc
         return ORL_ERR_MEMORY;
     for (size_t k = 0; k < image->point_count; k++) {
         double pixel[2], depth;
-        if (!orl_view_project(&view, d->model.points[image->points[k]].position, pixel, &depth) ||
+        if (!orl_view_project(&view, d->model->points[image->points[k]].position, pixel, &depth) ||
             !(pixel[0] >= 0.0 && pixel[1] >= 0.0 && pixel[0] < (double)width &&
               pixel[1] < (double)height))
             continue;
@@ -488,9 +489,11 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     d->confidence_dir = orl_path_join(d->log, workspace, "stereo/confidence_maps");
     if (!d->images_dir || !d->sparse_dir || !d->depth_dir || !d->normal_dir || !d->confidence_dir)
         return ORL_ERR_MEMORY;
-    enum orl_result result = orl_colmap_read(d->log, d->sparse_dir, &d->model);
+    enum orl_result result =
+        d->params.model ? ORL_OK : orl_colmap_read(d->log, d->sparse_dir, &d->own_model);
+    d->model = d->params.model ? d->params.model : &d->own_model;
     if (result == ORL_OK)
-        result = orl_densify_photos_init(d->log, &d->model, names, &d->photos);
+        result = orl_densify_photos_init(d->log, d->model, names, &d->photos);
     if (result == ORL_OK)
         result = plan_memory(d);
     if (result == ORL_OK)
@@ -529,7 +532,7 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
     orl_densify_device_destroy(&d.device);
     free(d.plans);
     orl_densify_photos_finish(&d.photos);
-    orl_colmap_finish(&d.model);
+    orl_colmap_finish(&d.own_model);
     free(d.images_dir);
     free(d.sparse_dir);
     free(d.depth_dir);

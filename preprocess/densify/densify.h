@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/progress.h"
 #include "gpu/gpu.h"
+#include "scene/colmap.h"
 
 // Raised when the same photographs and settings give other maps than before.
 enum { ORL_DENSIFY_VERSION = 5 };
@@ -20,6 +21,8 @@ struct orl_densify_params {
                           // level, where a coarser one has told the rough shape
     int window_step;      // patch sampling step in pixels, [1, 4]
     uint32_t seed;
+    const struct orl_colmap_model *model; // of WORKSPACE/sparse, where it is read already; NULL:
+                                          // read here
     const char *masks_dir; // MASKS/NAME.png, 0 = not the subject; NULL: none
     size_t max_vram_bytes; // device memory to keep to, 0: no limit. When one photograph needs
                            // more, fewer sources are used, down to four, then photographs and

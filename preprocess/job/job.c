@@ -12,6 +12,13 @@
 
 #include "core/memory.h"
 
+static void forget(struct orl_job_model *model)
+{
+    if (model->known)
+        orl_colmap_finish(&model->model);
+    model->known = false;
+}
+
 // --- the folder ---
 
 // Never touches what it did not make: a folder is taken when it is new, empty, or
@@ -97,8 +104,8 @@ void orl_job_close(struct orl_job *job)
         orl_source_finish(&job->sources[i]);
     free(job->sources);
     orl_exposure_list_finish(&job->exposures);
-    orl_job_forget(&job->calibrated);
-    orl_job_forget(&job->sparse);
+    forget(&job->calibrated);
+    forget(&job->sparse);
     json_decref(job->skipped);
     json_decref(job->stages);
     if (job->lock_fd >= 0)
@@ -228,7 +235,7 @@ static enum orl_result read_model(const struct orl_job *job, const char *name,
             result = orl_fail(job->log, ORL_ERR_DATA, "%s/%s: photograph %s was not given",
                               job->dir, name, model->model.images[i].name);
     if (result != ORL_OK)
-        orl_job_forget(model);
+        forget(model);
     return result;
 }
 
@@ -247,16 +254,16 @@ enum orl_result orl_job_sparse(struct orl_job *job, const struct orl_colmap_mode
 enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
                                    const struct orl_colmap_model **model)
 {
-    orl_job_forget(&job->sparse);
+    forget(&job->sparse);
     *model = &job->sparse.model;
     return read_model(job, name, &job->sparse);
 }
 
-void orl_job_forget(struct orl_job_model *model)
+void orl_job_set_calibrated(struct orl_job *job, struct orl_colmap_model *model)
 {
-    if (model->known)
-        orl_colmap_finish(&model->model);
-    model->known = false;
+    forget(&job->calibrated);
+    job->calibrated = (struct orl_job_model){*model, true};
+    *model = (struct orl_colmap_model){0};
 }
 
 enum orl_result orl_job_train_names(struct orl_job *job, struct orl_names *names)

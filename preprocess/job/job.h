@@ -19,6 +19,7 @@ enum orl_stage_id {
     ORL_STAGE_DENSIFY,
     ORL_STAGE_FUSE,
     ORL_STAGE_RADII,
+    ORL_STAGE_GROUND,
     ORL_STAGE_EXPOSE,
     ORL_STAGE_COUNT
 };
@@ -109,7 +110,7 @@ enum orl_exposure_source orl_source_exposure(const struct orl_job *job,
                                              const struct orl_source *source, double *ev);
 const struct orl_source *orl_job_find(const struct orl_job *job, const char *name);
 // The calibrated model, of the photographs as they were given. Read on the first call, owned
-// by the job; it stays valid until orl_job_forget.
+// by the job; it stays valid until another one is set.
 enum orl_result orl_job_calibrated(struct orl_job *job,
                                    const struct orl_colmap_model **model) ORL_CHECK_RESULT;
 // The same of the undistorted model in SCENE/sparse, whose photographs are all among the
@@ -119,8 +120,8 @@ enum orl_result orl_job_sparse(struct orl_job *job,
 // Takes the undistorted model in SCENE/`name`, which will be SCENE/sparse, for the job's.
 enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
                                    const struct orl_colmap_model **model) ORL_CHECK_RESULT;
-// Before the file is replaced.
-void orl_job_forget(struct orl_job_model *model);
+// Hands the calibrated model over, which is .oriel/calibrate/model now; *model is empty then.
+void orl_job_set_calibrated(struct orl_job *job, struct orl_colmap_model *model);
 // Names of the photographs in the undistorted model that are not held out.
 enum orl_result orl_job_train_names(struct orl_job *job, struct orl_names *names) ORL_CHECK_RESULT;
 

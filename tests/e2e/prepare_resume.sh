@@ -46,10 +46,12 @@ sum=$(md5sum <"$scene/points.ply")
 : >"$work/trace"
 prepare 0 --resume
 [ -s "$work/trace" ] && fail "a whole scene was worked on"
-# The ground is looked for once a scene, and kept as it is.
+# The ground is looked for once a scene, and kept as the stage left it.
 grep -q '"ground": null' "$scene/scene.json" || fail "scene.json does not tell of the ground"
-sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' "$scene/scene.json"
+sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' \
+    "$scene/.oriel/stages.json"
 prepare 0 --resume
+says "ground: done already"
 grep -q '"height": 1.25' "$scene/scene.json" || fail "the ground of a whole scene was not kept"
 run 0 info "$scene"
 prints "ground       1.25 below the photographs"
