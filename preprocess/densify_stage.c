@@ -122,7 +122,7 @@ static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *t
     struct orl_densify_params params = densify_settings(job);
     enum orl_result result = orl_job_sparse(job, &params.model);
     struct orl_gpu *own = NULL, *gpu = job->params->gpu;
-    char *masks = orl_job_path(job, ".oriel/masks");
+    char *masks = orl_job_path(job, "masks");
     if (!masks)
         result = ORL_ERR_MEMORY;
     if (result == ORL_OK && !gpu) {

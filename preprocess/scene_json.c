@@ -55,13 +55,12 @@ static json_t *copy_stages(const json_t *plan, const json_t *done)
 
 static int compare_photos(const void *a, const void *b)
 {
-    const json_t *x = *(json_t *const *)a, *y = *(json_t *const *)b;
-    return strcmp(json_string_value(json_object_get(x, "name")),
-                  json_string_value(json_object_get(y, "name")));
+    return strcmp(orl_json_text(*(json_t *const *)a, "name"),
+                  orl_json_text(*(json_t *const *)b, "name"));
 }
 
 // Sorted by name, like everything else that lists photographs.
-static json_t *sort_photos(json_t *photos)
+static json_t *list_photos(const struct orl_job *job, const json_t *photos)
 {
     size_t count = json_array_size(photos);
     json_t **items = calloc(count + 1, sizeof *items);
@@ -70,8 +69,13 @@ static json_t *sort_photos(json_t *photos)
         items[i] = json_array_get(photos, i);
     if (items)
         qsort(items, count, sizeof *items, compare_photos);
-    for (size_t i = 0; items && i < count; i++)
-        json_array_append(sorted, items[i]);
+    for (size_t i = 0; items && i < count; i++) {
+        const struct orl_source *source = orl_job_find(job, orl_json_text(items[i], "name"));
+        json_t *entry = json_copy(items[i]);
+        if (source && source->mask)
+            json_object_set_new(entry, "mask", json_true());
+        json_array_append_new(sorted, entry);
+    }
     free(items);
     return sorted;
 }
@@ -125,7 +129,7 @@ enum orl_result orl_scene_json_write(struct orl_job *job)
     const json_t *plan = json_object_get(job->stages, "plan");
     const json_t *done = json_object_get(job->stages, "done");
     json_t *sums = json_object();
-    json_t *photos = sort_photos(stage_value(done, "expose", "photographs"));
+    json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"));
     char *path = orl_job_path(job, "scene.json");
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)

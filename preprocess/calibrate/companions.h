@@ -10,5 +10,10 @@
 enum orl_result orl_undistort_linear(struct orl_job *job,
                                      const struct orl_colmap_model *undistorted, const char *out,
                                      size_t *written) ORL_CHECK_RESULT;
+// The same of masks, as SCENE/`out`/NAME.png: 255 is the subject, 0 is not, or lies outside of
+// what the photograph shows.
+enum orl_result orl_undistort_masks(struct orl_job *job,
+                                    const struct orl_colmap_model *undistorted, const char *out,
+                                    size_t *written) ORL_CHECK_RESULT;
 
 #endif

@@ -63,7 +63,7 @@ static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_p
     // With several threads the points depend on which is faster; fusion is quick enough.
     orl_colmap_arg(args, "--StereoFusion.num_threads", "1");
     if (job->params->masks_dir) {
-        char *masks = orl_job_path(job, ".oriel/masks");
+        char *masks = orl_job_path(job, "masks");
         if (!masks)
             return ORL_ERR_MEMORY;
         orl_colmap_arg(args, "--StereoFusion.mask_path", "%s", masks);

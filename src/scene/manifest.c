@@ -51,13 +51,30 @@ static enum orl_result read_optics(const struct orl_json_place *place, const jso
                             : result;
 }
 
+static enum orl_result read_mask(const struct orl_json_place *place, const json_t *entry,
+                                 const struct orl_scene *scene, struct orl_photo *photo)
+{
+    enum orl_result result = orl_json_bool(place, entry, "mask", &photo->masked);
+    if (result != ORL_OK || !photo->masked)
+        return result;
+    char *path = orl_scene_mask_path(place->log, scene, (size_t)(photo - scene->photos));
+    if (!path)
+        return ORL_ERR_MEMORY;
+    if (!orl_path_is_file(path))
+        result = orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: this mask is missing", path);
+    free(path);
+    return result;
+}
+
 static enum orl_result read_photo(const struct orl_json_place *place, const json_t *entry,
                                   const struct orl_scene *scene, struct orl_photo *photo)
 {
     enum orl_result result = read_split(place, entry, photo);
     if (result == ORL_OK)
         result = read_exposure(place, entry, photo);
-    return result == ORL_OK ? read_optics(place, entry, scene, photo) : result;
+    if (result == ORL_OK)
+        result = read_optics(place, entry, scene, photo);
+    return result == ORL_OK ? read_mask(place, entry, scene, photo) : result;
 }
 
 static enum orl_result read_curve(const struct orl_log *log, const char *path,

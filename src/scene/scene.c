@@ -347,3 +347,8 @@ char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *s
 {
     return orl_format(log, "%s/images_linear/%s.exr", scene->dir, scene->photos[photo].name);
 }
+
+char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+{
+    return orl_format(log, "%s/masks/%s.png", scene->dir, scene->photos[photo].name);
+}

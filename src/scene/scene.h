@@ -13,6 +13,7 @@ struct orl_photo {
     struct orl_view view; // size and intrinsics as of the undistorted file
     bool test;            // held out: calibration only
     bool linear;          // there is a linear version too: orl_scene_read_linear
+    bool masked;          // there is a mask: orl_scene_mask_path
     double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
@@ -75,5 +76,8 @@ char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *sc
 // "SCENE/images_linear/<name>.exr", there or not.
 char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene,
                             size_t photo);
+// "SCENE/masks/<name>.png": as large as the photograph, 0 where it does not show the subject.
+// There when photo->masked.
+char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
 
 #endif
