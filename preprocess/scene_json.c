@@ -1,25 +1,10 @@
 #include "preprocess/scene_json.h"
 
-#include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/json.h"
 #include "scene/manifest.h"
-
-static enum orl_result add_checksum(const struct orl_job *job, json_t *sums, const char *name)
-{
-    uint64_t hash = 0;
-    char *path = orl_job_path(job, "%s", name);
-    if (!path)
-        return ORL_ERR_MEMORY;
-    enum orl_result result = orl_file_hash(job->log, path, &hash);
-    if (result == ORL_OK)
-        json_object_set_new(sums, name, json_sprintf("xxh3:%016" PRIx64, hash));
-    free(path);
-    return result;
-}
 
 static json_t *stage_value(const json_t *done, const char *stage, const char *key)
 {
@@ -40,7 +25,7 @@ static json_t *settings(const struct orl_prepare_params *p)
 static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
-                                             "skipped", "ground"};
+                                             "skipped", "ground", "files"};
     json_t *stages = json_object();
     for (size_t k = 0; k < json_array_size(plan); k++) {
         const char *name = json_string_value(json_array_get(plan, k));
@@ -51,6 +36,21 @@ static json_t *copy_stages(const json_t *plan, const json_t *done)
             json_object_set_new(stages, name, record);
     }
     return stages;
+}
+
+// Of all files of the scene, as the stages summed them up when they made them. What is below
+// .oriel is not part of it.
+static json_t *checksums(const json_t *plan, const json_t *done)
+{
+    json_t *sums = json_object(), *sum;
+    const char *name;
+    for (size_t k = 0; k < json_array_size(plan); k++) {
+        const char *stage = json_string_value(json_array_get(plan, k));
+        json_object_foreach(stage_value(done, stage, "files"), name, sum)
+            if (strncmp(name, ".oriel/", 7) != 0)
+                json_object_set(sums, name, sum);
+    }
+    return sums;
 }
 
 static int compare_photos(const void *a, const void *b)
@@ -108,13 +108,16 @@ static json_t *left_out(const struct orl_job *job, const json_t *done)
     return list;
 }
 
-// What oriel tune found, in a scene that is still the same.
+// What oriel tune found, in a scene that is still the same. A manifest that cannot be read has
+// nothing to keep: it is written anew.
 static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
 {
     json_t *old = NULL;
     if (!orl_path_is_file(path)) // removed before a stage was done again
         return ORL_OK;
-    enum orl_result result = orl_json_read(job->log, path, &old);
+    enum orl_result result = ORL_OK;
+    if (orl_json_read(NULL, path, &old) != ORL_OK)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: cannot be read; written anew", path);
     json_t *tuned = json_object_get(old, "tuned");
     if (tuned && json_object_set(root, "tuned", tuned) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
@@ -124,25 +127,19 @@ static enum orl_result keep_tuned(const struct orl_job *job, const char *path, j
 
 enum orl_result orl_scene_json_write(struct orl_job *job)
 {
-    static const char *const files[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
-                                        "sparse/points3D.bin"};
     const json_t *plan = json_object_get(job->stages, "plan");
     const json_t *done = json_object_get(job->stages, "done");
-    json_t *sums = json_object();
     json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"));
     char *path = orl_job_path(job, "scene.json");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
-        if (orl_job_has(job, files[i])) // a sparse model may be text
-            result = add_checksum(job, sums, files[i]);
     json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O}", "format",
                              "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                              "oriel " ORL_VERSION, "settings", settings(job->params), "counts",
                              counts(job, done, photos), "photographs", photos, "responses",
                              stage_value(done, "expose", "responses"), "left_out",
                              left_out(job, done), "stages", copy_stages(plan, done),
-                             "checksums", sums, "ground",
+                             "checksums", checksums(plan, done), "ground",
                              stage_value(done, "ground", "ground"));
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     if (result == ORL_OK)

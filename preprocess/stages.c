@@ -21,6 +21,7 @@
 #include "preprocess/expose/expose.h"
 #include "preprocess/photos/collect.h"
 #include "preprocess/photos/normalise.h"
+#include "preprocess/results.h"
 #include "scene/manifest.h"
 
 // --- what the result of a stage depends on, besides the stages before it ---
@@ -91,29 +92,37 @@ static json_t *no_settings(const struct orl_job *job)
 
 // --- the stages ---
 
+enum { RESULTS_MAX = 4 };
+
 struct stage {
     const char *name;
     int version; // raised when the stage's result changes for the same settings
     enum orl_stage_id needs;
     json_t *(*settings)(const struct orl_job *job);
     enum orl_result (*run)(struct orl_job *job, json_t *record);
-    const char *output; // without it the stage is not done
+    const char *results[RESULTS_MAX + 1]; // files and folders that it leaves
+    const char *tells; // of the record: what scene.json cannot be written without
+    bool repeatable;   // made again from the same it is the same, so what builds on it stays
 };
 
 static const struct stage stages[ORL_STAGE_COUNT] = {
-    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, NULL},
+    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, {0}, NULL, true},
     [ORL_STAGE_CALIBRATE] = {"calibrate", 1, ORL_STAGE_COLLECT, calibrate_settings,
-                             orl_stage_calibrate, ".oriel/calibrate/model"},
+                             orl_stage_calibrate, {".oriel/calibrate/model"}, "left_out", false},
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
-                             orl_stage_undistort, "images"},
+                             orl_stage_undistort,
+                             {"sparse", "images", "images_linear", "masks"}, "largest", true},
+    // Its maps may be deleted once they are read, and COLMAP's differ from run to run.
     [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
-                           orl_stage_densify, NULL},
+                           orl_stage_densify, {0}, "tool", false},
     [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
-                        ".oriel/fused.ply"},
-    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii, "points.ply"},
-    [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, NULL},
-    [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose,
-                          NULL},
+                        {".oriel/fused.ply"}, "points", true},
+    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii,
+                         {"points.ply"}, "points", true},
+    [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, {0},
+                          "ground", true},
+    [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
+                          "photographs", true},
 };
 
 static enum orl_result set_keys(struct orl_job *job)
@@ -146,21 +155,30 @@ static enum orl_result save_stages(const struct orl_job *job)
     return result;
 }
 
+// A file that cannot be read, or is none of ours, tells nothing: all is done again.
+static json_t *read_stages(const struct orl_job *job, const char *path)
+{
+    json_t *root = NULL;
+    if (orl_path_is_file(path) && (orl_json_read(NULL, path, &root) != ORL_OK ||
+                                   !json_is_object(json_object_get(root, "done")))) {
+        orl_logf(job->log, ORL_LOG_WARNING,
+                 "%s: damaged, so nothing is known of the stages that were done", path);
+        json_decref(root);
+        root = NULL;
+    }
+    return root ? root
+                : json_pack("{s:i, s:[], s:{}}", "version", ORL_MANIFEST_VERSION, "plan", "done");
+}
+
 enum orl_result orl_stages_load(struct orl_job *job)
 {
     char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path))
-        result = orl_json_read(job->log, path, &job->stages);
-    else if (result == ORL_OK)
-        job->stages = json_pack("{s:i, s:[], s:{}}", "version", ORL_MANIFEST_VERSION, "plan",
-                                "done");
-    if (result == ORL_OK && !json_is_object(done_stages(job)))
-        result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: \"done\" is missing", path);
     // The plan is this program's, whatever wrote the file.
     json_t *plan = json_array();
     for (int i = 0; i < ORL_STAGE_COUNT; i++)
         json_array_append_new(plan, json_string(stages[i].name));
+    job->stages = path ? read_stages(job, path) : NULL;
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && json_object_set(job->stages, "plan", plan) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the stages");
     json_decref(plan);
@@ -168,22 +186,67 @@ enum orl_result orl_stages_load(struct orl_job *job)
     return result;
 }
 
-static bool has_record(const struct orl_job *job, enum orl_stage_id id)
+static const char *old_key(const struct orl_job *job, int id)
 {
-    const json_t *record = json_object_get(done_stages(job), stages[id].name);
-    const char *key = json_string_value(json_object_get(record, "key"));
-    return key && strcmp(key, job->keys[id]) == 0 &&
-           (!stages[id].output || orl_job_has(job, stages[id].output));
+    return orl_json_text(json_object_get(done_stages(job), stages[id].name), "key");
 }
 
-static void find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])
+static bool has_key(const struct orl_job *job, int id)
 {
+    return old_key(job, id) != NULL;
+}
+
+static bool has_same_key(const struct orl_job *job, int id)
+{
+    return has_key(job, id) && strcmp(old_key(job, id), job->keys[id]) == 0;
+}
+
+// Does the record say all that is asked of it later? A file that was edited or damaged may not.
+static bool is_sound(const json_t *record, enum orl_stage_id id)
+{
+    const json_t *told = json_object_get(record, stages[id].tells);
+    bool sound = told != NULL;
+    for (size_t i = 0; id == ORL_STAGE_EXPOSE && i < json_array_size(told); i++)
+        sound = sound && orl_json_text(json_array_get(told, i), "name");
+    const json_t *files = json_object_get(record, "files");
+    return sound && (!stages[id].results[0] || json_object_size(files) > 0);
+}
+
+// Was the stage done with these inputs and settings, and is its result there as it was left?
+static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id, bool *there)
+{
+    const json_t *record = json_object_get(done_stages(job), stages[id].name);
+    const char *damaged = NULL, *why = NULL;
+    *there = has_same_key(job, id) && is_sound(record, id);
+    if (!*there)
+        return ORL_OK;
+    enum orl_result result =
+        orl_results_check(job, json_object_get(record, "files"), &damaged, &why);
+    if (damaged)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s/%s: %s; %s is done again", job->dir, damaged, why,
+                 stages[id].name);
+    *there = !damaged;
+    return result;
+}
+
+static enum orl_result find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])
+{
+    // As if done: what is made again will be what it was.
+    bool settled[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
     current[ORL_STAGE_COLLECT] = true;
-    for (int i = 1; i < ORL_STAGE_COUNT; i++)
-        current[i] = current[stages[i].needs] && has_record(job, (enum orl_stage_id)i);
-    // The depth maps may be deleted once they are fused.
-    if (!current[ORL_STAGE_FUSE] && !orl_job_has(job, "stereo/.oriel-key"))
-        current[ORL_STAGE_DENSIFY] = false;
+    for (int i = 1; i < ORL_STAGE_COUNT; i++) {
+        bool there;
+        enum orl_result result = look_for(job, (enum orl_stage_id)i, &there);
+        if (result != ORL_OK)
+            return result;
+        // The depth maps are read by fuse and ground, and may be deleted then.
+        if (i == ORL_STAGE_FUSE && !there && !orl_job_has(job, "stereo/.oriel-key"))
+            current[ORL_STAGE_DENSIFY] = settled[ORL_STAGE_DENSIFY] = false;
+        current[i] = settled[stages[i].needs] && there;
+        settled[i] = current[i] || (settled[stages[i].needs] && has_same_key(job, i) &&
+                                    stages[i].repeatable);
+    }
+    return ORL_OK;
 }
 
 // Before anything of a stage changes, the folder stops being a scene, and the records
@@ -193,8 +256,9 @@ static enum orl_result invalidate(const struct orl_job *job, const bool *current
     bool all = true, changed = false;
     for (int i = 0; i < ORL_STAGE_COUNT; i++) {
         all = all && current[i];
-        if (!current[i] && json_object_del(done_stages(job), stages[i].name) == 0)
-            changed = true;
+        changed = changed || (has_key(job, i) && !has_same_key(job, i));
+        if (!current[i])
+            json_object_del(done_stages(job), stages[i].name);
     }
     if (all)
         return ORL_OK;
@@ -223,6 +287,12 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id)
     job->child_peak_bytes = 0;
     json_object_set_new(record, "key", json_string(job->keys[id]));
     enum orl_result result = stages[id].run(job, record);
+    json_t *files = json_object();
+    if (result == ORL_OK)
+        result = files ? orl_results_sum(job, stages[id].results, files) : ORL_ERR_MEMORY;
+    if (json_object_size(files))
+        json_object_set(record, "files", files);
+    json_decref(files);
     getrusage(RUSAGE_SELF, &after);
     json_object_set_new(record, "wall_s", json_real(orl_time_s() - start));
     json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(&before) +
@@ -242,8 +312,9 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id)
 enum orl_result orl_stages_run(struct orl_job *job)
 {
     bool current[ORL_STAGE_COUNT];
-    find_current(job, current);
-    enum orl_result result = invalidate(job, current);
+    enum orl_result result = find_current(job, current);
+    if (result == ORL_OK)
+        result = invalidate(job, current);
     for (int i = 1; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
         if (orl_progress_cancelled(job->progress))
             result = ORL_ERR_CANCELLED;

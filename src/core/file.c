@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -295,5 +296,14 @@ end:
     XXH3_freeState(state);
     free(chunk);
     close(fd);
+    return result;
+}
+
+enum orl_result orl_file_checksum(const struct orl_log *log, const char *path,
+                                  char sum[ORL_CHECKSUM_SIZE])
+{
+    uint64_t hash;
+    enum orl_result result = orl_file_hash(log, path, &hash);
+    snprintf(sum, ORL_CHECKSUM_SIZE, "xxh3:%016" PRIx64, hash);
     return result;
 }

@@ -1,6 +1,5 @@
 #include "scene/manifest.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -175,27 +174,44 @@ static enum orl_result read_ground(const struct orl_log *log, const char *path,
     return ORL_OK;
 }
 
-static enum orl_result check_points(const struct orl_log *log, const json_t *root,
-                                    const char *points_path)
+// Tells of each file of DIR that is not as the manifest `root` says, and counts it; of those in
+// `names` alone, which end with NULL, unless that is NULL.
+static enum orl_result check_files(const struct orl_log *log, const char *dir,
+                                   const json_t *root, const char *const *names,
+                                   enum orl_log_level level, size_t *bad)
 {
-    const char *expected =
-        orl_json_text(json_object_get(root, "checksums"), "points.ply");
-    if (!expected)
-        return ORL_OK;
-    uint64_t hash;
-    enum orl_result result = orl_file_hash(log, points_path, &hash);
-    if (result != ORL_OK)
-        return result;
-    char text[32];
-    snprintf(text, sizeof text, "xxh3:%016" PRIx64, hash);
-    if (strcmp(text, expected) != 0)
-        orl_logf(log, ORL_LOG_WARNING, "%s: changed since the scene was prepared", points_path);
+    const char *name;
+    json_t *value;
+    json_object_foreach(json_object_get(root, "checksums"), name, value) {
+        char sum[ORL_CHECKSUM_SIZE];
+        const char *told = json_string_value(value);
+        bool asked = !names;
+        for (size_t i = 0; names && names[i]; i++)
+            asked |= strcmp(names[i], name) == 0;
+        if (!asked || !told)
+            continue;
+        char *path = orl_path_join(log, dir, name);
+        if (!path)
+            return ORL_ERR_MEMORY;
+        bool read = orl_path_is_file(path) && orl_file_checksum(NULL, path, sum) == ORL_OK;
+        if (!read || strcmp(sum, told) != 0) {
+            orl_logf(log, level, "%s: %s", path,
+                     read ? "changed since the scene was prepared" : "missing or cannot be read");
+            ++*bad;
+        }
+        free(path);
+    }
     return ORL_OK;
 }
 
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
-                                  const char *points_path, struct orl_scene *scene)
+                                  struct orl_scene *scene)
 {
+    // Pictures take too long: oriel info --check reads them.
+    static const char *const read_on_opening[] = {"points.ply", "sparse/cameras.bin",
+                                                  "sparse/images.bin", "sparse/points3D.bin",
+                                                  NULL};
+    size_t changed = 0;
     json_t *root;
     enum orl_result result = orl_json_read(log, path, &root);
     if (result != ORL_OK)
@@ -217,8 +233,24 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
     if (result == ORL_OK)
         result = read_ground(log, path, root, &scene->ground);
     if (result == ORL_OK)
-        result = check_points(log, root, points_path);
+        result = check_files(log, scene->dir, root, read_on_opening, ORL_LOG_WARNING, &changed);
     json_decref(root);
+    return result;
+}
+
+enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, size_t *bad,
+                                   size_t *files)
+{
+    json_t *root = NULL;
+    *bad = *files = 0;
+    char *path = orl_path_join(log, dir, "scene.json");
+    enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        *files = json_object_size(json_object_get(root, "checksums"));
+        result = check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
+    }
+    json_decref(root);
+    free(path);
     return result;
 }
 

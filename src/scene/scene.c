@@ -255,7 +255,7 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
         (result = set_photos(log, scene, model)) != ORL_OK)
         return result;
     if (folder->manifest &&
-        (result = orl_manifest_read(log, folder->manifest, folder->points, scene)) != ORL_OK)
+        (result = orl_manifest_read(log, folder->manifest, scene)) != ORL_OK)
         return result;
     return add_points(log, scene, model, folder->manifest ? folder->points : folder->fused);
 }

@@ -80,6 +80,60 @@ run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 rm "$scene/points.ply"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 [ -f "$scene/points.ply" ] || fail "points.ply was not made again"
+# Whatever is lost or damaged is noticed, on opening or by --check, and made again: the stage
+# that left it, and no other.
+run 0 info "$scene" --check
+prints "all as they were made"
+damage() { # FILE STAGE COMMANDS...: what a resume runs of COLMAP
+    local file=$1 stage=$2
+    shift 2
+    run 2 info "$scene" --check
+    says "$scene/$file: "
+    : >"$work/trace"
+    run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+    says "$scene/$file: "
+    says "$stage is done again"
+    [ "$(grep -v help "$work/trace" | uniq | tr '\n' ' ')" = "$*" ] ||
+        fail "$file: redone: $(tr '\n' ' ' <"$work/trace")"
+    [ "$(md5sum <"$scene/points.ply")" = "$sum" ] || fail "$file: points.ply is another"
+    run 0 info "$scene" --check
+}
+sum=$(md5sum <"$scene/points.ply")
+rm "$scene/images/2.png"
+damage images/2.png undistort "image_undistorter "
+printf x | dd of="$scene/images/1.png" bs=1 seek=100 conv=notrunc status=none
+damage images/1.png undistort "image_undistorter "
+echo "# a comment" >>"$scene/sparse/images.txt"
+damage sparse/images.txt undistort "image_undistorter "
+rm -r "$scene/sparse"
+damage sparse/cameras.txt undistort "image_undistorter "
+truncate -s -20 "$scene/points.ply"
+run 2 info "$scene"
+damage points.ply radii ""
+printf '\1' | dd of="$scene/points.ply" bs=1 seek=600 conv=notrunc status=none
+run 0 info "$scene"
+says "points.ply: changed since the scene was prepared"
+damage points.ply radii ""
+
+# Damaged records: what they tell is not believed, and the scene can be had again.
+for damaged in '' '{"version": 1}' '{"version": 1, "done": []}' '{"version": 1, "done": 7' '[]'; do
+    echo "$damaged" >"$scene/.oriel/stages.json"
+    run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+    says "stages.json: damaged"
+    run 0 info "$scene" --check
+done
+for edit in 's/"photographs": \[/"photographs": [1, /' 's/"name": "2.png"/"nme": "2.png"/' \
+    's/"key"/"kex"/' 's/"ground": null/"grund": null/' 's/"left_out"/"left_in"/' \
+    's/"files": {/"fills": {/'; do
+    sed -i "$edit" "$scene/.oriel/stages.json"
+    run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+    run 0 info "$scene" --check
+done
+echo '{"version' >"$scene/scene.json"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+says "scene.json: cannot be read; written anew"
+run 0 info "$scene"
+
 # A changed photograph changes all.
 printf '\0' >>"$work/p/2.png"
 : >"$work/trace"
