@@ -57,6 +57,9 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
         result = orl_stages_run(&job);
     if (result == ORL_OK)
         result = orl_scene_json_write(&job);
+    // Once the scene is whole: fuse and ground alone read the maps.
+    if (result == ORL_OK && params->keep == ORL_KEEP_MINIMAL)
+        result = orl_job_remove(&job, "stereo");
     orl_job_close(&job);
     return result;
 }

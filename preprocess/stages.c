@@ -231,20 +231,24 @@ static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id,
 
 static enum orl_result find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])
 {
+    bool there[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
     // As if done: what is made again will be what it was.
     bool settled[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
     current[ORL_STAGE_COLLECT] = true;
     for (int i = 1; i < ORL_STAGE_COUNT; i++) {
-        bool there;
-        enum orl_result result = look_for(job, (enum orl_stage_id)i, &there);
+        enum orl_result result = look_for(job, (enum orl_stage_id)i, &there[i]);
         if (result != ORL_OK)
             return result;
-        // The depth maps are read by fuse and ground, and may be deleted then.
-        if (i == ORL_STAGE_FUSE && !there && !orl_job_has(job, "stereo/.oriel-key"))
-            current[ORL_STAGE_DENSIFY] = settled[ORL_STAGE_DENSIFY] = false;
-        current[i] = settled[stages[i].needs] && there;
-        settled[i] = current[i] || (settled[stages[i].needs] && has_same_key(job, i) &&
-                                    stages[i].repeatable);
+    }
+    // Fuse and ground read the depth maps, which are gone when both were done.
+    bool read = !there[ORL_STAGE_FUSE] || !there[ORL_STAGE_GROUND] ||
+                job->params->keep == ORL_KEEP_ALL;
+    if (read && !orl_job_has(job, "stereo/.oriel-key"))
+        there[ORL_STAGE_DENSIFY] = false;
+    for (int i = 1; i < ORL_STAGE_COUNT; i++) {
+        bool after = settled[stages[i].needs];
+        current[i] = after && there[i];
+        settled[i] = current[i] || (after && has_same_key(job, i) && stages[i].repeatable);
     }
     return ORL_OK;
 }

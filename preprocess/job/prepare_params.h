@@ -15,11 +15,15 @@ enum orl_matching { ORL_MATCHING_AUTO, ORL_MATCHING_EXHAUSTIVE, ORL_MATCHING_SEQ
 // auto: COLMAP's when it was built with CUDA, else the built-in one.
 enum orl_densifier { ORL_DENSIFIER_AUTO, ORL_DENSIFIER_GL, ORL_DENSIFIER_COLMAP };
 
+// minimal: only what commands read; all: depth, normal and confidence maps (stereo/) too.
+enum orl_keep { ORL_KEEP_MINIMAL, ORL_KEEP_ALL };
+
 // Names of the values above, in their order; NULL after the last.
 extern const char *const orl_quality_names[];
 extern const char *const orl_camera_sharing_names[];
 extern const char *const orl_matching_names[];
 extern const char *const orl_densifier_names[];
+extern const char *const orl_keep_names[];
 
 struct orl_prepare_params {
     const char *const *inputs; // photographs and folders of them
@@ -33,6 +37,7 @@ struct orl_prepare_params {
     enum orl_camera_sharing sharing;
     enum orl_matching matching;
     enum orl_densifier densifier;
+    enum orl_keep keep;
     const char *masks_dir;     // NAME.png or NAME.EXT.png, black = ignore; NULL: none
     const char *exposures;     // CSV that overrides EXIF (exposure_list.h); NULL: none
     bool resume;               // go on with what is there

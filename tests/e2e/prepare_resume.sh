@@ -11,7 +11,7 @@ all="$all stereo_fusion"
 prepare() {
     local expected=$1
     shift
-    run "$expected" prepare "$work/p" --out "$scene" --test-list 1,3.png "$@"
+    run "$expected" prepare "$work/p" --out "$scene" --test-list 1,3.png --keep all "$@"
 }
 
 # Without COLMAP: one clear sentence, and the photographs' check is kept.
@@ -66,16 +66,31 @@ grep -q '1\.png\|3\.png' "$scene/stereo/patch-match.cfg" && fail "a held-out pho
 
 # Other held-out photographs: calibration stays, stereo does not.
 : >"$work/trace"
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 [ "$(grep -v help "$work/trace" | uniq | tr '\n' ' ')" = "patch_match_stereo stereo_fusion " ] ||
     fail "other hold-outs redo $(tr '\n' ' ' <"$work/trace")"
 prints "4 train, 1 held out"
 grep -q '"height": 1.25' "$scene/scene.json" && fail "the ground of other hold-outs was kept"
-# Depth maps may be deleted once they are fused.
-rm -r "$scene/stereo"
+# Depth maps go once they are fused, unless all is to be kept, and are not made again for that.
 : >"$work/trace"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+[ -d "$scene/stereo" ] || fail "--keep all keeps no depth maps"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+[ -e "$scene/stereo" ] && fail "depth maps are kept by default"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+run 0 info "$scene" --check
 [ -s "$work/trace" ] && fail "deleted depth maps were made again"
+# Where they are asked for, or needed, they are.
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+grep -q patch_match_stereo "$work/trace" || fail "--keep all made no depth maps"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep minimal
+: >"$work/trace"
+rm "$scene/.oriel/fused.ply"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+[ "$(grep -v help "$work/trace" | uniq | tr '\n' ' ')" = "patch_match_stereo stereo_fusion " ] ||
+    fail "a lost cloud without depth maps redoes $(tr '\n' ' ' <"$work/trace")"
+run 2 prepare "$work/p" --out "$scene" --resume --keep some
+says "must be one of minimal, all"
 # A lost result is made again.
 rm "$scene/points.ply"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
@@ -137,7 +152,7 @@ run 0 info "$scene"
 # A changed photograph changes all.
 printf '\0' >>"$work/p/2.png"
 : >"$work/trace"
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 says "have changed"
 [ "$(grep -v help "$work/trace" | uniq | wc -l)" = 6 ] || fail "a changed photograph was not noticed"
 
