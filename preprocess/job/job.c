@@ -1,15 +1,14 @@
 #include "preprocess/job/job.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include "core/lock.h"
 #include "core/memory.h"
 
 static void forget(struct orl_job_model *model)
@@ -21,9 +20,15 @@ static void forget(struct orl_job_model *model)
 
 // --- the folder ---
 
+static enum orl_result fail_there(const struct orl_job *job)
+{
+    return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                    "%s: there already; go on with --resume or choose another folder", job->dir);
+}
+
 // Never touches what it did not make: a folder is taken when it is new, empty, or
 // prepare's own and --resume says so.
-static enum orl_result claim_folder(struct orl_job *job)
+static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
 {
     struct orl_names names = {0};
     enum orl_result result = orl_dir_list(job->log, job->dir, &names);
@@ -35,26 +40,27 @@ static enum orl_result claim_folder(struct orl_job *job)
                           "%s: not empty, and not made by oriel prepare; choose another folder",
                           job->dir);
     else if (ours && !job->params->resume)
-        result = orl_fail(job->log, ORL_ERR_ARGUMENT,
-                          "%s: there already; go on with --resume or choose another folder",
-                          job->dir);
-    job->fresh = names.count == 0;
+        result = fail_there(job);
+    *empty = names.count == 0;
     orl_names_finish(&names);
     return result;
 }
 
-static enum orl_result lock_folder(struct orl_job *job)
+// What the folder is must be decided with the lock held: until then another prepare may have
+// taken it, and finished.
+static enum orl_result lock_folder(struct orl_job *job, bool empty)
 {
+    bool taken = false;
     char *path = orl_job_path(job, ".oriel/lock");
-    if (!path)
-        return ORL_ERR_MEMORY;
-    enum orl_result result = ORL_OK;
-    job->lock_fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (job->lock_fd < 0)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    else if (flock(job->lock_fd, LOCK_EX | LOCK_NB) != 0)
+    enum orl_result result = path ? orl_lock(job->log, path, &job->lock_fd, &taken)
+                                  : ORL_ERR_MEMORY;
+    bool begun = orl_job_has(job, ".oriel/stages.json");
+    if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT,
                           "%s: another oriel prepare is at work here", job->dir);
+    else if (result == ORL_OK && begun && !job->params->resume)
+        result = fail_there(job);
+    job->fresh = result == ORL_OK && empty && !begun;
     free(path);
     return result;
 }
@@ -72,13 +78,14 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
     job->dir = realpath(params->out, NULL);
     if (!job->dir)
         return orl_fail(log, ORL_ERR_IO, "%s: %s", params->out, strerror(errno));
-    result = claim_folder(job);
+    bool empty = false;
+    result = claim_folder(job, &empty);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++) {
         char *path = orl_job_path(job, "%s", dirs[i]);
         result = path ? orl_dir_make(log, path) : ORL_ERR_MEMORY;
         free(path);
     }
-    return result == ORL_OK ? lock_folder(job) : result;
+    return result == ORL_OK ? lock_folder(job, empty) : result;
 }
 
 void orl_job_leave(const struct orl_job *job)
@@ -108,8 +115,7 @@ void orl_job_close(struct orl_job *job)
     forget(&job->sparse);
     json_decref(job->skipped);
     json_decref(job->stages);
-    if (job->lock_fd >= 0)
-        close(job->lock_fd);
+    orl_unlock(&job->lock_fd);
     free(job->dir);
 }
 
@@ -168,9 +174,18 @@ enum orl_result orl_job_fresh_dir(const struct orl_job *job, const char *name)
 
 enum orl_result orl_job_link(const struct orl_job *job, const char *target, const char *path)
 {
-    if (symlink(target, path) != 0)
+    if (symlink(target, path) == 0)
+        return ORL_OK;
+    bool unknown = errno == EPERM || errno == ENOTSUP || errno == ENOSYS || errno == EINVAL;
+    if (!unknown)
         return orl_fail(job->log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    return ORL_OK;
+    uint8_t *data;
+    size_t size;
+    enum orl_result result = orl_file_read(job->log, target, SIZE_MAX / 2, &data, &size);
+    if (result == ORL_OK)
+        result = orl_file_write(job->log, path, data, size);
+    free(data);
+    return result;
 }
 
 enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,

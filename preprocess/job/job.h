@@ -92,7 +92,7 @@ enum orl_result orl_job_replace(const struct orl_job *job, const char *temp,
                                 const char *name) ORL_CHECK_RESULT;
 // Removes SCENE/`name` and makes it an empty folder.
 enum orl_result orl_job_fresh_dir(const struct orl_job *job, const char *name) ORL_CHECK_RESULT;
-// A symbolic link at `path` to `target`.
+// A symbolic link at `path` to `target`, or a copy where the drive knows none (FAT).
 enum orl_result orl_job_link(const struct orl_job *job, const char *target,
                              const char *path) ORL_CHECK_RESULT;
 enum orl_result orl_job_remove(const struct orl_job *job, const char *name) ORL_CHECK_RESULT;
