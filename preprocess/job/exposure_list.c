@@ -65,6 +65,15 @@ static bool read_line(char *fields[FIELDS_MAX], int count, struct orl_listed_exp
     return fabs(entry->ev) <= 64;
 }
 
+// "photo, exposure time, ISO": has no digit but in the first. A number that was mistyped has one.
+static bool is_title(char *fields[FIELDS_MAX], int count)
+{
+    bool digits = strchr(fields[0], '.') != NULL; // a name with its extension
+    for (int i = 1; i < count && i < FIELDS_MAX; i++)
+        digits = digits || strpbrk(fields[i], "0123456789");
+    return count > 1 && !digits;
+}
+
 static enum orl_result add_line(const struct orl_log *log, const char *path, int number,
                                 char *line, size_t *capacity, struct orl_exposure_list *list)
 {
@@ -73,14 +82,12 @@ static enum orl_result add_line(const struct orl_log *log, const char *path, int
     struct orl_listed_exposure entry = {0};
     if (!*fields[0] && count == 1)
         return ORL_OK;
-    if (!read_line(fields, count, &entry)) {
-        double ignored;
-        bool header = number == 1 && count > 1 && !read_number(fields[1], &ignored);
-        return header ? ORL_OK
-                      : orl_fail(log, ORL_ERR_FORMAT,
-                                 "%s: line %d: neither NAME,TIME,APERTURE,ISO nor NAME,EV", path,
-                                 number);
-    }
+    if (!read_line(fields, count, &entry))
+        return number == 1 && is_title(fields, count)
+                   ? ORL_OK
+                   : orl_fail(log, ORL_ERR_FORMAT,
+                              "%s: line %d: neither NAME,TIME,APERTURE,ISO nor NAME,EV", path,
+                              number);
     enum orl_result result = orl_grow(log, (void **)&list->items, capacity, list->count + 1,
                                       sizeof *list->items);
     if (result == ORL_OK)
@@ -100,7 +107,9 @@ enum orl_result orl_exposure_list_read(const struct orl_log *log, const char *pa
     size_t size, capacity = 0;
     enum orl_result result = orl_file_read(log, path, LIST_MAX_BYTES, &data, &size);
     int number = 1;
-    for (char *line = (char *)data; result == ORL_OK && line; number++) {
+    // Spreadsheets write a byte order mark.
+    size_t mark = result == ORL_OK && size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    for (char *line = data ? (char *)data + mark : NULL; result == ORL_OK && line; number++) {
         char *end = strchr(line, '\n');
         if (end)
             *end = '\0';
