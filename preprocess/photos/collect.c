@@ -29,6 +29,9 @@ static void skip(struct orl_job *job, const char *name, const char *why)
     json_array_append_new(job->skipped, entry);
 }
 
+// Names of files that are made from a photograph's are longer, and file systems take 255 bytes.
+enum { NAME_MAX_BYTES = 200 };
+
 // COLMAP's lists are lines, its stereo lists are parted by commas, and '#' starts a
 // comment: a name must survive all of them. NULL: it does.
 static const char *name_problem(const char *name)
@@ -40,6 +43,8 @@ static const char *name_problem(const char *name)
     for (const char *c = name; *c; c++)
         if ((unsigned char)*c < 32 || *c == ',')
             return "its name has a comma or a control character: rename it";
+    if (length > NAME_MAX_BYTES)
+        return "its name is longer than 200 bytes: rename it";
     json_t *text = json_string(name);
     json_decref(text);
     return text ? NULL : "its name is not UTF-8: rename it";
@@ -50,7 +55,9 @@ static enum orl_result add_candidate(struct orl_job *job, const char *path)
     const char *name = orl_path_name(path);
     job->given++;
     char *real = realpath(path, NULL);
-    const char *problem = real ? name_problem(name) : strerror(errno);
+    const char *problem = !real ? strerror(errno)
+                          : !orl_path_is_file(real) ? "not a regular file"
+                                                    : name_problem(name);
     enum orl_result result = ORL_OK;
     if (problem) {
         skip(job, path, problem);
@@ -293,6 +300,29 @@ static enum orl_result inspect_all(struct orl_job *job)
     return ORL_OK;
 }
 
+// One photograph under two names (a link, a copy) would be matched with itself, and one of them
+// held out would be known to the others. The first by name stays.
+static void drop_copies(struct orl_job *job)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        const struct orl_source *same = NULL;
+        for (size_t k = 0; k < kept && !same; k++)
+            if (job->sources[k].hash == source->hash)
+                same = &job->sources[k];
+        if (same) {
+            char why[512];
+            snprintf(why, sizeof why, "the same file as %s", same->given);
+            skip(job, source->given, why); // its path may be that of the other
+            orl_source_finish(source);
+        } else {
+            keep_source(job, source, &kept);
+        }
+    }
+    job->source_count = kept;
+}
+
 // "name", with or without its extension.
 static bool same_photo(const char *name, const char *given)
 {
@@ -404,6 +434,7 @@ enum orl_result orl_stage_collect(struct orl_job *job)
     drop_twins(job);
     if ((result = drop_duplicates(job)) != ORL_OK || (result = inspect_all(job)) != ORL_OK)
         return result;
+    drop_copies(job);
     if (job->source_count < 3)
         return too_few(job);
     if ((result = choose_test(job)) != ORL_OK || (result = find_masks(job)) != ORL_OK ||

@@ -41,7 +41,8 @@ bool orl_path_is_dir(const char *path)
 static enum orl_result open_to_read(const struct orl_log *log, const char *path, int *fd,
                                     size_t *size)
 {
-    *fd = open(path, O_RDONLY | O_CLOEXEC);
+    // Opening a FIFO would wait for a writer, perhaps for ever.
+    *fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (*fd < 0)
         return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
                         strerror(errno));

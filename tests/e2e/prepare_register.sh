@@ -17,6 +17,7 @@ for name in 0 1 2; do
 iVBORw0KGgoAAAANSUhEUgAAAGAAAABQCAAAAADDiS9JAAAAN0lEQVR42u3NMQ0AAAwDoOqsfyFV
 sWMJGCA9FoFAIBAIBAKBQCAQCAQCgUAgEAgEAoFAIBB8DAZcnYyXbTp6ngAAAABJRU5ErkJggg==
 PNG
+    echo "$name" >>"$work/grey/$name.png" # not the same file
 done
 DOUBLE_NO_MODEL=1 run 2 prepare "$work/grey" --out "$work/none"
 says "only 0 of 3 photographs could be placed"
