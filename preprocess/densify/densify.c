@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/lock.h"
 #include "core/memory.h"
 #include "io/picture.h"
 #include "preprocess/densify/densify_internal.h"
@@ -42,6 +43,7 @@ struct densifier {
     struct pass passes[PASSES_MAX];
     int pass_count;
     double done, total;
+    int lock_fd;
 };
 
 static enum orl_result check_params(const struct orl_log *log, const struct orl_densify_params *p)
@@ -511,14 +513,27 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     return result;
 }
 
+// Two at once would write one another's maps.
+static enum orl_result lock_workspace(struct densifier *d, const char *workspace)
+{
+    bool taken;
+    enum orl_result result = orl_lock(d->log, workspace, &d->lock_fd, &taken);
+    return result == ORL_OK && taken
+               ? orl_fail(d->log, ORL_ERR_ARGUMENT, "%s: another oriel densify is at work here",
+                          workspace)
+               : result;
+}
+
 enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_names *photos,
                             const struct orl_densify_params *params,
                             const struct orl_progress *progress)
 {
     struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
-                          .progress = progress};
+                          .progress = progress, .lock_fd = -1};
     enum orl_result result = check_params(d.log, params);
+    if (result == ORL_OK)
+        result = lock_workspace(&d, workspace);
     if (result == ORL_OK)
         result = open_workspace(&d, workspace, photos);
     if (result == ORL_OK)
@@ -538,5 +553,6 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
     free(d.depth_dir);
     free(d.normal_dir);
     free(d.confidence_dir);
+    orl_unlock(&d.lock_fd);
     return result;
 }

@@ -39,7 +39,8 @@ struct orl_densify_params {
 // Photographs whose maps are already there are skipped when these were made from the same
 // photographs with the same settings, as stereo/densify.json says; else all maps are made again.
 // The same seed gives the same maps. Interrupted, it leaves whole files only.
-// ORL_ERR_ARGUMENT: there are maps that densify did not make.
+// ORL_ERR_ARGUMENT: there are maps that densify did not make, links in place of their folders, or
+// another densify is at work there.
 enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_names *photos,
                             const struct orl_densify_params *params,

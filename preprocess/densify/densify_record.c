@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <xxhash.h>
 
 #include "core/json.h"
@@ -122,6 +123,23 @@ static enum orl_result remove_maps(const struct orl_log *log, const char *worksp
     return result;
 }
 
+// Maps are removed and written below the workspace only.
+static enum orl_result refuse_links(const struct orl_log *log, const char *workspace)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i <= ORL_COUNT(map_dirs); i++) {
+        struct stat st;
+        char *path = orl_path_join(log, workspace, i ? map_dirs[i - 1] : "stereo");
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (lstat(path, &st) == 0 && !S_ISDIR(st.st_mode))
+            result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: a link or file in place of the folder of "
+                              "maps, which is not followed; remove it", path);
+        free(path);
+    }
+    return result;
+}
+
 enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *workspace,
                                        const struct densify_photos *photos,
                                        const struct orl_densify_params *params, int shrink)
@@ -133,7 +151,8 @@ enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *wo
     enum orl_result result = stereo && path ? ORL_OK : ORL_ERR_MEMORY;
     if (result != ORL_OK)
         goto end;
-    if ((result = make_record(log, workspace, photos, params, shrink, &record)) != ORL_OK ||
+    if ((result = refuse_links(log, workspace)) != ORL_OK ||
+        (result = make_record(log, workspace, photos, params, shrink, &record)) != ORL_OK ||
         (result = find_maps(log, workspace, photos, &any)) != ORL_OK)
         goto end;
     bool ours = orl_path_is_file(path);

@@ -16,7 +16,7 @@ done
 mkdir -p "$work"
 whole=$work/whole
 [ -e "$whole/scene.json" ] ||
-    "$oriel" prepare "$photos" --out "$whole" --test-list "$tests" --keep all "$@"
+    "$oriel" prepare "$photos" --out "$whole" --test-list "$tests" --keep all "$@" >/dev/null
 echo "confidence | full frame, dB | covered, dB | SSIM | points"
 for level in 0 "${levels[@]}"; do
     scene=$work/cut
@@ -24,7 +24,7 @@ for level in 0 "${levels[@]}"; do
     cp -a "$whole" "$scene"
     "$cut" "$scene" "$level" >"$work/cut-$level.txt"
     rm "$scene/.oriel/fused.ply"
-    "$oriel" prepare "$photos" --out "$scene" --test-list "$tests" --keep all --resume --quiet "$@"
+    "$oriel" prepare "$photos" --out "$scene" --test-list "$tests" --keep all --resume --quiet "$@" >/dev/null
     "$oriel" eval "$scene" --json "$work/eval-$level.json" --quiet >/dev/null
     points=$(grep -a -m 1 "element vertex" "$scene/points.ply" | tr -dc 0-9)
     awk -v level="$level" -v points="$points" '
