@@ -102,7 +102,7 @@ struct stage {
     enum orl_result (*run)(struct orl_job *job, json_t *record);
     const char *results[RESULTS_MAX + 1]; // files and folders that it leaves
     const char *tells; // of the record: what scene.json cannot be written without
-    bool repeatable;   // made again from the same it is the same, so what builds on it stays
+    bool repeatable;   // made again it should be the same, and then what builds on it stays
 };
 
 static const struct stage stages[ORL_STAGE_COUNT] = {
@@ -279,33 +279,63 @@ static double cpu_seconds(const struct rusage *usage)
            1e-6 * (double)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
 }
 
-static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id)
+static void add_usage(const struct orl_job *job, double start_s, const struct rusage *before,
+                      json_t *record)
 {
-    struct rusage before, after;
-    json_t *record = json_object();
-    if (!record)
-        return ORL_ERR_MEMORY;
-    double start = orl_time_s();
-    getrusage(RUSAGE_SELF, &before);
-    job->child_cpu_s = 0;
-    job->child_peak_bytes = 0;
-    json_object_set_new(record, "key", json_string(job->keys[id]));
-    enum orl_result result = stages[id].run(job, record);
-    json_t *files = json_object();
-    if (result == ORL_OK)
-        result = files ? orl_results_sum(job, stages[id].results, files) : ORL_ERR_MEMORY;
-    if (json_object_size(files))
-        json_object_set(record, "files", files);
-    json_decref(files);
+    struct rusage after;
     getrusage(RUSAGE_SELF, &after);
-    json_object_set_new(record, "wall_s", json_real(orl_time_s() - start));
-    json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(&before) +
+    json_object_set_new(record, "wall_s", json_real(orl_time_s() - start_s));
+    json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(before) +
                                                    job->child_cpu_s));
     // Of Oriel it is the peak since it started; children are new processes.
     json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
     json_object_set_new(record, "child_peak_rss_mib",
                         json_real((double)job->child_peak_bytes / (1 << 20)));
+}
+
+static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json_t *record)
+{
+    struct rusage before;
+    json_t *files = json_object();
+    double start = orl_time_s();
+    getrusage(RUSAGE_SELF, &before);
+    job->child_cpu_s = 0;
+    job->child_peak_bytes = 0;
+    json_object_set_new(record, "key", json_string(job->keys[id]));
+    enum orl_result result = files ? stages[id].run(job, record) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_results_sum(job, stages[id].results, files);
+    if (json_object_size(files))
+        json_object_set(record, "files", files);
+    json_decref(files);
+    add_usage(job, start, &before, record);
+    return result;
+}
+
+// What was made from another result than this is not current, whatever it was thought to be.
+static void drop_dependents(const struct orl_job *job, enum orl_stage_id id, bool *current)
+{
+    bool depends[ORL_STAGE_COUNT] = {0};
+    for (int i = (int)id + 1; i < ORL_STAGE_COUNT; i++) {
+        depends[i] = stages[i].needs == id || depends[stages[i].needs];
+        if (!depends[i])
+            continue;
+        current[i] = false;
+        json_object_del(done_stages(job), stages[i].name);
+    }
+}
+
+// `before`: the records of earlier runs. A stage's new record and the end of those that it makes
+// obsolete are saved as one.
+static enum orl_result redo_stage(struct orl_job *job, enum orl_stage_id id, const json_t *before,
+                                  bool *current)
+{
+    json_t *record = json_object();
+    enum orl_result result = record ? run_stage(job, id, record) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
+        const json_t *old = json_object_get(json_object_get(before, stages[id].name), "files");
+        if (!old || !json_equal(old, json_object_get(record, "files")))
+            drop_dependents(job, id, current);
         json_object_set(done_stages(job), stages[id].name, record);
         result = save_stages(job);
     }
@@ -316,7 +346,8 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id)
 enum orl_result orl_stages_run(struct orl_job *job)
 {
     bool current[ORL_STAGE_COUNT];
-    enum orl_result result = find_current(job, current);
+    json_t *before = json_deep_copy(done_stages(job));
+    enum orl_result result = before ? find_current(job, current) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = invalidate(job, current);
     for (int i = 1; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
@@ -325,8 +356,9 @@ enum orl_result orl_stages_run(struct orl_job *job)
         else if (current[i])
             orl_logf(job->log, ORL_LOG_INFO, "%s: done already", stages[i].name);
         else
-            result = run_stage(job, (enum orl_stage_id)i);
+            result = redo_stage(job, (enum orl_stage_id)i, before, current);
     }
+    json_decref(before);
     return result;
 }
 

@@ -130,6 +130,17 @@ run 0 info "$scene"
 says "points.ply: changed since the scene was prepared"
 damage points.ply radii ""
 
+# One that does not come out the same, here since the stereo found other points, takes what was
+# made from it along.
+DOUBLE_SHIFT=1 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+rm "$scene/.oriel/fused.ply"
+DOUBLE_SHIFT=2 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+says "fuse is done again"
+says "densify: done already"
+grep -q "radii: done already" "$work/err" && fail "points of another cloud were kept"
+[ "$(md5sum <"$scene/points.ply")" = "$sum" ] && fail "points.ply is that of another cloud"
+run 0 info "$scene" --check
+
 # Damaged records: what they tell is not believed, and the scene can be had again.
 for damaged in '' '{"version": 1}' '{"version": 1, "done": []}' '{"version": 1, "done": 7' '[]'; do
     echo "$damaged" >"$scene/.oriel/stages.json"
