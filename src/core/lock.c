@@ -22,9 +22,10 @@ enum orl_result orl_lock(const struct orl_log *log, const char *path, int *fd, b
 {
     *taken = false;
     for (int i = 0; i < TRIES; i++) {
-        *fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-        if (*fd < 0 && errno == ENOENT)
-            *fd = open(path, O_RDONLY | O_CREAT | O_CLOEXEC, 0666);
+        // Network drives lock only what is open for writing.
+        *fd = open(path, O_RDWR | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
+        if (*fd < 0 && errno == EISDIR)
+            *fd = open(path, O_RDONLY | O_CLOEXEC);
         if (*fd < 0)
             return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
         if (flock(*fd, LOCK_EX | LOCK_NB) != 0) {
