@@ -8,18 +8,18 @@
 enum { INPUTS_MAX = 4096 };
 
 struct options {
-    const char *out, *quality, *sharing, *matching, *densifier, *masks, *exposures;
+    const char *out, *quality, *sharing, *matching, *densifier, *keep, *masks, *exposures;
     int test_every, max_size, seed, max_vram_mib;
     struct orl_names test_list;
     bool resume;
 };
 
-// Index of `text` in the list; -1, logged with what is allowed, when it is not there.
+// Index of `text` in `names`, which end with NULL; -1, logged with what is allowed, when it is not there.
 static int choose(const struct orl_log *log, const char *option, const char *text,
-                  const char *const *names, size_t count)
+                  const char *const *names)
 {
     char all[256] = "";
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; names[i]; i++) {
         if (strcmp(names[i], text) == 0)
             return (int)i;
         size_t used = strlen(all);
@@ -32,20 +32,18 @@ static int choose(const struct orl_log *log, const char *option, const char *tex
 static bool choose_all(const struct orl_log *log, const struct options *o,
                        struct orl_prepare_params *params)
 {
-    static const char *const qualities[] = {"draft", "standard", "high"};
-    static const char *const sharings[] = {"auto", "single", "each"};
-    static const char *const matchings[] = {"auto", "exhaustive", "sequential"};
-    static const char *const densifiers[] = {"auto", "gl", "colmap"};
-    int quality = choose(log, "quality", o->quality, qualities, 3);
-    int sharing = choose(log, "camera-sharing", o->sharing, sharings, 3);
-    int matching = choose(log, "matching", o->matching, matchings, 3);
-    int densifier = choose(log, "densifier", o->densifier, densifiers, 3);
-    if (quality < 0 || sharing < 0 || matching < 0 || densifier < 0)
+    int quality = choose(log, "quality", o->quality, orl_quality_names);
+    int sharing = choose(log, "camera-sharing", o->sharing, orl_camera_sharing_names);
+    int matching = choose(log, "matching", o->matching, orl_matching_names);
+    int densifier = choose(log, "densifier", o->densifier, orl_densifier_names);
+    int keep = choose(log, "keep", o->keep, orl_keep_names);
+    if (quality < 0 || sharing < 0 || matching < 0 || densifier < 0 || keep < 0)
         return false;
     params->quality = (enum orl_quality)quality;
     params->sharing = (enum orl_camera_sharing)sharing;
     params->matching = (enum orl_matching)matching;
     params->densifier = (enum orl_densifier)densifier;
+    params->keep = (enum orl_keep)keep;
     return true;
 }
 
@@ -72,7 +70,7 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
 int cmd_prepare(int argc, char **argv)
 {
     struct options o = {.quality = "standard", .sharing = "auto", .matching = "auto",
-                        .densifier = "auto", .seed = 1};
+                        .densifier = "auto", .keep = "minimal", .seed = 1};
     const struct arg_option options[] = {
         {"out", ARG_STRING, &o.out, "SCENE", "the scene folder to make", 0, 0},
         {"test-every", ARG_INT, &o.test_every, "N", "hold out every N-th photograph by name",
@@ -91,6 +89,8 @@ int cmd_prepare(int argc, char **argv)
          "auto, exhaustive, or sequential (photographs in order of name)", 0, 0},
         {"densifier", ARG_STRING, &o.densifier, "NAME",
          "auto, gl (built in) or colmap (needs CUDA)", 0, 0},
+        {"keep", ARG_STRING, &o.keep, "WHAT",
+         "minimal (what commands read), or all: the stereo's maps too", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
          1 << 20},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},

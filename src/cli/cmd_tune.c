@@ -6,8 +6,9 @@
 
 #include "cli/commands.h"
 #include "cli/views.h"
+#include "core/json.h"
 #include "eval/tune.h"
-#include "scene/manifest.h"
+#include "scene/tuned_settings.h"
 
 struct options {
     const char *method, *json;
@@ -99,7 +100,7 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
     if (o->json)
         result = write_json(log, o, scene, device, tune, settings);
     if (result == ORL_OK && o->apply)
-        result = orl_manifest_write_tuned(log, scene->dir, method->name,
+        result = orl_tuned_write(log, scene->dir, method->name,
                                           record_json(o, tune, settings));
     json_decref(settings);
     return result;

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "scene/ground.h"
+#include "scene/ground_plane.h"
 #include "shared/interop.h"
 
 // Beyond this many times the height of the photographs, objects on the ground occlude it.
