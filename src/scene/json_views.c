@@ -1,5 +1,6 @@
 #include "scene/json_views.h"
 
+#include "core/image.h"
 #include "core/json.h"
 
 bool orl_json_rows(const json_t *array, size_t rows, size_t columns, double *out)
@@ -12,11 +13,16 @@ bool orl_json_rows(const json_t *array, size_t rows, size_t columns, double *out
     return true;
 }
 
+int orl_json_side(const json_t *entry, const char *key)
+{
+    json_int_t side = json_integer_value(json_object_get(entry, key));
+    return side >= 1 && side <= ORL_IMAGE_MAX_SIDE ? (int)side : 0;
+}
+
 bool orl_json_inria_view(const json_t *entry, struct orl_view *view)
 {
     double axes[3][3], centre[3];
-    int width = (int)json_integer_value(json_object_get(entry, "width"));
-    int height = (int)json_integer_value(json_object_get(entry, "height"));
+    int width = orl_json_side(entry, "width"), height = orl_json_side(entry, "height");
     view->camera = (struct orl_camera){
         .width = width, .height = height, .cx = 0.5 * width, .cy = 0.5 * height,
         .fx = json_number_value(json_object_get(entry, "fx")),

@@ -44,8 +44,8 @@ static enum orl_result read_own(const struct entry *e, const json_t *item,
         return bad(e, "\"t\" is not 3 numbers");
     if (distortion && (terms > ORL_COUNT(dist) || !orl_json_read_numbers(distortion, terms, dist)))
         return bad(e, "\"dist\" is not up to 8 numbers, k1 k2 p1 p2 k3 k4 k5 k6");
-    camera->width = (int)json_integer_value(json_object_get(item, "width"));
-    camera->height = (int)json_integer_value(json_object_get(item, "height"));
+    camera->width = orl_json_side(item, "width");
+    camera->height = orl_json_side(item, "height");
     // Pixels have right angles: what skew there is must not move one by half a pixel.
     if (!(fabs(k[0][1]) * camera->height <= fabs(k[1][1])))
         return bad(e, "\"K\" has a skew, which is not supported");

@@ -262,6 +262,9 @@ static void refuses_damage(void **state)
          ORL_ERR_FORMAT},
         {"cameras.json", "{\"cameras\": [{\"name\": \"a\", \"width\": 640, \"height\": 480, "
          "\"K\": [[500,40,320],[0,510,240],[0,0,1]], " POSE "}]}", "skew", ORL_ERR_FORMAT},
+        // 640 more than 32 bits hold.
+        {"cameras.json", "{\"cameras\": [{\"name\": \"a\", \"width\": 4294967936, \"height\": 480, "
+         K_MATRIX ", " POSE "}]}", "size is absurd", ORL_ERR_FORMAT},
         {"cameras.json", "{\"cameras\": [{\"name\": \"a\", \"width\": -1, \"height\": 480, "
          K_MATRIX ", " POSE "}]}", "size is absurd", ORL_ERR_FORMAT},
         {"cameras.json", "{\"cameras\": [{\"name\": \"a\", \"width\": 640, \"height\": 480, "
