@@ -28,6 +28,19 @@ ORL_BLOCK(splat_block)
 };
 #endif
 
+// The view that a mesh is drawn into.
+#if defined(__STDC_VERSION__) || defined(BLOCK_MESH)
+ORL_BLOCK(mesh_block)
+{
+    VEC4S(rotation, 3); // rows of cam_from_world's rotation
+    VEC4(eye);          // camera centre, world
+    VEC4(focal);        // fx fy cx cy, pixels
+    IVEC2(view_size);   // pixels
+    FLOAT(depth_near);  // least depth that is drawn
+    FLOAT(unused);
+};
+#endif
+
 // One level of the pyramid.
 #if defined(__STDC_VERSION__) || defined(BLOCK_PYRAMID)
 ORL_BLOCK(pyramid_block)

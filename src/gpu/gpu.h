@@ -153,7 +153,6 @@ struct orl_image_binding {
     const struct orl_tex *tex; // NULL: not bound
     int level;
     GLenum access;             // GL_READ_ONLY, GL_WRITE_ONLY or GL_READ_WRITE
-    int layer;                 // of an array: 0: all layers; n: layer n - 1 only
 };
 struct orl_buf_binding {
     const struct orl_buf *buf; // NULL: not bound
@@ -167,6 +166,7 @@ struct orl_dispatch {
     struct orl_buf_binding bufs[ORL_BINDINGS_MAX];
     const struct orl_tex *textures[ORL_BINDINGS_MAX];
     struct orl_image_binding images[ORL_BINDINGS_MAX];
+    int image_layers[ORL_BINDINGS_MAX]; // of arrays: 0: all layers; n: layer n - 1 only
     unsigned groups[3];        // work groups; 0 counts as 1
     const struct orl_buf *indirect; // NULL, or a buffer whose first three words are the groups
     GLbitfield barrier;        // glMemoryBarrier bits, applied after the dispatch

@@ -226,10 +226,11 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
         if (d->textures[i])
             glBindTextureUnit(i, d->textures[i]->id);
         const struct orl_image_binding *image = &d->images[i];
+        int layer = d->image_layers[i];
         if (image->tex)
             glBindImageTexture(i, image->tex->id, image->level,
-                               image->tex->params.layers > 0 && image->layer == 0,
-                               image->layer > 0 ? image->layer - 1 : 0, image->access,
+                               image->tex->params.layers > 0 && layer == 0,
+                               layer > 0 ? layer - 1 : 0, image->access,
                                image->tex->params.format);
     }
     if (d->indirect) {

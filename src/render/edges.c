@@ -54,12 +54,12 @@ void orl_edges_cut(const struct frame *frame, const struct orl_dispatch *choice)
     list(frame, orl_gather_prog(frame, "edges/silhouette_find.comp", NULL, NULL), &d);
     orl_tex_clear(frame->edges->votes, 0);
     d.prog = orl_gather_prog(frame, "edges/silhouette_judge.comp", NULL, NULL);
-    d.images[1] = (struct orl_image_binding){frame->edges->votes, 0, GL_WRITE_ONLY, 0};
+    d.images[1] = (struct orl_image_binding){frame->edges->votes, 0, GL_WRITE_ONLY};
     orl_gpu_dispatch(gpu, &d);
     d.prog = orl_prog_get(gpu, "edges/silhouette_cut.comp", NULL, NULL);
     d.images[0].access = GL_WRITE_ONLY;
     d.images[1].access = GL_READ_ONLY;
-    d.images[2] = (struct orl_image_binding){frame->surface.normal, 0, GL_WRITE_ONLY, 0};
+    d.images[2] = (struct orl_image_binding){frame->surface.normal, 0, GL_WRITE_ONLY};
     orl_gpu_dispatch(gpu, &d);
     orl_pass_end(gpu);
 }
@@ -72,7 +72,7 @@ void orl_edges_antialias(const struct frame *frame)
     struct orl_dispatch d = {.params = &block, .params_size = sizeof block,
                              .images = {{frame->surface.depth, 0, GL_READ_ONLY}}};
     list(frame, orl_prog_get(gpu, "edges/antialias_find.comp", NULL, NULL), &d);
-    d.images[0] = (struct orl_image_binding){frame->picture, 0, GL_READ_WRITE, 0};
+    d.images[0] = (struct orl_image_binding){frame->picture, 0, GL_READ_WRITE};
     d.prog = orl_prog_get(gpu, "edges/antialias.comp", NULL, half ? "HALF" : NULL);
     orl_gpu_dispatch(gpu, &d);
     d.prog = orl_prog_get(gpu, "edges/antialias.comp", NULL, half ? "WRITE 1\nHALF" : "WRITE");

@@ -59,7 +59,7 @@ static const struct selection *const selections[] = {&orl_select_all, &orl_selec
                                                     &orl_select_preselect, &orl_select_princ};
 static const struct painter *const painters[] = {&orl_paint_gather, &orl_paint_tiled,
                                                  &orl_paint_points};
-static const struct proxy_kind *const proxies[] = {&orl_proxy_splats};
+static const struct proxy_kind *const proxies[] = {&orl_proxy_splats, &orl_proxy_mesh};
 static const struct combine combines[] = {
     {"mean", .sweeps = 1},
     {"top", .sweeps = 2, .states = 2},

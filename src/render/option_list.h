@@ -16,7 +16,7 @@
 // clang-format off
 #define ORL_RENDER_OPTIONS(SLOT, CHOICE, NUMBER) \
     SLOT(proxy, "splats", "", \
-        "What stands for the scene's surfaces.") \
+        "What stands for the scene's surfaces: its points, or its triangle mesh.") \
     SLOT(paint, "gather", "", \
         "Who paints the picture: `gather` asks the photographs pixel by pixel, `tiled` asks " \
         "the best few photographs of each tile of the screen, and `points` takes the colours " \

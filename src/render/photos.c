@@ -224,7 +224,6 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
     orl_tex_destroy(gpu, &photos->depth);
     orl_tex_destroy(gpu, &photos->loading);
     free(photos->states);
-    free(photos->aspects);
     memset(photos, 0, sizeof *photos);
 }
 
@@ -374,7 +373,8 @@ static enum orl_result make_depth(const struct frame *frame, size_t index)
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "proxy/photo_holes.comp", NULL, NULL),
                              .params = &block, .params_size = sizeof block,
                              .images = {{surface.depth, 0, GL_READ_ONLY},
-                                        {photos->depth, 0, GL_WRITE_ONLY, state->slot + 1}},
+                                        {photos->depth, 0, GL_WRITE_ONLY}},
+                             .image_layers = {[1] = state->slot + 1},
                              .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
     orl_pixel_groups(surface.width, surface.height, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);

@@ -54,14 +54,13 @@ static size_t convex_hull(double (*points)[2], size_t count, double (*hull)[2])
     return k > 1 ? k - 1 : k; // the last is the first again
 }
 
-static size_t project(const struct orl_points *points, const struct orl_view *view,
-                      double (*out)[2])
+static size_t project(const struct proxy *proxy, const struct orl_view *view, double (*out)[2])
 {
-    size_t step = points->count / VERTICES_MAX + 1, count = 0;
+    size_t step = proxy->vertex_count / VERTICES_MAX + 1, count = 0;
     const struct orl_camera *c = &view->camera;
-    for (size_t i = 0; i < points->count; i += step) {
-        const double world[3] = {(double)points->position[i][0], (double)points->position[i][1],
-                                 (double)points->position[i][2]};
+    for (size_t i = 0; i < proxy->vertex_count; i += step) {
+        const float *v = proxy->vertices[i];
+        const double world[3] = {(double)v[0], (double)v[1], (double)v[2]};
         double q[3];
         orl_pose_apply(&view->cam_from_world, world, q);
         if (!(q[2] > 0))
@@ -102,17 +101,16 @@ static enum orl_result find_aspects(const struct frame *frame)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     const struct orl_scene *scene = frame->scene;
-    struct photos *photos = frame->photos;
     double(*points)[2] = orl_array(log, VERTICES_MAX + 1, sizeof *points);
     double(*hull)[2] = orl_array(log, 2 * VERTICES_MAX + 2, sizeof *hull);
-    photos->aspects = orl_array(log, scene->photo_count, sizeof *photos->aspects);
-    enum orl_result result = points && hull && photos->aspects ? ORL_OK : ORL_ERR_MEMORY;
+    frame->proxy->aspects = orl_array(log, scene->photo_count, sizeof *frame->proxy->aspects);
+    enum orl_result result = points && hull && frame->proxy->aspects ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         const struct orl_view *view = &scene->photos[i].view;
-        size_t count = project(&scene->points, view, points);
+        size_t count = project(frame->proxy, view, points);
         qsort(points, count, sizeof *points, compare_points);
         count = count ? convex_hull(points, count, hull) : 0;
-        describe(view, hull, count, &photos->aspects[i]);
+        describe(view, hull, count, &frame->proxy->aspects[i]);
     }
     free(points);
     free(hull);
@@ -128,20 +126,19 @@ static void view_direction(const struct frame *frame, double out[3])
     bool inside = true;
     orl_pose_centre(&frame->view->cam_from_world, eye);
     for (int k = 0; k < 3; k++)
-        inside = inside && eye[k] > frame->extent->low[k] && eye[k] < frame->extent->high[k];
+        inside = inside && eye[k] > frame->proxy->extent.low[k] && eye[k] < frame->proxy->extent.high[k];
     for (int k = 0; k < 3; k++)
-        out[k] = inside ? frame->view->cam_from_world.r[2][k] : frame->extent->centroid[k] - eye[k];
+        out[k] = inside ? frame->view->cam_from_world.r[2][k] : frame->proxy->extent.centroid[k] - eye[k];
     orl_normalize3(out);
 }
 
 // Adds the photograph that agrees best with a direction and is not chosen yet; false: none is left.
 static bool add_best(struct frame *frame, bool *taken, const double direction[3], bool extra)
 {
-    const struct photos *photos = frame->photos;
     double best = -2;
     size_t index = SIZE_MAX;
     for (size_t i = 0; i < frame->scene->photo_count; i++) {
-        double agrees = orl_dot3(direction, photos->aspects[i].direction);
+        double agrees = orl_dot3(direction, frame->proxy->aspects[i].direction);
         if (!taken[i] && agrees > best) {
             best = agrees;
             index = i;
@@ -161,7 +158,7 @@ static bool is_covered(const struct frame *frame, const double p[3], const doubl
 {
     for (size_t i = 0; i < frame->chosen_count; i++) {
         const struct orl_view *photo = &frame->scene->photos[frame->chosen[i]].view;
-        const double *d = frame->photos->aspects[frame->chosen[i]].direction;
+        const double *d = frame->proxy->aspects[frame->chosen[i]].direction;
         double in_view[3], world[3], q[3];
         for (int k = 0; k < 3; k++)
             in_view[k] = orl_dot3(frame->view->cam_from_world.r[k], d);
@@ -284,7 +281,7 @@ static void weigh(struct frame *frame, const double direction[3], bool *extra)
         extra[frame->chosen[i]] = true;
     qsort(frame->chosen, frame->chosen_count, sizeof *frame->chosen, by_index);
     for (size_t i = 0; i < frame->chosen_count; i++) {
-        const struct photo_aspect *aspect = &frame->photos->aspects[frame->chosen[i]];
+        const struct photo_aspect *aspect = &frame->proxy->aspects[frame->chosen[i]];
         double agrees = fmax(orl_dot3(direction, aspect->direction), 1e-3);
         float *selected = frame->selected[i];
         selected[0] = (float)(agrees * aspect->share) * (extra[frame->chosen[i]] ? EXTRA_WEIGHT : 1);
@@ -297,7 +294,7 @@ static void weigh(struct frame *frame, const double direction[3], bool *extra)
 static enum orl_result choose(struct frame *frame, size_t most)
 {
     (void)most; // more than are on the device at once are asked in turns
-    enum orl_result result = frame->photos->aspects ? ORL_OK : find_aspects(frame);
+    enum orl_result result = frame->proxy->aspects ? ORL_OK : find_aspects(frame);
     bool *taken = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count, sizeof *taken);
     double direction[3];
     if (result == ORL_OK && !taken)

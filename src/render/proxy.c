@@ -1,15 +1,41 @@
 #include "render/proxy.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
 
 #include "render/method.h"
 
+static void find_extent(struct proxy *proxy)
+{
+    struct proxy_extent *extent = &proxy->extent;
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY, sum = 0;
+        for (size_t i = 0; i < proxy->vertex_count; i++) {
+            double x = (double)proxy->vertices[i][k];
+            low = x < low ? x : low;
+            high = x > high ? x : high;
+            sum += x;
+        }
+        if (!(low <= high))
+            continue;
+        extent->low[k] = low;
+        extent->high[k] = high;
+        extent->centroid[k] = sum / (double)proxy->vertex_count;
+    }
+}
+
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                  const struct proxy_kind *kind, struct proxy *proxy)
 {
     *proxy = (struct proxy){.kind = kind};
-    return kind->create(gpu, scene, &proxy->state);
+    enum orl_result result = kind->create(gpu, scene, &proxy->state);
+    if (result == ORL_OK) {
+        kind->vertices(proxy->state, scene, &proxy->vertices, &proxy->vertex_count);
+        find_extent(proxy);
+    }
+    return result;
 }
 
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
@@ -19,6 +45,7 @@ void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
     proxy->kind->free_target(gpu, &proxy->view_target);
     proxy->kind->free_target(gpu, &proxy->photo_target);
     proxy->kind->destroy(gpu, &proxy->state);
+    free(proxy->aspects);
     memset(proxy, 0, sizeof *proxy);
 }
 

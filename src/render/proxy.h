@@ -15,6 +15,9 @@ struct surface {
 struct proxy_kind {
     const char *name;
     enum orl_result (*create)(struct orl_gpu *gpu, const struct orl_scene *scene, void **state);
+    // Its vertices, which live as long as the state and the scene.
+    void (*vertices)(const void *state, const struct orl_scene *scene, const float (**vertices)[3],
+                     size_t *count);
     void (*destroy)(struct orl_gpu *gpu, void **state);
     // Allocates `target` (NULL at first) for the size. Does nothing if the size is unchanged.
     enum orl_result (*resize)(struct orl_gpu *gpu, const void *state, int width, int height,
@@ -34,10 +37,27 @@ struct proxy_kind {
                   const void *target, struct orl_tex *color);
 };
 extern const struct proxy_kind orl_proxy_splats; // splats.c
+extern const struct proxy_kind orl_proxy_mesh;   // mesh_proxy.c
+
+// Extent of the proxy's vertices, world.
+struct proxy_extent {
+    double low[3], high[3]; // bounding box; 0 without vertices
+    double centroid[3];     // mean of the vertices
+};
+
+// What a photograph shows of the proxy (Princ 2014, 2.3.2).
+struct photo_aspect {
+    double direction[3]; // world, unit length: through the middle of the vertices' convex hull
+    double share;        // of the picture that the hull covers, [0, 1]
+};
 
 // A proxy of the scene, with one target for views and one for photographs.
 struct proxy {
     const struct proxy_kind *kind;
+    const float (*vertices)[3]; // world; owned by the state or the scene
+    size_t vertex_count;
+    struct proxy_extent extent;
+    struct photo_aspect *aspects; // owned, one per photograph; NULL until princ.c needs them
     void *state, *view_target, *photo_target;
 };
 

@@ -1,5 +1,4 @@
 // Renders a frame: surface, painter, post passes, read-back.
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,11 +13,14 @@
 #include "render/read_back.h"
 #include "render/soften.h"
 
+enum { PROXIES_MAX = 4 };
+
 // The state that outlives a frame.
 struct orl_renderer {
     struct orl_gpu *gpu;
     const struct orl_scene *scene;
-    struct proxy proxy;
+    struct proxy proxies[PROXIES_MAX]; // of the kinds used so far; the first is the points
+    size_t proxy_count;
     struct photos photos;
     struct fill fill;
     struct soften soften;
@@ -27,7 +29,6 @@ struct orl_renderer {
     struct orl_tex *picture, *trusted, *states[2]; // textures of struct frame
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
-    struct scene_extent extent;
     struct orl_image staging; // for read_back.h
 };
 
@@ -46,7 +47,7 @@ static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *pro
 
 static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
 {
-    size_t fixed = fixed_bytes(r->scene, &r->proxy);
+    size_t fixed = fixed_bytes(r->scene, &r->proxies[0]);
     size_t budget = max_vram_bytes > fixed ? max_vram_bytes - fixed : 1;
     orl_logf(orl_gpu_log(r->gpu), ORL_LOG_INFO,
              "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
@@ -54,23 +55,21 @@ static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
     return budget;
 }
 
-static void find_extent(const struct orl_points *points, struct scene_extent *extent)
+// The proxy of this kind, made when it is first asked for.
+static enum orl_result find_proxy(struct orl_renderer *r, const struct proxy_kind *kind,
+                                  struct proxy **proxy)
 {
-    memset(extent, 0, sizeof *extent);
-    for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY, sum = 0;
-        for (size_t i = 0; i < points->count; i++) {
-            double x = (double)points->position[i][k];
-            low = x < low ? x : low;
-            high = x > high ? x : high;
-            sum += x;
-        }
-        if (!(low <= high))
-            continue;
-        extent->low[k] = low;
-        extent->high[k] = high;
-        extent->centroid[k] = sum / (double)points->count;
+    for (size_t i = 0; i < r->proxy_count; i++) {
+        *proxy = &r->proxies[i];
+        if ((*proxy)->kind == kind)
+            return ORL_OK;
     }
+    ORL_REQUIRE(orl_gpu_log(r->gpu), r->proxy_count < PROXIES_MAX);
+    *proxy = &r->proxies[r->proxy_count];
+    enum orl_result result = orl_proxy_create(r->gpu, r->scene, kind, *proxy);
+    if (result == ORL_OK)
+        r->proxy_count++;
+    return result;
 }
 
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -88,10 +87,10 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     r->scene = scene;
     r->chosen = orl_array(log, scene->photo_count, sizeof *r->chosen);
     r->selected = orl_array(log, scene->photo_count, sizeof *r->selected);
+    struct proxy *splats;
     enum orl_result result = r->chosen && r->selected ? ORL_OK : ORL_ERR_MEMORY;
-    find_extent(&scene->points, &r->extent);
     if (result == ORL_OK)
-        result = orl_proxy_create(gpu, scene, &orl_proxy_splats, &r->proxy);
+        result = find_proxy(r, &orl_proxy_splats, &splats);
     if (result == ORL_OK)
         result = orl_photos_init(gpu, scene, params,
                                  params->max_vram_bytes ? photo_budget(r, params->max_vram_bytes)
@@ -109,7 +108,8 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     struct orl_renderer *r = *renderer;
     if (!r)
         return;
-    orl_proxy_finish(r->gpu, &r->proxy);
+    for (size_t i = 0; i < r->proxy_count; i++)
+        orl_proxy_finish(r->gpu, &r->proxies[i]);
     orl_photos_finish(r->gpu, &r->photos);
     orl_fill_finish(r->gpu, &r->fill);
     orl_soften_finish(r->gpu, &r->soften);
@@ -190,16 +190,17 @@ static enum orl_result draw(struct frame *frame, bool normals)
     return result;
 }
 
-static struct frame start_frame(struct orl_renderer *r, const struct orl_view *view,
+static struct frame start_frame(struct orl_renderer *r, struct proxy *proxy,
+                                const struct orl_view *view,
                                 const struct orl_render_params *params, const bool *skip)
 {
     return (struct frame){
         .gpu = r->gpu, .scene = r->scene, .view = view, .params = params, .skip = skip,
         .radiance = r->photos.radiance,
         .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
-        .proxy = &r->proxy, .proxy_key = orl_proxy_key(&r->proxy, params), .photos = &r->photos,
+        .proxy = proxy, .proxy_key = orl_proxy_key(proxy, params), .photos = &r->photos,
         .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges,
-        .chosen = r->chosen, .selected = r->selected, .extent = &r->extent};
+        .chosen = r->chosen, .selected = r->selected};
 }
 
 void orl_frame_finish(struct orl_frame *frame)
@@ -224,7 +225,11 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
     enum orl_result result = orl_render_params_check(log, params);
     if (result != ORL_OK)
         return result;
-    struct frame frame = start_frame(r, view, params, skip);
+    struct proxy *proxy;
+    result = find_proxy(r, orl_proxy_kind_of(params), &proxy);
+    if (result != ORL_OK)
+        return result;
+    struct frame frame = start_frame(r, proxy, view, params, skip);
     result = resize(r, &frame);
     frame.picture = r->picture;
     frame.trusted = r->trusted;

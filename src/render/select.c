@@ -39,7 +39,7 @@ static double deviation(const struct frame *frame, size_t photo)
     orl_pose_centre(&frame->view->cam_from_world, eye);
     orl_pose_centre(&frame->scene->photos[photo].view.cam_from_world, other);
     for (int k = 0; k < 3; k++) {
-        double centre = 0.5 * (frame->extent->low[k] + frame->extent->high[k]);
+        double centre = 0.5 * (frame->proxy->extent.low[k] + frame->proxy->extent.high[k]);
         double u = eye[k] - centre, v = other[k] - centre;
         uu += u * u;
         vv += v * v;

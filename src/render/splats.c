@@ -20,6 +20,14 @@ static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene
     return result;
 }
 
+static void vertices(const void *state, const struct orl_scene *scene, const float (**out)[3],
+                     size_t *count)
+{
+    (void)state;
+    *out = (const float(*)[3])scene->points.position;
+    *count = scene->points.count;
+}
+
 static void destroy(struct orl_gpu *gpu, void **state)
 {
     if (*state)
@@ -209,7 +217,7 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
                                             {chunk->enlarged_texels, 0, GL_READ_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
         if (chunks)
-            d.images[7] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE, 0};
+            d.images[7] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
         orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }
@@ -252,12 +260,12 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
     if (level) {
-        d.images[2] = (struct orl_image_binding){t->surfel_a[level], 0, GL_READ_WRITE, 0};
-        d.images[3] = (struct orl_image_binding){t->surfel_b[level], 0, GL_WRITE_ONLY, 0};
+        d.images[2] = (struct orl_image_binding){t->surfel_a[level], 0, GL_READ_WRITE};
+        d.images[3] = (struct orl_image_binding){t->surfel_b[level], 0, GL_WRITE_ONLY};
     } else {
-        d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY, 0};
-        d.images[3] = (struct orl_image_binding){depth, 0, GL_READ_WRITE, 0};
-        d.images[4] = (struct orl_image_binding){t->normal, 0, GL_WRITE_ONLY, 0};
+        d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY};
+        d.images[3] = (struct orl_image_binding){depth, 0, GL_READ_WRITE};
+        d.images[4] = (struct orl_image_binding){t->normal, 0, GL_WRITE_ONLY};
     }
     set_level(block, level ? t->surfel_a[level] : t->splats, level);
     // One invocation handles one corner of the coarse level's pixels.
@@ -336,6 +344,6 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
 }
 
 const struct proxy_kind orl_proxy_splats = {
-    .name = "splats", .create = create, .destroy = destroy, .resize = resize,
+    .name = "splats", .create = create, .vertices = vertices, .destroy = destroy, .resize = resize,
     .free_target = free_target, .target_bytes = target_bytes, .draw = draw, .color = color,
 };

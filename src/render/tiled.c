@@ -35,9 +35,9 @@ static void gather_tiles(const struct frame *frame, bool many, struct orl_dispat
     const char *defines = bicubic ? many ? "BICUBIC 1\nKEPT 4" : "BICUBIC 1\nKEPT 2"
                                   : many ? "KEPT 4" : "KEPT 2";
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
-    d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY, 0};
-    d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY, 0};
-    d.images[3] = (struct orl_image_binding){frame->soften->guesses, 0, GL_WRITE_ONLY, 0};
+    d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
+    d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
+    d.images[3] = (struct orl_image_binding){frame->soften->guesses, 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                 GL_COMMAND_BARRIER_BIT;
     // One invocation handles 2x2 pixels.

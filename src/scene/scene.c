@@ -12,6 +12,12 @@
 #include "scene/manifest.h"
 #include "scene/point_radii.h"
 
+// A still scene, zeroed but for what its maker sets, has no moments.
+static bool shows_moment(const struct orl_scene *scene)
+{
+    return scene->frame_count > 0 && scene->frame >= 0;
+}
+
 static enum orl_result set_photo(const struct orl_log *log, const char *dir,
                                  const struct orl_colmap_model *model,
                                  const struct orl_colmap_image *image, struct orl_photo *photo)
@@ -40,7 +46,7 @@ static enum orl_result check_photo_files(const struct orl_log *log, struct orl_s
                                                     "%s: this photograph is missing", path);
         free(path);
         path = orl_scene_linear_path(log, scene, i);
-        scene->photos[i].linear = scene->frame < 0 && path && orl_path_is_file(path);
+        scene->photos[i].linear = !shows_moment(scene) && path && orl_path_is_file(path);
         if (!path)
             result = ORL_ERR_MEMORY;
         free(path);
@@ -400,7 +406,7 @@ static char *moment_path(const struct orl_log *log, const struct orl_scene *scen
                          const char *folder, size_t photo, const char *ending)
 {
     char frame[32] = "";
-    if (scene->frame >= 0)
+    if (shows_moment(scene))
         snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
     return orl_format(log, "%s/%s%s/%s%s", scene->dir, frame, folder, scene->photos[photo].name,
                       ending);

@@ -1,0 +1,150 @@
+// A mesh as the proxy: depth, normals and the depth test of triangles whose answers are known, and
+// photographs painted on them.
+#include <math.h>
+
+#include "render/proxy.h"
+#include "scene/mesh.h"
+#include "wall_scene.h"
+
+enum { W = 40, H = 30 };
+
+static struct orl_gpu *gpu;
+
+// A slanted square through (0, 0, 4) whose depth grows by half a unit per unit of x, and a small
+// triangle at z = 2 before its middle, listed first and last so that order does not matter.
+static void write_mesh(const char *dir)
+{
+    static const float square[4][3] = {{-3, -3, 2.5f}, {3, -3, 5.5f}, {3, 3, 5.5f}, {-3, 3, 2.5f}};
+    static const float small[3][3] = {{-0.2f, -0.2f, 2}, {0.2f, -0.2f, 2}, {0, 0.2f, 2}};
+    static const uint32_t faces[3][3] = {{4, 5, 6}, {0, 1, 2}, {0, 2, 3}};
+    struct orl_mesh mesh;
+    assert_int_equal(orl_mesh_init(NULL, &mesh, 7, 3), ORL_OK);
+    memcpy(mesh.position, square, sizeof square);
+    memcpy(mesh.position + 4, small, sizeof small);
+    memcpy(mesh.triangle, faces, sizeof faces);
+    char *path = orl_path_join(NULL, dir, "mesh.ply");
+    assert_int_equal(orl_mesh_write(NULL, path, &mesh), ORL_OK);
+    free(path);
+    orl_mesh_finish(&mesh);
+}
+
+static struct orl_view view_of(void)
+{
+    struct orl_view view = look_from(0, 0, 0, W, 20);
+    view.camera.height = H;
+    view.camera.cy = 0.5 * H;
+    return view;
+}
+
+static void triangles_have_their_depth_and_normal(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    write_mesh(f.dir);
+    struct orl_view view = view_of();
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    struct proxy proxy;
+    struct surface surface;
+    static float depth[W * H], normal[W * H][4];
+    assert_int_equal(orl_proxy_create(gpu, &f.scene, &orl_proxy_mesh, &proxy), ORL_OK);
+    assert_int_equal(proxy.vertex_count, 7);
+    assert_float_equal(proxy.extent.low[2], 2, 0);
+    assert_float_equal(proxy.extent.high[0], 3, 0);
+    assert_int_equal(orl_proxy_draw(gpu, &proxy, &view, &params, true, &proxy.view_target, &surface),
+                     ORL_OK);
+    orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    orl_tex_read(surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal, normal);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+    // A ray (u, v, 1) meets z = 4 + x / 2 at z = 4 / (1 - u / 2).
+    for (int y = 2; y < H - 2; y++)
+        for (int x = 2; x < W - 2; x++) {
+            double u = (x + 0.5 - W / 2) / 20, v = (y + 0.5 - H / 2) / 20, z = 4 / (1 - u / 2);
+            const float *n = normal[y * W + x];
+            if (fabs(u * z) > 2.9 || fabs(v * z) > 2.9 || hypot(u, v) < 0.15)
+                continue;
+            assert_float_equal(depth[y * W + x], z, 1e-4 * z);
+            assert_float_equal(n[0], 0.5 / hypot(0.5, 1), 2e-3);
+            assert_float_equal(n[2], -1 / hypot(0.5, 1), 2e-3);
+            assert_float_equal(n[3], 1, 0);
+        }
+    assert_float_equal(depth[H / 2 * W + W / 2], 2, 1e-4);
+    orl_proxy_finish(gpu, &proxy);
+    teardown(&f);
+}
+
+static void nothing_is_where_no_triangle_is(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    write_mesh(f.dir);
+    struct orl_view view = view_of();
+    view.cam_from_world = (struct orl_pose){.r = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    struct proxy proxy;
+    struct surface surface;
+    static float depth[W * H];
+    assert_int_equal(orl_proxy_create(gpu, &f.scene, &orl_proxy_mesh, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_draw(gpu, &proxy, &view, &params, true, &proxy.view_target, &surface),
+                     ORL_OK);
+    orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
+    for (int i = 0; i < W * H; i++)
+        assert_float_equal(depth[i], 0, 0);
+    orl_proxy_finish(gpu, &proxy);
+    teardown(&f);
+}
+
+// The small triangle hides the square from one photograph, which does not paint it there.
+static void every_method_paints_a_mesh(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    write_mesh(f.dir);
+    add_photo(&f, look_from(0.3, 0, 0, W, 20), green);
+    add_photo(&f, look_from(-0.3, 0, 0, W, 20), green);
+    for (const struct orl_method *m = orl_methods; m->name; m++) {
+        struct orl_render_params params = m->params;
+        if (strcmp(params.paint, "points") == 0)
+            continue;
+        assert_int_equal(orl_render_params_set(NULL, &params, "proxy=mesh"), ORL_OK);
+        struct orl_frame frame = draw(gpu, &f, view_of(), &params, 0);
+        assert_float_equal(color_at(&frame, 10, H / 2)[1], 1, 0.01);
+        assert_float_equal(frame.coverage.f32[H / 2 * W + 10], 1, 0);
+        assert_float_equal(frame.depth.f32[H / 2 * W + W / 2], 2, 1e-3);
+        orl_frame_finish(&frame);
+    }
+    teardown(&f);
+}
+
+static void a_scene_without_mesh_says_so(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    struct orl_renderer *renderer;
+    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+    struct orl_view view = view_of();
+    struct orl_frame frame;
+    assert_int_equal(orl_render_params_set(NULL, &params, "proxy=mesh"), ORL_OK);
+    add_photo(&f, view, red);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, &frame), ORL_ERR_NOT_FOUND);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(triangles_have_their_depth_and_normal),
+        cmocka_unit_test(nothing_is_where_no_triangle_is),
+        cmocka_unit_test(every_method_paints_a_mesh),
+        cmocka_unit_test(a_scene_without_mesh_says_so),
+    };
+    int failed = cmocka_run_group_tests_name("mesh proxy", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
