@@ -129,11 +129,11 @@ static void print_memory(const struct orl_bench *bench)
 
 static void print_run(const struct orl_bench_run *run, const char *what)
 {
-    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, what, run->frame_ms,
-           run->slowest_ms, run->frame_ms > 0 ? 1e3 / run->frame_ms : 0.0, run->frames,
+    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, what, run->timing.median_ms,
+           run->timing.slowest_ms, run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, run->timing.frames,
            mib(run->device_bytes));
-    for (size_t i = 0; i < run->pass_count; i++)
-        printf("%s %s %.2f", i ? "," : "", run->passes[i].name, run->passes[i].ms);
+    for (size_t i = 0; i < run->timing.pass_count; i++)
+        printf("%s %s %.2f", i ? "," : "", run->timing.passes[i].name, run->timing.passes[i].ms);
     if (run->psnr_db > 0)
         printf("; %.1f dB to full size", run->psnr_db);
     printf("\n");

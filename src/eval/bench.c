@@ -136,9 +136,9 @@ static enum orl_result add_raster(struct bench_job *job, const struct orl_points
 static double splat_ms(const struct orl_bench_run *run)
 {
     double sum = 0;
-    for (size_t i = 0; i < run->pass_count; i++)
-        if (strncmp(run->passes[i].name, "splat", 5) == 0)
-            sum += run->passes[i].ms;
+    for (size_t i = 0; i < run->timing.pass_count; i++)
+        if (strncmp(run->timing.passes[i].name, "splat", 5) == 0)
+            sum += run->timing.passes[i].ms;
     return sum;
 }
 
@@ -292,7 +292,7 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
     struct bench_job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .scene = scene,
                             .params = params, .bench = bench};
     ORL_REQUIRE(job.log, params->size_count > 0 && params->method_count > 0);
-    ORL_REQUIRE(job.log, params->frames_max >= BENCH_VIEWS_MAX);
+    ORL_REQUIRE(job.log, params->frames_max >= ORL_TIMING_FRAMES_MIN);
     memset(bench, 0, sizeof *bench);
     bench->scene = scene;
     describe(&job);

@@ -4,9 +4,10 @@
 #define ORL_EVAL_BENCH_H
 
 #include "core/progress.h"
+#include "eval/timing.h"
 #include "render/render.h"
 
-enum { ORL_BENCH_PASSES_MAX = 32, ORL_BENCH_MEMORY_MAX = 64 };
+enum { ORL_BENCH_MEMORY_MAX = 64 };
 
 enum orl_bench_kind {
     ORL_BENCH_SIZES,       // of the picture: table 2
@@ -16,23 +17,16 @@ enum orl_bench_kind {
     ORL_BENCH_KIND_COUNT
 };
 
-// One configuration. Times are medians over frames, in milliseconds.
+// One configuration.
 struct orl_bench_run {
     enum orl_bench_kind kind;
     const char *method;
     int width, height;          // of the picture
     size_t photographs, points;
     int photo_divide;           // photographs at 1/n of their size
-    size_t frames;              // behind each median
-    double frame_ms;            // from the call until the device is done, no reading back
-    double slowest_ms;          // of those frames
+    struct orl_timing timing;
     size_t device_bytes;
     double psnr_db;             // RESOLUTION, first method: against full size; else 0
-    struct {
-        const char *name;
-        double ms;
-    } passes[ORL_BENCH_PASSES_MAX]; // timed in frames of their own
-    size_t pass_count;
 };
 
 // Compute splatting beside the graphics pipeline's GL_POINTS with depth test.

@@ -53,10 +53,10 @@ static enum orl_result plot_passes(const struct orl_log *log, const struct orl_b
         const struct orl_bench_run *run = &bench->runs[i];
         if (run->kind != ORL_BENCH_SIZES)
             continue;
-        for (size_t k = 0; k < run->pass_count; k++) {
-            size_t part = part_of(run->passes[k].name, parts, &part_count);
+        for (size_t k = 0; k < run->timing.pass_count; k++) {
+            size_t part = part_of(run->timing.passes[k].name, parts, &part_count);
             if (part < PARTS_MAX)
-                table[row_count][part] = run->passes[k].ms;
+                table[row_count][part] = run->timing.passes[k].ms;
         }
         snprintf(names[row_count], NAME_MAX_BYTES, "%s, %dx%d", run->method, run->width,
                  run->height);
@@ -144,7 +144,7 @@ static void collect(const struct orl_bench *bench, enum orl_bench_kind kind, str
         snprintf(label, sizeof label, "%.0f MiB", (double)run->device_bytes / (1 << 20));
         bool labelled = kind == ORL_BENCH_RESOLUTION && strcmp(run->method,
                                                                bench->runs[0].method) == 0;
-        add_dot(c, run->method, x_of(run), run->frame_ms, labelled ? label : NULL);
+        add_dot(c, run->method, x_of(run), run->timing.median_ms, labelled ? label : NULL);
     }
 }
 
