@@ -104,18 +104,15 @@ static double mib(size_t bytes)
 
 static void print_memory(const struct orl_bench *bench)
 {
-    static const char *const owners[] = {"points", "photographs", "frame"};
     size_t all = 0;
     printf("\n%-14s %10s   %s\n", "memory", "MiB", "of");
-    for (size_t k = 0; k < ORL_COUNT(owners); k++) {
+    for (int owner = 0; owner < ORL_OWNER_COUNT; owner++) {
         size_t sum = 0;
         for (size_t i = 0; i < bench->memory_count; i++)
-            if (strcmp(orl_bench_owner(bench->memory[i].tag), owners[k]) == 0)
-                sum += bench->memory[i].bytes;
-        printf("%-14s %10.1f  ", owners[k], mib(sum));
+            sum += (int)bench->memory[i].owner == owner ? bench->memory[i].bytes : 0;
+        printf("%-14s %10.1f  ", orl_owner_names[owner], mib(sum));
         for (size_t i = 0, first = 1; i < bench->memory_count; i++)
-            if (strcmp(orl_bench_owner(bench->memory[i].tag), owners[k]) == 0 &&
-                bench->memory[i].bytes > 1 << 16) {
+            if ((int)bench->memory[i].owner == owner && bench->memory[i].bytes > 1 << 16) {
                 printf("%s %s %.1f", first ? "" : ",", bench->memory[i].tag,
                        mib(bench->memory[i].bytes));
                 first = 0;

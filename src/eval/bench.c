@@ -13,13 +13,6 @@
 #include "eval/metrics.h"
 #include "io/picture.h"
 
-const char *orl_bench_owner(const char *tag)
-{
-    if (strncmp(tag, "point ", 6) == 0)
-        return "points";
-    return strncmp(tag, "photograph", 10) == 0 ? "photographs" : "frame";
-}
-
 // --- one configuration ---
 
 static enum orl_result add_run(struct bench_job *job, const struct orl_bench_run *run)

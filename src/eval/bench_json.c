@@ -52,8 +52,8 @@ static json_t *memory_json(const struct orl_bench *bench)
     json_t *array = json_array();
     for (size_t i = 0; i < bench->memory_count; i++)
         json_array_append_new(array, json_pack(
-            "{s:s, s:s, s:I, s:I}", "owner", orl_bench_owner(bench->memory[i].tag), "tag",
-            bench->memory[i].tag, "bytes", (json_int_t)bench->memory[i].bytes, "objects",
+            "{s:s, s:s, s:I, s:I}", "owner", orl_owner_names[bench->memory[i].owner],
+            "tag", bench->memory[i].tag, "bytes", (json_int_t)bench->memory[i].bytes, "objects",
             (json_int_t)bench->memory[i].objects));
     return array;
 }
