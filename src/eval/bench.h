@@ -4,6 +4,7 @@
 #define ORL_EVAL_BENCH_H
 
 #include "core/progress.h"
+#include "eval/choice.h"
 #include "eval/timing.h"
 #include "render/render.h"
 
@@ -37,9 +38,8 @@ struct orl_bench_raster {
 };
 
 struct orl_bench_params {
-    const char *const *methods; // names
-    const struct orl_render_params *render; // of each method
-    size_t method_count;
+    const struct orl_choice *choices;
+    size_t choice_count;
     const int (*sizes)[2]; // width, height; growth is measured at the first
     size_t size_count;
     const size_t *point_counts; // of the growth with points, ended by 0; NULL: an eighth, a

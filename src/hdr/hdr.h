@@ -14,9 +14,8 @@ enum orl_hdr_merge {
     ORL_HDR_SERIES,
     ORL_HDR_MERGE_COUNT
 };
-// ORL_ERR_ARGUMENT names what there is.
-enum orl_result orl_hdr_merge_find(const struct orl_log *log, const char *name,
-                                   enum orl_hdr_merge *merge) ORL_CHECK_RESULT;
+// By enum orl_hdr_merge, ended by NULL.
+extern const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1];
 
 struct orl_hdr_params {
     enum orl_hdr_merge merge;

@@ -70,7 +70,7 @@ grep -q '^radiance' stdout.txt || fail "no table of radiance"
 runs 2 "$oriel" eval ws --merge fused --textures bc7
 grep -q 'without --textures' stderr.txt || fail "does not say that --merge ignores --textures"
 runs 2 "$oriel" eval ws --merge added
-grep -q 'fused series' stderr.txt || fail "does not list the merges"
+grep -q 'fused, series' stderr.txt || fail "does not list the merges"
 runs 2 "$oriel" eval ws --truth nowhere
 grep -q 'nowhere/synth.json' stderr.txt || fail "does not name the missing truth"
 
