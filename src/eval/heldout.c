@@ -11,9 +11,8 @@ enum { METRIC_SIDE = 11 }; // SSIM's window
 
 // --- the photograph ---
 
-// Averages n x n pixels in linear light; the rest of a row or column is left out.
-static enum orl_result shrink(const struct orl_log *log, const struct orl_image *from, int n,
-                              struct orl_image *to)
+enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_image *from, int n,
+                                   struct orl_image *to)
 {
     float linear[256];
     enum orl_result result =
@@ -34,7 +33,7 @@ static enum orl_result shrink(const struct orl_log *log, const struct orl_image 
     return result;
 }
 
-// The camera of the picture that shrink() makes: what is cut off moves nothing.
+// The camera of the picture that orl_heldout_shrink makes: what is cut off moves nothing.
 static struct orl_camera shrunk_camera(const struct orl_camera *c, int n)
 {
     return (struct orl_camera){.width = c->width / n, .height = c->height / n, .fx = c->fx / n,
@@ -68,10 +67,11 @@ enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_sce
         heldout->picture = full;
         memset(&full, 0, sizeof full);
     } else if (result == ORL_OK) {
-        result = shrink(log, &full, n, &heldout->picture);
+        result = orl_heldout_shrink(log, &full, n, &heldout->picture);
     }
     orl_image_finish(&full);
     heldout->photo = photo;
+    heldout->divide = n;
     heldout->view = (struct orl_view){shrunk_camera(&view->camera, n), view->cam_from_world};
     return result;
 }

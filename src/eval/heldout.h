@@ -8,6 +8,7 @@
 // A photograph that a rendering is compared with.
 struct orl_heldout {
     size_t photo;             // index in the scene
+    int divide;               // the picture is at 1/divide of the photograph's size
     struct orl_view view;     // to render it from
     struct orl_image picture; // owned: the photograph, U8 x3, of the view's size
 };
@@ -17,6 +18,10 @@ struct orl_heldout {
 enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_scene *scene,
                                  size_t photo, int divide,
                                  struct orl_heldout *heldout) ORL_CHECK_RESULT;
+// Averages divide x divide pixels in linear light, as photographs are; the rest of a row or
+// column is left out. U8 x3.
+enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_image *from,
+                                   int divide, struct orl_image *to) ORL_CHECK_RESULT;
 void orl_heldout_finish(struct orl_heldout *heldout);
 
 // What the photograph's camera would have shown of a rendering of its view: `color` (F32 x3,
