@@ -6,18 +6,21 @@
 static json_t *passes_json(const struct orl_bench_run *run)
 {
     json_t *passes = json_object();
-    for (size_t i = 0; i < run->timing.pass_count; i++)
-        json_object_set_new(passes, run->timing.passes[i].name, json_real(run->timing.passes[i].ms));
+    for (size_t i = 0; i < run->timing.pass_count; i++) {
+        const struct orl_timing_pass *pass = &run->timing.passes[i];
+        json_object_set_new(passes, pass->name, json_real(pass->ms));
+    }
     return passes;
 }
 
 static json_t *run_json(const struct orl_bench_run *run)
 {
     json_t *object = json_pack(
-        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:I, s:o}", "method", run->method,
+        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:I, s:o}", "method", run->method,
         "size", run->width, run->height, "photographs", (json_int_t)run->photographs, "points",
         (json_int_t)run->points, "photo_divide", run->photo_divide, "frames",
-        (json_int_t)run->timing.frames, "frame_ms", run->timing.median_ms, "slowest_ms", run->timing.slowest_ms, "fps",
+        (json_int_t)run->timing.frames, "frame_ms", run->timing.median_ms, "slowest_ms",
+        run->timing.slowest_ms, "cpu_ms", run->timing.cpu_ms, "fps",
         run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, "device_bytes",
         (json_int_t)run->device_bytes, "passes_ms", passes_json(run));
     if (run->psnr_db > 0)

@@ -84,7 +84,8 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
     orl_gpu_take_times(job->gpu, NULL, 0);
     orl_gpu_time_passes(job->gpu, true);
     start = orl_time_s();
-    for (size_t i = 0; result == ORL_OK && !orl_timing_enough(&timing, raster->frames, start); i++) {
+    for (size_t i = 0;
+         result == ORL_OK && !orl_timing_enough(&timing, raster->frames, start); i++) {
         float matrix[16];
         struct orl_view view = orl_bench_resize_view(&job->views[i % job->view_count],
                                                      raster->width, raster->height);

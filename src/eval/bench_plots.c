@@ -88,7 +88,8 @@ static enum orl_result plot_memory(const struct orl_log *log, const struct orl_b
     values[1][PROCESS] = (double)bench->host_peak_bytes / (1 << 20);
     describe(bench, subtitle);
     const struct orl_bars bars = {.title = "Memory by owner", .subtitle = subtitle,
-                                  .x_label = "MiB", .parts = parts, .part_count = OWNERS, .rows = rows,
+                                  .x_label = "MiB", .parts = parts, .part_count = OWNERS,
+                                  .rows = rows,
                                   .values = &values[0][0], .row_count = 2};
     return save(log, dir, "memory.svg", orl_bars_svg(log, &bars));
 }

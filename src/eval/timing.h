@@ -29,6 +29,8 @@ struct orl_timing_pass {
 struct orl_timing {
     size_t frames;
     double median_ms, p95_ms, slowest_ms; // from the call until the device is done
+    double cpu_ms; // median of the processor time of all threads: on a software renderer the
+                   // frame's cost, which other work on the machine hardly changes
     struct orl_timing_pass passes[ORL_TIMING_PASSES_MAX]; // medians
     size_t pass_count;
 };
