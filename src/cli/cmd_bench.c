@@ -92,7 +92,8 @@ static void print_memory(const struct orl_bench *bench)
 static void print_run(const struct orl_bench_run *run, const char *what)
 {
     printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, what, run->timing.median_ms,
-           run->timing.slowest_ms, run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, run->timing.frames,
+           run->timing.slowest_ms,
+           run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, run->timing.frames,
            mib(run->device_bytes));
     for (size_t i = 0; i < run->timing.pass_count; i++)
         printf("%s %s %.2f", i ? "," : "", run->timing.passes[i].name, run->timing.passes[i].ms);
@@ -189,7 +190,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
         .point_counts = o->points.count ? plan.points : NULL, .seconds = o->seconds,
         .frames_max = (size_t)o->frames, .growth = !o->quick,
-        .max_vram_bytes = (size_t)o->max_vram_mib << 20, .textures = (enum orl_textures)o->textures.value,
+        .max_vram_bytes = (size_t)o->max_vram_mib << 20,
+        .textures = (enum orl_textures)o->textures.value,
         .image_dir = o->out, .trace = o->trace,
         .progress = &terminal->progress};
     if (result == ORL_OK)
@@ -205,7 +207,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_bench(int argc, char **argv)
 {
-    struct options o = {.textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .seconds = 1, .frames = 100};
+    struct options o = {.textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .seconds = 1,
+                        .frames = 100};
     const struct arg_option table[] = {
         {"method", ARG_LIST, &o.methods, "NAME", "methods, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the methods", 0, 0},

@@ -11,7 +11,7 @@ enum { SCENES_MAX = 64, PEERS_MAX = 16 };
 
 struct options {
     struct orl_names methods, peers;
-    const char *out;
+    const char *out, *vary;
     double seconds;
     int views, max_vram_mib;
     bool quick;
@@ -80,6 +80,7 @@ static enum orl_result run(const struct terminal *terminal, const struct options
     struct orl_chart_peer peers[PEERS_MAX];
     struct orl_chart_params params = {
         .scenes = scenes, .scene_count = scene_count, .out = o->out, .methods = &o->methods,
+        .varied = o->vary,
         .peers = peers, .views = (size_t)o->views, .seconds = o->seconds, .quick = o->quick,
         .max_vram_bytes = (size_t)o->max_vram_mib << 20, .progress = &terminal->progress};
     struct orl_gpu *gpu = NULL;
@@ -109,6 +110,8 @@ int cmd_chart(int argc, char **argv)
         {"out", ARG_STRING, &o.out, "DIR",
          "the report: chart.html, chart.json, figures; rows in it are used again", 0, 0},
         {"method", ARG_LIST, &o.methods, "NAME", "methods; default: all", 0, 0},
+        {"vary", ARG_STRING, &o.vary, "KEY=A,B,..",
+         "each method that reads this option with each of these values, too", 0, 0},
         {"quick", ARG_FLAG, &o.quick, NULL,
          "an overview: methods as they are, two photographs a scene at half their size", 0, 0},
         {"views", ARG_INT, &o.views, "N", "held-out photographs of a scene, at most; default 8",

@@ -11,7 +11,7 @@
 #include "hdr/hdr.h"
 
 struct options {
-    const char *method, *json, *images, *truth, *vary, *plot;
+    const char *method, *json, *images, *truth, *vary;
     struct arg_enum merge, textures;
     struct orl_names settings;
     int max_vram_mib;
@@ -183,8 +183,6 @@ static enum orl_result measure_heldout(struct job *job, bool array)
     if (result == ORL_OK && o->json)
         result = report_write(job->log, o->json,
                               orl_eval_to_json(job->log, job->evals, job->count, array));
-    if (result == ORL_OK && o->plot)
-        result = orl_eval_plot(job->log, job->evals, job->count, o->plot);
     return result;
 }
 
@@ -193,9 +191,9 @@ static enum orl_result check_together(const struct orl_log *log, const struct op
     if (o->walk && (o->merge.value >= 0 || o->truth))
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk compares frames with each other: "
                         "without --merge and --truth");
-    if (o->walk && (o->vary || o->plot))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary and --plot are of held-out "
-                        "photographs: without --walk");
+    if (o->walk && o->vary)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary is of held-out photographs: without "
+                        "--walk");
     if (o->vary && o->images)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary makes several pictures of one name: "
                         "without --images");
@@ -271,8 +269,6 @@ int cmd_eval(int argc, char **argv)
         {"method", ARG_STRING, &o.method, "NAME", "a method, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "once for each value of an option", 0, 0},
-        {"plot", ARG_STRING, &o.plot, "FILE", "write a chart of accuracy against time (SVG)", 0,
-         0},
         {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
         {"images", ARG_STRING, &o.images, "DIR", "write photographs, renderings, differences",
          0, 0},

@@ -58,7 +58,7 @@ int cmd_methods(int argc, char **argv)
     const struct arg_option table[] = {{0}};
     const struct arg_command command = {
         "methods", "[NAME]",
-        "Lists the methods of rendering; of one, the options that it reads, with their values.", table,
-        0, 1};
+        "Lists the methods of rendering; of one, the options that it reads, with their values.",
+        table, 0, 1};
     return command_main(&command, argc, argv, run, NULL);
 }

@@ -86,8 +86,8 @@ static enum orl_result run(const struct options *options, const struct arg_commo
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
     if (result == ORL_OK)
-        result = orl_choice_make(log, job->scene, ORL_SAMPLE_SRGB, options->method, &options->settings,
-                                 &job->choice);
+        result = orl_choice_make(log, job->scene, ORL_SAMPLE_SRGB, options->method,
+                                 &options->settings, &job->choice);
     if (result == ORL_OK)
         result = orl_views_choose(log, job->scene, &views, &job->path);
     if (result == ORL_OK)

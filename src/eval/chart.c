@@ -179,12 +179,6 @@ static enum orl_result chart_scene(struct job *job, const char *dir)
 
 // --- the rows for a table ---
 
-static double number_of(const json_t *row, const char *key)
-{
-    const json_t *value = json_object_get(row, key);
-    return json_is_number(value) ? json_number_value(value) : (double)NAN;
-}
-
 static void list_rows(struct orl_chart *chart, const json_t *list)
 {
     for (size_t i = 0; i < json_array_size(list); i++) {
@@ -193,9 +187,9 @@ static void list_rows(struct orl_chart *chart, const json_t *list)
             .scene = json_string_value(json_object_get(row, "scene")),
             .method = json_string_value(json_object_get(row, "method")),
             .setting = json_string_value(json_object_get(row, "setting")),
-            .psnr_db = number_of(mean, "psnr_db"), .ssim = number_of(mean, "ssim"),
-            .flip = number_of(mean, "flip"), .frame_ms = number_of(row, "frame_ms"),
-            .device_mib = number_of(row, "device_bytes") / (1 << 20),
+            .psnr_db = orl_chart_number(mean, "psnr_db"), .ssim = orl_chart_number(mean, "ssim"),
+            .flip = orl_chart_number(mean, "flip"), .frame_ms = orl_chart_number(row, "frame_ms"),
+            .device_mib = orl_chart_number(row, "device_bytes") / (1 << 20),
             .on_front = json_is_true(json_object_get(row, "on_front"))};
     }
 }

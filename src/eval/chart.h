@@ -19,6 +19,8 @@ struct orl_chart_params {
     size_t scene_count;
     const char *out;                 // folder for the report; rows in it are used again
     const struct orl_names *methods; // names; none or "all": all there are
+    const char *varied;    // "KEY=A,B,..": each method that reads the option also with each of
+                           // these values; NULL: none
     const struct orl_chart_peer *peers;
     size_t peer_count;
     size_t views;          // held-out photographs of a scene, at most, evenly chosen; 0: all

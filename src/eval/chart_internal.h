@@ -85,6 +85,10 @@ enum orl_result orl_chart_checksum(const struct orl_log *log, const struct orl_s
 
 // --- chart_report.c: fronts, means over scenes ---
 
+// A row's text, "" where there is none; a row's number, NAN where there is none or null.
+const char *orl_chart_text(const json_t *row, const char *key);
+double orl_chart_number(const json_t *row, const char *key);
+
 // Adds "on_front", "dominated_by" and "sentence" to each row, and "overall" to the root, which has
 // "scenes" and "rows".
 enum orl_result orl_chart_analyse(const struct orl_log *log, json_t *root);

@@ -239,6 +239,7 @@ static enum orl_result time_frames(struct job *job, json_t *row)
     const struct orl_view view = view_of(job, 0);
     json_object_set_new(row, "frame_ms", json_real(timing.median_ms));
     json_object_set_new(row, "p95_ms", json_real(timing.p95_ms));
+    json_object_set_new(row, "cpu_ms", json_real(timing.cpu_ms));
     json_object_set_new(row, "frames", json_integer((json_int_t)timing.frames));
     json_object_set_new(row, "size", json_pack("[i,i]", view.camera.width, view.camera.height));
     return ORL_OK;

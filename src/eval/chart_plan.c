@@ -33,6 +33,16 @@ static bool chooses_photographs(const struct orl_render_params *render)
     return option && orl_render_option_read(option, render);
 }
 
+// The user's own values come first.
+static bool is_planned(const struct chart_plan *plan, const struct chart_config *config)
+{
+    for (size_t i = 0; i < plan->count; i++)
+        if (plan->items[i].method == config->method &&
+            strcmp(plan->items[i].setting, config->setting) == 0)
+            return true;
+    return false;
+}
+
 static enum orl_result add_options(const struct orl_log *log, const struct chart_config *base,
                                    struct chart_plan *plan)
 {
@@ -42,9 +52,37 @@ static enum orl_result add_options(const struct orl_log *log, const struct chart
         snprintf(config.setting, sizeof config.setting, "%s", option_settings[i]);
         // What the method does not read, or has already, is no other method.
         if (orl_render_params_set(NULL, &config.render, config.setting) == ORL_OK &&
-            memcmp(&config.render, &base->render, sizeof base->render) != 0)
+            memcmp(&config.render, &base->render, sizeof base->render) != 0 &&
+            !is_planned(plan, &config))
             result = add(log, plan, &config);
     }
+    return result;
+}
+
+// The method once with each value that the user wants to see.
+static enum orl_result add_varied(const struct orl_log *log, const struct orl_scene *scene,
+                                  const char *varied, const struct chart_config *base,
+                                  struct chart_plan *plan)
+{
+    const struct orl_names none = {0};
+    struct orl_names method = {0};
+    struct orl_choices choices = {0};
+    char key[64];
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(varied, "="), varied);
+    const struct orl_render_option *option = orl_render_option_find(key);
+    if (option && !orl_render_option_read(option, &base->render))
+        return ORL_OK;
+    enum orl_result result = orl_names_add(log, &method, base->method->name);
+    if (result == ORL_OK)
+        result = orl_choices_make(log, scene, ORL_SAMPLE_SRGB, &method, &none, varied, &choices);
+    for (size_t i = 0; result == ORL_OK && i < choices.count; i++) {
+        struct chart_config config = *base;
+        config.render = choices.items[i].params;
+        memcpy(config.setting, choices.items[i].setting, sizeof config.setting);
+        result = add(log, plan, &config);
+    }
+    orl_choices_finish(&choices);
+    orl_names_finish(&method);
     return result;
 }
 
@@ -103,6 +141,8 @@ enum orl_result orl_chart_make_plan(struct orl_gpu *gpu, const struct orl_scene 
                                           .textures = ORL_TEXTURES_AUTO, .photo_divide = 1,
                                           .size_divide = 1};
         result = add(log, plan, &base);
+        if (result == ORL_OK && params->varied)
+            result = add_varied(log, scene, params->varied, &base, plan);
         if (params->quick || !chooses_photographs(&base.render))
             continue;
         if (result == ORL_OK)

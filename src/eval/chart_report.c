@@ -8,14 +8,13 @@
 #include "eval/chart_front.h"
 #include "eval/chart_internal.h"
 
-static const char *text_of(const json_t *row, const char *key)
+const char *orl_chart_text(const json_t *row, const char *key)
 {
     const char *text = json_string_value(json_object_get(row, key));
     return text ? text : "";
 }
 
-// NAN: null or not there.
-static double number_of(const json_t *row, const char *key)
+double orl_chart_number(const json_t *row, const char *key)
 {
     const json_t *value = json_object_get(row, key);
     return json_is_number(value) ? json_number_value(value) : (double)NAN;
@@ -51,12 +50,12 @@ static enum orl_result analyse(const struct orl_log *log, json_t *rows, const ch
     json_t **of = orl_array(log, all, sizeof(json_t *)), *row;
     enum orl_result result = points && of ? ORL_OK : ORL_ERR_MEMORY;
     json_array_foreach(rows, i, row) {
-        if (result != ORL_OK || (scene && strcmp(text_of(row, "scene"), scene) != 0))
+        if (result != ORL_OK || (scene && strcmp(orl_chart_text(row, "scene"), scene) != 0))
             continue;
         points[count] = (struct orl_chart_point){
-            .method = text_of(row, "method"), .setting = text_of(row, "setting"),
-            .ms = number_of(row, "frame_ms"),
-            .db = number_of(json_object_get(row, "mean"), "psnr_db")};
+            .method = orl_chart_text(row, "method"), .setting = orl_chart_text(row, "setting"),
+            .ms = orl_chart_number(row, "frame_ms"),
+            .db = orl_chart_number(json_object_get(row, "mean"), "psnr_db")};
         of[count++] = row;
     }
     orl_chart_find_front(points, count);
@@ -71,8 +70,8 @@ static enum orl_result analyse(const struct orl_log *log, json_t *rows, const ch
 
 static bool same_dot(const json_t *a, const json_t *b)
 {
-    return strcmp(text_of(a, "method"), text_of(b, "method")) == 0 &&
-           strcmp(text_of(a, "setting"), text_of(b, "setting")) == 0;
+    return strcmp(orl_chart_text(a, "method"), orl_chart_text(b, "method")) == 0 &&
+           strcmp(orl_chart_text(a, "setting"), orl_chart_text(b, "setting")) == 0;
 }
 
 // Mean, and the standard deviation over the scenes, of a figure of rows like `like`.
@@ -83,7 +82,7 @@ static void gather(const json_t *rows, const json_t *like, const char *key, json
     size_t i;
     const json_t *row;
     json_array_foreach((json_t *)(uintptr_t)rows, i, row) {
-        double value = number_of(json_object_get(row, "mean"), key);
+        double value = orl_chart_number(json_object_get(row, "mean"), key);
         if (!same_dot(row, like))
             continue;
         sum += value;
@@ -101,7 +100,7 @@ static json_t *mean_of(const json_t *rows, const json_t *like, const char *key, 
     size_t i;
     const json_t *row;
     json_array_foreach((json_t *)(uintptr_t)rows, i, row) {
-        double value = number_of(row, key);
+        double value = orl_chart_number(row, key);
         if (!same_dot(row, like))
             continue;
         sum += geometric ? log(value) : value;
@@ -115,12 +114,14 @@ static json_t *overall_row(const json_t *rows, const json_t *like, size_t scenes
     json_t *mean = json_object(), *sd = json_object();
     for (size_t k = 0; k < CHART_FIGURES; k++)
         gather(rows, like, orl_chart_figures[k], mean, sd);
-    return json_pack("{s:s, s:s, s:b, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "method",
-                     text_of(like, "method"), "setting", text_of(like, "setting"), "peer",
+    return json_pack("{s:s, s:s, s:b, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "method",
+                     orl_chart_text(like, "method"), "setting",
+                     orl_chart_text(like, "setting"), "peer",
                      json_is_true(json_object_get(like, "peer")), "scenes", (json_int_t)scenes,
                      "mean", mean, "sd", sd, "flicker", mean_of(rows, like, "flicker", false),
                      "frame_ms", mean_of(rows, like, "frame_ms", true), "p95_ms",
-                     mean_of(rows, like, "p95_ms", true), "device_bytes",
+                     mean_of(rows, like, "p95_ms", true), "cpu_ms",
+                     mean_of(rows, like, "cpu_ms", true), "device_bytes",
                      mean_of(rows, like, "device_bytes", false), "host_peak_bytes",
                      mean_of(rows, like, "host_peak_bytes", false));
 }
@@ -153,7 +154,7 @@ enum orl_result orl_chart_analyse(const struct orl_log *log, json_t *root)
     enum orl_result result = ORL_OK;
     json_array_foreach(scenes, i, scene)
         if (result == ORL_OK)
-            result = analyse(log, rows, text_of(scene, "name"));
+            result = analyse(log, rows, orl_chart_text(scene, "name"));
     json_t *overall = make_overall(rows, json_array_size(scenes));
     if (json_object_set_new(root, "overall", overall) != 0)
         return orl_fail(log, ORL_ERR_MEMORY, "no memory for the chart");

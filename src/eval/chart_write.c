@@ -14,18 +14,12 @@ enum { PAGE_VIEWS = 2, JPEG_MAX_BYTES = 1 << 24 };
 // --- figures ---
 
 struct dots {
-    struct orl_plot_series *series; // of each method, then the front
+    struct orl_plot_series *series; // of each method, and the front after them
     size_t series_count;
     double *x, *y;
     const char **labels;
     size_t count;
 };
-
-static const char *text_of(const json_t *row, const char *key)
-{
-    const char *text = json_string_value(json_object_get(row, key));
-    return text ? text : "";
-}
 
 static double psnr_of(const json_t *row)
 {
@@ -34,17 +28,17 @@ static double psnr_of(const json_t *row)
 
 static bool is_of(const json_t *row, const char *scene)
 {
-    return (!scene || strcmp(text_of(row, "scene"), scene) == 0) &&
+    return (!scene || strcmp(orl_chart_text(row, "scene"), scene) == 0) &&
            json_is_number(json_object_get(row, "frame_ms"));
 }
 
 static void add_dot(struct dots *dots, const json_t *row, bool labelled)
 {
     size_t i = dots->count++;
-    const char *setting = text_of(row, "setting");
+    const char *setting = orl_chart_text(row, "setting");
     dots->x[i] = json_number_value(json_object_get(row, "frame_ms"));
     dots->y[i] = psnr_of(row);
-    dots->labels[i] = labelled ? (setting[0] ? setting : text_of(row, "method")) : "";
+    dots->labels[i] = labelled ? (setting[0] ? setting : orl_chart_text(row, "method")) : "";
     dots->series[dots->series_count - 1].count++;
 }
 
@@ -62,21 +56,21 @@ static void add_methods(struct dots *dots, const json_t *rows, const char *scene
     json_array_foreach((json_t *)(uintptr_t)rows, i, row) {
         bool seen = !is_of(row, scene);
         for (size_t s = 0; !seen && s < dots->series_count; s++)
-            seen = strcmp(dots->series[s].name, text_of(row, "method")) == 0;
+            seen = strcmp(dots->series[s].name, orl_chart_text(row, "method")) == 0;
         if (seen)
             continue;
-        begin_series(dots, text_of(row, "method"), false);
+        begin_series(dots, orl_chart_text(row, "method"), false);
         json_array_foreach((json_t *)(uintptr_t)rows, k, other)
             if (is_of(other, scene) &&
-                strcmp(text_of(other, "method"), text_of(row, "method")) == 0)
-                add_dot(dots, other, text_of(other, "setting")[0] == '\0');
+                strcmp(orl_chart_text(other, "method"), orl_chart_text(row, "method")) == 0)
+                add_dot(dots, other, orl_chart_text(other, "setting")[0] == '\0');
     }
 }
 
 // From the fastest on.
 static void add_front(struct dots *dots, const json_t *rows, const char *scene)
 {
-    begin_series(dots, "the front", true);
+    begin_series(dots, "line: the front", true);
     double last = 0;
     for (;;) {
         const json_t *next = NULL, *row;
@@ -116,7 +110,8 @@ static enum orl_result write_figure(const struct orl_log *log, const char *out,
             .title = "Accuracy against time", .subtitle = subtitle,
             .x_label = "milliseconds a frame, median", .y_label = "PSNR of whole pictures, dB",
             .x_log = true, .y_fit = true, .series = dots.series,
-            .series_count = dots.series_count});
+            .series_count = dots.series_count - 1,
+            .behind = &dots.series[dots.series_count - 1]});
         result = svg ? orl_file_write(log, path, svg, strlen(svg)) : ORL_ERR_MEMORY;
     }
     free(dots.series);
@@ -132,7 +127,7 @@ static enum orl_result write_figures(const struct orl_log *log, const char *out,
                                      const json_t *root)
 {
     const json_t *scenes = json_object_get(root, "scenes"), *scene;
-    const char *device = text_of(root, "device");
+    const char *device = orl_chart_text(root, "device");
     char subtitle[320], file[300];
     size_t i;
     snprintf(subtitle, sizeof subtitle, "means over %zu scene%s; %.100s",
@@ -142,7 +137,7 @@ static enum orl_result write_figures(const struct orl_log *log, const char *out,
     json_array_foreach((json_t *)(uintptr_t)scenes, i, scene) {
         if (result != ORL_OK)
             break;
-        const char *name = text_of(scene, "name");
+        const char *name = orl_chart_text(scene, "name");
         snprintf(file, sizeof file, "chart.%.200s.svg", name);
         snprintf(subtitle, sizeof subtitle, "%.100s: %zu photographs held out; %.100s", name,
                  json_array_size(json_object_get(scene, "views")), device);

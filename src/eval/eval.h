@@ -65,9 +65,5 @@ void orl_eval_finish(struct orl_eval *eval);
 // array of `count` of them.
 char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
                        bool array);
-// Writes an SVG of accuracy against time: a dot for each evaluation, joined where the method is the
-// same, with the value of its setting. Those of a method lie one after the other; count > 0.
-enum orl_result orl_eval_plot(const struct orl_log *log, const struct orl_eval *evals,
-                              size_t count, const char *path) ORL_CHECK_RESULT;
 
 #endif

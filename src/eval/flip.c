@@ -83,7 +83,8 @@ static void convolve_row(const float *in, int width, const struct kernel *kernel
             out[x] += kernel->taps[k] * padded[x + k];
 }
 
-// Both directions, border pixels repeated outward. `out` may be `in`; work: a plane, and a padded row.
+// Both directions, border pixels repeated outward. `out` may be `in`; work: a plane, and a
+// padded row.
 static void convolve(const float *in, int width, int height, const struct kernel *across,
                      const struct kernel *down, float *const work[2], float *out)
 {

@@ -20,14 +20,14 @@ grep -q "^$methods rows measured, 0 used again, 0 left out" stdout.txt || fail "
 grep -q 'front$' stdout.txt || fail "nothing is on the front"
 for field in version commit device driver software quick scenes rows overall checksum held_out \
     points prepare_s views picture error_map mean sd psnr_db psnr_cc_db psnr_covered_db ssim flip \
-    coverage completeness flicker frame_ms p95_ms frames open_s device_bytes host_peak_bytes \
+    coverage completeness flicker frame_ms p95_ms cpu_ms frames open_s device_bytes host_peak_bytes \
     device_bytes_by_owner photographs provenance scene_checksum on_front dominated_by sentence; do
     grep -q "\"$field\"" report/chart.json || fail "no field $field"
 done
 for file in chart.svg chart.ws.svg; do
     tail -n1 "report/$file" | grep -q '</svg>' || fail "no figure $file"
 done
-grep -q '>the front<' report/chart.ws.svg || fail "no front in the figure"
+grep -q '>line: the front<' report/chart.ws.svg || fail "no front in the figure"
 grep -q 'data:image/jpeg' report/chart.html || fail "no pictures in the page"
 grep -q '@DATA@\|@PICTURES@' report/chart.html && fail "the page has not got its data"
 grep -Eq '(src|href)="?(https?:)?//' report/chart.html && fail "the page needs a network"
@@ -57,6 +57,13 @@ for setting in 'photographs at 1/2' 'textures bc7' 'pictures at 1/2' 'photos_per
 done
 [ "$(grep -c '"scene": "ws"' full/chart.json)" = "$(grep -c '"scene": "other"' full/chart.json)" ] ||
     fail "scenes of one kind have other rows"
+
+# Values of one's own, of the methods that read the option.
+runs 0 "${chart[@]}" --quick --method airieau,points --vary distance_floor=0.1,0.5
+grep -q '^airieau  *distance_floor=0.5 ' stdout.txt || fail "no row for a value"
+grep -q '^points  *distance' stdout.txt && fail "a value of an option that is not read"
+runs 2 "${chart[@]}" --quick --method airieau --vary distance_floor=7
+runs 2 "${chart[@]}" --quick --vary nonsense=7
 
 # Another program's pictures: the photographs themselves are perfect.
 mkdir -p perfect/ws
