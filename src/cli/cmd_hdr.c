@@ -50,51 +50,6 @@ static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_
     return orl_hdr_draw(job->hdr, view, job->skip, frame);
 }
 
-static struct orl_sequence sequence(struct job *job)
-{
-    return (struct orl_sequence){.views = job->path.views, .count = job->path.count,
-                                 .draw = draw, .priv = job, .output = &job->output,
-                                 .step = "hdr", .progress = job->progress};
-}
-
-// Airieau 2012, section 4: each photograph of one series becomes what it would have been
-// with all the range of the scene.
-static enum orl_result replace_series(struct job *job, int series, const char *dir)
-{
-    const struct orl_scene *scene = job->scene;
-    size_t count = 0, done = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        count += scene->photos[i].series == series;
-    if (!count)
-        return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no series %d; see oriel info",
-                        scene->dir, series);
-    const struct orl_sequence one = sequence(job);
-    enum orl_result result = orl_dir_make(job->log, dir);
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        const struct orl_photo *photo = &scene->photos[i];
-        if (photo->series != series)
-            continue;
-        if (orl_progress_cancelled(job->progress))
-            return ORL_ERR_CANCELLED;
-        const char *dot = strrchr(photo->name, '.');
-        size_t stem = dot ? (size_t)(dot - photo->name) : strlen(photo->name);
-        char *file = orl_format(job->log, "%s/%.*s.exr", dir, (int)stem, photo->name);
-        char *slash = file ? strrchr(file, '/') : NULL;
-        // Photographs may lie in folders.
-        if (slash) {
-            *slash = '\0';
-            result = orl_dir_make(job->log, file);
-            *slash = '/';
-        }
-        if (result == ORL_OK)
-            result = file ? orl_sequence_write_view(job->log, &one, &photo->view, file)
-                          : ORL_ERR_MEMORY;
-        free(file);
-        orl_progress_report(job->progress, "hdr", (double)++done, (double)count, photo->name);
-    }
-    return result;
-}
-
 // --- panorama ---
 
 static enum orl_result parse_vector(const struct orl_log *log, const char *option,
@@ -109,36 +64,16 @@ static enum orl_result parse_vector(const struct orl_log *log, const char *optio
     return ORL_OK;
 }
 
-static enum orl_result place_panorama(const struct options *options, struct job *job,
-                                      struct orl_panorama *p)
-{
-    enum orl_result result = ORL_OK;
-    orl_scene_up(job->scene, p->up);
-    if (options->views.at) {
-        int index = orl_scene_find_photo(job->scene, options->views.at);
-        if (index < 0)
-            return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no photograph %s",
-                            job->scene->dir, options->views.at);
-        const struct orl_pose *pose = &job->scene->photos[index].view.cam_from_world;
-        orl_pose_centre(pose, p->position);
-        memcpy(p->forward, pose->r[2], sizeof p->forward);
-    } else {
-        for (size_t k = 0; k < job->scene->photo_count; k++)
-            for (int i = 0; i < 3; i++)
-                p->forward[i] += job->scene->photos[k].view.cam_from_world.r[2][i];
-        result = parse_vector(job->log, "position", &options->position, p->position);
-    }
-    if (result == ORL_OK && options->up.count)
-        result = parse_vector(job->log, "up", &options->up, p->up);
-    return result;
-}
-
 static enum orl_result draw_panorama(const struct options *options, struct job *job)
 {
     struct orl_panorama p = {.width = options->panorama.width, .height = options->panorama.height};
     struct orl_frame frame;
     struct orl_view view;
-    enum orl_result result = place_panorama(options, job, &p);
+    enum orl_result result = orl_panorama_place(job->log, job->scene, options->views.at, &p);
+    if (result == ORL_OK && !options->views.at)
+        result = parse_vector(job->log, "position", &options->position, p.position);
+    if (result == ORL_OK && options->up.count)
+        result = parse_vector(job->log, "up", &options->up, p.up);
     if (result == ORL_OK)
         result = orl_hdr_draw_panorama(job->hdr, &p, job->skip, &frame);
     if (result != ORL_OK)
@@ -223,9 +158,11 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
         return result;
     if (o->panorama.width)
         return draw_panorama(o, job);
+    const struct orl_sequence all = {.views = job->path.views, .count = job->path.count,
+                                     .draw = draw, .priv = job, .output = &job->output,
+                                     .step = "hdr", .progress = job->progress};
     if (o->replace_series >= 0)
-        return replace_series(job, o->replace_series, o->out);
-    const struct orl_sequence all = sequence(job);
+        return orl_sequence_write_series(log, &all, job->scene, o->replace_series, o->out);
     return o->views.path ? orl_sequence_write_dir(log, &all, o->out, "exr")
                          : orl_sequence_write_view(log, &all, &job->path.views[0], o->out);
 }

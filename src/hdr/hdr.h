@@ -47,6 +47,10 @@ struct orl_panorama {
     double up[3];          // world, not zero; see orl_scene_up
     int width, height;     // [8, 32768] each; equirectangular
 };
+// Sets position and forward to those of the photograph `at`; NULL: forward to the photographs' mean,
+// position is left alone. And `up` as orl_scene_up. ORL_ERR_NOT_FOUND: there is none of this name.
+enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_scene *scene,
+                                   const char *at, struct orl_panorama *panorama) ORL_CHECK_RESULT;
 // All directions from a point: longitude +pi to -pi from left to right, 0 (forward) in the
 // middle, latitude +pi/2 (up) at the top: OpenEXR's latitude-longitude map. frame->depth is
 // the distance to the point; normals are in the frame of x right, y down, z forward, as if
