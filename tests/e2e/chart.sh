@@ -58,6 +58,21 @@ done
 [ "$(grep -c '"scene": "ws"' full/chart.json)" = "$(grep -c '"scene": "other"' full/chart.json)" ] ||
     fail "scenes of one kind have other rows"
 
+# Interrupted after the first row: no report, and the next run goes on.
+"$oriel" chart ws other --seconds 3 --out broken --method points,airieau >stdout.txt 2>stderr.txt &
+pid=$!
+for ((i = 0; i < 600; i++)); do
+    ls broken/rows/ws/*.json >/dev/null 2>&1 && break
+    sleep 0.1
+done
+kill -INT $pid
+wait $pid
+[ $? -eq 130 ] || fail "no word of the interruption"
+[ -e broken/chart.html ] && fail "a report of half the rows"
+runs 0 "$oriel" chart ws other --seconds 3 --out broken --method points,airieau
+grep -q '^4 rows' stdout.txt && fail "what was measured is lost"
+grep -Eq '^[1-3] rows measured, [1-3] used again' stdout.txt || fail "did not go on"
+
 # Values of one's own, of the methods that read the option.
 runs 0 "${chart[@]}" --quick --method airieau,points --vary distance_floor=0.1,0.5
 grep -q '^airieau  *distance_floor=0.5 ' stdout.txt || fail "no row for a value"
@@ -100,7 +115,7 @@ runs 0 "$oriel" chart --help
 
 # In a browser: dots, rows, pictures, a click on each kind of thing, no error.
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
-[ -n "$browser" ] || exit $failed
+[ -n "$browser" ] || { echo "no browser: the page was not tried"; exit $failed; }
 cat >click.html <<'END'
 <script>
 document.querySelectorAll("#scatter .dot")[1].dispatchEvent(new MouseEvent("click"));
