@@ -58,6 +58,15 @@ done
 [ "$(grep -c '"scene": "ws"' full/chart.json)" = "$(grep -c '"scene": "other"' full/chart.json)" ] ||
     fail "scenes of one kind have other rows"
 
+# The same photographs, the same figures as those of oriel eval.
+runs 0 "$oriel" eval ws --method points --json eval.json --quiet
+for field in psnr_db ssim flip completeness; do
+    a=$(sed -n "s/.*\"$field\": \([0-9.]*\),*/\1/p" eval.json | tail -n 1)       # its mean
+    b=$(sed -n "s/.*\"$field\": \([0-9.]*\),*/\1/p" full/rows/ws/points.json | head -n 1)
+    awk -v a="$a" -v b="$b" 'BEGIN { exit !(a > 0 && (a - b) ^ 2 < 1e-8) }' ||
+        fail "$field is $a by eval, $b by chart"
+done
+
 # Interrupted after the first row: no report, and the next run goes on.
 "$oriel" chart ws other --seconds 3 --out broken --method points,airieau >stdout.txt 2>stderr.txt &
 pid=$!
