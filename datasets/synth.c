@@ -62,7 +62,7 @@ enum orl_result orl_synth_check(const struct orl_log *log, const struct orl_synt
     return ORL_OK;
 }
 
-// SplitMix64 (Steele, Lea and Flood 2014), as a number in [-1, 1).
+// SplitMix64 (Steele, Lea and Flood 2014), scaled to [-1, 1).
 static double next_random(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15u;
@@ -75,7 +75,7 @@ static double next_random(uint64_t *state)
 void orl_synth_views(const struct orl_synth_params *p, struct orl_view *views)
 {
     static const double pi = 3.14159265358979323846;
-    static const double arc_rad = 0.87; // to either side
+    static const double arc_rad = 0.87; // half of the arc
     uint64_t state = p->seed;
     double side = p->width > p->height ? p->width : p->height;
     double focal = ORL_SYNTH_FOCAL_35MM / 35.0 * side;
@@ -85,7 +85,7 @@ void orl_synth_views(const struct orl_synth_params *p, struct orl_view *views)
             jitter[j] = next_random(&state);
         double step = 2 * arc_rad / (p->count - 1);
         double angle = -arc_rad + step * i + 0.2 * step * jitter[0];
-        // Comes near twice and goes back twice on the way round.
+        // The path approaches the monument twice and recedes twice along the arc.
         double distance = 12.8 - 1.9 * sin(4 * pi * i / (p->count - 1)) + 0.3 * jitter[1];
         const double eye[3] = {distance * sin(angle), 1.65 + 0.15 * jitter[2],
                                distance * cos(angle) - 0.6};

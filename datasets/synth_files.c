@@ -1,4 +1,4 @@
-// A synthetic set as files: photographs, and beside them what is true of them.
+// Writes a synthetic set as files: the photographs and their ground truth.
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -23,10 +23,10 @@ struct job {
     const struct orl_log *log;
     const struct orl_synth_params *params;
     const struct orl_view *views; // params->count
-    char *photos, *truth;         // folders being filled, owned
+    char *photos, *truth;         // folders that are being filled, owned
 };
 
-// "<dir>/<folder>/<NNNN><ending>", released with free(); NULL, logged.
+// "<dir>/<folder>/<NNNN><ending>", to be released with free(). NULL after a logged error.
 static char *view_path(const struct job *job, const char *dir, const char *folder, int index,
                        const char *ending)
 {
@@ -57,7 +57,7 @@ static enum orl_result write_photo(const struct job *job, int index,
     return result;
 }
 
-// --- truth of one view ---
+// --- ground truth of one view ---
 
 static enum orl_result write_layers(const struct job *job, int index, const char *folder,
                                     const struct orl_image *image, const char *const *names,
@@ -136,7 +136,7 @@ static enum orl_result write_colmap_images(const struct job *job)
         double q[4];
         const double *t = job->views[i].cam_from_world.t;
         orl_pose_to_quat(&job->views[i].cam_from_world, q);
-        // The second line would list sparse points; there are none.
+        // The second line of an image lists its sparse points. There are none.
         length += (size_t)snprintf(text + length, room - length,
                                    "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %04d.jpg\n\n",
                                    i + 1, q[0], q[1], q[2], q[3], t[0], t[1], t[2], i + 1);
@@ -151,7 +151,7 @@ static enum orl_result write_colmap_images(const struct job *job)
     return result;
 }
 
-// Takes over `root`. NULL values inside mean that memory ran out.
+// Takes ownership of `root`. A NULL value means that memory ran out.
 static enum orl_result write_json(const struct job *job, const char *name, json_t *root)
 {
     char *path = orl_path_join(job->log, job->truth, name);
@@ -172,7 +172,7 @@ static json_t *vector_json(const double v[3])
     return json_pack("[fff]", v[0], v[1], v[2]);
 }
 
-// As Inria's 3D Gaussian splatting: rotation is world_from_cam, row by row.
+// The format of Inria's 3D Gaussian splatting: rotation is world_from_cam, row by row.
 static enum orl_result write_inria_cameras(const struct job *job)
 {
     json_t *list = json_array();

@@ -7,8 +7,8 @@
 #include "datasets/synth.h"
 
 enum {
-    TILE = 8,        // work group side, and pixels of a tile of synth/cone.comp
-    BAND_PIXELS = 65536, // one dispatch: short enough for a desktop's GPU watchdog
+    TILE = 8,        // side of a work group, and of a tile of synth/cone.comp, pixels
+    BAND_PIXELS = 65536, // pixels of one dispatch, short enough for the watchdog of a desktop GPU
 };
 
 // Matches shaders/synth/view.glsl.

@@ -1,4 +1,4 @@
-// From radiance to the photograph that a camera would take of it.
+// Turns radiance into the photograph that a camera would take of it.
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@ static double clamp01(double v)
     return v <= 0 ? 0 : v >= 1 ? 1 : v;
 }
 
-// The share of the contrast curve 3 v^2 - 2 v^3 in the film response.
+// Share of the contrast curve 3 v^2 - 2 v^3 in the film response.
 static const double FILM_CONTRAST = 0.5;
 
 double orl_synth_encode(enum orl_synth_response response, double light)
@@ -24,7 +24,7 @@ double orl_synth_encode(enum orl_synth_response response, double light)
 double orl_synth_decode(enum orl_synth_response response, double value)
 {
     double target = clamp01(value), v = target;
-    // The contrast curve's slope is from 0.5 to 1.25: Newton's method converges.
+    // The slope of the contrast curve is between 0.5 and 1.25, so that Newton's method converges.
     for (int i = 0; response == ORL_SYNTH_FILM && i < 20; i++) {
         double f = v + FILM_CONTRAST * (v * v * (3 - 2 * v) - v) - target;
         v = clamp01(v - f / (1 + FILM_CONTRAST * (6 * v * (1 - v) - 1)));
@@ -46,7 +46,7 @@ static uint32_t next_word(uint32_t *state)
     return (word >> 22) ^ word;
 }
 
-// Roughly normal: the sum of four uniforms, variance 1.
+// An approximately normal deviate: the sum of four uniform ones, with variance 1.
 static double next_normal(uint32_t *state)
 {
     double sum = 0;
@@ -93,7 +93,7 @@ enum orl_result orl_synth_expose(const struct orl_log *log, const struct orl_ima
             double r2 = (dx * dx + dy * dy) / (cx * cx + cy * cy);
             for (int c = 0; c < 3; c++, i++) {
                 double v = scale[c] * (1 - sensor->vignette * r2) * radiance->f32[i];
-                if (sensor->noise > 0) // photons: variance grows with light; reading: a floor
+                if (sensor->noise > 0) // shot noise grows with light; read noise is constant
                     v += sensor->noise * sqrt(fmin(v, 1) + 0.0004) * next_normal(&state);
                 photo->u8[i] = (uint8_t)(255 * orl_synth_encode(sensor->response, v) + 0.5);
             }

@@ -1,251 +1,12 @@
-// The stages in order: which are current, which must be done, and their records.
 #include "preprocess/prepare.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/file.h>
-#include <sys/resource.h>
-#include <unistd.h>
-#include <xxhash.h>
 
-#include "core/memory.h"
 #include "core/process.h"
-#include "preprocess/densify.h"
-#include "preprocess/job.h"
-#include "scene/manifest.h"
-
-static const char *const quality_names[] = {"draft", "standard", "high"};
-static const char *const sharing_names[] = {"auto", "single", "each"};
-static const char *const matching_names[] = {"auto", "exhaustive", "sequential"};
-static const char *const densifier_names[] = {"auto", "gl", "colmap"};
-
-// --- what the result of a stage depends on, besides the stages before it ---
-
-static json_t *photo_hashes(const struct orl_job *job)
-{
-    json_t *photos = json_object();
-    for (size_t i = 0; i < job->source_count; i++)
-        json_object_set_new(photos, job->sources[i].name,
-                            json_sprintf("%016" PRIx64, job->sources[i].hash));
-    return photos;
-}
-
-static json_t *mask_hashes(const struct orl_job *job)
-{
-    json_t *masks = json_object();
-    for (size_t i = 0; i < job->source_count; i++)
-        if (job->sources[i].mask)
-            json_object_set_new(masks, job->sources[i].name,
-                                json_sprintf("%016" PRIx64, job->sources[i].mask_hash));
-    return masks;
-}
-
-static json_t *test_names(const struct orl_job *job)
-{
-    json_t *names = json_array();
-    for (size_t i = 0; i < job->source_count; i++)
-        if (job->sources[i].test)
-            json_array_append_new(names, json_string(job->sources[i].name));
-    return names;
-}
-
-static json_t *calibrate_settings(const struct orl_job *job)
-{
-    const struct orl_prepare_params *p = job->params;
-    return json_pack("{s:s, s:s, s:s, s:i, s:o, s:o*}", "quality", quality_names[p->quality],
-                     "sharing", sharing_names[p->sharing], "matching",
-                     matching_names[p->matching], "seed", (int)p->seed, "masks",
-                     mask_hashes(job), "normalised",
-                     orl_normalise_wanted(job) ? json_string(job->exposures_hash) : NULL);
-}
-
-static json_t *undistort_settings(const struct orl_job *job)
-{
-    return json_pack("{s:i}", "max_size", orl_job_max_size(job->params));
-}
-
-static json_t *densify_settings(const struct orl_job *job)
-{
-    const struct orl_prepare_params *p = job->params;
-    // Without a limit the key stays what it was before there was one.
-    return json_pack("{s:s, s:s, s:i, s:o, s:o*}", "quality", quality_names[p->quality],
-                     "densifier", densifier_names[p->densifier], "seed", (int)p->seed, "test",
-                     test_names(job), "max_vram",
-                     p->max_vram_bytes ? json_integer((json_int_t)p->max_vram_bytes) : NULL);
-}
-
-static json_t *expose_settings(const struct orl_job *job)
-{
-    return json_pack("{s:o, s:s}", "test", test_names(job), "exposures", job->exposures_hash);
-}
-
-static json_t *no_settings(const struct orl_job *job)
-{
-    (void)job;
-    return json_object();
-}
-
-json_t *orl_job_settings(const struct orl_job *job)
-{
-    const struct orl_prepare_params *p = job->params;
-    return json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:b}", "quality", quality_names[p->quality],
-                     "camera_sharing", sharing_names[p->sharing], "matching",
-                     matching_names[p->matching], "densifier", densifier_names[p->densifier],
-                     "max_size", orl_job_max_size(p), "seed", (int)p->seed, "masks",
-                     p->masks_dir != NULL);
-}
-
-// --- the stages ---
-
-struct stage {
-    const char *name;
-    int version; // raised when the stage's result changes for the same settings
-    enum orl_stage_id needs;
-    json_t *(*settings)(const struct orl_job *job);
-    enum orl_result (*run)(struct orl_job *job, json_t *record);
-    const char *output; // without it the stage is not done
-};
-
-static const struct stage stages[ORL_STAGE_COUNT] = {
-    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, NULL},
-    [ORL_STAGE_CALIBRATE] = {"calibrate", 1, ORL_STAGE_COLLECT, calibrate_settings,
-                             orl_stage_calibrate, ".oriel/calibrate/model"},
-    [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
-                             orl_stage_undistort, "images"},
-    [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
-                           orl_stage_densify, NULL},
-    [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
-                        ".oriel/fused.ply"},
-    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii, "points.ply"},
-    [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose,
-                          NULL},
-};
-
-const char *orl_job_key(const struct orl_job *job, enum orl_stage_id stage)
-{
-    return job->keys[stage];
-}
-
-static enum orl_result compute_keys(struct orl_job *job)
-{
-    for (int i = 0; i < ORL_STAGE_COUNT; i++) {
-        json_t *inputs = json_pack("{s:s, s:i, s:s, s:o}", "stage", stages[i].name, "version",
-                                   stages[i].version, "after", job->keys[stages[i].needs],
-                                   "settings", stages[i].settings(job));
-        char *text = inputs ? json_dumps(inputs, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
-        json_decref(inputs);
-        if (!text)
-            return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
-        snprintf(job->keys[i], sizeof job->keys[i], "%016" PRIx64,
-                 (uint64_t)XXH3_64bits(text, strlen(text)));
-        free(text);
-    }
-    return ORL_OK;
-}
-
-static json_t *done_stages(const struct orl_job *job)
-{
-    return json_object_get(job->stages, "done");
-}
-
-static enum orl_result save_stages(const struct orl_job *job)
-{
-    char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = path ? orl_json_write(job->log, path, job->stages) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
-}
-
-static bool has_record(const struct orl_job *job, enum orl_stage_id id)
-{
-    const json_t *record = json_object_get(done_stages(job), stages[id].name);
-    const char *key = json_string_value(json_object_get(record, "key"));
-    return key && strcmp(key, job->keys[id]) == 0 &&
-           (!stages[id].output || orl_job_has(job, stages[id].output));
-}
-
-static void find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])
-{
-    current[ORL_STAGE_COLLECT] = true;
-    for (int i = 1; i < ORL_STAGE_COUNT; i++)
-        current[i] = current[stages[i].needs] && has_record(job, (enum orl_stage_id)i);
-    // The depth maps may be deleted once they are fused.
-    if (!current[ORL_STAGE_FUSE] && !orl_job_has(job, "stereo/.oriel-key"))
-        current[ORL_STAGE_DENSIFY] = false;
-}
-
-// Before anything of a stage changes, the folder stops being a scene, and the records
-// of the stage and of all that builds on it go.
-static enum orl_result invalidate(const struct orl_job *job, const bool *current)
-{
-    bool all = true, changed = false;
-    for (int i = 0; i < ORL_STAGE_COUNT; i++) {
-        all = all && current[i];
-        if (!current[i] && json_object_del(done_stages(job), stages[i].name) == 0)
-            changed = true;
-    }
-    if (all)
-        return ORL_OK;
-    enum orl_result result = orl_job_remove(job, "scene.json");
-    if (result == ORL_OK && changed)
-        orl_logf(job->log, ORL_LOG_INFO,
-                 "photographs or settings have changed: some stages are done again");
-    return result == ORL_OK ? save_stages(job) : result;
-}
-
-static double cpu_seconds(const struct rusage *usage)
-{
-    return (double)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) +
-           1e-6 * (double)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
-}
-
-static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id)
-{
-    struct rusage before, after;
-    json_t *record = json_object();
-    if (!record)
-        return ORL_ERR_MEMORY;
-    double start = orl_time_s();
-    getrusage(RUSAGE_SELF, &before);
-    job->child_cpu_s = 0;
-    job->child_peak_bytes = 0;
-    json_object_set_new(record, "key", json_string(job->keys[id]));
-    enum orl_result result = stages[id].run(job, record);
-    getrusage(RUSAGE_SELF, &after);
-    json_object_set_new(record, "wall_s", json_real(orl_time_s() - start));
-    json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(&before) +
-                                                   job->child_cpu_s));
-    // Of Oriel it is the peak since it started; children are new processes.
-    json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
-    json_object_set_new(record, "child_peak_rss_mib",
-                        json_real((double)job->child_peak_bytes / (1 << 20)));
-    if (result == ORL_OK) {
-        json_object_set(done_stages(job), stages[id].name, record);
-        result = save_stages(job);
-    }
-    json_decref(record);
-    return result;
-}
-
-static enum orl_result run_stages(struct orl_job *job)
-{
-    bool current[ORL_STAGE_COUNT];
-    find_current(job, current);
-    enum orl_result result = invalidate(job, current);
-    for (int i = 1; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
-        if (orl_progress_cancelled(job->progress))
-            result = ORL_ERR_CANCELLED;
-        else if (current[i])
-            orl_logf(job->log, ORL_LOG_INFO, "%s: done already", stages[i].name);
-        else
-            result = run_stage(job, (enum orl_stage_id)i);
-    }
-    return result == ORL_OK ? orl_stage_manifest(job) : result;
-}
+#include "preprocess/photos/collect.h"
+#include "preprocess/scene_json.h"
+#include "preprocess/stages.h"
 
 static enum orl_result read_exposures(struct orl_job *job)
 {
@@ -271,127 +32,14 @@ static enum orl_result read_exposures(struct orl_job *job)
 }
 
 // Collect runs always: it is what finds out whether anything has changed.
-static enum orl_result run_collect(struct orl_job *job)
+static enum orl_result begin(struct orl_job *job)
 {
     double start = orl_time_s();
-    enum orl_result result = orl_stage_collect(job);
-    if (result != ORL_OK || (result = read_exposures(job)) != ORL_OK ||
-        (result = compute_keys(job)) != ORL_OK)
-        return result;
-    json_object_set_new(done_stages(job), "collect",
-                        json_pack("{s:s, s:f, s:o, s:O}", "key", job->keys[ORL_STAGE_COLLECT],
-                                  "wall_s", orl_time_s() - start, "photographs",
-                                  photo_hashes(job), "skipped", job->skipped));
-    return save_stages(job);
-}
-
-// --- the folder ---
-
-static enum orl_result new_stages(struct orl_job *job)
-{
-    json_t *plan = json_array();
-    for (int i = 0; i < ORL_STAGE_COUNT; i++)
-        json_array_append_new(plan, json_string(stages[i].name));
-    job->stages = json_pack("{s:i, s:o, s:{}}", "version", ORL_MANIFEST_VERSION, "plan", plan,
-                            "done");
-    return job->stages ? ORL_OK : ORL_ERR_MEMORY;
-}
-
-static enum orl_result load_stages(struct orl_job *job)
-{
-    char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = !path ? ORL_ERR_MEMORY
-                             : orl_path_is_file(path) ? orl_json_read(job->log, path, &job->stages)
-                                                      : new_stages(job);
-    if (result == ORL_OK && !json_is_object(done_stages(job)))
-        result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: \"done\" is missing", path);
-    free(path);
-    return result;
-}
-
-// Never touches what it did not make: a folder is taken when it is new, empty, or
-// prepare's own and --resume says so.
-static enum orl_result claim_folder(struct orl_job *job)
-{
-    struct orl_names names = {0};
-    enum orl_result result = orl_dir_list(job->log, job->dir, &names);
-    if (result != ORL_OK)
-        return result;
-    bool ours = orl_names_contain(&names, ".oriel");
-    if (names.count && !ours)
-        result = orl_fail(job->log, ORL_ERR_ARGUMENT,
-                          "%s: not empty, and not made by oriel prepare; choose another folder",
-                          job->dir);
-    else if (ours && !job->params->resume)
-        result = orl_fail(job->log, ORL_ERR_ARGUMENT,
-                          "%s: there already; go on with --resume or choose another folder",
-                          job->dir);
-    job->fresh = names.count == 0;
-    orl_names_finish(&names);
-    return result;
-}
-
-static enum orl_result lock_folder(struct orl_job *job)
-{
-    char *path = orl_job_path(job, ".oriel/lock");
-    if (!path)
-        return ORL_ERR_MEMORY;
-    enum orl_result result = ORL_OK;
-    job->lock_fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (job->lock_fd < 0)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    else if (flock(job->lock_fd, LOCK_EX | LOCK_NB) != 0)
-        result = orl_fail(job->log, ORL_ERR_ARGUMENT,
-                          "%s: another oriel prepare is at work here", job->dir);
-    free(path);
-    return result;
-}
-
-static enum orl_result open_folder(struct orl_job *job)
-{
-    const char *out = job->params->out;
     enum orl_result result;
-    if ((result = orl_dir_make(job->log, out)) != ORL_OK)
+    if ((result = orl_stages_load(job)) != ORL_OK || (result = orl_stage_collect(job)) != ORL_OK ||
+        (result = read_exposures(job)) != ORL_OK)
         return result;
-    job->dir = realpath(out, NULL);
-    if (!job->dir)
-        return orl_fail(job->log, ORL_ERR_IO, "%s: %s", out, strerror(errno));
-    if ((result = claim_folder(job)) != ORL_OK)
-        return result;
-    static const char *const dirs[] = {".oriel", "logs"};
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++) {
-        char *path = orl_job_path(job, "%s", dirs[i]);
-        result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    if (result == ORL_OK)
-        result = lock_folder(job);
-    return result == ORL_OK ? load_stages(job) : result;
-}
-
-// Wrong input must not leave a folder that the next, right, command stumbles on.
-static void leave_folder(const struct orl_job *job)
-{
-    if (orl_job_remove(job, ".oriel") == ORL_OK && orl_job_remove(job, "logs") == ORL_OK)
-        rmdir(job->dir);
-}
-
-static void finish(struct orl_job *job)
-{
-    for (size_t i = 0; i < job->source_count; i++) {
-        free(job->sources[i].name);
-        free(job->sources[i].given);
-        free(job->sources[i].path);
-        free(job->sources[i].original);
-        free(job->sources[i].mask);
-    }
-    free(job->sources);
-    orl_exposure_list_finish(&job->exposures);
-    json_decref(job->skipped);
-    json_decref(job->stages);
-    if (job->lock_fd >= 0)
-        close(job->lock_fd);
-    free(job->dir);
+    return orl_stages_begin(job, orl_time_s() - start);
 }
 
 enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_params *params,
@@ -399,16 +47,19 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
 {
     ORL_REQUIRE(log, params->input_count > 0 && params->out && *params->out);
     ORL_REQUIRE(log, params->test_every >= 0 && params->max_size >= 0);
-    struct orl_job job = {.log = log, .progress = progress, .params = params, .lock_fd = -1,
-                          .linear_scale = 1,
-                          .skipped = json_array()};
-    enum orl_result result = job.skipped ? open_folder(&job) : ORL_ERR_MEMORY;
+    struct orl_job job;
+    enum orl_result result = orl_job_open(&job, log, params, progress);
     if (result == ORL_OK)
-        result = run_collect(&job);
-    if (result != ORL_OK && job.fresh)
-        leave_folder(&job);
+        result = begin(&job);
+    if (result != ORL_OK)
+        orl_job_leave(&job);
     if (result == ORL_OK)
-        result = run_stages(&job);
-    finish(&job);
+        result = orl_stages_run(&job);
+    if (result == ORL_OK)
+        result = orl_scene_json_write(&job);
+    // Once the scene is whole: fuse and ground alone read the maps.
+    if (result == ORL_OK && params->keep == ORL_KEEP_MINIMAL)
+        result = orl_job_remove(&job, "stereo");
+    orl_job_close(&job);
     return result;
 }

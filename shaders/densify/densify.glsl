@@ -1,26 +1,29 @@
-// What the densifier's shaders share: random numbers, planes, and the cost of a plane
-// in one source photograph. Needs RADIUS, STEP, SOURCES and PADDING; GEOMETRIC adds
-// the term for agreement with the sources' depth maps.
+// Shared by the densifier's shaders: random numbers, planes, and the matching cost of a plane in
+// one source photograph. The including program defines RADIUS, STEP, SOURCES and PADDING.
+// GEOMETRIC adds a cost term for consistency with the depth maps of the sources.
 #include "shared/densify_block.h"
 
-const float COST_MAX = 2.0; // of 1 - NCC
+const float COST_MAX = 2.0; // largest value of 1 - NCC
 const int SIDE = 2 * RADIUS / STEP + 1;
 const int FIRST = -((SIDE - 1) * STEP) / 2;
-// Variance of sensor noise and rounding in 8-bit values: flat patches match nothing.
+// Variance of sensor noise and rounding, in squared 8-bit values. It keeps textureless patches
+// from matching anything.
 const float NOISE_VARIANCE = 0.5;
-// Bilateral weights: distance in window radii and difference in 8-bit values.
+// Bilateral weights: standard deviation of the colour difference, in 8-bit values. The standard
+// deviation of the distance is the window's radius.
 const float SIGMA_COLOR = 30.0;
 
 layout(binding = 0) uniform sampler2D reference; // luma, mask
-// One layer per source; a texel holds the four values of its 2x2 neighbourhood, so that
-// a bilinear sample is one fetch. Each layer is padded by repeating its edge.
+// One layer per source. Each texel packs the four values of its 2x2 neighbourhood, so that a
+// bilinear sample is one fetch. Each layer is padded by repeating its edge.
 layout(binding = 1) uniform usampler2DArray sources;
 #ifdef GEOMETRIC
-layout(binding = 2) uniform sampler2DArray source_depths; // 1/z, 0: none
+layout(binding = 2) uniform sampler2DArray source_depths; // 1/z; 0: no depth
 #endif
 
-// Added to a plane's cost: where few sources agree on it, for each that sees through it,
-// and where none agrees.
+// Geometric consistency terms that are added to a plane's cost. LONELY: greatest penalty where few
+// sources agree on the plane; AGAINST: for each source that sees through it; NOBODY: where no
+// source agrees.
 const float LONELY = 0.1, AGAINST = 0.08, NOBODY = 0.4;
 
 // --- random numbers (PCG, Jarzynski and Olano 2020) ---
@@ -57,8 +60,8 @@ vec3 view_ray(vec2 pixel)
     return vec3((pixel - camera.zw) / camera.xy, 1.0);
 }
 
-// The plane's normal, not normalised, pointing away from the camera: every point X on it
-// has dot(normal, X) = 1. At the pixel with ray r, dot(normal, r) = w.
+// The plane's normal, unnormalised, pointing away from the camera: every point X on the plane
+// satisfies dot(normal, X) = 1. At the pixel with ray r, dot(normal, r) = w.
 vec3 plane_normal(vec3 plane, vec2 pixel)
 {
     return vec3(plane.yz * camera.xy, plane.x + dot(plane.yz, camera.zw - pixel));
@@ -69,7 +72,8 @@ vec3 plane_from_normal(float w, vec3 away, vec2 pixel)
     return vec3(w, w * away.xy / (camera.xy * dot(away, view_ray(pixel))));
 }
 
-// Within the depth range and seen at less than 86 degrees: ground before a viewer reaches that.
+// True if the plane is within the depth range and is seen at less than 86 degrees from its normal.
+// The ground in front of a viewer reaches such angles.
 bool plane_valid(vec3 plane, vec2 pixel)
 {
     vec3 n = plane_normal(plane, pixel), r = view_ray(pixel);
@@ -91,11 +95,11 @@ vec3 turned_plane(float w, vec3 plane, vec2 pixel, float amount)
     vec3 n = normalize(plane_normal(plane, pixel));
     vec3 offset = vec3(random_signed(), random_signed(), random_signed());
     n += amount * offset;
-    // Turned too far: facing away. The range test drops it.
+    // A plane that was turned too far faces away. Its zero inverse depth fails the range test.
     return dot(n, view_ray(pixel)) > 1e-3 ? plane_from_normal(w, n, pixel) : vec3(0.0);
 }
 
-// --- costs of single views, one byte each; finer near zero ---
+// --- costs of single views: one byte each, quantised more finely near zero ---
 
 uint cost_pack(float cost)
 {
@@ -126,7 +130,7 @@ uvec4 set_byte(uvec4 words, int index, uint value)
 
 // --- the reference patch, fetched once per pixel ---
 
-float patch_weight[SIDE * SIDE]; // bilateral, sum 1
+float patch_weight[SIDE * SIDE]; // bilateral weights, which sum to 1
 float patch_signal[SIDE * SIDE]; // weight * (value - mean)
 float patch_variance;
 
@@ -166,8 +170,9 @@ float source_inverse_depth(int view, vec2 texel)
     return texelFetch(source_depths, ivec3(clamp(at, ivec2(0), limits), view), 0).r;
 }
 
-// How far the pixel lands from itself after going to the source and back with the
-// source's own inverse depth there (Schoenberger 2016, 4.2), in pixels, capped.
+// Forward-backward reprojection error (Schoenberger 2016, 4.2): the distance between the pixel and
+// its image after projection into the source and back with the source's own inverse depth. In
+// pixels, at most tune.w.
 float reprojection_error(int view, vec2 texel, float w, vec2 pixel)
 {
     vec2 p = (texel + 0.5 - float(PADDING)) * extent[view].w;
@@ -178,9 +183,9 @@ float reprojection_error(int view, vec2 texel, float w, vec2 pixel)
 }
 #endif
 
-// 1 - bilaterally weighted NCC of the reference patch and its image in the source. The
-// homography is taken as affine within the patch: over its few pixels the perspective
-// part moves samples by less than a tenth of a pixel.
+// 1 - bilaterally weighted NCC of the reference patch and its image in the source. Within the
+// patch the homography is approximated as affine: over so few pixels the perspective part moves
+// samples by less than a tenth of a pixel.
 float view_cost(int view, vec3 plane, vec2 pixel)
 {
     vec4 row0 = forward[3 * view], row1 = forward[3 * view + 1], row2 = forward[3 * view + 2];
@@ -195,7 +200,8 @@ float view_cost(int view, vec3 plane, vec2 pixel)
     vec2 along_y = vec2(row0.y + row0.w * plane.z, row1.y + row1.w * plane.z);
     along_x = (along_x - texel * (row2.x + row2.w * plane.y)) * inverse;
     along_y = (along_y - texel * (row2.y + row2.w * plane.z)) * inverse;
-    // Inside the picture, its patch inside the padding, neither mirrored nor crushed.
+    // The centre must lie inside the picture and the warped patch inside the padding. The warp must
+    // neither mirror the patch nor shrink its area to less than 4 %.
     vec2 inside = texel - float(PADDING) + 0.5;
     vec2 reach = float(RADIUS) * (abs(along_x) + abs(along_y));
     float growth = along_x.x * along_y.y - along_x.y * along_y.x;
@@ -225,13 +231,13 @@ float view_cost(int view, vec3 plane, vec2 pixel)
 }
 
 #ifdef GEOMETRIC
-// What the sources' depths say to a plane.
+// How consistent a plane is with the depth maps of the sources.
 struct opinion {
-    uvec3 views;  // the three that agree best, best first
-    vec3 weights; // 0: fewer agree
-    vec3 errors;  // pixels
-    int agree;    // sources whose own depth is that of the plane
-    int against;  // sources that see through the place to something clearly farther
+    uvec3 views;  // the three sources that agree best, in descending order
+    vec3 weights; // of these sources; 0: fewer than three agree
+    vec3 errors;  // reprojection errors of these sources, pixels
+    int agree;    // number of sources whose own depth matches the plane
+    int against;  // number of sources that see through the plane to a clearly farther surface
 };
 
 opinion ask_sources(vec3 plane, vec2 pixel)
@@ -272,8 +278,8 @@ opinion ask_sources(vec3 plane, vec2 pixel)
     return o;
 }
 
-// The patch is compared in sources that agree on the depth: those that see the place.
-// Sources that see something nearer have no say, being hidden.
+// The patch is compared in the sources whose depth agrees, since these see the surface. A source
+// that sees a nearer surface adds no penalty, since the plane is occluded in it.
 float agreed_cost(vec3 plane, vec2 pixel, float best)
 {
     opinion o = ask_sources(plane, pixel);

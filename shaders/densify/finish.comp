@@ -1,5 +1,6 @@
-// Planes to depth and normal maps, where they match; with GEOMETRIC, where the sources'
-// depths agree too; with SMOOTH, depth that nobody goes on from.
+// Turns planes into depth and normal maps where the matching cost is low enough. GEOMETRIC: also
+// requires consistency with the depth maps of the sources. SMOOTH: also averages depth, for the
+// final result, which no later pass refines.
 #include "densify/densify.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -10,9 +11,10 @@ layout(rgba32f, binding = 3) writeonly uniform image2D maps; // confidence * nor
 
 const int FIT_ASIDE = 6, FIT_DIAGONAL = 5, SMOOTH_RADIUS = 2;
 
-// Of the planes fitted around here and around eight places nearby, the one that fits its
-// places best while it passes through here: so that a window may lie on one side of an edge
-// (Kuwahara et al. 1976). The slopes of single patches are several degrees off.
+// Returns the plane with the slopes of the best fit: of the planes fitted around this pixel and
+// around eight pixels nearby, the one with the least misfit that passes through this pixel's depth.
+// Shifted windows may lie on one side of a depth discontinuity (Kuwahara et al. 1976). The slopes
+// of single patches are several degrees off.
 vec3 fitted_plane(ivec2 at, vec3 plane)
 {
     vec3 chosen = plane;
@@ -36,7 +38,7 @@ vec3 fitted_plane(ivec2 at, vec3 plane)
     return chosen;
 }
 
-// Averages the depth of planes that pass through the same place.
+// Averages the inverse depth with that of neighbouring planes that pass through the same point.
 float smoothed_depth(ivec2 at, vec3 plane)
 {
     float sum = plane.x, total = 1.0;
@@ -65,8 +67,8 @@ void main()
     vec4 map = vec4(0.0);
     float cost = imageLoad(costs, at).r;
     bool keep = texelFetch(reference, at, 0).g > 0.0 && plane.x > 0.0 && cost < limit.x;
-    // A half at the greatest cost that is kept, and for each source more that agrees half of
-    // what was doubtful.
+    // Confidence: 0.5 at zero cost, 0.25 at the greatest cost that is kept. Geometric consistency
+    // raises it to at most twice that: each further source that agrees halves the rest.
     float confidence = 0.5 * (1.0 - 0.5 * cost / limit.x);
 #ifdef GEOMETRIC
     opinion count = ask_sources(plane, pixel);

@@ -1,5 +1,5 @@
-// For every pixel the plane through the places around it, and how well they lie on it:
-// what densify/finish.comp chooses from.
+// Fits for every pixel a plane to the surface points around it, and measures the misfit.
+// densify/finish.comp chooses among these planes.
 #include "densify/densify.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -7,12 +7,12 @@ layout(rgba32f, binding = 0) readonly uniform image2D planes;
 layout(r32f, binding = 1) readonly uniform image2D costs;
 layout(rgba32ui, binding = 2) writeonly uniform uimage2D fits; // bits of w, its slopes, misfit
 
-const int FIT_RADIUS = 9, FIT_STEP = 3; // odd, so that both colours of the sweeps count
+const int FIT_RADIUS = 9, FIT_STEP = 3; // an odd step, so that both checkerboard colours contribute
 const float FIT_COUNT = 49.0;
-// The patches' own slopes count like pixels this far away, squared: over a few pixels they
-// tell more than the differences of depths do.
+// Weight of the patches' own slopes, equal to that of depth differences at this squared distance
+// in pixels. Over a few pixels the slopes are more precise than the differences of depths.
 const float SLOPE_WEIGHT = 200.0;
-// Variance in pixels that noise makes anyway.
+// Variance that noise alone causes, squared pixels.
 const float FIT_FLOOR = 0.001;
 
 void main()
@@ -31,7 +31,7 @@ void main()
             if (any(lessThan(q, ivec2(0))) || any(greaterThanEqual(q, area.xy)))
                 continue;
             vec3 other = imageLoad(planes, q).xyz;
-            // Each on the other's plane, in pixels of a match.
+            // Distance of each point from the plane of the other, as a shift of a match in pixels.
             vec2 offset = vec2(i, j);
             float w = (other.x - plane.x) / range.z;
             float there = w - dot(other.yz, offset) / range.z;

@@ -1,6 +1,6 @@
-// A first plane for every pixel, and its cost in every source: of several random ones
-// the best (FROM_RANDOM), that of the coarser level (FROM_COARSE), or that of finished
-// depth and normal maps (FROM_MAPS).
+// Initialises every pixel with a plane and its cost in every source. The plane is the best of
+// several random ones (FROM_RANDOM), comes from the coarser level (FROM_COARSE), or comes from
+// finished depth and normal maps (FROM_MAPS).
 #include "densify/densify.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -14,7 +14,7 @@ layout(rgba32f, binding = 3) readonly uniform image2D coarse_planes;
 layout(rgba32f, binding = 3) readonly uniform image2D maps; // normal, depth
 #endif
 #ifdef FROM_RANDOM
-layout(r32f, binding = 3) readonly uniform image2D seeds; // 1/z of sparse points, 0: none
+layout(r32f, binding = 3) readonly uniform image2D seeds; // 1/z of sparse points; 0: none
 #endif
 
 vec3 first_plane(ivec2 at, vec2 pixel, int attempt)
@@ -23,7 +23,7 @@ vec3 first_plane(ivec2 at, vec2 pixel, int attempt)
     vec3 plane = random_plane(pixel);
     float seed = imageLoad(seeds, at).r;
     if ((attempt & 1) == 1 && seed > 0.0) {
-        // Sparse points nearby: about as far away.
+        // A sparse point nearby suggests a similar depth.
         float w = clamp(seed * (1.0 + 0.3 * random_signed()), range.x, range.y);
         plane *= w / plane.x;
     }
@@ -69,7 +69,7 @@ void main()
             for (int view = 0; view < SOURCES; view++) {
                 float cost = extent[view].z > 0.0 ? view_cost(view, plane, pixel) : COST_MAX;
                 views = set_byte(views, view, cost_pack(cost));
-                // Soft minimum: the sources that see the place are not known yet.
+                // A soft minimum, because it is still unknown which sources see the surface point.
                 float weight = exp2(-8.0 * cost * cost);
                 sum += weight * cost;
                 total += weight;

@@ -1,6 +1,6 @@
-// Half of a PatchMatch sweep: pixels of one checkerboard colour try the planes of the
-// other colour's best neighbours (adaptive checkerboard, Xu and Tao 2019, 3.1) and
-// variations of their own, judged in the sources that see the place.
+// Half of a PatchMatch sweep. Pixels of one checkerboard colour try the planes of the best
+// neighbours of the other colour (adaptive checkerboard, Xu and Tao 2019, 3.1) and random
+// variations of their own plane. Costs are taken from the sources that see the surface point.
 #include "densify/densify.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -72,14 +72,14 @@ uvec4 find_candidates(ivec2 at)
     return found;
 }
 
-// --- which sources see the place ---
+// --- selection of the sources that see the surface point ---
 
-// Sources that match well here and around are taken to see it: no plane is evaluated
-// for this. Their weights fall softly, so that one good source is enough where no more
-// see the place, and the others hardly spoil it.
+// Sources that match well at this pixel and around it are assumed to see the surface point, which
+// needs no further matching. Their weights fall gradually, so that one good source is enough where
+// only one sees the point, and occluded sources have little influence.
 struct selection {
-    uint views;     // index of the k-th best, 4 bits each
-    uvec4 weights;  // a byte each
+    uint views;     // index of the k-th best source, 4 bits each
+    uvec4 weights;  // one byte for each of these sources
 };
 
 // A neighbour outside the picture is replaced by the pixel itself.
@@ -95,7 +95,7 @@ selection select_views(ivec2 at)
     float score[SOURCES];
     for (int view = 0; view < SOURCES; view++)
         score[view] = 0.0;
-    // Itself and pixels of the other colour; those of its own are being written.
+    // Reads this pixel and pixels of the other colour; those of its own colour are being written.
     for (int i = 0; i < 9; i++) {
         ivec2 offset = i == 0 ? ivec2(0) : (i < 5 ? 1 : 3) * DIRECTIONS[(i - 1) & 3];
         uvec4 codes = imageLoad(view_costs, inside_or_self(at, offset));
@@ -129,10 +129,10 @@ selection select_views(ivec2 at)
 
 // --- variations ---
 
-// Slopes from the inverse depths around, which are the other colour's.
+// Takes the slopes from the inverse depths of the four neighbours, which have the other colour.
 vec3 fitted_plane(ivec2 at, vec3 plane)
 {
-    ivec2 low = max(at - 1, ivec2(0)), high = min(at + 1, area.xy - 1); // or itself at the edge
+    ivec2 low = max(at - 1, ivec2(0)), high = min(at + 1, area.xy - 1); // or this pixel
     float left = imageLoad(planes, ivec2(low.x, at.y)).x;
     float right = imageLoad(planes, ivec2(high.x, at.y)).x;
     float up = imageLoad(planes, ivec2(at.x, low.y)).x;
@@ -206,7 +206,7 @@ void main()
         best += weight * cost_unpack(get_byte(best_views, view));
         total += weight;
     }
-    // The last turn judges nothing: it brings one more source up to date.
+    // The last turn tries no plane: it updates the cost in one more source.
     for (int turn = 0; turn <= tests.x + tests.y; turn++) {
         bool refresh = turn == tests.x + tests.y;
         vec3 plane = best_plane;

@@ -1,6 +1,7 @@
-// Averages the pixels that antialias_find.comp listed with the 3x3 around, weighing 0.35, 1, 0.35 each
-// way, in square roots of light: a bright side does not swallow a dark one. First into the list, since
-// neighbours are still to be averaged; with WRITE from there. HALF: the picture is of half floats.
+// Averages each pixel that antialias_find.comp listed with its 3x3 neighbourhood, with separable
+// weights 0.35, 1, 0.35. The average is of square roots of light, so that a bright side does not
+// swallow a dark one. The first run writes into the list, since neighbours still need the original
+// colours; the run with WRITE copies the list to the picture. HALF: the picture has half floats.
 #include "edges/edge_list.glsl"
 
 layout(local_size_x = EDGE_GROUP) in;

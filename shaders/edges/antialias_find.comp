@@ -1,13 +1,15 @@
-// Where depth steps, a pixel shows what is on both sides, as it does in a photograph. Lists those
-// pixels, and how much: antialias.comp averages. 2x2 pixels an invocation.
+// Lists the pixels at depth discontinuities, each with an antialiasing strength in (0, 1]; in a
+// photograph such a pixel shows both sides. antialias.comp then averages the listed pixels. One
+// invocation handles 2x2 pixels.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 #include "edges/edge_list.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(r32f, binding = 0) readonly uniform image2D depth; // < 0: guessed
+layout(r32f, binding = 0) readonly uniform image2D depth; // < 0: estimated background depth
 
-// Second differences of inverse depth, parts of the largest: from none of it to all. Slopes have none.
+// Second difference of inverse depth, as a fraction of the largest inverse depth, at which
+// antialiasing begins and at which it is full. The second difference of a plane is zero.
 const float STEP_FROM = 0.004, STEP_FULL = 0.012;
 
 void main()
@@ -15,12 +17,12 @@ void main()
     ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
     if (corner.x >= image_size.x || corner.y >= image_size.y)
         return;
-    float inverse[16]; // of the 4x4 around; a guess is behind everything
+    float inverse[16]; // of the 4x4 pixels around; 0: estimated depth, behind everything
     for (int k = 0; k < 16; k++) {
         float z = imageLoad(depth, corner + ivec2(k & 3, k >> 2) - 1).r;
         inverse[k] = z > 0.0 ? 1.0 / z : 0.0;
     }
-    const int along[4] = int[4](1, 3, 4, 5); // to the next, in four directions
+    const int along[4] = int[4](1, 3, 4, 5); // index offsets to the next pixel in four directions
     for (int k = 0; k < 4; k++) {
         ivec2 at = corner + ivec2(k & 1, k >> 1);
         bool whole = all(greaterThan(at, ivec2(0))) && all(lessThan(at, image_size - 1));

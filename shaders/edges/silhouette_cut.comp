@@ -1,9 +1,10 @@
-// Gives pixels before an edge to what is behind it where they and their neighbours vote so.
+// Moves a foreground pixel at a depth edge to the background depth when its votes and those of its
+// neighbours add up in favour.
 #include "edges/edge_list.glsl"
 
 layout(local_size_x = EDGE_GROUP) in;
 layout(r32f, binding = 0) writeonly uniform image2D view_depth;
-layout(r32f, binding = 1) readonly uniform image2D votes; // 0: has none
+layout(r32f, binding = 1) readonly uniform image2D votes; // 0: no vote
 layout(rgba16f, binding = 2) writeonly uniform image2D normal;
 
 void main()

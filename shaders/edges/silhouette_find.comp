@@ -1,13 +1,13 @@
-// Lists the pixels that lie before an edge of depth, and what is behind it. 2x2 pixels an
-// invocation.
+// Lists the foreground pixels at depth discontinuities, each with the background depth behind the
+// edge. One invocation handles 2x2 pixels.
 #define BLOCK_GATHER
 #include "shared/render_blocks.h"
 #include "edges/edge_list.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
 
-// Depths this far apart are an edge.
+// Depths with at least this ratio form an edge.
 const float EDGE_RATIO = 1.03;
 
 void main()
@@ -16,7 +16,7 @@ void main()
     if (corner.x >= view_size.x || corner.y >= view_size.y)
         return;
     float own[4], behind[4], before[4];
-    vec2 inward[4]; // to where the surface of this pixel goes on
+    vec2 inward[4]; // direction in which the surface of this pixel continues
     for (int k = 0; k < 4; k++) {
         own[k] = imageLoad(view_depth, corner + ivec2(k & 1, k >> 1)).r; // 0 outside
         behind[k] = own[k];
@@ -36,7 +36,7 @@ void main()
             }
         }
     for (int k = 0; k < 4; k++) {
-        // Nearer, in logarithms, to what is before the edge than to what is behind.
+        // In logarithms, the depth is closer to that of the foreground than to the background's.
         float far = abs(behind[k]);
         if (own[k] > 0.0 && far > EDGE_RATIO * before[k] && own[k] * own[k] < far * before[k])
             edge_add(corner + ivec2(k & 1, k >> 1),

@@ -1,32 +1,35 @@
-// Depth from splats reaches past silhouettes by a few pixels. The photographs show there what is
-// behind, each another part of it: they differ more than on the depth behind the edge, and the
-// best of them looks like that, not like the surface next to it. So each pixel before an edge
-// votes on belonging behind it; silhouette_cut.comp counts.
+// Depth from splats reaches past silhouettes by a few pixels. There the photographs show the
+// background, each a different part of it. So they differ more when projected to the foreground
+// depth than to the background depth, and the best photograph resembles the background rather than
+// the surface beside it. Each foreground pixel at an edge votes for or against the background;
+// silhouette_cut.comp counts the votes.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/sample/srgb.glsl"
 #include "edges/edge_list.glsl"
 
 layout(local_size_x = EDGE_GROUP) in;
-layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-layout(r32f, binding = 1) writeonly uniform image2D votes;     // of pixels that are listed
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
+layout(r32f, binding = 1) writeonly uniform image2D votes;     // votes of the listed pixels
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
 
-// Variances of square roots of light: photographs differ clearly when by this much more.
+// Variances are of square roots of light. Photographs differ clearly when the variance is CLEARLY
+// times as large.
 const float CLEARLY = 4.0, NOISE = 0.01;
-// Fewer photographs than this cannot differ.
+// Least effective number of photographs from which a variance can be computed.
 const float VOICES_LEAST = 1.3;
-// Pixels from the edge at which the surface surely is itself, beyond the reach of wrong depth.
+// Distance beyond opt.silhouette, in pixels, at which the foreground surface is certain.
 const float INNER = 2.0;
 const float VOTE_MOST = 2.0;
 
-// What the photographs of a tile say of a point. Colours: square roots of light.
+// Statistics of the samples that a tile's photographs give for a point. Colours are square roots
+// of light.
 struct opinion {
     vec3 mean, best_color;
-    float variance, voices; // voices: how many photographs have a say
-    int best;               // the one with the most say; -1: none
+    float variance, voices; // voices: effective number of photographs
+    int best;               // photograph of greatest weight; -1: none
 };
 
 vec3 look(photo shot, vec2 pixel, float z, vec3 p)
@@ -41,7 +44,7 @@ opinion ask(int list, vec3 p)
     vec4 sum = vec4(0.0);
     float squares = 0.0, weights = 0.0, most = 0.0;
     int c = 0, i = chosen[list];
-    do { // the condition last: see tiled.comp
+    do { // the condition comes last: see tiled.comp
         photo shot = photo_at(max(i, 0));
         vec2 pixel;
         float z;
@@ -72,8 +75,9 @@ vec3 ray(ivec2 at)
     return vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0);
 }
 
-// Is the best photograph's colour here like the surface's farther inside (< 0), or like what is
-// behind (> 0)? In powers of two.
+// Compares the best photograph's colour with that of the surface farther inside and with that of
+// the background. Log2 of a ratio of squared differences: < 0: like the surface, > 0: like the
+// background.
 float likeness(opinion here, opinion there, ivec2 inner)
 {
     float z, depth = abs(imageLoad(view_depth, inner).r);

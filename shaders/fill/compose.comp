@@ -1,21 +1,22 @@
-// The finished frame: blended colour, or the fill where nothing was blended. 2x2 pixels an
-// invocation.
-// FINISHED: the painter did all but the pixels that nothing paints, and those on guessed depth, of
-// some work groups.
-// RADIANCE: guesses are to be blurred where `trusted` says so.
+// Makes the finished frame: the blended colour, or the filled colour where no sample was blended.
+// One invocation handles 2x2 pixels.
+// FINISHED: the painter has finished all pixels but those that are unpainted or lie on estimated
+// background depth, and has listed their work groups.
+// RADIANCE: colour on estimated depth is blurred where `trusted` asks for it.
 #define BLOCK_IMAGE
 #include "shared/pixel.glsl"
 #include "shared/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-// In: shared/pixel.glsl; with FINISHED, finished, else blended. Out: colour, coverage.
+// Input: encoded as in shared/pixel.glsl, as finished pixels with FINISHED, else as blended pixels.
+// Output: colour, coverage.
 #ifdef FINISHED
 layout(rgba16f, binding = 0) uniform image2D picture;
 #else
 layout(rgba32f, binding = 0) uniform image2D picture;
 #endif
 layout(rgba32f, binding = 1) readonly uniform image2D filled;
-layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
+layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: estimated
 
 #define FILL_LEVEL filled
 #include "fill/fill.glsl"
@@ -26,18 +27,18 @@ layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: guessed
 layout(rgba32f, binding = 3) readonly uniform image2D trusted; // z: see gather/radiance/merge.glsl
 #endif
 #if defined(FINISHED) || defined(RADIANCE)
-// What is painted on guessed depth: sums of 2x2, colour, 1; and mipmaps.
+// Sums over 2x2 pixels of (colour, 1) where depth is estimated, with mipmaps.
 layout(binding = 0) uniform sampler2D guesses;
 
-// Colour on guessed depth, blurred as far as it may lie from its place: wrong details are worse
-// than none. With others like it alone, since what has depth is in its place.
+// Colour on estimated depth, blurred as far as it may be displaced, since wrong details are worse
+// than none. Only pixels of estimated depth are mixed: colour on known depth is in its place.
 vec3 softened(ivec2 at, vec3 sharp, float blur)
 {
     float most = log2(GUESS_BLUR_MOST * float(max(image_size.x, image_size.y)));
     blur = clamp(blur, 0.0, max(most, 0.0));
     vec2 where = (vec2(at) + 0.5) / vec2((image_size + 1) / 2 * 2);
     vec4 around = textureLod(guesses, where, max(blur - 1.0, 0.0));
-    // Next to none: a pixel alone in what a driver's mipmaps leave out.
+    // The weight may vanish where a driver's mipmaps omit an isolated pixel.
     vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp;
     return mix(sharp, soft, min(blur, 1.0));
 }
@@ -68,9 +69,9 @@ void compose(uvec2 group)
         float blur = imageLoad(trusted, at).z - 1.0;
         own = blur > 0.0 ? softened(at, own, blur) : own;
 #endif
-        // As much light as there is at least, and as around it if that is more.
+        // A pixel whose light is only a lower bound takes the light around it if that is brighter.
         own = weight > 0.0 && !pixel_at_least(pixel) ? own : max(own, filled);
-        // Splat colours between splats count as covered by them.
+        // With the splats' own colours, a surface between splats counts as covered.
         imageStore(picture, at,
                    pixel_finished(own, on_surface && (weight > 0.0 || points_show == 1)));
 #endif

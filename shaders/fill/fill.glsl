@@ -1,12 +1,12 @@
-// Reading the filling pyramid, whose finest level has half the picture's size. Included where
-// FILL_LEVEL names the level's image.
+// Reads the pyramid of hole filling, whose finest level has half the picture's size. The including
+// file defines FILL_LEVEL as the name of the level's image.
 
-// What the 2x2 finer pixels of a pixel get: bilinear, as Gortler 1996's push. All four at once,
-// since they share what they read.
+// Bilinear values for the 2x2 finer pixels of a pixel, as in the push of Gortler 1996. All four
+// are computed at once, since they share their reads.
 void fill_finer(ivec2 parent, out vec4 finer[4])
 {
     ivec2 last = imageSize(FILL_LEVEL) - 1;
-    vec4 upper[3], lower[3]; // of three columns
+    vec4 upper[3], lower[3]; // one entry for each of three columns
     for (int x = 0; x < 3; x++) {
         vec4 column[3];
         for (int y = 0; y < 3; y++)

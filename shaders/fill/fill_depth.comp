@@ -1,6 +1,6 @@
-// Writes guessed background depth, negative, where the proxy has none: what is known around, but
-// no farther than the ground (Li's room, of which only the floor is sure). 2x2 pixels an
-// invocation.
+// Writes the estimated background depth, as a negative value, where the proxy has none. It is the
+// depth known around the pixel, but no farther than the ground (the floor of Li's room box, its
+// only reliable side). One invocation handles 2x2 pixels.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 
@@ -11,7 +11,7 @@ layout(r32f, binding = 1) uniform image2D depth;
 #define FILL_LEVEL filled
 #include "fill/fill.glsl"
 
-// Inverse depth; 0: no ground there.
+// Inverse depth of the ground; 0: the ray misses the ground.
 float on_ground(ivec2 at)
 {
     float inverse = dot(ground.xyz, vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0));

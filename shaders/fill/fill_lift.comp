@@ -1,12 +1,13 @@
-// Gives pixels of which only the least light is known the light around them that is as bright,
-// which fill_seed.comp and its like have spread as logarithms: these are known then. 2x2 pixels an invocation.
+// A pixel whose light is only a lower bound takes the equally bright light around it, and is then
+// known. fill_seed.comp and the passes after it have spread that light as logarithms. One
+// invocation handles 2x2 pixels.
 #define BLOCK_IMAGE
 #include "shared/pixel.glsl"
 #include "shared/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) readonly uniform image2D filled;
-layout(rgba32f, binding = 1) uniform image2D accumulated; // shared/pixel.glsl, blended
+layout(rgba32f, binding = 1) uniform image2D accumulated; // blended pixels of shared/pixel.glsl
 
 #define FILL_LEVEL filled
 #include "fill/fill.glsl"

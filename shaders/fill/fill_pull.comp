@@ -1,4 +1,4 @@
-// Sum of 2x2 finer pixels (Gortler 1996, pull).
+// Sums 2x2 finer pixels (Gortler 1996, pull).
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 

@@ -1,5 +1,5 @@
-// Fills pixels that know nothing from the coarser level, bilinearly (Gortler 1996, push). 2x2
-// pixels an invocation.
+// Fills pixels without a value bilinearly from the coarser level (Gortler 1996, push). One
+// invocation handles 2x2 pixels.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 

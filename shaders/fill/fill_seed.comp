@@ -1,11 +1,11 @@
-// Finest level of the filling pyramid, at half the picture's size: what 2x2 pixels know,
-// times its weight.
-// SEED_DEPTH: inverse depth, weighted so steeply towards far surfaces that a hole takes
-// the farther one of its rim, which it shows, and nothing between the two.
-// SEED_LEAST: the light that there is at least, where no more is known.
-// SEED_BRIGHTER: logarithms of the light that is as bright as what SEED_LEAST has spread here: what
-// clips is not as dark as the wall beside it.
-// SEED_GUESSES: colour on guessed depth, to blur it. Otherwise: colour.
+// Writes the finest level of the pyramid of hole filling, at half the picture's size: the weighted
+// sum of the known values among 2x2 pixels. The defines choose the value:
+// SEED_DEPTH: inverse depth, weighted so steeply towards far surfaces that a hole takes the
+// farther side of its rim, the visible background, rather than a depth between the two sides.
+// SEED_LEAST: light of pixels for which it is only a lower bound.
+// SEED_BRIGHTER: logarithm of light that is as bright as the lower bound that SEED_LEAST has spread
+// to this pixel, so that a clipped area does not become as dark as the wall beside it.
+// SEED_GUESSES: colour on estimated background depth, for the blur. Without a define: colour.
 #define BLOCK_IMAGE
 #include "shared/pixel.glsl"
 #include "shared/render_blocks.h"
@@ -14,15 +14,15 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 #ifdef SEED_DEPTH
 layout(r32f, binding = 0) readonly uniform image2D known;
 #else
-layout(rgba32f, binding = 0) readonly uniform image2D known; // shared/pixel.glsl, blended
+layout(rgba32f, binding = 0) readonly uniform image2D known; // blended pixels of shared/pixel.glsl
 #endif
 #ifdef SEED_GUESSES
 layout(rgba32f, binding = 2) readonly uniform image2D trusted; // z: see gather/radiance/merge.glsl
 #endif
 #ifdef SEED_BRIGHTER
-layout(rgba32f, binding = 1) uniform image2D seeded; // in place
+layout(rgba32f, binding = 1) uniform image2D seeded; // updated in place
 
-const float BRIGHT_FROM = 0.65; // of the least light there is: some of it does not clip entirely
+const float BRIGHT_FROM = 0.65; // of the lower bound, since samples may clip in part only
 vec3 least = vec3(0.0);
 #else
 layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
@@ -33,7 +33,7 @@ vec4 seed(ivec2 at)
     vec4 value = imageLoad(known, at); // 0 outside
 #ifdef SEED_DEPTH
     float z = value.r;
-    float weight = clamp(pow(z / depth_scale, 14.0), 1e-15, 1e15); // sums stay floats
+    float weight = clamp(pow(z / depth_scale, 14.0), 1e-15, 1e15); // sums fit floats
     return z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
 #elif defined(SEED_GUESSES)
     float weight = pixel_weight(value);
@@ -58,7 +58,7 @@ void main()
         return;
 #ifdef SEED_BRIGHTER
     vec4 around = imageLoad(seeded, at);
-    if (!(around.a > 0.0)) // nothing clips, here or anywhere
+    if (!(around.a > 0.0)) // no pixel of the picture is clipped
         return;
     least = around.rgb / around.a;
 #endif

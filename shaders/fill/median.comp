@@ -1,5 +1,5 @@
-// The median of each channel over the 3x3 pixels around, of those that photographs painted: Orzan
-// 2005, 4.4.4 and 4.5.2. HOLES: of surfaces that none painted alone, each from its 5x5 neighbours.
+// The median of each channel over the painted pixels of the 3x3 neighbourhood: Orzan 2005, 4.4.4
+// and 4.5.2. HOLES: fills only surface pixels that no photograph painted, from 5x5 pixels.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 
@@ -15,7 +15,7 @@ layout(rgba32f, binding = 0) readonly uniform image2D picture; // colour, covera
 layout(rgba32f, binding = 1) writeonly uniform image2D filtered;
 layout(r32f, binding = 2) readonly uniform image2D depth; // <= 0: no surface
 
-// The value that as many are below as above; ties count by their place.
+// The median of the known values. Equal values are ordered by index.
 float median(float values[COUNT], bool known[COUNT], int count)
 {
     float middle = 0.0;

@@ -1,25 +1,25 @@
-// Asking a photograph about a surface point, whatever the method. Included after its <visibility>
+// Asks a photograph about a surface point, for any method. Included after the method's <visibility>
 // and <weight>.
 #include "gather/photo.glsl"
 
-// What a photograph can say, without a look at its colours.
+// A photograph's answer before its colours are read.
 struct Answer {
     int shot;     // the photograph
-    vec2 pixel;   // where the point lies in it
+    vec2 pixel;   // projection of the point, pixels
     float mip;
-    float weight; // 0: it does not show the point
+    float weight; // 0: the photograph does not show the point
 };
 
-// Photograph i, which is `shot`, about a point. soft_border: it fades out over a wider border where
-// depth is only guessed. Selects rather than branches: software renderers run
-// both sides of a condition.
+// Asks photograph i, which is `shot`, about a point. soft_border: the weight falls over a wider
+// border where depth is estimated. The code selects rather than branches, since software renderers
+// run both sides of a condition.
 Answer ask(photo shot, int i, Point at, bool soft_border)
 {
     Answer a;
     a.shot = i;
     float z;
     bool inside = photo_project(shot, at.p, a.pixel, z);
-    z = inside ? z : at.p.z; // no logarithm of less than 0
+    z = inside ? z : at.p.z; // keeps the logarithm's argument positive
     a.mip = photo_mip(shot, z, at.p.z);
     vec4 seen = photo_depths(shot, a.pixel);
     float visible = at.guessed ? visible_guess(shot, at, seen, z) : visible_surface(shot, at, seen, z);

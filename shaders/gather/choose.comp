@@ -1,17 +1,17 @@
-// Lists, per tile of the screen, the photographs that can paint it best, so that a
-// pixel's cost does not grow with the number of photographs.
+// Lists, for each tile of the screen, the photographs that can paint it best, so that the cost of a
+// pixel does not grow with the number of photographs.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
 layout(std430, binding = 1) writeonly buffer tile_lists {
     int chosen[]; // CANDIDATES per tile, best first, -1: none
 };
 
-const int ACROSS = 3; // samples of a tile, each way
+const int ACROSS = 3; // sample points of a tile in each direction
 
-// Depths of a tile's sample points; 0: none there.
+// Sample points of a tile in the view's camera frame; z 0: no depth there.
 void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS])
 {
     for (int i = 0; i < ACROSS * ACROSS; i++) {
@@ -38,8 +38,9 @@ void main()
         index[c] = -1;
     }
     int i = 0;
-    do { // the condition last: see tiled.comp
-        // The best that it can do anywhere in the tile, and a little for how much it sees.
+    do { // the condition comes last: see tiled.comp
+        // The least penalty at any sample point, raised a little for photographs that see few
+        // points.
         float least = 1e30, seen = 0.0;
         photo shot = photo_at(i);
         for (int s = 0; s < ACROSS * ACROSS; s++) {
@@ -54,7 +55,7 @@ void main()
         }
         least = seen == 0.0 ? 1e30 : least * (1.0 + 1.0 / max(seen, 0.1));
         int candidate = i;
-        for (int c = 0; c < CANDIDATES; c++) { // insertion
+        for (int c = 0; c < CANDIDATES; c++) { // insertion sort
             if (least < best[c]) {
                 float b = best[c];
                 int n = index[c];

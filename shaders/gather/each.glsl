@@ -5,7 +5,7 @@ int photo_first()
     return 0;
 }
 
-// -1: it was the last.
+// -1: photograph i was the last.
 int photo_next(int i)
 {
     return i + 1 < photo_count ? i + 1 : -1;

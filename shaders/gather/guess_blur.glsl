@@ -1,20 +1,22 @@
-// How soft a guess is to be painted.
+// Blur of colour on estimated background depth.
 
-// Where photographs differ by this much, square roots of light, a guess is fully in doubt.
+// Difference between photographs, in square roots of light, at which the estimated depth is fully
+// uncertain.
 const float GUESS_DIFFERENCE = 0.1;
-// Doubt in what one photograph shows alone: often enough it is right, and sharp.
+// Uncertainty of colour from a single photograph, which is often right and sharp.
 const float GUESS_ALONE = 0.5;
-// The same guess on the ground, which is known far better.
+// Factor on the uncertainty on the ground, whose depth is known far better.
 const float GROUND_DOUBT = 0.3;
 
-// How far colour on guessed depth may lie from its place, log2 of pixels: in proportion to parallax
-// (Eisemann 2007, Filtered Blending), the less the more the photographs agree. penalty: of the best
-// one; share: its part in the colour.
+// How far colour on estimated depth may be displaced, log2 of pixels. It grows with the parallax
+// (Eisemann 2007, Filtered Blending) and shrinks as the photographs agree. penalty: of the best
+// photograph; difference: between photographs, square roots of light; share: the best photograph's
+// part of the weight.
 float guess_blur(vec3 p, float penalty, float difference, float share)
 {
     float alone = clamp(5.0 * share - 4.0, 0.0, 1.0);
     float doubt = clamp(max(difference / GUESS_DIFFERENCE, GUESS_ALONE * alone), 0.0, 1.0);
-    float depths = p.z * dot(ground.xyz, vec3(p.xy / p.z, 1.0)); // of the ground's
+    float depths = p.z * dot(ground.xyz, vec3(p.xy / p.z, 1.0)); // fraction of the ground's depth
     doubt *= abs(depths - 1.0) < 1e-3 ? GROUND_DOUBT : 1.0;
     return log2(max(blur_per_radian * view_focal.x * penalty * doubt, 1.0));
 }

@@ -1,21 +1,21 @@
-// What a photograph's own depth says of a surface point: is it seen, or hidden, and how surely?
+// Visibility of a surface point in a photograph, from the photograph's depth map.
 #include "gather/photo.glsl"
 
-// Does one of the four texels around agree with z? All four are compared, so that slanted surfaces
-// match themselves.
+// True if one of the four texels around agrees with z. With all four, slanted surfaces match
+// themselves.
 bool photo_agrees(vec4 seen, float z)
 {
     return any(lessThanEqual(abs(seen - z), vec4(opt.depth_tolerance * z)));
 }
 
-// Has the photograph no depth there, or an estimate only?
+// True if the photograph has no depth there, or only an estimate in a hole.
 bool photo_knows_nothing(vec4 seen)
 {
     return all(lessThanEqual(seen, vec4(0.0)));
 }
 
-// Does none of these depths lie clearly in front of z? For points only known to be
-// behind everything else.
+// True if none of these depths lies clearly in front of z. For estimated background depth, which
+// only says that the point is behind everything else.
 bool photo_unhidden(vec4 seen, float z)
 {
     float nearest = z - opt.depth_tolerance * z;
@@ -23,8 +23,8 @@ bool photo_unhidden(vec4 seen, float z)
                       seen.z > 0.0 && seen.z < nearest, seen.w > 0.0 && seen.w < nearest));
 }
 
-// How surely the photograph saw this surface: 1 where its depth agrees, little where it
-// has none, 0 where it saw something else.
+// Probability that the photograph saw this surface: 1 where its depth agrees, opt.unknown_trust
+// where it has no depth, 0 where it saw another surface.
 float photo_seen_share(vec4 seen, float z)
 {
     vec4 off = abs(seen - z) * (1.0 / (z * opt.depth_tolerance));
@@ -34,18 +34,18 @@ float photo_seen_share(vec4 seen, float z)
     return unknown ? opt.unknown_trust : agrees;
 }
 
-// Radians of parallax between the view and the photograph by which what is hidden lies behind a
-// guess in a hole of the photograph's depth. In angles, since guesses of what is far are rough,
-// and a photograph taken from beside the view shows the same hole in the same place.
+// Parallax between the view and the photograph, in radians, from which a point behind the estimated
+// depth in a hole of the depth map counts as occluded. It is an angle, since estimates of far
+// depths are rough and a photograph taken close to the view shows the same hole in the same place.
 const float GUESS_PARALLAX = 0.05;
 
-// How much of the photograph around a pixel has nothing standing before z.
+// Share of the four texels around a pixel that have no occluder in front of z.
 float photo_unhidden_share(photo shot, vec4 seen, float z)
 {
-    vec4 front = (z - seen) * (1.0 / (z * opt.depth_tolerance)); // in tolerances
+    vec4 front = (z - seen) * (1.0 / (z * opt.depth_tolerance)); // in units of the depth tolerance
     vec4 nearer = -1.0 / min(seen, -1e-9) - 1.0 / z;
     vec4 behind_guess = nearer * (length(shot.eye.xyz) / GUESS_PARALLAX);
     front = mix(front, behind_guess, lessThan(seen, vec4(0.0)));
     vec4 share = mix(clamp(2.0 - front, 0.0, 1.0), vec4(1.0), equal(seen, vec4(0.0)));
-    return dot(share, vec4(0.25)); // at an edge it shows some of what is behind
+    return dot(share, vec4(0.25)); // at a depth edge the background is visible in part
 }

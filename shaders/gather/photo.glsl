@@ -1,9 +1,9 @@
-// Asking a photograph about a surface point, shared by the gather passes.
+// Reading a photograph at a surface point; shared by the gather passes.
 #define BLOCK_GATHER
 #include "shared/render_blocks.h"
 
-// Rows of struct photo_data of render_blocks.h. Read as an image: on a software renderer a fifth
-// of what storage costs, and a third of the whole gather.
+// Rows of struct photo_data of render_blocks.h. They are read as an image: on a software renderer
+// this takes a fifth of the time of storage reads, which saves a third of the whole gather.
 layout(rgba32f, binding = 7) readonly uniform imageBuffer photo_rows;
 
 // A photograph; see struct photo_data.
@@ -11,8 +11,8 @@ struct photo {
     vec4 from_view[3], eye, focal, size, gain, lens, noise, selected;
 };
 
-// What is not used of it is not loaded. Loading costs: share it between pixels where that can be.
-// So do divisions: here and below reciprocals that pixels share are factors of their own.
+// Compilers drop loads of unused members. Loads and divisions are slow: share loads between pixels
+// where possible, and keep reciprocals that pixels share as separate factors, as below.
 photo photo_at(int i)
 {
     int row = i * ORL_PHOTO_VEC4S;
@@ -26,18 +26,19 @@ photo photo_at(int i)
 
 // A point of the surface that a pixel shows.
 struct Point {
-    vec3 p;       // the view's camera frame; z 0: none
-    vec3 normal;  // the same frame, towards the viewer; 0 where it is not known, or not asked for
-    bool guessed; // its depth is an estimate: nothing covers the pixel
+    vec3 p;       // the view's camera frame; z 0: no surface
+    vec3 normal;  // the same frame, towards the viewer; 0: unknown or not drawn
+    bool guessed; // its depth is the estimated background depth
 };
 
-// Mipmapped. sRGB, whose reads are linear light; of radiance linear exposure * trust *
-// ORL_RADIANCE_SCALE, and trust: what is clipped leaves no mark on its neighbours.
+// Mipmapped. Either sRGB, which reads as linear light, or radiance: linear exposure * confidence *
+// ORL_RADIANCE_SCALE, with the confidence weight in alpha, so that clipped pixels (confidence near
+// 0) do not affect filtered neighbours.
 layout(binding = 0) uniform sampler2DArray photo_color;
-layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: guessed, 0: none
+layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: estimated in a hole, 0: none
 
-// Where a point of the view's camera frame lies in a photograph: pixel coordinates and z
-// in its frame. False behind it or outside.
+// Projects a point of the view's camera frame into a photograph: pixel coordinates, and z in the
+// photograph's frame. Returns false if the point is behind the photograph or outside it.
 bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
 {
     vec4 ph = vec4(p, 1.0);
@@ -49,14 +50,15 @@ bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
         return false;
     pixel = shot.focal.xy * q.xy * (1.0 / q.z) + shot.focal.zw;
     vec2 border = min(pixel, shot.size.xy - pixel);
-    // From its own place a photograph shows whole: rounding must not cost it the outermost pixels.
+    // Rounding must not drop the outermost pixels when the view is the photograph's own.
     return min(border.x, border.y) > 0.499;
 }
 
-// Skies of other days, and what is not where depth is guessed, must not end in a line.
+// Factor on the border width for estimated depth, where a sky of another day or a displaced object
+// would otherwise end in a visible line.
 const float GUESS_BORDERS = 4.0;
 
-// Falls from 1 to 0 towards the photograph's border; without a width it does not.
+// Weight that falls from 1 to 0 towards the photograph's border; 1 throughout if border_px is 0.
 float photo_border(photo shot, vec2 pixel, bool guessed)
 {
     vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
@@ -68,7 +70,7 @@ float photo_border(photo shot, vec2 pixel, bool guessed)
 vec4 photo_depths(photo shot, vec2 pixel)
 {
     vec2 at = pixel * (shot.size.zw / shot.size.xy);
-    // Stay within the photograph's part of its slot.
+    // Clamps to the part of the slot that the photograph covers.
     at = clamp(at, vec2(0.5), shot.size.zw - 0.5);
     float slot = shot.eye.w;
     return textureGather(photo_depth, vec3(at * (1.0 / slot_size.zw), slot));
@@ -91,8 +93,8 @@ vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
     return photo_texel(pixel * (1.0 / slot_size.xy), shot.gain.w, mip);
 }
 
-// Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005): bilinear sampling would
-// blur every photograph by the phase that it happens to be met at.
+// Catmull-Rom filter from five bilinear fetches (Sigg and Hadwiger 2005). Bilinear sampling would
+// blur every photograph by an amount that depends on the sub-pixel position.
 vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
 {
     float lod = floor(mip + 0.5), slot = shot.gain.w;
@@ -112,6 +114,6 @@ vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
                photo_texel(vec2(p3.x, p12.y), slot, lod) * (w3.x * w12.y) +
                photo_texel(vec2(p12.x, p3.y), slot, lod) * (w12.x * w3.y);
     float total = w12.x * w0.y + w0.x * w12.y + w12.x * w12.y + w3.x * w12.y + w12.x * w3.y;
-    // The four corners, left out, weigh next to nothing.
+    // The four corners are omitted, since their weights are almost zero.
     return max(sum / total, 0.0);
 }

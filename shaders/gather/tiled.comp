@@ -1,5 +1,5 @@
-// Blends the best few photographs into each pixel: weights fall continuously to zero at
-// the first photograph left out, at borders and where the surface gets hidden.
+// Blends the best few photographs into each pixel. Weights fall continuously to zero at the first
+// photograph left out, at the borders of photographs, and where the surface becomes occluded.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/guess_blur.glsl"
@@ -7,13 +7,13 @@
 #include "shared/pixel.glsl"
 #include <visibility>
 
-// KEPT: photographs that a pixel may blend, 2 or 4: a software renderer samples all of them.
-// An invocation makes 2x2 pixels, so that it loads each photograph's parameters once for four.
+// KEPT: most photographs that a pixel may blend, 2 or 4; a software renderer samples all of them.
+// One invocation handles 2x2 pixels, so that it loads the parameters of a photograph once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
-layout(rgba16f, binding = 1) writeonly uniform image2D painted; // shared/pixel.glsl, finished
-layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sum of 2x2 of them: fill_seed.comp
-layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // and of those on guessed depth
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
+layout(rgba16f, binding = 1) writeonly uniform image2D painted; // finished, as in shared/pixel.glsl
+layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sums over 2x2, as fill_seed.comp
+layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // the same, of estimated depth
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
@@ -21,26 +21,26 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 
 // A pixel's surface point.
 struct spot {
-    vec3 p;       // z 0: none
-    bool guessed;
+    vec3 p;       // z 0: no surface
+    bool guessed; // on estimated background depth
 };
 
-// A photograph that shows it.
+// A photograph that shows the surface point.
 struct sight {
     float penalty;
-    int index;  // of the photograph
-    vec2 pixel; // of it
+    int index;  // index of the photograph
+    vec2 pixel; // projection of the point into the photograph
     float mip;
 };
 
-// The best of a pixel, ascending by penalty, and the penalty of the one after the last of them.
+// The best photographs of a pixel in ascending order of penalty, and the next greater penalty.
 struct ranking {
     sight best[KEPT];
     float next;
 };
 
-// Selects, and no branches, here and below: those cost a software renderer a mask on every value
-// that outlives them.
+// The code selects rather than branches, here and below: a branch costs a software renderer a mask
+// on every value that outlives it.
 void insert(sight s, inout ranking r)
 {
     for (int k = 0; k < KEPT; k++) {
@@ -54,7 +54,7 @@ void insert(sight s, inout ranking r)
     r.next = min(r.next, s.penalty);
 }
 
-// The least penalty that is left out.
+// The least penalty of a photograph that is not blended.
 float limit_of(ranking r)
 {
     float limit = r.next;
@@ -63,7 +63,7 @@ float limit_of(ranking r)
     return limit;
 }
 
-// Less sure than this of what is behind a guess, a photograph leaves specks of what stands before it.
+// Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
 const float GUESS_SURE_LEAST = 0.1;
 
 void consider(int i, photo shot, spot s, inout ranking r)
@@ -73,7 +73,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     bool inside = photo_project(shot, s.p, pixel, z);
     vec4 seen = photo_depths(shot, pixel);
     float penalty = photo_penalty(shot, s.p);
-    // Of guesses even where the method asks for no visibility: they are behind everything.
+    // Estimated depth is tested even if the method has no visibility test: it is behind everything.
     float sees = s.guessed ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
                            : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
     penalty = s.guessed ? penalty : photo_surface_penalty(penalty);
@@ -85,8 +85,8 @@ void consider(int i, photo shot, spot s, inout ranking r)
 // One photograph's colour and its weight.
 vec4 look(sight one, float least, float limit, spot s)
 {
-    // Full weight until the penalty comes near that of the first left out; a trace of it where they
-    // are equal, so that photographs that tie for the last place paint.
+    // The weight is full until the penalty comes near that of the first photograph left out. A
+    // trace of weight remains at equality, so that photographs that tie for the last place paint.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
     vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
     float sharpness = s.guessed ? opt.guess_sharpness : opt.sharpness;
@@ -94,12 +94,14 @@ vec4 look(sight one, float least, float limit, spot s)
     return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
 }
 
-// On guessed depth a photograph that differs shows something else, more often than not.
+// Factor on the outlier severity on estimated depth, where a photograph that differs usually shows
+// another surface.
 const float GUESS_SEVERITY = 4.0;
 
-// Colour, and 1 where there is one; and the blur that it needs on guessed depth. Samples far from
-// the consensus lose weight: passers-by, leaves, reflections. Roots make the consensus of
-// photographs and not of the best one alone, and differences of light about as the eye sees them.
+// Colour, and 1 if there is a sample; blur: for estimated depth. Samples far from the consensus
+// lose weight: pedestrians, leaves, reflections. The square roots of the weights make it a
+// consensus of all photographs rather than of the best one; the square roots of light make
+// differences roughly perceptually uniform.
 vec4 blend(spot s, ranking r, out float blur)
 {
     float limit = limit_of(r);
@@ -109,7 +111,7 @@ vec4 blend(spot s, ranking r, out float blur)
         vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
-    vec2 apart = vec2(0.0); // squares times weight, weight
+    vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
     float severity = outlier_severity * (s.guessed ? GUESS_SEVERITY : 1.0);
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(samples[k].rgb) - mean;
@@ -137,11 +139,11 @@ void main()
         for (int n = 0; n < KEPT; n++)
             rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
     }
-    ivec2 tile = corner / CHOICE_TILE; // of all four, since its side is even
+    ivec2 tile = corner / CHOICE_TILE; // of all four pixels, since the tile's side is even
     int list = (tile.y * tiles_across + tile.x) * CANDIDATES, c = 0;
     int i = chosen[list];
-    // The condition last: a software renderer runs a loop's body once more to find one at its
-    // beginning false.
+    // The condition comes last: with a condition at the beginning, a software renderer runs the
+    // loop's body once more before it ends.
     do {
         photo shot = photo_at(max(i, 0));
         for (int k = 0; k < 4; k++)
@@ -150,7 +152,7 @@ void main()
         i = c < asked ? chosen[list + c] : -1;
     } while (i >= 0);
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
-    float blur = 0.0; // the same for all four: single sharp pixels in what is blurred look like dirt
+    float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt
     for (int k = 0; k < 4; k++) {
         float own;
         colors[k] = blend(spots[k], rankings[k], own);
@@ -168,12 +170,12 @@ void main()
                     : blurs    ? pixel_to_blur(colors[k].rgb, blur)
                                : pixel_finished(colors[k].rgb, !spots[k].guessed);
     }
-    // Last: what lives on after a store costs a software renderer a load. Outside the picture they
-    // do nothing.
+    // Stores come last: a value that outlives a store costs a software renderer a load. Stores that
+    // lie outside the picture do nothing.
     for (int k = 0; k < 4; k++)
         imageStore(painted, corner + ivec2(k & 1, k >> 1), colors[k]);
     imageStore(seeds, corner / 2, seed);
-    if (guess.a > 0.0) // stores cost more than a clear before
+    if (guess.a > 0.0) // the host has cleared the image, which costs less than stores
         imageStore(guesses, corner / 2, guess);
     if (!whole)
         unfinished_add(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x,

@@ -1,11 +1,11 @@
-// Work groups of gather/tiled.comp that left pixels to compose.comp.
+// List of the work groups of gather/tiled.comp that have unfinished pixels, for compose.comp.
 layout(std430, binding = 2) buffer unfinished {
-    uint dispatched, one_y, one_z, unfinished_count; // the first three: work groups of compose.comp
-    uint unfinished_groups[]; // then, for each group, whether it is listed
+    uint dispatched, one_y, one_z, unfinished_count; // the first three: dispatch of compose.comp
+    uint unfinished_groups[]; // the list; then a flag per group that is 1 if listed
 };
-const uint UNFINISHED_DISPATCH_MAX = 65535u; // that any device takes; each goes on by that
+const uint UNFINISHED_DISPATCH_MAX = 65535u; // supported by every device; the stride of work groups
 
-// `groups`: how many there are.
+// Lists a work group once. `groups`: number of work groups of the dispatch.
 void unfinished_add(uint group, uint groups)
 {
     if (atomicExchange(unfinished_groups[groups + group], 1u) == 0u) {

@@ -1,4 +1,4 @@
-// Unit vectors as two numbers in [-1, 1] (Meyer et al. 2010).
+// Octahedral encoding of unit vectors as two numbers in [-1, 1] (Meyer et al. 2010).
 vec2 octahedron_encode(vec3 n)
 {
     n /= abs(n.x) + abs(n.y) + abs(n.z) + 1e-20;

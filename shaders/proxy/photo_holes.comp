@@ -1,15 +1,16 @@
-// Guesses depth, negative, in holes of a photograph's depth: what is clearly behind their rim is
-// hidden there as well. Only where no half of eight directions is empty: a sky beside a building
-// is no hole in it.
+// Estimates depth in the holes of a photograph's depth map and writes it as a negative value.
+// Points clearly behind the rim of a hole are occluded in the hole as well. A pixel is in a hole
+// unless half of the eight directions, side by side, have no depth: sky beside a building is no
+// hole.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D depth;
-layout(r32f, binding = 1) writeonly uniform image2D guessed; // the same, and guesses
+layout(r32f, binding = 1) writeonly uniform image2D guessed; // the same depth, with estimates
 
 const int DIRECTIONS = 8, STRIDE = 2;
-const int REACH_SHARE = 24; // of the picture's longer side
+const int REACH_SHARE = 24; // reach: the picture's longer side divided by this
 
 void main()
 {
@@ -22,7 +23,7 @@ void main()
         return;
     }
     int reach = max(image_size.x, image_size.y) / REACH_SHARE;
-    float sum = 0.0, total = 0.0; // of inverse depth
+    float sum = 0.0, total = 0.0; // weighted inverse depth, weights
     int empty = 0, longest = 0, first = 0;
     for (int k = 0; k < DIRECTIONS; k++) {
         int turn = k & 3, back = k < 4 ? 1 : -1;
@@ -40,7 +41,7 @@ void main()
         longest = max(longest, empty);
         first += k == first && !met ? 1 : 0;
     }
-    // The run may go on from the last direction to the first.
+    // A run of empty directions may continue from the last direction to the first.
     bool hole = total > 0.0 && max(longest, empty + first) < DIRECTIONS / 2;
     imageStore(guessed, at, vec4(hole ? -total / sum : 0.0));
 }

@@ -1,4 +1,4 @@
-// Plain points, for comparison with compute splatting (src/gpu/point_raster.c).
+// Plain points of one pixel, for comparison with compute splatting (src/gpu/point_raster.c).
 layout(std140, binding = 0) uniform Matrix {
     mat4 clip_from_world;
 };

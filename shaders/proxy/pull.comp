@@ -1,4 +1,4 @@
-// One pull step: a coarser level from 2x2 finer pixels.
+// One pull step: makes a coarser level from 2x2 finer pixels.
 #define BLOCK_PYRAMID
 #include "shared/render_blocks.h"
 #include "proxy/octahedron.glsl"
@@ -18,7 +18,7 @@ void main()
     surfel child[4];
     for (int i = 0; i < 4; i++) {
         ivec2 from = 2 * at + ivec2(i & 1, i >> 1);
-        // Outside: zero, thus empty.
+        // Loads outside the level give zero, which is an empty pixel.
         child[i] = surfel_unpack(imageLoad(fine_a, from), imageLoad(fine_b, from));
     }
     surfel merged = surfel_merge(child, level_number - 1);

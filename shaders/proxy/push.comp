@@ -1,8 +1,8 @@
-// One push step: empty and occluded pixels of a finer level are filled from those of
-// the four nearest coarser pixels whose disc they lie in (Airieau 2012, 5.1).
-// One invocation takes the four fine pixels around a corner where four coarse pixels meet:
-// those are the bilinear neighbours of all four, so they are read and prepared once.
-// LAST: the finest level, which comes out as depth at pixel centres, with NORMALS as normal too.
+// One push step: fills empty and occluded pixels of a finer level from those of the four nearest
+// coarser surfels that cover them (Airieau 2012, 5.1).
+// One invocation takes the four fine pixels around a corner where four coarse pixels meet. These
+// coarse pixels are the bilinear neighbours of all four, so they are read and prepared once.
+// LAST: the finest level; the output is depth at pixel centres, with NORMALS also normals.
 #define BLOCK_PYRAMID
 #include "shared/render_blocks.h"
 #include "proxy/octahedron.glsl"
@@ -29,9 +29,9 @@ vec2 camera_ray(vec2 pixel)
     return (pixel - camera.zw) / camera.xy;
 }
 
-// What the discs put into the pixel whose centre is `target`, given its own near depth
-// (0: empty); no surfel where they leave it alone. centre: of the discs, level 0 pixels;
-// ray: to them, at unit depth.
+// The surfel that the coarse surfels (disc) give to the pixel with centre `target` and own near
+// depth own_near (0: empty); an empty surfel if the pixel stays as it is. centre: of the coarse
+// surfels, level 0 pixels; ray: to these centres, at unit depth.
 surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 ray[4], vec4 weight)
 {
     vec2 target_ray = camera_ray(target);
@@ -40,9 +40,9 @@ surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 
     for (int i = 0; i < 4; i++) {
         bool inside;
         float depth = surfel_depth_at(disc[i], ray[i], target_ray, inside);
-        // A disc smaller than a pixel on screen still closes empty pixels around its
-        // centre, as EWA's low-pass filter does: otherwise slanted surfaces are full of
-        // pinholes. It hides nothing there.
+        // A surfel smaller than a pixel still closes empty pixels around its centre, as the
+        // low-pass filter of EWA does: otherwise slanted surfaces are full of pinholes. It occludes
+        // nothing there.
         vec2 off = centre[i] - target;
         bool closes = own_near <= 0.0 &&
                       dot(off, off) <= SURFEL_MIN_RADIUS_PX * SURFEL_MIN_RADIUS_PX;
@@ -62,7 +62,7 @@ surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 
         sum.displacement += w * (centre[i] - target);
         total += w;
     }
-    // A pixel with a surface of its own keeps it unless a nearer disc hides it.
+    // A pixel with a surface of its own keeps it unless a nearer surfel occludes it.
     if (total == 0.0 || (own_near > 0.0 && own_near <= front_far))
         return NO_SURFEL;
     float scale = 1.0 / total;
@@ -84,7 +84,7 @@ void main()
     vec2 centre[4], ray[4];
     for (int i = 0; i < 4; i++) {
         ivec2 from = corner + ivec2(i & 1, i >> 1);
-        // Outside: zero, thus empty.
+        // Loads outside the level give zero, which is an empty pixel.
         disc[i] = surfel_unpack(imageLoad(coarse_a, from), imageLoad(coarse_b, from));
         centre[i] = level_centre(from, level_number + 1) + disc[i].displacement;
         ray[i] = camera_ray(centre[i]);
@@ -129,7 +129,7 @@ void main()
 #endif
     }
 #ifdef LAST
-    for (int i = 0; i < 4; i++) { // last: see gather_best.comp
+    for (int i = 0; i < 4; i++) { // stores come last: see gather/tiled.comp
         ivec2 at = 2 * corner + 1 + ivec2(i & 1, i >> 1);
         imageStore(depth_out, at, vec4(depths[i]));
 #ifdef NORMALS

@@ -1,11 +1,11 @@
-// Which points of which blocks to draw: none of blocks outside the picture, and of blocks
-// that fall several points to a pixel only a first part. One invocation a block. The order of
-// the list differs from run to run; the frame does not depend on it.
+// Lists the points to draw. Blocks outside the picture are skipped; of blocks that project several
+// points to a pixel only a first part is drawn. One invocation handles one block. The order of the
+// list differs between runs, but the frame does not depend on it.
 #include "proxy/splat.glsl"
 
 layout(local_size_x = ORL_POINT_GROUP) in;
-// Three texels a block: middle of its bounds, points per unit of area; their half extent,
-// points; mean normal.
+// Three texels for each block: centre of its bounds and points per unit of area; half extent of the
+// bounds and number of points; mean normal.
 layout(rgba32f, binding = 0) readonly uniform imageBuffer blocks;
 layout(std430, binding = 0) buffer draw_arguments {
     uint group_count, one_y, one_z, item_count;
@@ -14,10 +14,10 @@ layout(std430, binding = 1) writeonly buffer draw_items {
     uint items[]; // first point / ORL_ITEM_POINTS
 };
 layout(std430, binding = 2) writeonly buffer block_enlarged {
-    float enlarged[]; // radii of each block that is drawn
+    float enlarged[]; // factor on the radii of each block that is drawn
 };
 
-// Wholly on the outer side of a plane through the eye?
+// True if the box lies wholly on the outer side of a plane through the eye.
 bool outside(vec3 middle, vec3 extent, vec3 plane)
 {
     return dot(plane, middle) + dot(abs(plane), extent) < 0.0;
@@ -32,7 +32,7 @@ void main()
     vec4 extent_count = imageLoad(blocks, 3 * block + 1);
     vec3 normal = imageLoad(blocks, 3 * block + 2).xyz;
     vec3 middle = splat_camera_position(middle_density.xyz), extent = extent_count.xyz;
-    // Bounds along the camera's axes, a little wider for rounding.
+    // Bounds along the camera's axes, slightly enlarged to allow for rounding.
     extent = vec3(dot(abs(rotation[0].xyz), extent), dot(abs(rotation[1].xyz), extent),
                   dot(abs(rotation[2].xyz), extent));
     extent += 1e-5 * (abs(middle) + extent);
@@ -43,9 +43,9 @@ void main()
         outside(middle, extent, vec3(0.0, focal.y, focal.w)) ||
         outside(middle, extent, vec3(0.0, -focal.y, last.y)))
         return;
-    // Points per pixel where the block is nearest: at least as many fall anywhere else. A
-    // surface covers as much less as it is slanted; how much the normals differ says how little
-    // their mean tells.
+    // Points per pixel at the block's nearest depth, which is a lower bound for the whole block. A
+    // slanted surface covers fewer pixels by the cosine of its angle. A short mean normal means
+    // that the normals differ, so that the angle is unreliable.
     vec3 away = middle_density.xyz - eye.xyz;
     float facing = abs(dot(normal, away)) / max(length(away), 1e-30);
     facing = clamp(facing + 1.0 - length(normal), 0.1, 1.0);
@@ -55,7 +55,7 @@ void main()
     uint count = uint(extent_count.w);
     uint parts = uint(ceil(extent_count.w * share / float(ORL_ITEM_POINTS)));
     parts = clamp(parts, 1u, (count + ORL_ITEM_POINTS - 1u) / ORL_ITEM_POINTS);
-    // The points that are drawn cover what the others would have.
+    // Enlarges the drawn points so that they cover the area of the omitted ones.
     float drawn = min(float(parts * ORL_ITEM_POINTS), extent_count.w);
     enlarged[block] = sqrt(extent_count.w / drawn);
     uint first = atomicAdd(item_count, parts);

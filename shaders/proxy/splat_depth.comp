@@ -1,9 +1,9 @@
-// Nearest depth per pixel. Depth bits of positive floats order as integers.
+// Finds the nearest depth of each pixel. The bits of positive floats are ordered like integers.
 #define SPLAT_LIST
 #include "proxy/splat.glsl"
 
 layout(local_size_x = ORL_POINT_GROUP) in;
-layout(r32ui, binding = 3) uniform uimage2D splat_depth; // all ones: empty
+layout(r32ui, binding = 3) uniform uimage2D splat_depth; // all bits set: empty
 
 void main()
 {

@@ -1,12 +1,12 @@
-// Among the points at the nearest depth the lowest index wins, so that a frame is
-// the same on every run. The points of the same layer are summed for their mean depth,
-// in whole numbers for the same reason: the nearest of many noisy points is too near.
+// Among the points at the nearest depth of a pixel the lowest index wins, so that a frame is the
+// same on every run. Points of the same front layer are summed for their mean depth, since the
+// nearest of many noisy points is too near. The sums are integers, for the same reproducibility.
 #define SPLAT_LIST
 #include "proxy/splat.glsl"
 
 layout(local_size_x = ORL_POINT_GROUP) in;
 layout(r32ui, binding = 3) readonly uniform uimage2D splat_depth;
-layout(r32ui, binding = 4) uniform uimage2D splat_index; // all ones: empty
+layout(r32ui, binding = 4) uniform uimage2D splat_index; // all bits set: empty
 layout(r32ui, binding = 5) uniform uimage2D splat_layer;
 
 void main()

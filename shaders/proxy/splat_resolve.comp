@@ -1,7 +1,7 @@
-// Levels 0 and 1 of the pyramid from the winning points, 2x2 pixels an invocation.
-// CHUNKS: runs once per chunk of points and writes the pixels that this chunk won; the last run
-// leaves level 1 whole.
-// NORMALS: level 0 with normals.
+// Makes levels 0 and 1 of the pyramid from the winning points. One invocation handles 2x2 pixels.
+// CHUNKS: runs once for each chunk of points and writes the pixels that this chunk won; the last
+// run leaves level 1 complete.
+// NORMALS: level 0 has normals.
 #include "proxy/splat.glsl"
 #include "proxy/octahedron.glsl"
 #include "proxy/surfel.glsl"
@@ -19,9 +19,9 @@ layout(r32f, binding = 4) writeonly uniform image2D splats; // surfel_own_depth
 layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
 layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
 #ifdef CHUNKS
-layout(rgba32ui, binding = 7) uniform uimage2D won; // by earlier chunks
+layout(rgba32ui, binding = 7) uniform uimage2D won; // surfels of this and earlier chunks
 layout(std430, binding = 2) readonly buffer block_enlarged {
-    float enlarged[]; // radii of each block
+    float enlarged[]; // factor on the radii of each block
 };
 #else
 layout(r32f, binding = 7) readonly uniform imageBuffer block_enlarged;
@@ -53,8 +53,9 @@ surfel splat(ivec2 at, int point)
     p *= 1.0 + behind * front_layer;
     vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
     n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
-    // Remainder of a division, in floats: both are exact below 2^24, and integers divide slowly.
-    // But a quotient may be 2.5 units in its last place off: a whole one may come out one less.
+    // The remainder of an integer division, computed in floats, since integers divide slowly. Both
+    // operands are exact below 2^24, but a quotient may be off by 2.5 units in the last place: one
+    // that is a whole number may be rounded down to the next smaller one.
     int item = point / ORL_ITEM_POINTS, blocks = point_count / ORL_BLOCK_POINTS;
     int block = item - blocks * int(float(item) / float(blocks));
     block += block < 0 ? blocks : block < blocks ? 0 : -blocks;
@@ -79,7 +80,7 @@ void main()
         ivec2 at = 2 * parent + ivec2(i & 1, i >> 1);
         uint point = imageLoad(splat_index, at).x - uint(first_point);
         mine[i] = point < uint(point_count) && at.x < view_size.x && at.y < view_size.y;
-        // No branch: the view's parameters are then loaded once for all four pixels.
+        // Without a branch, the view's parameters are loaded once for all four pixels.
         child[i] = splat(at, mine[i] ? int(point) : 0);
         child[i].radius = mine[i] ? child[i].radius : 0.0;
         vec2 centre = vec2(at) + 0.5;
@@ -97,7 +98,7 @@ void main()
 #endif
     }
     surfel merged = surfel_merge(child, 0);
-    // Stores last: see gather_best.comp.
+    // Stores come last: see gather/tiled.comp.
     for (int i = 0; i < 4; i++)
 #ifdef CHUNKS
         if (mine[i])

@@ -1,6 +1,7 @@
-// Drops stray points, which hang in the air, and evens ragged silhouettes: a pixel stays when
-// enough of the 5x5 around have a surface within 3 % of its depth, and a hole is closed when most
-// of them have one, at the mean depth there and without a normal. 2x2 pixels an invocation.
+// Drops isolated outliers and smooths ragged silhouettes. A pixel stays if enough pixels of its 5x5
+// neighbourhood have a surface within 3 % of its depth. A hole is closed if most of its
+// neighbourhood has one, with the mean depth and without a normal. One invocation handles 2x2
+// pixels.
 #define BLOCK_PYRAMID
 #include "shared/render_blocks.h"
 
@@ -16,9 +17,9 @@ void main()
     ivec2 at = 2 * ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= level_size.x || at.y >= level_size.y)
         return;
-    // Depths that agree with each of the four: with a hole, all that there are.
+    // Range of depths that agree with each of the four pixels. For a hole, every depth agrees.
     float depth[4], least[4], most[4], agree[4];
-    // Of the 6x6 around all four: one for each would cost as much again.
+    // Statistics of the 6x6 pixels around all four; separate ones for each would double the cost.
     float known = 0.0, sum = 0.0, near = 1e30, far = 0.0;
     for (int i = 0; i < 4; i++) {
         depth[i] = imageLoad(depth_in, at + ivec2(i & 1, i >> 1)).x;

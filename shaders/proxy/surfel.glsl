@@ -1,9 +1,10 @@
-// A pixel of the pull-push pyramid (Airieau 2012 section 5.1; Marroquim 2007).
+// A surfel: a disc with position, normal and radius, as a pixel of the pull-push pyramid holds it
+// (Airieau 2012, 5.1; Marroquim 2007).
 const float SURFEL_MIN_RADIUS_PX = 1.5;
 
 struct surfel {
-    float near, far;   // nearest and farthest depth of the interval
-    float depth;       // of the centre
+    float near, far;   // nearest and farthest depth of the interval that it occupies
+    float depth;       // of the surfel's centre
     float radius;      // 0: empty
     vec3 normal;       // camera frame
     vec2 displacement; // of the projected centre from this pixel's centre, level 0 pixels
@@ -17,7 +18,7 @@ vec2 level_centre(ivec2 pixel, int level)
     return (vec2(pixel) + 0.5) * float(1 << level);
 }
 
-// --- as kept: in two texels ---
+// --- storage in two texels ---
 
 surfel surfel_unpack(vec4 a, uvec4 b)
 {
@@ -38,9 +39,9 @@ uvec4 surfel_pack_b(surfel s)
 
 // --- pull ---
 
-// The 2x2 children of a pixel as one. Only those inside the interval of the nearest are
-// merged, the others are occluded (Airieau 2012, 5.1). Selected, not multiplied by 0: an empty
-// child may hold anything, infinities too.
+// Merges the 2x2 children of a pixel that lie inside the interval of the nearest one; the others
+// are occluded (Airieau 2012, 5.1). Values are selected rather than multiplied by 0, since an empty
+// child may hold any bits, including infinities.
 surfel surfel_merge(surfel child[4], int child_level)
 {
     float front = 1e38, front_far = 0.0;
@@ -74,15 +75,15 @@ surfel surfel_merge(surfel child[4], int child_level)
 
 // --- push ---
 
-// Depth at which the ray (target, 1) meets the plane of the disc whose centre lies on the
-// ray (centre, 1), within the disc's depth range; 0: behind the eye. `inside`: the ray meets
-// the disc itself. The projected disc is Marroquim's ellipse; meeting it with the ray is
+// Depth at which the ray (target, 1) meets the plane of the surfel whose centre lies on the ray
+// (centre, 1), clamped to the surfel's depth range; 0: behind the eye. `inside`: the ray meets the
+// surfel itself. The projected surfel is the ellipse of Marroquim; its intersection with the ray is
 // exact under perspective.
 float surfel_depth_at(surfel s, vec2 centre, vec2 target, out bool inside)
 {
     float along = dot(s.normal.xy, target) + s.normal.z;
     float plane = s.depth * (dot(s.normal.xy, centre) + s.normal.z);
-    // Nearly edge-on discs have no stable depth: treat them as facing the viewer.
+    // A surfel seen nearly edge-on has no stable depth; it is treated as facing the viewer.
     bool edge_on = along * along < 0.01 * (dot(target, target) + 1.0);
     float depth = edge_on ? s.depth : plane / along;
     depth = clamp(depth, s.depth - s.radius, s.depth + s.radius);
@@ -92,7 +93,7 @@ float surfel_depth_at(surfel s, vec2 centre, vec2 target, out bool inside)
     return max(depth, 0.0);
 }
 
-// --- level 0, as kept ---
+// --- storage of level 0 ---
 
 // A splat's interval is [depth, depth + radius].
 surfel surfel_unpack_splat(uvec4 words)
@@ -108,8 +109,8 @@ uvec4 surfel_pack_splat(surfel s)
                  packSnorm2x16(octahedron_encode(s.normal)), packHalf2x16(s.displacement));
 }
 
-// What level 0 comes out as where it keeps its own splat: depth at the pixel's centre, 0 for
-// none. Rays: to the splat's centre and the pixel's.
+// Depth at the pixel's centre where level 0 keeps its own splat; 0: no splat. centre, target: rays
+// to the splat's centre and to the pixel's centre.
 float surfel_own_depth(surfel s, vec2 centre, vec2 target)
 {
     bool inside;
@@ -117,7 +118,7 @@ float surfel_own_depth(surfel s, vec2 centre, vec2 target)
     return s.radius > 0.0 ? depth : 0.0;
 }
 
-// And normal.
+// The same depth, and the normal.
 uvec4 surfel_pack_own(surfel s, vec2 centre, vec2 target)
 {
     return uvec4(floatBitsToUint(surfel_own_depth(s, centre, target)),

@@ -1,6 +1,6 @@
-// Parameter blocks shared by C and GLSL: std140. Scalars lie side by side there as in C; vectors of
-// four start at multiples of 16 bytes, of two at multiples of 8, so members are ordered and filled
-// up such that both sides agree.
+// Parameter blocks shared by C and GLSL, with std140 layout. Scalars are packed side by side as in
+// C. Vectors of four start at multiples of 16 bytes, vectors of two at multiples of 8. Members are
+// ordered and padded so that both languages agree.
 #ifndef ORL_INTEROP_H
 #define ORL_INTEROP_H
 

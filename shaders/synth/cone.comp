@@ -1,5 +1,5 @@
-// How far the rays of an 8x8 tile may go before any of them can meet a surface:
-// one cone around the tile, so that the pixels of the tile need only few steps.
+// Finds how far the rays of an 8x8 tile may go before any of them can meet a surface, by tracing
+// one cone around the tile. The pixels of the tile then need only a few steps.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "synth/view.glsl"
 #include "synth/noise.glsl"

@@ -1,5 +1,5 @@
-// One synthetic photograph with its truth: linear radiance averaged over the
-// pixel, depth (z in camera space, 0: sky) and normal (camera frame) at its centre.
+// Draws one synthetic photograph with its ground truth: linear radiance averaged over the pixel,
+// and depth (z in camera space, 0: sky) and normal (camera frame) at its centre.
 layout(local_size_x = 8, local_size_y = 8) in;
 #include "synth/view.glsl"
 #include "synth/noise.glsl"
@@ -13,7 +13,7 @@ layout(r32f, binding = 0) readonly uniform image2D start_image;
 layout(rgba32f, binding = 1) writeonly uniform image2D radiance_image;
 layout(rgba32f, binding = 2) writeonly uniform image2D truth_image; // normal, depth
 
-// The centre, then a rotated square.
+// Sample positions: the centre, then the corners of a rotated square.
 const int SAMPLE_COUNT = 5;
 const vec2 samples[SAMPLE_COUNT] = vec2[](vec2(0.5), vec2(0.375, 0.125), vec2(0.875, 0.375),
                                           vec2(0.625, 0.875), vec2(0.125, 0.625));
@@ -23,8 +23,8 @@ float distance_at(vec3 p)
     return min(solids(p), p.y);
 }
 
-// A pixel's samples share normal and light while they stay on one tangent plane,
-// to within this share of a pixel.
+// The samples of a pixel share normal and light while they lie on one tangent plane, within this
+// fraction of a pixel.
 const float SLIDE_TOLERANCE = 0.2;
 
 vec3 surface_normal(vec3 p, float reach)
@@ -39,7 +39,7 @@ vec3 surface_normal(vec3 p, float reach)
 }
 
 struct Hit {
-    float t; // depth, SKY_T: none
+    float t; // depth; SKY_T: no surface
     vec3 p, n;
     vec2 light;
 };
@@ -55,8 +55,8 @@ Hit find_hit(vec3 ray, float start)
     return hit;
 }
 
-// Moves a hit along its tangent plane to another ray of the pixel; false where
-// the surface is not there.
+// Moves a hit along its tangent plane to another ray of the pixel; false if the surface is not
+// there.
 bool slide(vec3 ray, inout Hit hit)
 {
     float facing = dot(ray, hit.n);
@@ -72,12 +72,12 @@ bool slide(vec3 ray, inout Hit hit)
 }
 
 #ifdef HIGH_CONTRAST
-// Five samples say little of a pixel where light changes by stops: a sliver of sun in deep
-// shade that they miss may be most of its light. Its corners tell such pixels from others,
-// and a sheared grid, no two of whose samples share a row or a column, then takes their place.
-const int CORNER_COUNT = 4, FINE = 5; // samples each way
+// Where light changes by stops, five samples are too few: a sliver of sunlight in deep shade may
+// fall between them and still be most of a pixel's light. Samples at the corners detect such
+// pixels. A sheared grid, in which no two samples share a row or a column, then replaces the five.
+const int CORNER_COUNT = 4, FINE = 5; // samples in each direction
 const int FIRST_COUNT = SAMPLE_COUNT + CORNER_COUNT;
-const float STEADY = 2.0; // ratio of light up to which five are enough
+const float STEADY = 2.0; // ratio of brightest to darkest sample up to which five are enough
 
 vec2 sample_at(int i)
 {
@@ -107,7 +107,7 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, size.z);
     if (pixel.x >= size.x || pixel.y >= size.w)
         return;
-    // All samples of the pixel share the way to where the first of them may hit.
+    // All samples of the pixel start from the nearest depth at which one of them may hit a surface.
     float cone = (FIRST_COUNT > SAMPLE_COUNT ? 0.72 : 0.42) / min(camera.x, camera.y);
     float start = imageLoad(start_image, pixel / 8).x;
     start = free_way(eye.xyz, ray_through(vec2(pixel) + 0.5), start, cone);

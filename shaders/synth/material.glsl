@@ -1,12 +1,12 @@
-// What surfaces look like: colours in linear light from solid (world-space)
-// noise, so that no stone looks like another. Needs Params.
+// Materials: colours in linear light from solid (world-space) noise, so that no stone looks like
+// another. Needs Params.
 struct Material {
     vec3 albedo;
     vec3 bump; // added to the normal
 };
 
-// One stone of a wall laid in courses: x: distance to the joint in metres, y:
-// which side of the stone is near (-1 lower edge .. 1 upper), and its hash.
+// One stone of a wall laid in courses: x: distance to the joint in metres, y: which side of the
+// stone is near (-1 lower edge .. 1 upper), and the hash of the stone.
 struct Stone {
     float joint, edge;
     uint id;
@@ -37,7 +37,7 @@ Stone ashlar(vec2 uv, float course, float width, int wall)
     return s;
 }
 
-// Coordinates along the surface by the axis its normal is nearest to.
+// Coordinates along the surface, for the axis that is closest to its normal.
 vec2 wall_uv(vec3 p, vec3 n, out int wall)
 {
     vec3 a = abs(n);
@@ -45,7 +45,7 @@ vec2 wall_uv(vec3 p, vec3 n, out int wall)
     return wall == 1 ? p.xy : wall == 2 ? p.zy : p.xz;
 }
 
-// Limestone: clouds, veins, pits and lichen over a base colour of each stone.
+// Limestone: clouds, veins, pits and lichen over the base colour of each stone.
 Material stone(vec3 p, vec3 n, Stone s, float footprint, float age)
 {
     Material m;
@@ -60,23 +60,23 @@ Material stone(vec3 p, vec3 n, Stone s, float footprint, float age)
     float tone = 0.20 * clouds.w + 0.17 * grain.w;
     m.albedo = base * exp(tone) * (1.0 + 0.07 * clouds.w * vec3(1.0, 0.1, -1.0));
     m.bump = -0.045 * grain.xyz - 0.05 * clouds.xyz;
-    // Veins and cracks: where a noise crosses zero.
+    // Veins and cracks lie at the zero crossings of a noise.
     float vein = abs(noise(q * 3.1) + 0.5 * noise(q * 8.7) + 0.2 * noise(q * 23.0));
     m.albedo *= 1.0 - 0.4 * fall(0.0, 0.045, vein) * visible(12.0, footprint);
-    // Travertine pits, longer than high.
+    // Travertine pits are longer than they are high.
     float pit = noise(p * vec3(17.0, 38.0, 17.0)) + 0.4 * noise(p * 71.0);
     m.albedo *= 1.0 - 0.55 * smoothstep(0.66, 0.95, pit) * visible(17.0, footprint);
     // Joints are recessed and dirty; the upper edge of a stone catches light.
     float line = 0.007 + 0.5 * footprint;
     float joint = fall(0.0, line, s.joint) * min(1.0, 0.010 / line);
     m.albedo *= 1.0 - 0.75 * joint;
-    // Soot and rain: streaks below ledges, black crust under what sticks out.
+    // Soot and rain leave streaks below ledges and a black crust under projections.
     float streak = noise(vec3(p.x * 5.0, p.y * 0.55, p.z * 5.0)) +
                    0.6 * noise(vec3(p.x * 13.0, p.y * 1.2, p.z * 13.0));
     float dirt = smoothstep(0.0, 1.1, streak + age) * clamp(1.0 - abs(n.y), 0.0, 1.0);
     m.albedo = mix(m.albedo, m.albedo * vec3(0.36, 0.35, 0.34), 0.75 * dirt);
     m.albedo *= n.y < -0.5 ? 0.7 : 1.0;
-    // Lichen, pale grey and ochre, mostly where rain stays.
+    // Pale grey and ochre lichen grows mostly where rain water stays.
     float patches = noise(p * 2.9 + 40.0) + 0.55 * noise(p * 9.0) + 0.4 * noise(p * 27.0);
     float lichen = smoothstep(0.62, 0.9, patches + 0.25 * n.y);
     vec3 lichen_colour = mix(vec3(0.55, 0.55, 0.48), vec3(0.52, 0.38, 0.12),
@@ -105,7 +105,7 @@ Stone monument_stone(vec3 p, vec3 n)
                   wall + (abs(p.z - 0.5) < 0.4 ? 12 : 16));
 }
 
-// How exposed to soot: under the cornices and in the passage.
+// Exposure to soot, which gathers under the cornices and in the passage.
 float monument_age(vec3 p)
 {
     float under = max(smoothstep(5.0, 5.85, p.y) * step(p.y, 6.0),
@@ -117,7 +117,7 @@ float monument_age(vec3 p)
 
 Material paving(vec3 p, float footprint)
 {
-    // Slabs laid in rows that turn a little, worn and stained.
+    // Slabs are laid in slightly rotated rows, worn and stained.
     vec2 uv = mat2(0.966, 0.259, -0.259, 0.966) * p.xz;
     Stone s = ashlar(uv, 0.55, 0.8, 30);
     vec3 chance = spread(s.id);
@@ -164,7 +164,7 @@ Material plaster(vec3 p, vec3 n, int which, float footprint)
     vec4 grain = octaves(p, 23.0, 2, 0.8, footprint);
     m.albedo = tints[which % 5] * exp(0.22 * clouds.w + 0.1 * grain.w);
     m.bump = -0.02 * clouds.xyz;
-    // Fallen plaster lets the bricks show.
+    // The bricks show where plaster has fallen.
     int wall;
     vec2 uv = wall_uv(p, n, wall);
     float fallen = noise(p * 0.55 + 11.0) + 0.5 * noise(p * 1.9) + 0.3 * noise(p * 6.1) +
@@ -262,7 +262,7 @@ Material material_at(vec3 p, vec3 n, float footprint)
     else if (abs(p.x) < 9.0)
         s.joint = 1.0; // single stones
     Material m = stone(p, n, s, footprint, arch ? monument_age(p) : -0.4);
-    // Traces of bronze in the letters.
+    // The letters hold traces of bronze.
     if (arch && p.z < -0.16 && p.z > -0.4 && abs(p.x) < 1.36 && abs(p.y - 7.2) < 0.5)
         m.albedo = mix(m.albedo, vec3(0.13, 0.085, 0.05),
                        0.9 * fall(0.0, 0.004 + 0.5 * footprint, inscription(p)));

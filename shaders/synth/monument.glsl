@@ -1,5 +1,5 @@
-// The monument: a triumphal arch, its front facing +z. Distances in metres;
-// symmetric in x but for its weathering.
+// The monument: a triumphal arch whose front faces +z. Distances are in metres. The geometry is
+// symmetric in x except for its weathering.
 
 // Distance to the opening's outline in the xy plane: a round arch on straight jambs.
 float arch_outline(vec2 q, float springing)
@@ -9,10 +9,10 @@ float arch_outline(vec2 q, float springing)
 
 const float ARCH_SPRING = 3.35, ARCH_RADIUS = 1.3;
 const float BAY_X = 2.9;         // middle of a side bay
-const float COLUMN_OFFSET = 0.98; // columns stand at BAY_X -+ this
+const float COLUMN_OFFSET = 0.98; // columns stand at BAY_X +- this
 const float COLUMN_Z = 0.55;
 
-// The word over the arch, centred, one unit high.
+// The word ORIEL over the arch, centred, one unit high.
 float letters(vec2 p)
 {
     float o = abs(length(vec2(p.x + 1.62, p.y) * vec2(1.15, 1.0)) - 0.42);
@@ -34,13 +34,13 @@ float letters(vec2 p)
     return d - 0.075;
 }
 
-// In metres, for the recessed panel.
+// The word at its size in metres, for the recessed panel.
 float inscription(vec3 p)
 {
     return 0.62 * letters((p.xy - vec2(0.0, 7.2)) / 0.62);
 }
 
-// A draped standing figure, feet at the origin, 1.55 high.
+// A draped standing figure, 1.55 m high, with its feet at the origin.
 float figure(vec3 p)
 {
     float height = clamp(p.y, 0.0, 1.15);
@@ -91,7 +91,7 @@ float column(vec3 c)
     return min(d, box(c - vec3(0.0, 5.14, 0.0), vec3(0.4, 0.05, 0.4), 0.02));
 }
 
-// Niche with figure, roundel above. b is relative to the bay's middle.
+// A niche with a figure, and a roundel above. b: position relative to the bay's middle.
 float side_bay(vec3 b)
 {
     float ring = abs(length(b.xy - vec2(0.0, 4.12)) - 0.5);
@@ -130,7 +130,7 @@ float attic(vec3 q, vec3 c)
     return d;
 }
 
-// Walls with passage and niches.
+// The walls with the passage and the niches.
 float body(vec3 q, vec3 b, float outline)
 {
     float d = box(q - vec3(0.0, 3.35, -1.1), vec3(4.3, 2.85, 1.1), 0.015);
@@ -179,7 +179,7 @@ float monument(vec3 p)
     vec3 c = vec3(abs(q.x - BAY_X) - COLUMN_OFFSET, q.y, q.z - COLUMN_Z);
     vec3 b = q - vec3(BAY_X, 0.0, 0.0);
     float d = body(q, b, arch_outline(q.xy, ARCH_SPRING));
-    // Each part only where its bounds are nearer than what is known.
+    // Each part is evaluated only if its bounds are nearer than the distance found so far.
     if (q.y - 0.56 < d)
         d = min(d, steps(q));
     if (box(c - vec3(0.0, 2.85, 0.0), vec3(0.52, 2.4, 0.52), 0.0) < d)
@@ -194,7 +194,7 @@ float monument(vec3 p)
         if (box(f - vec3(0.0, 0.8, 0.0), vec3(0.38, 0.85, 0.32), 0.0) < d)
             d = min(d, figure(f / 1.02) * 1.02);
     }
-    // Weather has eaten the edges: a few millimetres, different on every stone.
+    // Weathering erodes the edges by a few millimetres, differently on every stone.
     if (d < 0.05)
         d += 0.006 * noise(p * 5.0) + 0.003 * noise(p * 17.0);
     return d;

@@ -54,15 +54,15 @@ float noise(vec3 p)
     return noise_gradient(p).w;
 }
 
-// How much of a pattern of `frequency` (per metre) a pixel of `footprint` metres
-// can show: fades out before it would alias.
+// Visibility of a pattern of `frequency` (per metre) in a pixel of `footprint` metres: it fades out
+// before the pattern would alias.
 float visible(float frequency, float footprint)
 {
     return clamp(2.0 - 2.5 * frequency * footprint, 0.0, 1.0);
 }
 
-// Octaves of noise from `frequency` up, each `gain` times weaker and twice as
-// fine; w: sum, xyz: gradient for bumps. Octaves too fine for the pixel are left out.
+// Octaves of noise from `frequency` upwards, each `gain` times weaker and twice as fine; w: sum,
+// xyz: gradient for bumps. Octaves too fine for the pixel are omitted.
 vec4 octaves(vec3 p, float frequency, int count, float gain, float footprint)
 {
     vec4 sum = vec4(0.0);
@@ -79,7 +79,7 @@ vec4 octaves(vec3 p, float frequency, int count, float gain, float footprint)
     return sum;
 }
 
-// 1 up to `low`, 0 from `high` on.
+// Falls from 1 at `low` to 0 at `high`.
 float fall(float low, float high, float x)
 {
     return 1.0 - smoothstep(low, high, x);

@@ -1,4 +1,4 @@
-// Signed distances, negative inside.
+// Signed distance functions, negative inside.
 float box(vec3 p, vec3 half_size, float rounding)
 {
     vec3 q = abs(p) - half_size + rounding;
@@ -28,7 +28,7 @@ float torus_y(vec3 p, float major, float minor)
     return length(vec2(length(p.xz) - major, p.y)) - minor;
 }
 
-// Bound of an ellipsoid's distance, exact near its surface.
+// A bound of the distance to an ellipsoid, exact near its surface.
 float ellipsoid(vec3 p, vec3 radii)
 {
     float k0 = length(p / radii), k1 = length(p / (radii * radii));

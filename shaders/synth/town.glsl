@@ -1,4 +1,4 @@
-// What surrounds the monument: fragments in the foreground, houses, trees.
+// The surroundings of the monument: fragments in the foreground, houses, trees.
 
 struct House {
     vec3 centre;    // of the walls' box
@@ -21,10 +21,10 @@ const vec4 trees[TREE_COUNT] = vec4[]( // x, z, height, girth
     vec4(-6.6, -7.5, 7.2, 0.85), vec4(-15.6, -8.0, 8.4, 1.0), vec4(13.6, -9.0, 8.8, 1.05),
     vec4(10.4, -9.6, 6.4, 0.8), vec4(15.3, -11.5, 7.0, 0.9));
 
-const float WINDOW_X = 2.1, WINDOW_Y = 2.7; // spacing
+const float WINDOW_X = 2.1, WINDOW_Y = 2.7; // spacing of windows, metres
 
-// Position within the window grid of a facade: xy relative to the window's
-// middle, zw the window's cell.
+// Position within the window grid of a facade: xy: relative to the window's middle, zw: the
+// window's cell.
 vec4 window_cell(vec2 uv)
 {
     vec2 spacing = vec2(WINDOW_X, WINDOW_Y);
@@ -53,7 +53,7 @@ float house(vec3 p, House h)
     return min(d, roof);
 }
 
-// A bay window on the house to the right: an oriel.
+// A bay window (an oriel) on the house to the right.
 float bay_window(vec3 p)
 {
     vec3 q = p - vec3(6.6, 5.4, -11.7);
@@ -101,7 +101,7 @@ float forest(vec3 p)
     return d;
 }
 
-// Fallen stones, a capital, a bollard pair and the low wall round the square.
+// Fallen stones, a capital, a pair of bollards and the low wall around the square.
 float fragments(vec3 p)
 {
     float bound = box(p - vec3(0.0, 0.8, 1.5), vec3(8.6, 0.9, 3.2), 0.0);
@@ -134,11 +134,11 @@ float fragments(vec3 p)
 
 const int PART_MONUMENT = 0, PART_FRAGMENTS = 1, PART_TOWN = 2, PART_TREES = 3, PART_GROUND = 4;
 
-// Everything but the ground, which rays meet by formula.
+// All surfaces except the ground, whose intersection with rays has a closed form.
 float solids(vec3 p)
 {
     float d = min(monument(p), fragments(p));
-    // No tree stands before z = -6.3, no house within the square.
+    // No tree stands in front of z = -6.3, and no house within the square.
     if (p.z + 6.3 < d)
         d = min(d, forest(p));
     if (min(16.5 - abs(p.x), p.z + 10.5) < d)

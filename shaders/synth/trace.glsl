@@ -1,12 +1,11 @@
-// Rays against the scene. Needs solids().
+// Intersects rays with the scene. Needs solids().
 const float FAR_T = 120.0;
 const int TRACE_STEPS = 160;
-// What is drawn is at most this far from the true surface, relative to depth.
+// Greatest distance of a hit from the true surface, relative to depth.
 const float TRACE_TOLERANCE = 1e-4;
 
-// From t on along `ray` (not of unit length) to where a cone around it, `cone`
-// wide per unit t (0: the ray alone), first may touch a surface; at least `end`
-// when it does not before.
+// Marches from t along `ray` (not of unit length) to where a cone around it first may touch a
+// surface; at least `end` if there is none before. cone: radius per unit t; 0: the ray alone.
 float march(vec3 origin, vec3 ray, float t, float end, float cone)
 {
     float pace = 1.0 / (length(ray) + cone);
@@ -19,14 +18,14 @@ float march(vec3 origin, vec3 ray, float t, float end, float cone)
     return t;
 }
 
-// Free way of all rays of the cone: no surface before the result.
+// Depth up to which no ray of the cone meets a surface.
 float free_way(vec3 origin, vec3 ray, float start, float cone)
 {
     float end = cone > ray.y ? min(origin.y / (cone - ray.y), FAR_T) : FAR_T;
     return min(march(origin, ray, start, end, cone), end);
 }
 
-// Depth of the first surface, SKY_T when there is none.
+// Depth of the first surface; SKY_T if there is none.
 float trace(vec3 origin, vec3 ray, float start)
 {
     float ground = ray.y < 0.0 ? -origin.y / ray.y : SKY_T;

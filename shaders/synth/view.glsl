@@ -7,13 +7,13 @@ layout(std140, binding = 0) uniform Params {
     vec4 eye;     // world, metres; y is up, the ground is y = 0
     vec4 camera;  // fx, fy, cx, cy in pixels
     ivec4 size;   // width, height, first row of this dispatch, end row
-    uvec4 seed;   // x: key of all noise
+    uvec4 seed;   // x: seed of all noise
     vec4 view_light; // x: contrast, stops
 };
 
 const float SKY_T = 1e9;
 
-// Direction through a pixel position, with unit z in camera space: t is depth.
+// Ray through a pixel position, with unit z in camera space, so that the ray parameter t is depth.
 vec3 ray_through(vec2 pixel)
 {
     vec2 c = (pixel - camera.zw) / camera.xy;

@@ -13,15 +13,15 @@ extern "C" {
 
 namespace {
 
-// Shares the image's pixels.
+// A matrix that shares the image's pixels.
 cv::Mat as_mat(const struct orl_image *image)
 {
     int depth = image->type == ORL_PIXEL_F32 ? CV_32F : CV_8U;
     return cv::Mat(image->height, image->width, CV_MAKETYPE(depth, image->channels), image->data);
 }
 
-// Runs `filter` on matrices that share the pixels of `from` and `to`; whatever it
-// throws becomes a result code and `to` is emptied.
+// Runs `filter` on matrices that share the pixels of `from` and `to`. An exception becomes a result
+// code and empties `to`.
 template <typename Filter>
 enum orl_result run(const struct orl_log *log, const struct orl_image *from, struct orl_image *to,
                     Filter filter)
@@ -44,15 +44,15 @@ enum orl_result run(const struct orl_log *log, const struct orl_image *from, str
     return ORL_ERR_EXTERNAL;
 }
 
-// OpenCV prints a warning on the tone mapping operators' own arithmetic.
+// Silences a warning that OpenCV prints about the tone mapping operators' own arithmetic.
 struct quiet {
     cv::utils::logging::LogLevel before =
         cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_ERROR);
     ~quiet() { cv::utils::logging::setLogLevel(before); }
 };
 
-// OpenCV's Mantiuk makes the brightest pixel white, and a single glint the rest dark:
-// let the brightest hundredth clip instead.
+// OpenCV's Mantiuk maps the brightest pixel to white, so that a single glint darkens the rest. This
+// lets the brightest hundredth clip instead.
 void anchor_white(cv::Mat &rgb)
 {
     std::vector<float> peaks(rgb.total());
@@ -109,14 +109,14 @@ enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_i
     if (result != ORL_OK)
         return result;
     return run(log, image, mapped, [&](const cv::Mat &source, cv::Mat &target) {
-        // Operators divide by the range and the mean.
+        // The operators divide by the range and by the mean.
         double least = 0, most = 0;
         cv::minMaxLoc(source.reshape(1), &least, &most);
         if (!(most > least)) {
             target.setTo(cv::Scalar::all(most > 0 ? 1 : 0));
             return;
         }
-        // Mantiuk's pyramid needs some pixels.
+        // Mantiuk's pyramid needs a minimum size.
         const int least_side = 8;
         cv::Mat bgr, out;
         cv::copyMakeBorder(source, bgr, 0, std::max(0, least_side - source.rows), 0,
@@ -129,7 +129,7 @@ enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_i
         quiet hush;
         map->process(bgr, out);
         out(cv::Rect(0, 0, source.cols, source.rows)).copyTo(target);
-        // They subtract the least light and then divide by what is left.
+        // The operators subtract the least light and then divide by the remainder.
         cv::Mat dark;
         cv::inRange(source, cv::Scalar::all(least), cv::Scalar::all(least), dark);
         target.setTo(cv::Scalar(), dark);
@@ -144,7 +144,7 @@ enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_ima
     *remapped = orl_image();
     ORL_REQUIRE(log, image->data && map->data);
     ORL_REQUIRE(log, map->type == ORL_PIXEL_F32 && map->channels == 2);
-    // OpenCV's remap counts rows and columns in 16 bits.
+    // OpenCV's remap stores row and column numbers in 16 bits.
     if (image->width >= SHRT_MAX || image->height >= SHRT_MAX)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "a picture of %dx%d pixels is too large here",
                         image->width, image->height);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
-#include "preprocess/densify.h"
+#include "preprocess/densify/densify.h"
 #include "scene/colmap.h"
 
 struct options {
@@ -15,25 +15,20 @@ struct options {
 
 // Names of the workspace's photographs that are not excluded.
 static enum orl_result choose_photos(const struct orl_log *log, const char *workspace,
+                                     const struct orl_colmap_model *model,
                                      const struct orl_names *exclude, struct orl_names *photos)
 {
-    struct orl_colmap_model model;
-    char *dir = orl_path_join(log, workspace, "sparse");
-    enum orl_result result = dir ? orl_colmap_read(log, dir, &model) : ORL_ERR_MEMORY;
-    free(dir);
-    if (result != ORL_OK)
-        return result;
+    enum orl_result result = ORL_OK;
     size_t excluded = 0;
-    for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
-        if (orl_names_contain(exclude, model.images[i].name))
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+        if (orl_names_contain(exclude, model->images[i].name))
             excluded++;
         else
-            result = orl_names_add(log, photos, model.images[i].name);
+            result = orl_names_add(log, photos, model->images[i].name);
     }
     if (result == ORL_OK && excluded < exclude->count)
         result = orl_fail(log, ORL_ERR_NOT_FOUND, "--exclude: %s has no photograph of some name",
                           workspace);
-    orl_colmap_finish(&model);
     return result;
 }
 
@@ -45,9 +40,14 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_densify_params params = o->params;
     params.seed = (uint32_t)o->seed;
     params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
+    struct orl_colmap_model model = {0};
     struct orl_names photos = {0};
     struct orl_gpu *gpu = NULL;
-    enum orl_result result = choose_photos(log, workspace, &o->exclude, &photos);
+    char *sparse = orl_path_join(log, workspace, "sparse");
+    enum orl_result result = sparse ? orl_colmap_read(log, sparse, &model) : ORL_ERR_MEMORY;
+    params.model = &model;
+    if (result == ORL_OK)
+        result = choose_photos(log, workspace, &model, &o->exclude, &photos);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
@@ -55,6 +55,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         result = orl_densify(gpu, workspace, &photos, &params, &terminal->progress);
     orl_gpu_destroy(&gpu);
     orl_names_finish(&photos);
+    orl_colmap_finish(&model);
+    free(sparse);
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/summary.h"
 #include "scene/info.h"
+#include "scene/manifest.h"
 
 static void print_cameras(const struct orl_scene *scene)
 {
@@ -71,29 +72,51 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
     return result;
 }
 
+struct options {
+    bool json, check;
+};
+
+// Compares every file with the checksum that it had when it was made.
+static enum orl_result check(const struct orl_log *log, const char *dir)
+{
+    size_t bad, files;
+    enum orl_result result = orl_manifest_check(log, dir, &bad, &files);
+    if (result != ORL_OK)
+        return result;
+    if (bad)
+        return orl_fail(log, ORL_ERR_DATA,
+                        "%s: %zu of %zu files are damaged; oriel prepare --resume makes them again",
+                        dir, bad, files);
+    printf("checked      %zu files, all as they were made\n", files);
+    return ORL_OK;
+}
+
 static enum orl_result run(const struct terminal *terminal, const void *options,
                            const struct arg_common *common, const char *dir)
 {
     (void)common;
-    const bool *json = options;
+    const struct options *o = options;
     struct orl_scene *scene = NULL;
+    if (o->check)
+        return check(&terminal->log, dir);
     enum orl_result result = orl_scene_open(&terminal->log, dir, &scene);
     if (result == ORL_OK)
-        result = *json ? print_json(&terminal->log, scene) : print_text(&terminal->log, scene);
+        result = o->json ? print_json(&terminal->log, scene) : print_text(&terminal->log, scene);
     orl_scene_destroy(&scene);
     return result;
 }
 
 int cmd_info(int argc, char **argv)
 {
-    bool json = false;
+    struct options o = {0};
     const struct arg_option options[] = {
-        {"json", ARG_FLAG, &json, NULL, "as JSON", 0, 0},
+        {"json", ARG_FLAG, &o.json, NULL, "as JSON", 0, 0},
+        {"check", ARG_FLAG, &o.check, NULL, "compare all files with their checksums", 0, 0},
         {0},
     };
     const struct arg_command command = {
-        "info", "SCENE [--json]",
+        "info", "SCENE [--json | --check]",
         "Says what is in a scene: photographs, cameras, points, and how it was made.", options, 1,
         1};
-    return command_main(&command, argc, argv, run, &json);
+    return command_main(&command, argc, argv, run, &o);
 }

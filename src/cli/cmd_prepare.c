@@ -9,7 +9,7 @@ enum { INPUTS_MAX = 4096 };
 
 struct options {
     const char *out, *masks, *exposures;
-    struct arg_enum quality, sharing, matching, densifier;
+    struct arg_enum quality, sharing, matching, densifier, keep;
     int test_every, max_size, seed, max_vram_mib;
     struct orl_names test_list;
     bool resume;
@@ -26,6 +26,7 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
         .sharing = (enum orl_camera_sharing)o->sharing.value,
         .matching = (enum orl_matching)o->matching.value,
         .densifier = (enum orl_densifier)o->densifier.value,
+        .keep = (enum orl_keep)o->keep.value,
         .resume = o->resume, .seed = (uint32_t)o->seed,
         .max_vram_bytes = (size_t)o->max_vram_mib << 20, .shader_dir = common->shader_dir};
     if (!o->out)
@@ -38,12 +39,11 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
 
 int cmd_prepare(int argc, char **argv)
 {
-    static const char *const qualities[] = {"draft", "standard", "high", NULL};
-    static const char *const sharings[] = {"auto", "single", "each", NULL};
-    static const char *const matchings[] = {"auto", "exhaustive", "sequential", NULL};
-    static const char *const densifiers[] = {"auto", "gl", "colmap", NULL};
-    struct options o = {.quality = {qualities, ORL_QUALITY_STANDARD}, .sharing = {sharings, 0},
-                        .matching = {matchings, 0}, .densifier = {densifiers, 0}, .seed = 1};
+    struct options o = {.quality = {orl_quality_names, ORL_QUALITY_STANDARD},
+                        .sharing = {orl_camera_sharing_names, ORL_SHARING_AUTO},
+                        .matching = {orl_matching_names, ORL_MATCHING_AUTO},
+                        .densifier = {orl_densifier_names, ORL_DENSIFIER_AUTO},
+                        .keep = {orl_keep_names, ORL_KEEP_MINIMAL}, .seed = 1};
     const struct arg_option options[] = {
         {"out", ARG_STRING, &o.out, "SCENE", "the scene folder to make", 0, 0},
         {"test-every", ARG_INT, &o.test_every, "N", "hold out every N-th photograph by name",
@@ -62,6 +62,8 @@ int cmd_prepare(int argc, char **argv)
          "which pairs are matched; sequential: photographs in order of name", 0, 0},
         {"densifier", ARG_ENUM, &o.densifier, "NAME",
          "gl is built in, colmap needs CUDA", 0, 0},
+        {"keep", ARG_ENUM, &o.keep, "WHAT",
+         "minimal is what commands read; all has the stereo's maps, too", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
          1 << 20},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},

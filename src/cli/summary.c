@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "scene/manifest.h"
+#include "core/json.h"
 
 static long long count(const json_t *counts, const char *key)
 {

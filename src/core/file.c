@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +41,8 @@ bool orl_path_is_dir(const char *path)
 static enum orl_result open_to_read(const struct orl_log *log, const char *path, int *fd,
                                     size_t *size)
 {
-    *fd = open(path, O_RDONLY | O_CLOEXEC);
+    // Opening a FIFO would wait for a writer, perhaps for ever.
+    *fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (*fd < 0)
         return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
                         strerror(errno));
@@ -295,5 +297,14 @@ end:
     XXH3_freeState(state);
     free(chunk);
     close(fd);
+    return result;
+}
+
+enum orl_result orl_file_checksum(const struct orl_log *log, const char *path,
+                                  char sum[ORL_CHECKSUM_SIZE])
+{
+    uint64_t hash;
+    enum orl_result result = orl_file_hash(log, path, &hash);
+    snprintf(sum, ORL_CHECKSUM_SIZE, "xxh3:%016" PRIx64, hash);
     return result;
 }

@@ -52,5 +52,9 @@ void orl_names_finish(struct orl_names *names);
 // XXH3 64-bit of the file's bytes, for change detection, not for security.
 enum orl_result orl_file_hash(const struct orl_log *log, const char *path,
                               uint64_t *hash) ORL_CHECK_RESULT;
+// The same as text, as manifests have it: "xxh3:" and 16 hexadecimal digits.
+enum { ORL_CHECKSUM_SIZE = 32 };
+enum orl_result orl_file_checksum(const struct orl_log *log, const char *path,
+                                  char sum[ORL_CHECKSUM_SIZE]) ORL_CHECK_RESULT;
 
 #endif

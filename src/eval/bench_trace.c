@@ -3,7 +3,7 @@
 #include <jansson.h>
 
 #include "eval/bench_internal.h"
-#include "scene/manifest.h"
+#include "core/json.h"
 
 enum { THREAD_FRAMES = 1, THREAD_CPU, THREAD_DEVICE };
 

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "eval/chart_internal.h"
 #include "eval/commit.h"
 #include "eval/eval.h"
-#include "scene/manifest.h"
 
 enum { QUICK_VIEWS = 2, QUICK_DIVIDE = 2 };
 

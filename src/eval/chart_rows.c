@@ -6,10 +6,10 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "eval/chart_internal.h"
 #include "eval/commit.h"
-#include "scene/manifest.h"
 
 void orl_chart_id(const char *method, const char *setting, char id[128])
 {

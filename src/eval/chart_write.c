@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "eval/chart_internal.h"
 #include "io/svg_plot.h"
-#include "scene/manifest.h"
 
 enum { PAGE_VIEWS = 2, JPEG_MAX_BYTES = 1 << 24 };
 

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "io/exr.h"
-#include "io/undistort.h"
-#include "scene/manifest.h"
+#include "io/remap.h"
 
 // Length of a name without its extension.
 static size_t stem_length(const char *name)

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/manifest.h"
+#include "core/json.h"
+#include "scene/tuned_settings.h"
 
 static double value_of(const struct orl_render_params *params,
                        const struct orl_render_option *option)
@@ -68,6 +69,6 @@ enum orl_result orl_tune_apply(const struct orl_log *log, const struct orl_scene
                                const struct orl_method *method, int size_divide,
                                const struct orl_tune *tune)
 {
-    return orl_manifest_write_tuned(log, scene->dir, method->name,
+    return orl_tuned_write(log, scene->dir, method->name,
                                     record(method, size_divide, tune));
 }

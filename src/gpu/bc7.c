@@ -1,5 +1,5 @@
-// BC7 in mode 6 only: one line through colour space with 16 steps, which suits photographs.
-// Layout: Khronos Data Format Specification 1.3, section 20 (BPTC).
+// A BC7 encoder that uses mode 6 only: one line through colour space with 16 steps, which suits
+// photographs. Layout: Khronos Data Format Specification 1.3, section 20 (BPTC).
 #include <math.h>
 #include <string.h>
 
@@ -11,13 +11,13 @@ static const unsigned char weights[16] = {0,  4,  9,  13, 17, 21, 26, 30,
                                           34, 38, 43, 47, 51, 55, 60, 64};
 
 struct line {
-    float end[2][RGB];          // wanted
-    int code[2][RGB], low[2];   // 7 bits each; the bit below that an end's channels share
+    float end[2][RGB];          // end points before quantisation
+    int code[2][RGB], low[2];   // 7 bits each; the lowest bit, shared by all channels of an end
     unsigned char index[TEXELS];
     float error;
 };
 
-// The direction in which the texels spread most, by power iteration.
+// Finds the direction of largest variance of the texels by power iteration.
 static void find_axis(float texels[TEXELS][RGB], const float mean[RGB], float axis[RGB])
 {
     float cov[RGB][RGB] = {{0}};
@@ -27,7 +27,7 @@ static void find_axis(float texels[TEXELS][RGB], const float mean[RGB], float ax
                 cov[a][b] += (texels[i][a] - mean[a]) * (texels[i][b] - mean[b]);
     int widest = cov[1][1] >= cov[0][0] ? 1 : 0;
     widest = cov[2][2] > cov[widest][widest] ? 2 : widest;
-    memcpy(axis, cov[widest], sizeof cov[widest]); // one step from the widest channel
+    memcpy(axis, cov[widest], sizeof cov[widest]); // power iteration's first step
     for (int step = 0; step < 4; step++) {
         float next[RGB], largest = 1e-6f;
         for (int a = 0; a < RGB; a++) {
@@ -39,7 +39,7 @@ static void find_axis(float texels[TEXELS][RGB], const float mean[RGB], float ax
     }
 }
 
-// Ends at the outermost texels along the axis.
+// Places the ends at the outermost texels along the axis.
 static void span(float texels[TEXELS][RGB], struct line *line)
 {
     float mean[RGB] = {0}, axis[RGB], low = 0, high = 0;
@@ -61,7 +61,7 @@ static void span(float texels[TEXELS][RGB], struct line *line)
     }
 }
 
-// The nearest ends that can be stored; the shared bit is the one that errs less.
+// Quantises the ends to the nearest storable values, with the shared bit of smaller error.
 static void quantize(struct line *line)
 {
     for (int e = 0; e < 2; e++) {
@@ -85,7 +85,7 @@ static void quantize(struct line *line)
     }
 }
 
-// The nearest step for each texel, and what is left as error.
+// Assigns the nearest step to each texel and computes the remaining error.
 static void assign(float texels[TEXELS][RGB], struct line *line)
 {
     float start[RGB], along[RGB], length2 = 1e-12f;
@@ -99,7 +99,8 @@ static void assign(float texels[TEXELS][RGB], struct line *line)
         float t = 0;
         for (int c = 0; c < RGB; c++)
             t += (texels[i][c] - start[c]) * along[c] / length2;
-        // Steps are 4 or 5 of 64: the nearest of even ones is the nearest or beside it.
+        // The steps are 4 or 5 of 64 apart, so that the nearest of evenly spaced steps is the
+        // nearest one or one beside it.
         int index = (int)(fminf(fmaxf(t, 0), 1) * 15 + 0.5f);
         line->index[i] = (unsigned char)index;
         for (int c = 0; c < RGB; c++) {
@@ -109,7 +110,7 @@ static void assign(float texels[TEXELS][RGB], struct line *line)
     }
 }
 
-// Least squares for the ends, the steps being as assigned. False: they say nothing.
+// Fits the ends by least squares for the assigned steps. False: the system is singular.
 static bool refine(float texels[TEXELS][RGB], const struct line *line, struct line *better)
 {
     float aa = 0, ab = 0, bb = 0, ax[RGB] = {0}, bx[RGB] = {0};
@@ -141,7 +142,8 @@ static void put(uint8_t *block, int *at, int bits, int value)
 
 static void store(const struct line *line, uint8_t *block)
 {
-    // The first texel's highest index bit is not stored: it must be 0, or the ends swap.
+    // The highest bit of the first texel's index is not stored and must be 0; otherwise the ends
+    // swap.
     int at = 0, first = line->index[0] >= 8, flip = first ? 15 : 0;
     memset(block, 0, ORL_BC7_BLOCK_BYTES);
     put(block, &at, 7, 1 << 6); // mode 6
@@ -175,7 +177,7 @@ void orl_bc7_encode(const uint8_t *rgba, int width, int height, uint8_t *blocks)
     for (int y = 0; y < height; y += 4) {
         for (int x = 0; x < width; x += 4, blocks += ORL_BC7_BLOCK_BYTES) {
             float texels[TEXELS][RGB];
-            for (int i = 0; i < TEXELS; i++) { // beyond the picture: its last column and row
+            for (int i = 0; i < TEXELS; i++) { // outside: the last column and row
                 int u = x + i % 4 < width ? x + i % 4 : width - 1;
                 int v = y + i / 4 < height ? y + i / 4 : height - 1;
                 const uint8_t *from = &rgba[4 * ((size_t)v * (size_t)width + (size_t)u)];

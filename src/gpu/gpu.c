@@ -11,7 +11,7 @@ static const char mesa_advice[] =
     "Oriel needs OpenGL 4.5 core through EGL; without a graphics card install Mesa's software "
     "renderer (Debian: libegl1 libgl1-mesa-dri)";
 
-// One way to get a display; tried in order.
+// The ways to open a display, in the order in which they are tried.
 static EGLDisplay open_device_display(int index)
 {
     EGLDeviceEXT devices[16];
@@ -30,7 +30,7 @@ static EGLDisplay open_surfaceless_display(void)
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
 }
 
-// Makes a context on `display` current; false leaves nothing behind.
+// Makes a context on `display` current. On failure returns false and leaves nothing allocated.
 static bool open_context(struct orl_gpu *gpu, EGLDisplay display, bool debug)
 {
     EGLint major, minor, config_count = 0;
@@ -77,7 +77,7 @@ static void GLAPIENTRY on_debug(GLenum source, GLenum type, GLuint id, GLenum se
     struct orl_gpu *gpu = (struct orl_gpu *)(uintptr_t)priv;
     (void)source, (void)id, (void)length;
     if (type == GL_DEBUG_TYPE_PUSH_GROUP || type == GL_DEBUG_TYPE_POP_GROUP)
-        return; // our own pass names, for frame debuggers
+        return; // Oriel's own pass names, which are for frame debuggers
     bool bad = type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH;
     if (bad)
         gpu->failed = true;

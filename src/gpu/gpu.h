@@ -1,8 +1,8 @@
-// The GL device: headless EGL context, buffers, textures, compute programs and
-// pass timers. The only module that creates or deletes GL objects.
+// The GL device: headless EGL context, buffers, textures, compute programs and pass timers. This is
+// the only module that creates or deletes GL objects.
 //
-// Thread-safety: everything made from one orl_gpu belongs to the thread that
-// created it. All objects must be destroyed before their orl_gpu.
+// Thread safety: everything made from an orl_gpu belongs to the thread that created it. All objects
+// must be destroyed before their orl_gpu.
 #ifndef ORL_GPU_GPU_H
 #define ORL_GPU_GPU_H
 
@@ -13,33 +13,33 @@
 struct orl_gpu;
 
 struct orl_gpu_params {
-    const char *shader_dir; // read shaders from this folder; NULL: the embedded ones
-    bool debug;             // GL debug output to the log; errors become sticky failures;
-                            // programs are always compiled, so that all warnings are seen
-    // Where linked programs are kept between runs; NULL: oriel in $XDG_CACHE_HOME or ~/.cache;
-    // "": nowhere, as with ORIEL_CACHE=off in the environment.
+    const char *shader_dir; // folder to read shaders from; NULL: use the embedded shaders
+    bool debug;             // log GL debug output; errors become sticky failures;
+                            // programs are always compiled, so that all warnings show
+    // Folder of the cache of linked programs; NULL: oriel in $XDG_CACHE_HOME or ~/.cache; "": no
+    // cache, as with ORIEL_CACHE=off in the environment.
     const char *cache_dir;
 };
 
 struct orl_gpu_caps {
-    char vendor[128], renderer[128], version[128]; // as GL says
+    char vendor[128], renderer[128], version[128]; // as GL reports
     bool software;               // a CPU renderer such as llvmpipe
     size_t max_storage_block;    // bytes of one shader storage binding
     int max_texture_size;        // pixels
-    int max_buffer_texels;       // of one buffer bound as an image
+    int max_buffer_texels;       // texels of one buffer bound as an image
     int max_texture_layers;
     int max_texture_units;       // samplers of one compute shader
 };
 
-// Opens a device without a display: EGL device platform first, then Mesa's
-// surfaceless one. ORL_ERR_GPU, with what was found and how to get Mesa's
-// software renderer, when there is no OpenGL 4.5 core.
+// Opens a device without a display: tries the EGL device platform, then Mesa's surfaceless one.
+// Without OpenGL 4.5 core returns ORL_ERR_GPU; the log then says what was found and how to get
+// Mesa's software renderer.
 enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_params *params,
                                struct orl_gpu **out) ORL_CHECK_RESULT;
 void orl_gpu_destroy(struct orl_gpu **gpu);
 const struct orl_gpu_caps *orl_gpu_caps(const struct orl_gpu *gpu);
 const struct orl_log *orl_gpu_log(const struct orl_gpu *gpu);
-// Waits for the device; ORL_ERR_GPU if any GL error happened since the last call.
+// Waits for the device. ORL_ERR_GPU if any GL error occurred since the last call.
 enum orl_result orl_gpu_finish(struct orl_gpu *gpu) ORL_CHECK_RESULT;
 // What a buffer or texture holds, for accounts of device memory.
 enum orl_owner {
@@ -79,7 +79,7 @@ void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **buf);
 void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data);
 // Waits for the device.
 void orl_buf_read(const struct orl_buf *buf, size_t offset, size_t size, void *data);
-// Every 32-bit word becomes `word`.
+// Sets every 32-bit word to `word`.
 void orl_buf_fill(struct orl_buf *buf, uint32_t word);
 
 // --- textures ---
@@ -87,7 +87,7 @@ void orl_buf_fill(struct orl_buf *buf, uint32_t word);
 struct orl_tex_params {
     int width, height;
     int layers;      // 0: a 2D texture, otherwise a 2D array
-    int levels;      // 0: as 1
+    int levels;      // mip levels; 0 counts as 1
     GLenum format;   // sized internal format, such as GL_RGBA32F
     bool linear;     // linear filtering (and between levels); false: nearest
     enum orl_owner owner;
@@ -98,68 +98,68 @@ struct orl_tex {
     struct orl_tex_params params;
     size_t bytes;
 };
-// Zeroed; coordinates clamp to the edge.
+// Creates a texture filled with zeros. Texture coordinates clamp to the edge.
 enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
                                struct orl_tex **out) ORL_CHECK_RESULT;
 void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **tex);
-// Can the device sample textures of this compressed format?
+// True if the device can sample textures of this compressed format.
 bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format);
-// Bytes of all levels of one layer.
+// Bytes of one layer with all its levels.
 size_t orl_tex_layer_bytes(const struct orl_tex_params *params);
-// Tightly packed pixels of client format/type, e.g. GL_RGB, GL_UNSIGNED_BYTE.
+// Writes tightly packed pixels of a client format and type, such as GL_RGB, GL_UNSIGNED_BYTE.
 void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
                    const void *pixels);
-// As above, for the top left width x height part.
+// Writes the top left width x height part in the same way.
 void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int width, int height,
                         GLenum format, GLenum type, const void *pixels);
-// Waits for the device. `size` is the room in `pixels`, in bytes.
+// Reads a level and waits for the device. `size`: room in `pixels`, bytes.
 void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
                   void *pixels);
 // Copies the top left width x height part of a level of `from` to level 0 of a layer of `to`.
 void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,
                         struct orl_tex *to, int layer);
-// Compresses all levels of `from`, 8 bits per channel, to a layer of the array `to`, which has
-// its size and levels: BC7 by Oriel (bc7.h), BC1 by the driver. Alpha is lost. Waits for the
-// device.
+// Compresses all levels of `from`, 8 bits per channel, into a layer of the array `to`, which must
+// have the same size and levels. Oriel encodes BC7 (bc7.h), the driver BC1. Alpha is lost. Waits
+// for the device.
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer) ORL_CHECK_RESULT;
-// Every channel of every layer of one level becomes 0.
+// Sets every channel of every layer of one level to 0.
 void orl_tex_clear(struct orl_tex *tex, int level);
-// Every texel of level 0 of a GL_R32UI texture becomes `word`.
+// Sets every texel of level 0 of a GL_R32UI texture to `word`.
 void orl_tex_fill(struct orl_tex *tex, uint32_t word);
-// A buffer seen as texels of `format` (GL_RGBA32F, GL_RG32UI, ...), to be bound as an image:
-// reads as storage do, but several times cheaper on software renderers. It has no memory of
-// its own; the buffer must outlive it and hold at most caps->max_buffer_texels texels.
+// A view of a buffer as texels of `format` (GL_RGBA32F, GL_RG32UI, ...), to be bound as an image.
+// Reads give the same as storage reads, but are several times cheaper on software renderers. The
+// view has no memory of its own; the buffer must outlive it and hold at most
+// caps->max_buffer_texels texels.
 enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *buf, GLenum format,
                                     struct orl_tex **out) ORL_CHECK_RESULT;
-// Fills the coarser levels of one layer (0 without layers) from its level 0, which may be what
-// shaders stored; samplers see that, and all levels, from then on.
+// Fills the coarser levels of one layer (0 without layers) from its level 0, which shaders may have
+// written. Samplers see all levels from then on.
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer);
 
 // --- programs and dispatch ---
 
 struct orl_prog;
-// A part of a program that may be exchanged: where its files say #include <name>, they get the
-// shader file `file`.
+// An exchangeable part of a program: #include <name> in its files includes the shader file `file`.
 struct orl_slot {
     const char *name, *file;
 };
-// The compute program of the shader `file` (relative to shaders/), after expanding
-// #include "..." and <...> and adding #version 450 core and `defines` ("A 1\nB 2\n" become
-// #define lines; NULL: none). slots: ended by a NULL name; NULL: none. Made when it is first
-// asked for, kept and owned by the gpu. One that does not compile is a sticky failure, whose
-// cause is in the log, of every dispatch of it.
+// Returns the compute program of the shader `file` (relative to shaders/). Its source is expanded:
+// #include "..." and <...> are resolved, and #version 450 core and `defines` are prepended. The
+// lines "A 1\nB 2\n" of `defines` become #define lines; NULL: none. slots: terminated by a NULL
+// name; NULL: none. The program is made on first request, cached and owned by the gpu. If it does
+// not compile, the cause is logged, and every dispatch of it is a sticky failure.
 struct orl_prog *orl_prog_get(struct orl_gpu *gpu, const char *file, const struct orl_slot *slots,
                               const char *defines);
-// The same of the graphics pipeline (raster.h).
+// The same for the graphics pipeline (raster.h).
 struct orl_prog *orl_prog_get_raster(struct orl_gpu *gpu, const char *vertex_file,
                                      const char *fragment_file, const char *defines);
-// Does the program read or write the image or buffer of this name, once compiled?
+// True if the compiled program reads or writes the image or buffer of this name.
 bool orl_prog_reads(const struct orl_prog *prog, const char *name);
-// Programs so far that an earlier run had compiled.
+// Number of programs that were taken from the cache of earlier runs.
 size_t orl_gpu_cached_programs(const struct orl_gpu *gpu);
-// The `index`-th shader file below `folder`, in the order of their names; NULL: there are no
-// more. The string is static.
+// The `index`-th shader file below `folder`, in order of names; NULL past the end. The string is
+// static.
 const char *orl_shader_file(const char *folder, size_t index);
 
 enum { ORL_BINDINGS_MAX = 8 };
@@ -167,7 +167,7 @@ struct orl_image_binding {
     const struct orl_tex *tex; // NULL: not bound
     int level;
     GLenum access;             // GL_READ_ONLY, GL_WRITE_ONLY or GL_READ_WRITE
-    int layer;                 // of an array: 0: all of them, n: the one of index n - 1 alone
+    int layer;                 // of an array: 0: all layers; n: layer n - 1 only
 };
 struct orl_buf_binding {
     const struct orl_buf *buf; // NULL: not bound
@@ -176,14 +176,14 @@ struct orl_buf_binding {
 // One compute dispatch; array index = binding point of its kind.
 struct orl_dispatch {
     struct orl_prog *prog;
-    const void *params;        // the std140 block at uniform binding 0
-    size_t params_size;        // bytes of it; at least those of the program's block
+    const void *params;        // contents of the std140 block at uniform binding 0
+    size_t params_size;        // its bytes, at least the size of the program's block
     struct orl_buf_binding bufs[ORL_BINDINGS_MAX];
     const struct orl_tex *textures[ORL_BINDINGS_MAX];
     struct orl_image_binding images[ORL_BINDINGS_MAX];
     unsigned groups[3];        // work groups; 0 counts as 1
-    const struct orl_buf *indirect; // not NULL: its first three words are the work groups
-    GLbitfield barrier;        // glMemoryBarrier bits after it
+    const struct orl_buf *indirect; // NULL, or a buffer whose first three words are the groups
+    GLbitfield barrier;        // glMemoryBarrier bits, applied after the dispatch
 };
 void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *dispatch);
 static inline unsigned orl_groups(size_t items, unsigned group_size)
@@ -198,29 +198,30 @@ struct orl_pass_time {
     double ms;        // sum of all passes of this name since the last reset
     unsigned count;
 };
-// Passes do not nest. `name` is a string literal. Timing is off by default and
-// costs nothing then; on software renderers an enabled timer drains the
-// pipeline, since there GL's own timestamps do not bound compute work.
+// Passes must not nest. `name` is a string literal. Timing is off by default and costs nothing
+// then. On software renderers an enabled timer drains the pipeline, since GL's own timestamps do
+// not bound compute work there.
 void orl_gpu_time_passes(struct orl_gpu *gpu, bool enabled);
 void orl_pass_begin(struct orl_gpu *gpu, const char *name);
 void orl_pass_end(struct orl_gpu *gpu);
-// Waits for pending timers, fills up to `capacity` rows in order of first use,
-// returns how many passes there are, and resets the sums.
+// Waits for pending timers, fills up to `capacity` rows in order of first use, resets the sums, and
+// returns the number of passes.
 size_t orl_gpu_take_times(struct orl_gpu *gpu, struct orl_pass_time *times, size_t capacity);
 
-// One pass as it was: when the CPU asked for it, when the device did it. Seconds of
-// orl_time_s; on a software renderer the device's end is where the pipeline had drained.
+// One execution of a pass: when the CPU issued it and when the device ran it, in seconds of
+// orl_time_s. On a software renderer the device's end is the time at which the pipeline was
+// drained.
 struct orl_pass_span {
     const char *name;
     double cpu_start_s, cpu_end_s, gpu_start_s, gpu_end_s;
 };
 struct orl_pass_trace {
-    struct orl_pass_span *spans; // the caller's
+    struct orl_pass_span *spans; // owned by the caller
     size_t capacity, count;
-    size_t dropped;              // for want of room
+    size_t dropped;              // spans that did not fit
 };
-// Notes every timed pass in `trace`, which must outlive it, until called with NULL; that
-// waits for what is pending. Needs orl_gpu_time_passes.
+// Records every timed pass in `trace`, which must outlive the recording. NULL ends it and waits
+// for pending passes. Requires orl_gpu_time_passes.
 void orl_gpu_trace_passes(struct orl_gpu *gpu, struct orl_pass_trace *trace);
 
 #endif

@@ -11,7 +11,7 @@ enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256, ORL_MEMORY_ROWS_MAX = 64 };
 struct pass_query {
     GLuint begin, end;
     int pass;
-    struct orl_pass_span *span; // of the trace; NULL: none
+    struct orl_pass_span *span; // in the trace; NULL: not traced
 };
 
 struct orl_gpu {
@@ -19,31 +19,31 @@ struct orl_gpu {
     EGLDisplay display;
     EGLContext context;
     struct orl_gpu_caps caps;
-    char *shader_dir; // owned; NULL: embedded
-    char *program_cache; // owned; NULL: none
-    size_t cached_progs; // taken from it
+    char *shader_dir; // owned; NULL: embedded shaders
+    char *program_cache; // folder, owned; NULL: no cache
+    size_t cached_progs; // programs taken from the cache
     bool failed;      // sticky: a GL error or a high-severity message
     bool current;     // the context could be made current
-    struct orl_prog **progs; // made so far, owned
+    struct orl_prog **progs; // programs made so far, owned
     size_t prog_count, prog_capacity;
-    GLuint vertex_array, framebuffer; // of raster.c; 0: not made
+    GLuint vertex_array, framebuffer; // of raster.c; 0: not created yet
     size_t live_bufs, live_texs, live_bytes;
     struct orl_gpu_memory memory[ORL_MEMORY_ROWS_MAX];
     size_t memory_count;
 
     bool timing;
-    int pass; // the open one; -1: none
+    int pass; // index of the open pass; -1: none
     double pass_start_s;
     struct orl_pass_time passes[ORL_PASSES_MAX];
     size_t pass_count;
-    struct pass_query queries[ORL_QUERIES_MAX]; // names made on first use
-    size_t query_count;                         // pending
-    struct orl_pass_trace *trace;               // NULL: none
-    double clock_offset_s; // from the device's clock to orl_time_s's
+    struct pass_query queries[ORL_QUERIES_MAX]; // query names are created on first use
+    size_t query_count;                         // pending queries
+    struct orl_pass_trace *trace;               // NULL: no recording
+    double clock_offset_s; // added to the device's clock to get orl_time_s
 };
 
-// Expanded source of shaders/`file`: version, defines, includes, #line. Owned by
-// the caller (orl_shader_source_finish). files: names by #line source number, for messages.
+// Expanded source of shaders/`file`: version, defines, includes, #line. Owned by the caller
+// (orl_shader_source_finish). files: file names by source number of #line, for messages.
 struct shader_source {
     char *text;
     size_t length, capacity;
@@ -55,21 +55,21 @@ enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
                                        struct shader_source *source);
 void orl_shader_source_finish(struct shader_source *source);
 
-// Linked programs of earlier runs (program_cache.c). dir: of struct orl_gpu_params.
+// Cache of linked programs (program_cache.c). dir: cache_dir of struct orl_gpu_params.
 void orl_program_cache_open(struct orl_gpu *gpu, const char *dir);
 void orl_program_cache_close(struct orl_gpu *gpu);
-// True: `program` is linked.
+// True if `program` was found and is linked.
 bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *source,
                             GLuint program);
 void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *source,
                              GLuint program);
 
-// program.c: makes it current with these parameters; false, sticky, where that cannot be.
+// program.c: makes the program current with these parameters. False, a sticky failure, on error.
 bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params, size_t size);
 void orl_gpu_free_programs(struct orl_gpu *gpu);
 void orl_gpu_free_raster(struct orl_gpu *gpu);
 
-// Logs every pending GL error as made by `where`; true if there were none.
+// Logs every pending GL error as caused by `where`. True if there was none.
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);
 void orl_gpu_free_queries(struct orl_gpu *gpu);
 // Adds an object to its owner's and tag's bytes, and takes it away.

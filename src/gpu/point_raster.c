@@ -1,4 +1,4 @@
-// The graphics pipeline's own points, to compare compute splatting with.
+// Draws points with the graphics pipeline, for comparison with compute splatting.
 #include "gpu/point_raster.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// Programs by key, and compute dispatch.
+// Programs, looked up by a key, and compute dispatch.
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,9 +10,9 @@ enum { STAGES_MAX = 2 };
 
 struct orl_prog {
     char *key;         // owned: files, slots and defines
-    GLuint id;         // 0: it does not compile, which was said once
-    GLuint params_buf; // made by the first dispatch
-    size_t params_size; // that the program's block at binding 0 needs; 0: it has none
+    GLuint id;         // 0: it does not compile, which was logged once
+    GLuint params_buf; // created by the first dispatch
+    size_t params_size; // size of the program's block at binding 0; 0: no block
 };
 
 struct stage {
@@ -45,7 +45,7 @@ static bool attach(struct orl_gpu *gpu, GLenum type, const struct shader_source 
         glGetShaderInfoLog(shader, sizeof message, NULL, message);
         log_failure(gpu, source, "compile", message);
     }
-    glDeleteShader(shader); // once the program lets go of it
+    glDeleteShader(shader); // takes effect when the program is done with it
     return ok;
 }
 
@@ -63,7 +63,7 @@ static bool link(struct orl_gpu *gpu, const struct shader_source *source, GLuint
     return ok;
 }
 
-// Bytes of the uniform block at binding 0.
+// Size of the uniform block at binding 0, bytes; 0: none.
 static size_t find_params_size(GLuint program)
 {
     GLint count = 0, binding = 0, size = 0;
@@ -86,7 +86,7 @@ static bool make(struct orl_gpu *gpu, const struct stage *stages, size_t count,
     for (size_t i = 0; ok && i < count; i++)
         ok = orl_shader_source_load(gpu, stages[i].file, slots, defines, &sources[i]) == ORL_OK;
     prog->id = glCreateProgram();
-    // Compute programs are what takes long to compile.
+    // Only compute programs take long to compile.
     bool cacheable = count == 1;
     if (ok && cacheable)
         cached = orl_program_cache_load(gpu, &sources[0], prog->id);
@@ -110,7 +110,7 @@ static bool make(struct orl_gpu *gpu, const struct stage *stages, size_t count,
     return orl_gpu_check_errors(gpu, stages[0].file) && ok;
 }
 
-// All that a program follows from, as one string.
+// Everything that determines a program, as one string.
 static char *make_key(const struct orl_log *log, const struct stage *stages, size_t count,
                       const struct orl_slot *slots, const char *defines)
 {

@@ -1,5 +1,5 @@
-// Linked programs kept between runs. Every failure here only means that a program is
-// compiled again: nothing is reported above debug level.
+// A cache of linked programs that persists between runs. A failure here only means that a program
+// is compiled again, so nothing is reported above debug level.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,18 +12,18 @@
 enum {
     FORMATS_MAX = 64,
     BINARY_MAX_BYTES = 64 << 20,
-    ENTRIES_MAX = 512, // old drivers' and shaders' entries are never asked for again
+    ENTRIES_MAX = 512, // entries of old drivers and shaders are never used again
 };
 
-// What a file starts with; the rest is the driver's.
+// Header of a cache file; the driver's binary follows.
 struct header {
     char magic[8];
-    uint64_t hash; // of the rest
+    uint64_t hash; // of the bytes after the header
     uint32_t size, format;
 };
 static const char magic[8] = "ORLPRG1";
 
-// The folder: `asked`, else $XDG_CACHE_HOME/oriel, else ~/.cache/oriel; NULL: none.
+// The cache folder: `asked`, else $XDG_CACHE_HOME/oriel, else ~/.cache/oriel; NULL: no cache.
 static char *cache_dir(const char *asked)
 {
     const char *setting = getenv("ORIEL_CACHE"), *xdg = getenv("XDG_CACHE_HOME");
@@ -32,7 +32,7 @@ static char *cache_dir(const char *asked)
         return NULL;
     if (asked)
         return *asked ? orl_strdup(NULL, asked) : NULL;
-    if (xdg && *xdg == '/') // relative paths are to be ignored (XDG base directories)
+    if (xdg && *xdg == '/') // relative paths must be ignored (XDG Base Directory Specification)
         return orl_path_join(NULL, xdg, "oriel");
     return home && *home ? orl_path_join(NULL, home, ".cache/oriel") : NULL;
 }
@@ -51,7 +51,7 @@ void orl_program_cache_close(struct orl_gpu *gpu)
     gpu->program_cache = NULL;
 }
 
-// Names the entry after all that the linked program follows from.
+// Names the entry by a hash of everything that determines the linked program.
 static char *entry_path(const struct orl_gpu *gpu, const struct shader_source *source)
 {
     const struct orl_gpu_caps *caps = &gpu->caps;
@@ -62,7 +62,7 @@ static char *entry_path(const struct orl_gpu *gpu, const struct shader_source *s
         return NULL;
     XXH3_128bits_reset(state);
     for (size_t i = 0; i < ORL_COUNT(parts); i++)
-        XXH3_128bits_update(state, parts[i], strlen(parts[i]) + 1); // with its end
+        XXH3_128bits_update(state, parts[i], strlen(parts[i]) + 1); // with the terminating 0
     XXH128_hash_t hash = XXH3_128bits_digest(state);
     XXH3_freeState(state);
     return orl_format(NULL, "%s/programs/%016llx%016llx", gpu->program_cache,
@@ -82,7 +82,7 @@ static bool format_known(GLenum format)
     return false;
 }
 
-// The program of a whole and undamaged file.
+// Loads the program if the file is complete and undamaged.
 static bool load_binary(const uint8_t *data, size_t size, GLuint program)
 {
     struct header header;
@@ -96,7 +96,7 @@ static bool load_binary(const uint8_t *data, size_t size, GLuint program)
     GLint ok = 0;
     glProgramBinary(program, header.format, binary, (GLsizei)header.size);
     while (glGetError() != GL_NO_ERROR)
-        ; // refused: compiled instead
+        ; // a refused binary is compiled from source instead
     glGetProgramiv(program, GL_LINK_STATUS, &ok);
     return ok;
 }
@@ -116,7 +116,7 @@ bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *sou
     return hit;
 }
 
-// An empty folder for entries, if it is not there or overfull.
+// Creates the folder for entries if it is missing, and empties it if it holds too many.
 static bool prepare_folder(const char *dir)
 {
     struct orl_names names = {0};

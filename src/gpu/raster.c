@@ -2,7 +2,7 @@
 
 #include "gpu/internal.h"
 
-// Vertex inputs and targets are set anew for each draw: there are a few draws a frame.
+// Vertex inputs and targets are set for every draw, since there are only a few draws a frame.
 static bool make_objects(struct orl_gpu *gpu)
 {
     if (!gpu->vertex_array)

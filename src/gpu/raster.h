@@ -1,4 +1,4 @@
-// Drawing by the graphics pipeline: triangles or points with a depth test, into several targets.
+// Drawing with the graphics pipeline: triangles or points, with a depth test, into several targets.
 #ifndef ORL_GPU_RASTER_H
 #define ORL_GPU_RASTER_H
 
@@ -11,24 +11,24 @@ struct orl_raster_input {
     const struct orl_buf *buf; // NULL: not used
     size_t offset, stride;     // bytes
     int components;            // 1 to 4
-    GLenum type;               // GL_FLOAT, GL_UNSIGNED_BYTE (of which 255 reads as 1) or
+    GLenum type;               // GL_FLOAT, GL_UNSIGNED_BYTE (normalised: 255 reads as 1) or
                                // GL_UNSIGNED_INT (which reads as an integer)
 };
 
-// One draw into textures of one size, which are cleared first: colours to 0, depth to 1.
+// One draw into textures of one size. They are cleared first: colours to 0, depth to 1.
 struct orl_raster {
-    struct orl_prog *prog;     // of orl_prog_get_raster
-    const void *params;        // the uniform block at binding 0
+    struct orl_prog *prog;     // from orl_prog_get_raster
+    const void *params;        // contents of the uniform block at binding 0
     size_t params_size;
     struct orl_raster_input inputs[ORL_RASTER_INPUTS_MAX];
-    const struct orl_buf *indices; // 32-bit; NULL: vertices in their order
+    const struct orl_buf *indices; // 32-bit; NULL: vertices in order
     GLenum primitive;              // GL_TRIANGLES or GL_POINTS
-    size_t count;                  // of indices, or of vertices
-    const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by the fragment program's locations
+    size_t count;                  // number of indices, or of vertices
+    const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by output location
     const struct orl_tex *depth;   // GL_DEPTH_COMPONENT32F; NULL: no depth test
-    GLbitfield barrier;            // glMemoryBarrier bits after it
+    GLbitfield barrier;            // glMemoryBarrier bits, applied after the draw
 };
-// Errors are sticky, as of orl_gpu_dispatch.
+// Errors are sticky, as those of orl_gpu_dispatch.
 void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *raster);
 
 #endif

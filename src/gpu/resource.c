@@ -80,10 +80,10 @@ static size_t texel_bytes(GLenum format)
     for (size_t i = 0; i < ORL_COUNT(table); i++)
         if (table[i].format == format)
             return table[i].bytes;
-    return 16; // for the accounting only: an upper bound
+    return 16; // an upper bound, used for accounting only
 }
 
-// Bytes of a 4x4 block of a compressed format; 0: not compressed.
+// Bytes of a 4x4 block of a compressed format; 0: the format is not compressed.
 static size_t block_bytes(GLenum format)
 {
     return format == GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM ? 16
@@ -95,7 +95,7 @@ bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
 {
     GLint supported = GL_FALSE;
     (void)gpu;
-    // GL 4.5 has BPTC; S3TC is an extension that GL_EXT_texture_sRGB extends to sRGB.
+    // BPTC is part of GL 4.5. S3TC is an extension, and GL_EXT_texture_sRGB adds its sRGB formats.
     if (format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT &&
         !(epoxy_has_gl_extension("GL_EXT_texture_compression_s3tc") &&
           epoxy_has_gl_extension("GL_EXT_texture_sRGB")))
@@ -201,7 +201,7 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
 
 void orl_tex_clear(struct orl_tex *tex, int level)
 {
-    // Integer formats take integer client data, the others anything.
+    // Integer formats require integer client data; the other formats accept any.
     GLenum f = tex->params.format;
     bool integer = f == GL_R32UI || f == GL_RG32UI || f == GL_RGBA32UI || f == GL_R8UI ||
                    f == GL_R16UI;
@@ -264,7 +264,7 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
     for (int level = 0; result == ORL_OK && level < p->levels; level++) {
         int width = level_side(p->width, level), height = level_side(p->height, level);
         orl_tex_read(from, level, GL_RGBA, GL_UNSIGNED_BYTE, room, pixels);
-        if (!bc7) { // the driver compresses
+        if (!bc7) { // BC1: the driver compresses
             orl_tex_write(to, level, layer, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
             continue;
         }
@@ -280,7 +280,7 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
 
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)
 {
-    // Level 0 may be a shader's: drivers read it as a texture, by drawing or by copying.
+    // A shader may have written level 0. Drivers read it as a texture, by drawing or by copying.
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                     GL_TEXTURE_UPDATE_BARRIER_BIT);
     if (tex->params.levels <= 1)
@@ -289,7 +289,7 @@ void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)
         glGenerateTextureMipmap(tex->id);
         return;
     }
-    // A view, since glGenerateTextureMipmap would redo every layer.
+    // The view restricts the work to one layer; glGenerateTextureMipmap would redo every layer.
     GLuint view;
     glGenTextures(1, &view);
     glTextureView(view, GL_TEXTURE_2D, tex->id, tex->params.format, 0,

@@ -1,4 +1,4 @@
-// Finds, expands and numbers shader sources.
+// Finds shader sources, expands their includes and numbers the files for messages.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static enum orl_result append(struct orl_gpu *gpu, struct shader_source *source,
     return ORL_OK;
 }
 
-// The text of one file; *owned must be freed.
+// Finds the text of one file. The caller frees *owned.
 static enum orl_result find_text(struct orl_gpu *gpu, const char *file, const char **name,
                                  const char **text, uint8_t **owned)
 {
@@ -56,7 +56,7 @@ static enum orl_result append_line_mark(struct orl_gpu *gpu, struct shader_sourc
     return append(gpu, source, mark, (size_t)length);
 }
 
-// What a line includes; NULL: nothing. `quoted` has room for a name.
+// The file that a line includes; NULL: none. `quoted` has room for a name.
 static const char *included_file(const char *line, const struct orl_slot *slots, char quoted[128])
 {
     char slot[64];
@@ -67,7 +67,7 @@ static const char *included_file(const char *line, const struct orl_slot *slots,
     for (const struct orl_slot *s = slots; s && s->name; s++)
         if (strcmp(s->name, slot) == 0)
             return s->file;
-    snprintf(quoted, 128, "<%s>", slot); // not known, which the message tells
+    snprintf(quoted, 128, "<%s>", slot); // an unknown slot, which the error message names
     return quoted;
 }
 
@@ -78,7 +78,7 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
     uint8_t *owned;
     for (size_t i = 0; i < source->file_count; i++)
         if (strcmp(source->files[i], file) == 0)
-            return ORL_OK; // once is enough
+            return ORL_OK; // already included
     if (depth > INCLUDE_DEPTH_MAX || source->file_count == ORL_COUNT(source->files))
         return orl_fail(gpu->log, ORL_ERR_FORMAT, "shader %s: includes too deep or too many", file);
     enum orl_result result = find_text(gpu, file, &name, &text, &owned);

@@ -1,4 +1,4 @@
-// The shaders embedded at build time, ended by a NULL name.
+// The shaders that are embedded at build time, terminated by a NULL name.
 #ifndef ORL_GPU_SHADER_TABLE_H
 #define ORL_GPU_SHADER_TABLE_H
 

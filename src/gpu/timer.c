@@ -1,5 +1,5 @@
-// Pass timers: GL timestamps resolved late on a GPU, drained wall time on a
-// software renderer.
+// Pass timers: GL timestamps that are read late on a GPU, and wall time with the pipeline drained
+// on a software renderer.
 #include <string.h>
 
 #include "core/process.h"
@@ -58,7 +58,7 @@ void orl_pass_begin(struct orl_gpu *gpu, const char *name)
     glQueryCounter(query->begin, GL_TIMESTAMP);
 }
 
-// The trace's next span, the CPU's part of it set; NULL without trace or room.
+// Appends a span to the trace and sets its CPU start. NULL without a trace or room in it.
 static struct orl_pass_span *add_span(struct orl_gpu *gpu, const char *name)
 {
     struct orl_pass_trace *trace = gpu->trace;

@@ -1,4 +1,4 @@
-// Filling a picture of all directions, whose left and right borders are one.
+// Hole filling in a panorama, whose left and right borders are adjacent.
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ struct level {
     float (*texels)[4]; // colour * weight, weight; weight at most 1
 };
 
-// Mean of what is known among 2x2 finer pixels (Gortler 1996, pull).
+// Averages the known values among 2x2 finer pixels (Gortler 1996, pull).
 static void pull(const struct level *fine, struct level *coarse)
 {
     for (int y = 0; y < coarse->height; y++)
@@ -31,7 +31,7 @@ static void pull(const struct level *fine, struct level *coarse)
         }
 }
 
-// What is not known comes from the coarser level, bilinearly (Gortler 1996, push).
+// Fills unknown values bilinearly from the coarser level (Gortler 1996, push).
 static void push(const struct level *coarse, struct level *fine)
 {
     for (int y = 0; y < fine->height; y++)

@@ -9,7 +9,7 @@
 
 const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1] = {"fused", "series"};
 
-// Exposures of the photographs in use, in stops.
+// Range of exposures of the photographs in use, in stops.
 static double exposure_range(const struct orl_scene *scene, const bool *use)
 {
     double low = INFINITY, high = -INFINITY;

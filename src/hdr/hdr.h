@@ -6,11 +6,11 @@
 #include "render/render.h"
 
 enum orl_hdr_merge {
-    // One gather in radiance: each photograph weighs by geometry times how well exposed
-    // it is at that pixel.
+    // One gather in radiance. The weight of each photograph is its geometric weight times how well
+    // exposed it is at that pixel.
     ORL_HDR_FUSED,
-    // Airieau 2012, section 4: an ordinary picture from each series of photographs, then
-    // those pictures merged by how well exposed they are.
+    // Airieau 2012, section 4: renders an ordinary picture from each series of photographs, then
+    // merges the pictures by how well exposed they are.
     ORL_HDR_SERIES,
     ORL_HDR_MERGE_COUNT
 };
@@ -19,23 +19,23 @@ extern const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1];
 
 struct orl_hdr_params {
     enum orl_hdr_merge merge;
-    struct orl_render_params render; // method of every picture
+    struct orl_render_params render; // options of every picture
     struct orl_sensor sensor;
-    const bool *use;       // per photograph; NULL: all that are not held out
+    const bool *use;       // per photograph: may it be used? NULL: all that are not held out
     size_t max_vram_bytes; // 0: no limit
-    int samples;           // pictures are drawn this many times as large each way and
-                           // averaged, [1, 4]; edges get smoother, cost grows with its square
+    int samples;           // supersampling: pictures are drawn this many times as large
+                           // in each direction and averaged, [1, 4]; cost grows with its square
 };
 #define ORL_HDR_DEFAULTS .merge = ORL_HDR_FUSED, .sensor = {ORL_SENSOR_DEFAULTS}, .samples = 1
 
 struct orl_hdr;
-// The scene and gpu must outlive it. Warns when there is a single exposure.
+// The scene and gpu must outlive *out. Logs a warning if there is only a single exposure.
 enum orl_result orl_hdr_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                const struct orl_hdr_params *params,
                                struct orl_hdr **out) ORL_CHECK_RESULT;
 void orl_hdr_destroy(struct orl_hdr **hdr);
-// A view in radiance, 1 being white at the scene's middle exposure. `skip` as for
-// orl_renderer_draw. frame->confidence is the mean trust of what made each pixel.
+// Draws a view in radiance, where 1 is white at the scene's middle exposure. `skip`: as for
+// orl_renderer_draw. frame->confidence is the mean confidence weight of the samples of each pixel.
 enum orl_result orl_hdr_draw(struct orl_hdr *hdr, const struct orl_view *view, const bool *skip,
                              struct orl_frame *frame) ORL_CHECK_RESULT;
 
@@ -43,7 +43,7 @@ enum orl_result orl_hdr_draw(struct orl_hdr *hdr, const struct orl_view *view, c
 
 struct orl_panorama {
     double position[3];    // world
-    double forward[3];     // world: what its centre looks at, before being made level
+    double forward[3];     // world: viewing direction of its centre, before it is made level
     double up[3];          // world, not zero; see orl_scene_up
     int width, height;     // [8, 32768] each; equirectangular
 };
@@ -58,10 +58,10 @@ enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_s
 // with coverage and confidence 0.
 enum orl_result orl_hdr_draw_panorama(struct orl_hdr *hdr, const struct orl_panorama *panorama,
                                       const bool *skip, struct orl_frame *frame) ORL_CHECK_RESULT;
-// Its place and orientation as a view looking at the centre, with a stand-in camera of its
-// size. False when `up` has no length.
+// The panorama's position and orientation as a view of its centre, with a placeholder camera of its
+// size. False if `up` has zero length.
 bool orl_panorama_view(const struct orl_panorama *panorama, struct orl_view *view);
-// The mean upward direction of the photographs, unit length: people hold cameras level.
+// The mean upward direction of the photographs, unit length, since people hold cameras level.
 void orl_scene_up(const struct orl_scene *scene, double up[3]);
 
 #endif

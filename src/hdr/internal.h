@@ -8,15 +8,15 @@
 // --- a picture from each series, merged (series.c) ---
 
 struct series {
-    int number;              // of struct orl_photo
-    size_t count;            // photographs in use
+    int number;              // series number, as in struct orl_photo
+    size_t count;            // number of photographs in use
     float ev;                // their exposure, in stops above the scene's middle
-    bool *skip;              // per photograph: those not of this series, or skipped for a view
+    bool *skip;              // per photograph: not of this series, or skipped for a view
     float (*response)[256];  // linear exposure of 8-bit values; owned; NULL: sRGB
 };
 
 struct series_set {
-    struct orl_scene scene; // borrowed but for `photos`, whose gains stay within their series
+    struct orl_scene scene; // borrowed, except `photos`, whose gains are per series
     struct series *items;
     size_t count;
     struct orl_renderer *renderer;
@@ -29,24 +29,24 @@ enum orl_result orl_series_draw(const struct orl_log *log, struct series_set *se
                                 const struct orl_hdr_params *params, const struct orl_view *view,
                                 const bool *skip, struct orl_frame *frame);
 
-// --- all of it (hdr.c) ---
+// --- the public object (hdr.c) ---
 
 struct orl_hdr {
     struct orl_gpu *gpu;
     const struct orl_scene *scene;
     struct orl_hdr_params params;
-    struct orl_renderer *fused; // NULL: series
+    struct orl_renderer *fused; // NULL: merge by series
     struct series_set series;
 };
 
 // --- images (reduce.c) ---
 
-// Means of factor x factor pixels, each image of `fine` being that many times as large.
-// Depth is the median of those that have one; normals keep their length.
+// Averages factor x factor pixels; the images of `fine` are that many times as large. Depth is the
+// median of the pixels that have one. Normals keep their length.
 enum orl_result orl_frame_reduce(const struct orl_log *log, const struct orl_frame *fine,
                                  int factor, struct orl_frame *frame);
-// Colour of pixels that are not known (known <= 0) from those around them; left and right
-// borders are neighbours (around.c).
+// Fills the colour of unknown pixels (known <= 0) from the pixels around them. The left and right
+// borders are adjacent (around.c).
 enum orl_result orl_fill_around(const struct orl_log *log, struct orl_image *color,
                                 const struct orl_image *known);
 

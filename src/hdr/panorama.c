@@ -1,4 +1,4 @@
-// All directions from a point: six overlapping square views, joined.
+// Panoramas: six overlapping square views from one point, blended.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,10 +10,10 @@
 enum { FACES = 6 };
 
 static const double PI = 3.14159265358979323846;
-// Faces reach this far beyond the cube's edges, in half sides, and blend there: depth is
-// rebuilt in every face by itself, and does not end alike on both sides of an edge.
+// Overlap of the faces beyond the cube's edges, in half sides, where they are blended. Each face
+// has its own depth reconstruction, which may differ on the two sides of an edge.
 static const double MARGIN = 0.15;
-// Face pixels per panorama pixel at a face's centre: joining blurs a little.
+// Face pixels per panorama pixel at a face's centre, which makes up for the blur of resampling.
 static const double OVERSAMPLE = 1.25;
 
 // Rows: a face's x, y and z axes in the panorama's frame (x right, y down, z forward).
@@ -28,14 +28,14 @@ static const double faces[FACES][3][3] = {
 
 // --- frames ---
 
-// Of directions that cancel out but for rounding, nothing is left: false.
+// False if the vector is zero up to rounding, as the sum of opposite directions is.
 static bool normalize(double v[3])
 {
     double length = orl_normalize3(v);
     return length > 1e-9 && isfinite(length);
 }
 
-// Rows: right, down and forward in the world. False when `up` is no direction.
+// Rows: right, down and forward in the world. False if `up` has no direction.
 static bool panorama_axes(const struct orl_panorama *p, double axes[3][3])
 {
     double up[3], forward[3];
@@ -45,7 +45,7 @@ static bool panorama_axes(const struct orl_panorama *p, double axes[3][3])
         return false;
     if (!normalize(forward))
         forward[0] = 1;
-    // Level; if forward is up or down, any level direction will do.
+    // Makes the forward direction level. If it points up or down, any level direction will do.
     for (int attempt = 0; attempt < 3; attempt++) {
         double level[3];
         for (int i = 0; i < 3; i++)
@@ -71,7 +71,7 @@ void orl_scene_up(const struct orl_scene *scene, double up[3])
         for (size_t k = 0; k < scene->photo_count; k++)
             up[i] -= scene->photos[k].view.cam_from_world.r[1][i];
     }
-    if (!normalize(up)) { // photographs upside down and upright: no better guess
+    if (!normalize(up)) { // upside-down and upright photographs cancel: assume y down
         up[0] = up[2] = 0;
         up[1] = -1;
     }
@@ -132,10 +132,10 @@ static struct orl_view face_view(const struct orl_panorama *p, const double axes
 
 struct panorama_sums {
     float color[3], coverage, confidence, weight;
-    float nearest; // weight of the face that depth and normal are from
+    float nearest; // weight of the face that gave depth and normal
 };
 
-// Direction of a panorama pixel in its frame.
+// Direction of a panorama pixel in the panorama's frame.
 static void direction_of(const struct orl_panorama *p, int x, int y, double d[3])
 {
     double longitude = PI - 2 * PI * (x + 0.5) / p->width;
@@ -145,7 +145,7 @@ static void direction_of(const struct orl_panorama *p, int x, int y, double d[3]
     d[2] = cos(longitude) * cos(latitude);
 }
 
-// 1 within the face, 1/2 at the cube's edge, 0 at the face's.
+// Blending weight: 1 inside the face, 1/2 at the cube's edge, 0 at the face's border.
 static double edge_weight(double at)
 {
     double t = (fabs(at) - (1 - MARGIN)) / (2 * MARGIN);
@@ -164,7 +164,7 @@ static void add_taps(const struct orl_frame *face, double u, double v, float wei
         if (x < 0 || y < 0 || x >= width || y >= height)
             continue;
         size_t at = (size_t)y * (size_t)width + (size_t)x;
-        // What only the filling painted is filled better over the whole panorama.
+        // Pixels that only hole filling painted are filled better over the whole panorama.
         if (!(face->confidence.f32[at] > 0))
             continue;
         float w = weight * (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy);
@@ -176,7 +176,8 @@ static void add_taps(const struct orl_frame *face, double u, double v, float wei
     }
 }
 
-// Depth and normal of the pixel that a direction meets; z is its depth per distance.
+// Takes depth and normal from the face pixel that a direction meets. z: the pixel's depth per unit
+// of distance.
 static void take_surface(const struct orl_frame *face, const double axes[3][3], double u, double v,
                          double z, size_t at, struct orl_frame *frame)
 {

@@ -1,4 +1,4 @@
-// Smaller pictures from larger ones.
+// Downsampling of supersampled frames.
 #include <math.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static enum orl_result reduce_mean(const struct orl_log *log, const struct orl_i
     return ORL_OK;
 }
 
-// A mean of depths would lie on no surface where two of them meet.
+// Takes the median, since a mean of two depths at an edge would lie on neither surface.
 static void reduce_depth(const struct orl_image *fine, int factor, struct orl_image *out)
 {
     float found[16];

@@ -1,4 +1,5 @@
-// Airieau 2012: a picture from each series of photographs, merged into radiance.
+// Airieau 2012, section 4: renders a picture from each series of photographs and merges the
+// pictures into radiance.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +8,7 @@
 #include "core/memory.h"
 #include "hdr/internal.h"
 
-// How much less a picture counts where it has no surface than where another has one.
+// Relative weight of a picture without a surface at a pixel where another picture has one.
 static const float UNCOVERED_SHARE = 1e-3f;
 
 static double photo_ev(const struct orl_photo *photo)
@@ -72,7 +73,7 @@ enum orl_result orl_series_init(struct orl_gpu *gpu, const struct orl_scene *sce
         return result;
     for (size_t k = 0; k < set->count; k++)
         set->items[k].ev /= (float)set->items[k].count;
-    // Pictures keep the exposure of their series, so that they clip where it does.
+    // Pictures keep the exposure of their series, so that they clip where its photographs clip.
     for (size_t i = 0; i < scene->photo_count; i++) {
         const struct series *s = find_series(set, scene->photos[i].series);
         for (int c = 0; s && c < 3; c++)
@@ -107,10 +108,10 @@ static float linearise(const struct series *s, int channel, float color)
     return curve[below] + (value - (float)below) * (curve[below + 1] - curve[below]);
 }
 
-// What a series says of a pixel.
+// A series' sample of a pixel.
 struct opinion {
     float color[3]; // radiance
-    float clip;     // trust as far as clipping goes, less where it has no surface
+    float clip;     // confidence with respect to clipping, less without a surface
 };
 
 static void form_opinions(const struct orl_sensor *sensor, const struct series *s, float ev_above,
@@ -138,7 +139,8 @@ static float trust_at(const struct orl_sensor *sensor, const struct series *s,
     return opinion->clip * model / (model + orl_relative_variance(sensor, exposure, true));
 }
 
-// Twice: trust depends on how much light there was, which at first each series says itself.
+// Merges twice, since the confidence depends on the amount of light. In the first round each series
+// uses its own estimate of it, in the second the merged one.
 static void merge_pixel(const struct orl_sensor *sensor, const struct series_set *set, float least,
                         const struct opinion *opinions, float color[3], float *confidence)
 {
@@ -161,7 +163,7 @@ static void merge_pixel(const struct orl_sensor *sensor, const struct series_set
     }
 }
 
-// The first picture's depth and normals, which come from the points alone, are everyone's.
+// Depth and normals come from the points alone, so those of the first picture serve for all.
 static void merge_layers(const struct orl_frame *picture, struct orl_frame *frame)
 {
     size_t pixels = (size_t)frame->coverage.width * (size_t)frame->coverage.height;
@@ -169,7 +171,7 @@ static void merge_layers(const struct orl_frame *picture, struct orl_frame *fram
         frame->coverage.f32[i] = fmaxf(frame->coverage.f32[i], picture->coverage.f32[i]);
 }
 
-// Exposures of the darkest and the brightest series.
+// Exposures of the darkest and of the brightest series.
 static void exposure_range(const struct series_set *set, float range[2])
 {
     range[0] = INFINITY;
@@ -191,7 +193,7 @@ static enum orl_result draw_series(struct series_set *set, size_t k,
     exposure_range(set, range);
     for (size_t i = 0; i < set->scene.photo_count; i++)
         s->skip[i] = set->scene.photos[i].series != s->number || (skip && skip[i]);
-    // Depth edges must be those of all series: they would be cut and averaged differently in each.
+    // Silhouette cuts and antialiasing are off: all series need the same depth edges.
     struct orl_render_params render = params->render;
     render.silhouette = 0;
     render.antialias = ORL_ANTIALIAS_OFF;

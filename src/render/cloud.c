@@ -1,4 +1,4 @@
-// The point cloud on the device: Morton order, in blocks that can be skipped or thinned.
+// The point cloud on the device, in Morton order and in blocks that can be skipped or thinned.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,16 +7,16 @@
 #include "render/cloud.h"
 
 enum {
-    // 256 MiB of positions, a half of the 65535 work groups that one dispatch may have. More
-    // chunks would cost a resolve each.
+    // 256 MiB of positions, half of the 65535 work groups that one dispatch may have. More chunks
+    // would cost a resolve pass each.
     CHUNK_POINTS = 16 << 20,
     BLOCK = ORL_BLOCK_POINTS,
-    SORT_BITS = 11, // of a radix pass
+    SORT_BITS = 11, // bits per radix pass
     SORT_RANGE = 1 << SORT_BITS,
     BOUNDS_SAMPLES = 4096,
     PARTS = BLOCK / ORL_ITEM_POINTS,
     BLOCK_TEXELS = 3,
-    DENSITY_SAMPLES = 16, // points of a block
+    DENSITY_SAMPLES = 16, // points of a block whose neighbours are measured
     NEIGHBOUR = 4,
 };
 
@@ -33,9 +33,9 @@ static int compare_floats(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-// A cube around nearly all points, with room: a stray point far away must not make the cells
-// of all others one. What lies outside goes to the outermost cells. A cube, so that cells are
-// cubes and blocks are as wide one way as another.
+// A cube around nearly all points, with a margin, so that a distant outlier does not merge all
+// other points into one cell. Points outside belong to the outermost cells. With a cube the cells
+// are cubes too, and blocks are equally wide in all directions.
 struct cube {
     double low[3], side;
 };
@@ -62,14 +62,15 @@ static enum orl_result find_cube(const struct orl_log *log, const struct orl_poi
         cube->low[k] = 0.5 * (a + b);
         cube->side = fmax(cube->side, 2 * (b - a) + 1e-6 * fabs(a + b));
     }
-    // Off the middle, where a flat cloud would be split into two layers of half its density.
+    // The cube is off-centre: its middle plane would split a flat cloud into two layers, each of
+    // half the density.
     for (int k = 0; k < 3; k++)
         cube->low[k] -= 0.437 * cube->side;
     free(values);
     return ORL_OK;
 }
 
-// Every third bit of the result from the 21 bits of x.
+// Spreads the low 21 bits of x to every third bit of the result.
 static uint64_t spread_bits(uint64_t x)
 {
     x = (x | x << 32) & 0x1f00000000ffffu;
@@ -90,7 +91,7 @@ static uint64_t morton_code(const float p[3], const struct cube *cube)
     return code;
 }
 
-// Least significant digit first: stable, thus the same order on every machine.
+// Radix sort from the least significant digit: stable, thus the same order on every machine.
 static void sort_keys(struct key **keys, struct key **spare, size_t count)
 {
     for (int shift = 0; shift < 63; shift += SORT_BITS) {
@@ -110,7 +111,7 @@ static void sort_keys(struct key **keys, struct key **spare, size_t count)
     }
 }
 
-// Within a block in bit-reversed order, so that any first part of it is spread evenly.
+// Puts the points of a block into bit-reversed order, so that any first part is spread evenly.
 static void shuffle_block(struct key *keys, size_t count)
 {
     struct key sorted[BLOCK];
@@ -125,8 +126,8 @@ static void shuffle_block(struct key *keys, size_t count)
     }
 }
 
-// Points of `points` in the order they are drawn in; points that are not finite are left
-// out. *order is owned by the caller (free).
+// Finds the order in which the points are drawn, without points that are not finite. *order is
+// owned by the caller (free).
 static enum orl_result find_order(const struct orl_log *log, const struct orl_points *points,
                                   struct key **order, size_t *count)
 {
@@ -157,9 +158,9 @@ static enum orl_result find_order(const struct orl_log *log, const struct orl_po
 
 // --- blocks ---
 
-// Points per unit of area, from the distances of a few points to their fourth neighbour in
-// the block: a disc of that radius holds four points. Distances are within the point's
-// tangent plane, since depth noise does not make a surface larger. 0: not known.
+// Points per unit of area, from the distances of a few points to their fourth neighbour in the
+// block: a disc of that radius holds four points. Distances are measured within the tangent plane
+// of the point, since depth noise does not make a surface larger. 0: unknown.
 static float density(float (*const p)[4], const struct orl_points *points,
                      const struct key *order, size_t count)
 {
@@ -188,7 +189,7 @@ static float density(float (*const p)[4], const struct orl_points *points,
     return d2 > 0 ? NEIGHBOUR / (3.14159265f * d2) : 0;
 }
 
-// shaders/proxy/splat_cull.comp says what the texels are.
+// Writes the texels of a block, which shaders/proxy/splat_cull.comp explains.
 static void describe_block(float (*const positions)[4], const struct orl_points *points,
                            const struct key *order, size_t count, float block[BLOCK_TEXELS][4])
 {
@@ -201,7 +202,7 @@ static void describe_block(float (*const positions)[4], const struct orl_points 
             normal += points->normal[order[i].point][k];
         }
         block[0][k] = 0.5f * low + 0.5f * high;
-        // Rounding of the middle must not leave a point outside.
+        // Measured from the rounded middle, so that no point lies outside.
         block[1][k] = fmaxf(high - block[0][k], block[0][k] - low);
         block[2][k] = (float)(normal / (double)count);
     }
@@ -216,7 +217,7 @@ static uint32_t pack_snorm(double value)
     return (uint32_t)(uint16_t)(int16_t)lrint(fmin(1, fmax(-1, value)) * 32767);
 }
 
-// As shaders/proxy/octahedron.glsl; two 16-bit snorm.
+// Encodes as shaders/proxy/octahedron.glsl, in two 16-bit snorm values.
 static uint32_t pack_normal(const float n[3])
 {
     double x = n[0], y = n[1], z = n[2];
@@ -232,8 +233,8 @@ static uint32_t pack_normal(const float n[3])
     return pack_snorm(x) | pack_snorm(y) << 16;
 }
 
-// A chunk in host memory. Points are stored by parts, all blocks' first parts first: where
-// blocks are thinned, what is read lies together.
+// A chunk in host memory. Points are stored part by part: the first parts of all blocks, then the
+// second parts, and so on. When blocks are thinned, the points that are read are contiguous.
 struct host_chunk {
     float (*positions)[4];
     uint32_t (*attributes)[2];
@@ -281,7 +282,7 @@ static void fill_block(const struct orl_points *points, const struct key *order,
     for (size_t i = 0; i < BLOCK; i++) {
         size_t to = (i / ORL_ITEM_POINTS * host->block_count + block) * ORL_ITEM_POINTS +
                     i % ORL_ITEM_POINTS;
-        if (i >= count) { // nowhere: falls into no pixel
+        if (i >= count) { // padding: a point that projects into no pixel
             for (int k = 0; k < 4; k++)
                 host->positions[to][k] = NAN;
             host->attributes[to][1] = UINT32_MAX;
@@ -328,7 +329,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     memset(cloud, 0, sizeof *cloud);
     if (points->count > INT32_MAX - BLOCK)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
-    // Whole blocks, within what the device sees of a buffer.
+    // Whole blocks, as many as the device can read of a buffer.
     size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / BLOCK * BLOCK;
     most = most < CHUNK_POINTS ? most : CHUNK_POINTS;
     struct key *order = NULL;
@@ -338,7 +339,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
         cloud->chunks = orl_array(log, count / most + 1, sizeof *cloud->chunks);
         result = cloud->chunks ? ORL_OK : ORL_ERR_MEMORY;
     }
-    // An empty cloud is one empty chunk: the passes that run per chunk still run.
+    // An empty cloud is one empty chunk, so that passes that run per chunk still run.
     for (size_t first = 0; result == ORL_OK && (first < count || first == 0); first += most) {
         struct point_chunk *chunk = &cloud->chunks[cloud->chunk_count++];
         size_t here = count - first < most ? count - first : most;

@@ -5,16 +5,16 @@
 #include "render/render.h"
 #include "shared/render_blocks.h"
 
-// Points in chunks, so that no buffer is larger than a device takes. A chunk is blocks of
-// ORL_BLOCK_POINTS points that are near one another. Each buffer has a view as texels.
+// A part of the points, small enough that no buffer exceeds the device's limits. It consists of
+// blocks of ORL_BLOCK_POINTS points that are close together. Each buffer has a view as texels.
 struct point_chunk {
     struct orl_buf *positions, *attributes, *blocks, *enlarged, *items, *args;
     struct orl_tex *position_texels;  // RGBA32F: world xyz, radius
     struct orl_tex *attribute_texels; // RG32UI: octahedral normal, colour
-    struct orl_tex *block_texels;     // RGBA32F: shaders/proxy/splat_cull.comp
-    // Of the last cull; floats, then words:
+    struct orl_tex *block_texels;     // RGBA32F, three per block: shaders/proxy/splat_cull.comp
+    // Results of the last cull: floats, then 32-bit words.
     struct orl_tex *enlarged_texels, *item_texels, *arg_texels;
-    int first, count, block_count;    // count: padded to whole blocks
+    int first, count, block_count;    // count: includes the padding to whole blocks
 };
 
 struct cloud {
@@ -22,11 +22,12 @@ struct cloud {
     size_t chunk_count;
 };
 
-// Sorts and uploads; points that are not finite are left out.
+// Sorts the points and uploads them. Points with a value that is not finite are omitted.
 enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct cloud *cloud);
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);
-// Lists what to draw of each chunk; sizes in `block` are overwritten.
+// Lists the points to draw of each chunk. The counts and the first index in `block` are
+// overwritten.
 void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block);
 
 #endif

@@ -48,7 +48,7 @@ static void compose(const struct frame *frame)
                                         {frame->trusted, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
-    // 2x2 pixels an invocation.
+    // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
 }
@@ -58,7 +58,7 @@ static bool takes_median(const struct frame *frame)
     return frame->params->median != ORL_MEDIAN_OFF && !frame->finishes;
 }
 
-// Into states[0], and back.
+// Filters the picture into states[0] and copies it back.
 static void median(const struct frame *frame)
 {
     bool holes = frame->params->median == ORL_MEDIAN_HOLES;

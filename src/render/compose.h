@@ -1,16 +1,16 @@
-// Private to src/render: from what painters leave to the finished picture.
+// Private to src/render: the passes between the painter and the finished picture.
 #ifndef ORL_RENDER_COMPOSE_H
 #define ORL_RENDER_COMPOSE_H
 
 #include "render/frame.h"
 
-// A pass after the painter. They run in the order of the list.
+// A pass after the painter. The passes run in the order of the list.
 struct post_pass {
     const char *name;
     bool (*applies)(const struct frame *frame);
     void (*run)(const struct frame *frame);
 };
-// Ended by a NULL name.
+// Terminated by a NULL name.
 extern const struct post_pass orl_post_passes[];
 
 #endif

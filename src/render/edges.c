@@ -18,7 +18,7 @@ enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int w
         return ORL_OK;
     orl_tex_destroy(gpu, &edges->votes);
     orl_buf_destroy(gpu, &edges->list);
-    // Room for every pixel: there is no telling.
+    // Room for every pixel, since the number of listed pixels is unknown.
     size_t bytes = 16 * (1 + (size_t)width * (size_t)height);
     size_t most = orl_gpu_caps(gpu)->max_storage_block;
     enum orl_result result = orl_buf_create(gpu, ORL_OWNER_FRAME, "pixels at edges",
@@ -30,13 +30,13 @@ enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int w
                           &edges->votes);
 }
 
-// Runs `find` over all pixels, which lists some. The rest of its dispatch in `d`, which then
-// is one over the list.
+// Runs `find` over all pixels to list some of them. `d` holds the rest of its dispatch, and is then
+// turned into a dispatch over the list.
 static void list(const struct frame *frame, struct orl_prog *find, struct orl_dispatch *d)
 {
     static const uint32_t nothing[4] = {0, 1, 1, 0};
     orl_buf_write(frame->edges->list, 0, sizeof nothing, nothing);
-    // 2x2 pixels an invocation.
+    // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d->groups);
     d->prog = find;
     d->bufs[LIST].buf = frame->edges->list;

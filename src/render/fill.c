@@ -1,5 +1,5 @@
-// Image-space pull-push of Gortler 1996: background depth and colour for pixels that
-// nothing covers.
+// Hole filling in image space by the pull-push of Gortler 1996: background depth and colour for
+// pixels that nothing covers.
 #include "render/fill.h"
 
 #include "core/memory.h"
@@ -17,7 +17,7 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
         return ORL_OK;
     orl_fill_finish(gpu, fill);
     enum orl_result result = ORL_OK;
-    // From half the size down to one pixel, rounded up: image loads outside a level read 0.
+    // Sizes from half the picture's down to one pixel, rounded up. Loads outside a level give 0.
     for (int w = (width + 1) / 2, h = (height + 1) / 2; result == ORL_OK;
          w = (w + 1) / 2, h = (h + 1) / 2) {
         struct orl_tex_params params = {.width = w, .height = h, .format = GL_RGBA32F,
@@ -37,7 +37,8 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return ORL_OK;
 }
 
-// One program from texture to texture, over `covered`; `per_invocation`: pixels each way.
+// One program from texture to texture, over the texture `covered`. per_invocation: pixels that one
+// invocation handles in each direction.
 struct step {
     const char *file, *defines;
     int per_invocation;
@@ -60,7 +61,7 @@ static void run(const struct frame *frame, struct step step, const struct orl_te
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
-// What level 0 knows, over all of it (Gortler 1996, pull-push).
+// Spreads the known values of level 0 over all of it (pull-push, Gortler 1996).
 static void spread(const struct frame *frame)
 {
     static const struct step pull = {"fill/fill_pull.comp", NULL, 1};
@@ -96,7 +97,7 @@ void orl_fill_depth(const struct frame *frame)
     orl_pass_end(frame->gpu);
 }
 
-// What clips in every photograph is as bright as what around it is bright enough.
+// Pixels that clip in every photograph take the brightness of the sufficiently bright light around.
 static void lift(const struct frame *frame)
 {
     static const struct step apply = {"fill/fill_lift.comp", NULL, 2};

@@ -9,18 +9,19 @@ enum { FILL_LEVELS_MAX = 17 };
 
 struct fill {
     int width, height, levels;
-    struct image_block block; // of its passes
-    // value * weight, weight; level 0 has half the size
+    struct image_block block; // parameters of the passes
+    // The pyramid: value * weight, weight. Level 0 has half the picture's size.
     struct orl_tex *level[FILL_LEVELS_MAX];
 };
 
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
-// Guesses background depth, as negative values, where the surface has none; no farther than the
-// scene's ground with fill=ground.
+// Writes the estimated background depth ("guess" in identifiers), as negative values, where the
+// surface has none. With fill=ground it is no farther than the scene's ground.
 void orl_fill_depth(const struct frame *frame);
-// Spreads the blended picture over fill->level[0]; of painters that finish pixels what that holds
-// already, 2x2 pixels of colour, 1 summed. Of radiance what clips takes light from around it first.
+// Spreads the blended colours over fill->level[0]. Painters that finish pixels have already written
+// sums over 2x2 pixels of (colour, 1) there. In radiance, clipped pixels first take the light
+// around them.
 void orl_fill_color(const struct frame *frame);
 
 #endif

@@ -2,10 +2,10 @@
 
 #include <string.h>
 
-#include "scene/ground.h"
+#include "scene/ground_plane.h"
 #include "shared/interop.h"
 
-// Farther than so many times the photographs' height, what stands on the ground hides it.
+// Beyond this many times the height of the photographs, objects on the ground occlude it.
 static const double GROUND_REACH = 20;
 
 void orl_pixel_groups(int width, int height, unsigned groups[3])

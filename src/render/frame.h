@@ -1,4 +1,4 @@
-// Private to src/render: one view on its way from surface to picture.
+// Private to src/render: one view while it is rendered, from the surface to the picture.
 #ifndef ORL_RENDER_FRAME_H
 #define ORL_RENDER_FRAME_H
 
@@ -11,41 +11,42 @@ struct fill;
 struct soften;
 struct edges;
 
-// What every pass gets. Passes keep what outlives a frame in structs of their own.
+// The state that every pass gets. Passes keep data that outlives a frame in their own structs.
 struct frame {
     struct orl_gpu *gpu;
     const struct orl_scene *scene;
     const struct orl_view *view;
     const struct orl_render_params *params;
-    bool radiance;             // photographs are radiance
+    bool radiance;             // photographs are sampled as radiance
     bool finishes;             // the painter leaves finished pixels (struct painter)
-    const bool *skip;          // per photograph: not to be used; NULL: none
-    struct proxy *proxy;       // draws surfaces: this view's and the photographs'
-    uint64_t proxy_key;        // orl_proxy_key with these parameters
-    struct surface surface;    // of the view
-    struct photos *photos;     // on the device
+    const bool *skip;          // per photograph: leave it out; NULL: use all
+    struct proxy *proxy;       // draws the surfaces of this view and of the photographs
+    uint64_t proxy_key;        // orl_proxy_key of these parameters
+    struct surface surface;    // surface that the view sees
+    struct photos *photos;     // photographs on the device
     struct gather *gather;     // parameters of the photographs in use
     struct fill *fill;
     struct soften *soften;
     struct edges *edges;
-    // Photographs of the scene that this frame asks, ascending; the renderer's memory.
+    // Indices of the photographs that this frame asks, ascending; memory of the renderer.
     size_t *chosen;
-    float *chosen_weight;      // what the selection weighs each
+    float *chosen_weight;      // weight of each photograph by the selection
     size_t chosen_count;
-    const double *centre;      // of the scene's bounding box, world
-    // shaders/shared/pixel.glsl, finished in the end. Half floats where the painter finishes pixels.
+    const double *centre;      // centre of the points' bounding box, world
+    // Pixels as in shaders/shared/pixel.glsl, finished at the end. Half floats if the painter
+    // finishes pixels.
     struct orl_tex *picture;
-    struct orl_tex *trusted;   // of radiance: weight * trust, weight, blur of guesses; else NULL
-    struct orl_tex *states[2]; // RGBA32F, what a combination keeps between sweeps, and what a
-                               // filter writes; else NULL
+    struct orl_tex *trusted;   // radiance: weight * confidence, weight, blur; else NULL
+    struct orl_tex *states[2]; // RGBA32F, state of a combination between sweeps, and output of
+                               // a filter; else NULL
 };
 
-// Work groups that cover width x height pixels.
+// Number of work groups that cover width x height pixels.
 void orl_pixel_groups(int width, int height, unsigned groups[3]);
-// Does this frame guess depth where nothing covers a pixel?
+// True if this frame estimates background depth where no surface covers a pixel.
 bool orl_frame_guesses(const struct frame *frame);
-// The scene's ground for image_block and gather_block: zeros where the frame's guesses may lie
-// beyond it.
+// The scene's ground for image_block and gather_block; zeros if the frame's estimated depth is not
+// limited by the ground.
 void orl_frame_ground(const struct frame *frame, float ground[4]);
 void orl_set_focal(const struct orl_camera *camera, float focal[4]);
 

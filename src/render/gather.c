@@ -11,9 +11,9 @@
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 _Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
 
-// --- what shaders are told ---
+// --- parameters of the shaders ---
 
-// RENDER_OPTIONS: the options' declarations, in the order of struct render_options.
+// The define RENDER_OPTIONS: declarations of the options, in the order of struct render_options.
 static char *declare_options(const struct orl_log *log)
 {
     char *text = orl_strdup(log, "RENDER_OPTIONS");
@@ -56,8 +56,8 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
     memset(gather, 0, sizeof *gather);
 }
 
-// photo_from_view = photo_from_world * world_from_view, in doubles: both translations
-// may be large where their difference is small.
+// photo_from_view = photo_from_world * world_from_view, in doubles, since both translations may be
+// large although their difference is small.
 static void relative_pose(const struct orl_pose *photo, const struct orl_pose *view,
                           struct photo_data *data)
 {
@@ -101,7 +101,7 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
         return;
     for (int c = 0; c < 3; c++)
         data->gain[c] *= state->white;
-    // In units of the device's colours.
+    // In units of the colours as stored on the device.
     data->noise[0] = (float)photos->sensor.shot / state->white;
     data->noise[1] = powf((float)photos->sensor.read / state->white, 2);
     data->noise[2] = state->rounded;
@@ -162,8 +162,8 @@ struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
     return prog;
 }
 
-// Radiance has rules of its own for what is visible and how samples combine, whatever the method:
-// light that bleeds over an edge may be a thousand times as bright as what is there.
+// For radiance, visibility and combination are the same for all methods, since light that bleeds
+// across an edge may be a thousand times as bright as the surface there.
 void orl_gather_slots(const struct frame *frame, struct gather_slots *out)
 {
     const struct orl_render_params *p = frame->params;
@@ -201,7 +201,7 @@ enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes
 
 // --- the generic painter ---
 
-// Lists the photographs that say most of each group of pixels; the rest of the dispatch as for the
+// Lists the photographs that contribute most to each tile. The rest of the dispatch is that of the
 // gather.
 static enum orl_result choose_radiance(const struct frame *frame, const struct gather_slots *slots,
                                        struct orl_dispatch d)
@@ -244,7 +244,7 @@ static bool reads_normals(const struct frame *frame)
     return false;
 }
 
-// One sweep over one turn: the photographs of frame->chosen from `first` on, which are resident.
+// One sweep over one turn: the photographs of frame->chosen from `first` on, all resident.
 static enum orl_result gather(const struct frame *frame, size_t first, size_t count, int sweep)
 {
     struct gather_slots slots;
@@ -260,7 +260,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
                    {frame->states[1], 0, GL_READ_WRITE},
                    {frame->surface.normal, 0, GL_READ_ONLY},
                    [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
-        // Storage: the next turn's choice overwrites this one's lists.
+        // The storage barrier is needed because the next turn overwrites the lists of this one.
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
     orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
     if (frame->radiance) {
@@ -275,7 +275,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
     return ORL_OK;
 }
 
-// All photographs in turns of as many as are resident together.
+// Sweeps over all photographs, in turns of as many as are resident together.
 static enum orl_result sweep_over(const struct frame *frame, int sweep)
 {
     size_t turn = (size_t)frame->photos->slot_count;
@@ -316,7 +316,7 @@ static enum orl_result paint_gather(struct frame *frame)
 const struct painter orl_paint_gather = {
     .name = "gather", .needs = "", .reads_normals = reads_normals, .paint = paint_gather};
 
-// --- no photographs ---
+// --- a painter without photographs ---
 
 static enum orl_result paint_points(struct frame *frame)
 {
@@ -328,7 +328,7 @@ static enum orl_result paint_points(struct frame *frame)
     return ORL_OK;
 }
 
-// The splats' own colours show where they are in front, which the normal tells.
+// Shows the splats' own colours where the splats are in front, as the normal's w tells.
 static bool always(const struct frame *frame)
 {
     (void)frame;

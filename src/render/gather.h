@@ -1,4 +1,4 @@
-// Private to src/render: photographs as shaders see them, and the painters that need no more than
+// Private to src/render: the shaders' parameters of photographs, and the painters that need only
 // the generic gather.
 #ifndef ORL_RENDER_GATHER_H
 #define ORL_RENDER_GATHER_H
@@ -10,35 +10,35 @@
 enum { PHOTO_ROWS = 7 }; // image binding of shaders/gather/photo.glsl
 
 struct gather {
-    struct photo_data *list;    // of the photographs of one dispatch
-    struct orl_buf *photos;     // struct photo_data
-    struct orl_tex *photo_rows; // its view, RGBA32F
-    struct orl_buf *tile_lists; // photographs of each tile
-    struct orl_buf *unfinished; // of the last painter that finishes pixels: gather/unfinished.glsl
-    char *options;              // owned: defines RENDER_OPTIONS (shaders/shared/render_blocks.h)
+    struct photo_data *list;    // parameters of the photographs of one dispatch
+    struct orl_buf *photos;     // the same on the device
+    struct orl_tex *photo_rows; // view of `photos` as RGBA32F texels
+    struct orl_buf *tile_lists; // listed photographs of each tile
+    struct orl_buf *unfinished; // list of the last tiled painter: gather/unfinished.glsl
+    char *options;              // owned: defines RENDER_OPTIONS (render_blocks.h)
 };
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather);
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
-// What every program about photographs is told; writes those of this dispatch, frame->chosen from
-// `first` on, which must be resident.
+// Makes the parameters of a program that reads photographs, and uploads those of this dispatch:
+// `count` photographs of frame->chosen from `first` on, which must be resident.
 struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count);
-// A program of the shader `file` with the options' declaration, and `defines` besides (NULL: none).
+// The program of the shader `file` with the declaration of the options and `defines` (NULL: none).
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines);
-// The files of the method's slots, for orl_prog_get.
+// The files of the method's slots for orl_prog_get.
 enum { GATHER_SLOTS = 5 };
 struct gather_slots {
     char files[GATHER_SLOTS][64];
     struct orl_slot slots[GATHER_SLOTS];
 };
 void orl_gather_slots(const struct frame *frame, struct gather_slots *out);
-// Room for `bytes` in *buf, which loses what it holds.
+// Ensures room for `bytes` in *buf, whose contents may be lost.
 enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
                               struct orl_buf **buf);
 
-// gather: shaders/gather/gather.comp with the method's slots, as many photographs at once as are
-// resident together. points: the proxy's own colours.
+// gather: runs shaders/gather/gather.comp with the method's slots, in turns of as many photographs
+// as are resident together. points: shows the proxy's own colours.
 extern const struct painter orl_paint_gather, orl_paint_points;
 
 #endif

@@ -1,4 +1,4 @@
-// Private to src/render: what the names of a method's slots stand for.
+// Private to src/render: the implementations behind the names of a method's slots.
 #ifndef ORL_RENDER_METHOD_H
 #define ORL_RENDER_METHOD_H
 
@@ -6,42 +6,42 @@
 
 struct frame;
 
-// Which photographs a frame asks.
+// A rule that selects the photographs that a frame asks.
 struct selection {
     const char *name;
-    // Writes their indices, ascending, to frame->chosen. At most `most` where the selection
-    // bounds them; `all` does not.
+    // Writes their indices in ascending order to frame->chosen, at most `most` of them. `all`
+    // ignores `most`.
     enum orl_result (*choose)(struct frame *frame, size_t most);
 };
 
-// How the samples of a pixel become one colour (shaders/gather/combine), and how that streams
-// where not all photographs are on the device at once: sums go on from turn to turn; what needs
-// to know all samples before it can weigh one asks them all twice.
+// How the samples of a pixel become one colour (shaders/gather/combine), and how this streams when
+// the photographs do not all fit on the device. A combination of sums adds to them turn by turn;
+// one that must know all samples before it can weigh one asks all photographs twice.
 struct combine {
     const char *name;
-    int sweeps; // 1 or 2; 0: only its painter knows it
-    int states; // images that a pixel keeps between sweeps, [0, 2]
+    int sweeps; // 1 or 2; 0: implemented by one painter only
+    int states; // state images that are kept between sweeps, [0, 2]
 };
 
-// Who turns a surface into colours.
+// A painter turns a surface into colours.
 struct painter {
     const char *name;
-    const char *needs; // choices that it takes alone, as option_list.h's readers; all must hold
-    bool finishes;     // leaves finished pixels but those that it lists (shaders/shared/pixel.glsl);
-                       // not of radiance
-    bool (*reads_normals)(const struct frame *frame); // the surface's; NULL: never
+    const char *needs; // required choices, as readers of option_list.h; all must hold
+    bool finishes;     // finishes all pixels that it does not list (shaders/shared/pixel.glsl),
+                       // except in radiance
+    bool (*reads_normals)(const struct frame *frame); // the surface's normals; NULL: never
     enum orl_result (*paint)(struct frame *frame);
 };
 
-// By the names in `params`, which orl_render_params_check has passed.
+// Look up the names in `params`, which must have passed orl_render_params_check.
 const struct selection *orl_selection_of(const struct orl_render_params *params);
 const struct combine *orl_combine_of(const struct orl_render_params *params);
 const struct painter *orl_painter_of(const struct orl_render_params *params);
 const struct proxy_kind *orl_proxy_kind_of(const struct orl_render_params *params);
 
-// The `index`-th name that the slot `key` may have; false: there are no more.
+// The `index`-th valid name of the slot `key`; false past the end.
 bool orl_slot_name(const char *key, size_t index, char name[ORL_OPTION_NAME_BYTES]);
-// Does "key=name" hold, of an option that is read or of sample?
+// True if "key=name" holds for `sample` or for an option that is read.
 bool orl_render_params_equal(const struct orl_render_params *params, const char *condition);
 
 #endif

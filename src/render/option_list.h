@@ -1,5 +1,5 @@
 // Every option of rendering, one row each; render.h makes fields of them, options.c the table
-// behind --set, oriel tune and docs/reference/options.md, block.c the shaders' parameters.
+// behind --set, oriel tune and docs/reference/options.md, gather.c the shaders' parameters.
 #ifndef ORL_RENDER_OPTION_LIST_H
 #define ORL_RENDER_OPTION_LIST_H
 

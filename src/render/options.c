@@ -1,4 +1,4 @@
-// The option table, and parameters from text.
+// The table of options, and the parsing of parameters from text.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #define CHOICE_ROW(field, type, list, preset, read_by, text) \
     {.key = #field, .kind = ORL_OPTION_CHOICE, .offset = FIELD(field), .names = list, \
      .readers = read_by, .unit = "", .help = text},
-// A list of one is ORL_NO_TRIES.
+// A list of one value is ORL_NO_TRIES.
 #define NUMBER_ROW(field, preset, low, high, units, read_by, list, text) \
     {.key = #field, .kind = ORL_OPTION_NUMBER, .offset = FIELD(field), .least = low, \
      .most = high, .unit = units, .readers = read_by, .help = text, .tries = list, \
@@ -37,7 +37,7 @@ const struct orl_render_option *orl_render_option_find(const char *key)
 
 // --- names ---
 
-// The `index`-th word of a list that spaces separate.
+// The `index`-th word of a list that is separated by spaces.
 static bool word_at(const char *list, size_t index, char word[ORL_OPTION_NAME_BYTES])
 {
     for (; *list; list += *list == ' ') {
@@ -180,7 +180,7 @@ enum orl_result orl_render_params_assign(const struct orl_log *log,
         if (result != ORL_OK)
             return result;
     }
-    // Only now: what reads an option may have been chosen after it.
+    // Checked after all assignments, since a later one may choose what reads an option.
     for (size_t i = 0; i < count; i++) {
         enum orl_result result = find_key(log, assignments[i], &option);
         if (result != ORL_OK)

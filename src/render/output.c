@@ -49,7 +49,7 @@ static enum orl_result write_exr(const struct orl_log *log, const char *path,
     return orl_exr_write(log, path, &exr);
 }
 
-// Inverse depth between the nearest and farthest surface, near white.
+// Maps inverse depth linearly between the farthest and the nearest surface; near is white.
 static void depth_picture(const struct orl_image *depth, struct orl_image *out)
 {
     size_t count = (size_t)depth->width * (size_t)depth->height;
@@ -77,7 +77,7 @@ static void layer_picture(const struct orl_image *layer, bool is_depth, struct o
         for (size_t i = 0; i < count; i++)
             out->u8[i] = (uint8_t)lrintf(255 * fminf(fmaxf(layer->f32[i], 0), 1));
     } else {
-        // Normals: x right red, y up green, towards the viewer blue.
+        // Normals: red is x (right), green is y (up), blue points towards the viewer.
         for (size_t i = 0; i < count; i++) {
             const float *n = &layer->f32[3 * i];
             bool none = n[0] == 0 && n[1] == 0 && n[2] == 0;

@@ -1,4 +1,4 @@
-// A rendered frame as files.
+// Writes rendered frames as files.
 #ifndef ORL_RENDER_OUTPUT_H
 #define ORL_RENDER_OUTPUT_H
 
@@ -8,27 +8,27 @@
 
 struct orl_frame_layers {
     bool depth, normal, coverage;
-    bool confidence; // of frames that have it
+    bool confidence; // only if the frame has it
 };
 
 struct orl_frame_output {
     struct orl_frame_layers layers;
-    struct orl_tone_params tone; // of .png
-    // Of .exr:
-    bool float_color; // R, G, B and normals as 32-bit floats; false: half
+    struct orl_tone_params tone; // for .png
+    // For .exr:
+    bool float_color; // R, G, B and normals as 32-bit floats; false: as half floats
     enum orl_exr_compression compression;
-    struct orl_exr_view_attributes attributes; // view and srgb_primaries are set here
+    struct orl_exr_view_attributes attributes; // orl_frame_write sets view and srgb_primaries
 };
 #define ORL_FRAME_OUTPUT_DEFAULTS .tone = {ORL_TONE_DEFAULTS}
 
-// By extension: .png writes tone-mapped colour, and each layer beside it as
-// <stem>.<layer>.png (depth: near white, far dark, none black); .exr writes
-// scene-linear colour R, G, B, layers depth.Z (float), normal.X/Y/Z (camera frame),
-// coverage.Y and confidence.Y, and the camera's attributes. Written whole or not at all.
+// Writes a frame in the format of the extension. .png: tone-mapped colour, and each layer beside it
+// as <stem>.<layer>.png (depth: near is white, far is dark, none is black). .exr: scene-linear
+// colour R, G, B, the layers depth.Z (float), normal.X/Y/Z (camera frame), coverage.Y and
+// confidence.Y, and the camera's attributes. A file is written completely or not at all.
 enum orl_result orl_frame_write(const struct orl_log *log, const char *path,
                                 const struct orl_view *view, const struct orl_frame *frame,
                                 const struct orl_frame_output *output) ORL_CHECK_RESULT;
-// Does frame_write know the extension of `path`?
+// True if orl_frame_write supports the extension of `path`.
 bool orl_frame_can_write(const char *path);
 
 #endif

@@ -1,4 +1,4 @@
-// Photographs and their depth maps on the device, within a budget.
+// Photographs and their depth maps on the device, within a memory budget.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,9 +10,9 @@
 
 enum {
     DIVIDE_MAX = 4,
-    RESIDENT_ENOUGH = 24,       // photographs that should fit at once before they are made smaller
-    DEPTH_SIDE_MAX = 1024,      // occlusion needs no more: depth is smooth between edges
-    ARRAY_BYTES_MAX = 1 << 30,  // of one texture array; llvmpipe refuses larger ones
+    RESIDENT_ENOUGH = 24,       // photographs that fit at once before they are made smaller
+    DEPTH_SIDE_MAX = 1024,      // occlusion tests need no more: depth is smooth between edges
+    ARRAY_BYTES_MAX = 1 << 30,  // bytes of one texture array; llvmpipe refuses larger ones
 };
 
 static int divided(int side, int divide)
@@ -36,7 +36,7 @@ static struct orl_camera depth_camera_of(const struct orl_camera *color)
                               divided(color->height, divide));
 }
 
-// Size of a slot: the largest usable photograph's, in each direction.
+// Size of a slot: the maximum of the usable photographs in each direction.
 struct slot_size {
     int width, height, depth_width, depth_height;
 };
@@ -83,7 +83,7 @@ static bool is_compressed(const struct photos *photos)
     return photos->format != GL_SRGB8_ALPHA8 && photos->format != GL_RGBA16F;
 }
 
-// Of the budget, what is left for slots.
+// The part of the budget that is available for slots.
 static size_t slot_budget(const struct photos *photos, const struct slot_size *size, size_t budget)
 {
     struct photos plain = {.format = GL_SRGB8_ALPHA8};
@@ -103,8 +103,8 @@ static bool fits_all(const struct photos *photos, const struct slot_size *size, 
     return slot_bytes(photos, size) * (size_t)count <= slot_budget(photos, size, budget);
 }
 
-// Photographs compressed first, then fewer at once down to RESIDENT_ENOUGH, then smaller,
-// then fewer still.
+// Plans within the budget: compresses photographs first, then makes fewer resident, down to
+// RESIDENT_ENOUGH, then loads them smaller, then makes still fewer resident.
 static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textures textures,
                              struct photos *photos)
 {
@@ -117,7 +117,7 @@ static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textur
     photos->format = orl_textures_format(gpu, photos->radiance, textures);
     if (textures == ORL_TEXTURES_AUTO && !photos->radiance && budget &&
         !fits_all(photos, &size, count, budget)) {
-        // llvmpipe reads BC1 as fast as plain texels, BC7 several times slower.
+        // llvmpipe reads BC1 as fast as uncompressed texels, but BC7 several times slower.
         bool software = orl_gpu_caps(gpu)->software;
         photos->format = orl_textures_format(gpu, false, software ? ORL_TEXTURES_BC1
                                                                   : ORL_TEXTURES_BC7);
@@ -125,7 +125,7 @@ static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textur
             orl_logf(log, ORL_LOG_WARNING, "photographs do not fit in %zu MiB of device memory: "
                      "compressing them (%s)", budget >> 20, software ? "BC1" : "BC7");
     }
-    // A view is painted from a few photographs: many at once are not worth blurred ones.
+    // A view is painted from a few photographs: a few sharp ones are worth more than many blurred.
     int enough = count < RESIDENT_ENOUGH ? count : RESIDENT_ENOUGH;
     while (budget && photos->divide < DIVIDE_MAX && !fits_all(photos, &size, enough, budget)) {
         photos->divide *= 2;
@@ -149,13 +149,14 @@ static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textur
     return size;
 }
 
-// Stops by which a photograph is brighter than the scene's middle exposure.
+// Exposure of a photograph in stops above the scene's middle exposure.
 static float photo_ev(const struct orl_photo *photo)
 {
     return -log2f(photo->gain[0] * photo->gain[1] * photo->gain[2]) / 3;
 }
 
-// Exposures of the photographs in use, for those that tell nothing better apart.
+// Finds the range of exposures of the photographs in use: the darkest photograph clips last, and
+// the brightest one resolves the darkest light.
 static void find_exposures(struct photos *photos)
 {
     bool first = true;
@@ -235,7 +236,7 @@ static struct photo_state *state_in_slot(struct photos *photos, int slot)
     return NULL;
 }
 
-// A free slot, or that of the least recently used photograph, which loses it.
+// Returns a free slot, or else evicts the least recently used photograph.
 static int take_slot(struct photos *photos)
 {
     struct photo_state *oldest = NULL;
@@ -252,7 +253,7 @@ static int take_slot(struct photos *photos)
     return slot;
 }
 
-// sRGB-encoded RGB, or radiance times trust and trust.
+// Writes sRGB-encoded RGB, or radiance times confidence, and the confidence.
 static void write_pixels(const struct orl_image *image, struct orl_tex *tex, int layer)
 {
     bool radiance = image->type == ORL_PIXEL_F32;
@@ -260,7 +261,7 @@ static void write_pixels(const struct orl_image *image, struct orl_tex *tex, int
                        radiance ? GL_FLOAT : GL_UNSIGNED_BYTE, image->data);
 }
 
-// A smaller photograph is a mip level of the full one: box filtered in linear light.
+// Loads a photograph smaller: a mip level of the full one, box-filtered in linear light.
 static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_image *image,
                                       int divide, struct orl_tex *to, int slot)
 {
@@ -283,7 +284,7 @@ static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_imag
     return ORL_OK;
 }
 
-// Turns a photograph as read into radiance times trust, and trust.
+// Converts a photograph as read into radiance times confidence, and the confidence.
 static enum orl_result make_radiance(const struct orl_log *log, struct photos *photos, size_t index,
                                      struct orl_image *image)
 {
@@ -310,7 +311,7 @@ static enum orl_result make_radiance(const struct orl_log *log, struct photos *p
     return ORL_OK;
 }
 
-// As in the file; the linear version, if there is one, for radiance.
+// Reads the file; for radiance its linear version, if there is one.
 static enum orl_result read_photo(const struct orl_log *log, const struct photos *photos,
                                   size_t index, struct orl_image *image)
 {
@@ -339,10 +340,10 @@ static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, si
     if (result != ORL_OK)
         goto end;
     int slot = take_slot(photos);
-    // Coarser levels are made before compression, so that its errors do not add up.
+    // Coarser levels are made before compression, so that compression errors do not accumulate.
     struct orl_tex *to = photos->loading ? photos->loading : photos->color;
     int layer = photos->loading ? 0 : slot;
-    if (photos->loading) // what an earlier photograph left beside this one would bleed into it
+    if (photos->loading) // remains of an earlier photograph would bleed into the mipmaps
         orl_tex_clear(photos->loading, 0);
     if (photos->divide > 1)
         result = upload_smaller(gpu, &image, photos->divide, to, layer);
@@ -358,7 +359,7 @@ end:
     return result;
 }
 
-// The surface that the photograph sees, into its slot, with the holes guessed.
+// Draws the depth that the photograph sees into its slot, with estimated depth in the holes.
 static enum orl_result make_depth(const struct frame *frame, size_t index)
 {
     struct photos *photos = frame->photos;

@@ -34,7 +34,7 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
     return result;
 }
 
-// Is this an option of the proxy?
+// True if this option belongs to the proxy.
 static bool is_read_by(const struct orl_render_option *option, const struct proxy_kind *kind)
 {
     const char *reader = strstr(option->readers, "proxy=");

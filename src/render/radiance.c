@@ -7,7 +7,7 @@
 #include "core/color.h"
 #include "core/memory.h"
 
-// --- trust; shaders/gather/trust.glsl says the same ---
+// --- confidence; shaders/gather/radiance/trust.glsl has the same noise model ---
 
 float orl_clip_trust(const struct orl_sensor *sensor, float peak, float ev_above)
 {
@@ -18,7 +18,8 @@ float orl_clip_trust(const struct orl_sensor *sensor, float peak, float ev_above
     return (float)(bound + (1 - bound) * fall);
 }
 
-// Step between 8-bit sRGB values, within a tenth where rounding matters.
+// Step between adjacent 8-bit sRGB values at linear exposure x, within a tenth where rounding
+// matters.
 static double step_at(double x)
 {
     return fmax(1 / 12.92, 1.6 * sqrt(x)) / 255;
@@ -48,7 +49,7 @@ float orl_least_radiance(const struct orl_sensor *sensor, float ev, bool rounded
 
 // --- whole photographs ---
 
-// Relative illumination at a squared distance from the centre, in half diagonals.
+// Relative illumination at a squared distance r2 from the centre, in half diagonals.
 static float light_at(const float vignette[3], float r2)
 {
     return fmaxf(1 + r2 * (vignette[0] + r2 * (vignette[1] + r2 * vignette[2])), 0.1f);
@@ -65,7 +66,7 @@ static float exposure_at(const struct decoder *d, const struct orl_image *image,
                          size_t channel)
 {
     float x = image->type == ORL_PIXEL_U8 ? d->linear[channel][image->u8[at]] : image->f32[at];
-    return x > 0 ? x : 0; // also NaN
+    return x > 0 ? x : 0; // NaN becomes 0
 }
 
 static void init_decoder(const struct orl_photo_response *response, const struct orl_image *image,
@@ -81,7 +82,7 @@ static void init_decoder(const struct orl_photo_response *response, const struct
     for (size_t i = 0; i < values && image->type == ORL_PIXEL_F32; i++)
         if (isfinite(image->f32[i]))
             d->white = fmaxf(d->white, image->f32[i]);
-    // Interpolation and sharpening overshoot a little where files clip at 1.
+    // Interpolation and sharpening overshoot a little in files that clip at 1.
     d->clips = d->white < 1.5f;
 }
 

@@ -2,14 +2,14 @@
 
 #include <string.h>
 
-// A picture of the frame's size.
+// Creates an image of the frame's size.
 static enum orl_result make(const struct frame *frame, int channels, struct orl_image *image)
 {
     return orl_image_init(orl_gpu_log(frame->gpu), image, frame->surface.width,
                           frame->surface.height, channels, ORL_PIXEL_F32);
 }
 
-// Allocated once for frames of the same kind.
+// Makes the staging image fit; it is allocated once for frames of the same kind.
 static enum orl_result stage(const struct frame *frame, int channels, struct orl_image *s)
 {
     if (s->width == frame->surface.width && s->height == frame->surface.height &&
@@ -52,7 +52,7 @@ static enum orl_result read_depth(const struct frame *frame, struct orl_frame *o
     float *depth = out->depth.f32;
     orl_tex_read(frame->surface.depth, 0, GL_RED, GL_FLOAT, orl_image_bytes(&out->depth), depth);
     for (size_t i = 0; i < pixel_count(frame); i++)
-        if (depth[i] < 0) // a guess, not a surface
+        if (depth[i] < 0) // an estimate, not a surface
             depth[i] = 0;
     return ORL_OK;
 }

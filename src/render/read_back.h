@@ -4,7 +4,7 @@
 
 #include "render/frame.h"
 
-// All layers but params->leave_out; `staging` is kept for frames of the same kind.
+// Reads all layers except params->leave_out. `staging` is reused for frames of the same kind.
 enum orl_result orl_read_back(const struct frame *frame, struct orl_image *staging,
                               struct orl_frame *out);
 

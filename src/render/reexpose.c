@@ -5,12 +5,11 @@
 
 #include "core/color.h"
 
-// The value whose exposure is nearest, as seen through the curve: between two of them the
-// one on whose side of their mean it lies. The curve rises.
+// The 8-bit value to which the curve gives the nearest exposure. The curve increases.
 static uint8_t nearest_value(const float curve[256], float exposure)
 {
     int low = 0, high = 255;
-    if (!(exposure > curve[0])) // also NaN
+    if (!(exposure > curve[0])) // includes NaN
         return 0;
     if (exposure >= curve[255])
         return 255;
@@ -24,8 +23,8 @@ static uint8_t nearest_value(const float curve[256], float exposure)
     return (uint8_t)(exposure - curve[low] < curve[high] - exposure ? low : high);
 }
 
-// Relative illumination of each pixel; the principal point and the diagonal of a picture of
-// another size scale with it.
+// Relative illumination of a pixel. For a picture of another size, the principal point and the
+// diagonal are scaled.
 static float illumination(const struct orl_photo *photo, const struct orl_image *light, int x,
                           int y)
 {
@@ -65,8 +64,8 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// Solves y = gain x / (1 + x ((gain - 1 - third) + third x^2)), as photo_aligned of
-// shaders/gather/photo.glsl has it, for x by bisection: the right side rises.
+// Solves y = gain x / (1 + x ((gain - 1 - third) + third x^2)), the mapping of photo_aligned in
+// shaders/gather/sample/srgb.glsl, for x by bisection, since the right side increases.
 static float unaligned(float gain, float y)
 {
     float third = fminf(gain - 1, 0.5f);

@@ -1,4 +1,4 @@
-// The frame: surface, painter, post passes, read back.
+// Renders a frame: surface, painter, post passes, read-back.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 #include "render/read_back.h"
 #include "render/soften.h"
 
-// What outlives a frame.
+// The state that outlives a frame.
 struct orl_renderer {
     struct orl_gpu *gpu;
     const struct orl_scene *scene;
@@ -24,14 +24,14 @@ struct orl_renderer {
     struct soften soften;
     struct edges edges;
     struct gather gather;
-    struct orl_tex *picture, *trusted, *states[2]; // of struct frame
-    size_t *chosen;           // its memory
+    struct orl_tex *picture, *trusted, *states[2]; // textures of struct frame
+    size_t *chosen;           // memory of struct frame's list
     float *chosen_weight;
-    double centre[3];         // of the points' bounding box
-    struct orl_image staging; // read_back.h
+    double centre[3];         // centre of the points' bounding box
+    struct orl_image staging; // for read_back.h
 };
 
-// What stays after photographs: points, and targets of the usual sizes.
+// Device memory of everything but photographs: points, and targets of common sizes.
 static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *proxy)
 {
     int width = 1, height = 1;
@@ -120,7 +120,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     *renderer = NULL;
 }
 
-// *tex of this size and format; `wanted`: else it goes.
+// Makes *tex fit the size and the format. Destroys it if it is not `wanted`.
 static enum orl_result retarget(struct orl_gpu *gpu, const char *tag, bool wanted, int width,
                                 int height, GLenum format, struct orl_tex **tex)
 {

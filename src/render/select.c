@@ -8,7 +8,7 @@
 #include "render/frame.h"
 #include "shared/penalty.h"
 
-enum { PHOTOS_PER_FRAME_MAX = 48 }; // of preselect
+enum { PHOTOS_PER_FRAME_MAX = 48 }; // limit of preselect
 
 static bool may_use(const struct frame *frame, size_t photo)
 {
@@ -17,7 +17,7 @@ static bool may_use(const struct frame *frame, size_t photo)
 
 static enum orl_result choose_all(struct frame *frame, size_t most)
 {
-    (void)most; // more than are on the device at once are asked in turns
+    (void)most; // photographs that do not fit on the device are asked in turns
     frame->chosen_count = 0;
     for (size_t i = 0; i < frame->scene->photo_count; i++) {
         if (!may_use(frame, i))
@@ -30,7 +30,7 @@ static enum orl_result choose_all(struct frame *frame, size_t most)
 
 const struct selection orl_select_all = {"all", choose_all};
 
-// --- those of least angle at the scene's centre (Orzan 2005, 4.3.2) ---
+// --- nearest: the photographs of least angle at the scene's centre (Orzan 2005, 4.3.2) ---
 
 // Angle between the view and the photograph, seen from the centre, radians.
 static double deviation(const struct frame *frame, size_t photo)
@@ -45,7 +45,7 @@ static double deviation(const struct frame *frame, size_t photo)
         uv += u * v;
     }
     double cosine = uv / sqrt(uu * vv);
-    return cosine >= 1 ? 0 : cosine > -1 ? acos(cosine) : 3.141592653589793; // also NaN
+    return cosine >= 1 ? 0 : cosine > -1 ? acos(cosine) : 3.141592653589793; // includes NaN
 }
 
 struct direction {
@@ -67,11 +67,11 @@ static int by_index(const void *a, const void *b)
     return (x->photo > y->photo) - (x->photo < y->photo);
 }
 
-// Each weighs 1 - p / p', p' being the penalty of the first that is left out: it has faded out by
-// the time another replaces it. All weigh 1 where none is left out.
+// Each photograph has weight 1 - p / p', where p' is the penalty of the first one left out, so that
+// it has faded out when another replaces it. All have weight 1 if none is left out.
 static enum orl_result choose_nearest(struct frame *frame, size_t most)
 {
-    (void)most; // more than are on the device at once are asked in turns
+    (void)most; // photographs that do not fit on the device are asked in turns
     size_t count = 0, kept = (size_t)(frame->params->nearest + 0.5f);
     struct direction *all = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count,
                                       sizeof *all);
@@ -85,7 +85,7 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
     kept = count < kept ? count : kept;
     qsort(all, kept, sizeof *all, by_index);
     for (size_t i = 0; i < kept; i++) {
-        // As oriel's: photographs that tie with the first left out paint where there are no others.
+        // As in oriel, a trace of weight lets photographs that tie with the first left out paint.
         double weight = threshold > 0 ? 1.00001 - all[i].penalty / threshold : 1;
         frame->chosen[i] = all[i].photo;
         frame->chosen_weight[i] = (float)weight;
@@ -97,21 +97,21 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
 
 const struct selection orl_select_nearest = {"nearest", choose_nearest};
 
-// --- those that can paint the view best, so that its cost does not grow with the scene ---
+// --- preselect: the photographs that can paint the view best, so that its cost is bounded ---
 
 enum {
-    ACROSS = 5,      // sample directions, each way
+    ACROSS = 5,      // sample directions along x and along y
     DEPTHS = 3,
-    PER_SAMPLE = 8,  // photographs that each sample point may name
+    PER_SAMPLE = 8,  // photographs that each sample point marks
 };
 
 struct candidate {
     size_t photo;
-    double score; // over all sample points
-    bool named;   // among the best of some sample point
+    double score; // sum over all sample points
+    bool named;   // is among the best for some sample point
 };
 
-// A point of the view's frustum, in the world.
+// A sample point of the view's frustum, in the world. typical: a typical depth of the scene.
 static void sample_point(const struct orl_view *view, int index, double typical, double out[3])
 {
     static const double depths[DEPTHS] = {0.4, 1, 4};
@@ -146,7 +146,7 @@ double orl_photo_penalty(const struct orl_view *photo, const double eye[3], doub
     return ORL_PENALTY(angle, sqrt(vv / uu) * (view_focal / c->fx) - 1);
 }
 
-// Marks the best PER_SAMPLE of one sample point.
+// Adds the scores of one sample point and marks its best PER_SAMPLE photographs.
 static void name_best(struct candidate *candidates, const double *scores, size_t count)
 {
     double best[PER_SAMPLE] = {0};
@@ -187,7 +187,7 @@ static int by_photo(const void *a, const void *b)
     return (x->photo > y->photo) - (x->photo < y->photo);
 }
 
-// Sorts the candidates, the best first: those that some sample point names, then by their sums.
+// Sorts the candidates: first those that a sample point has marked, then by total score.
 static void rank(const struct frame *frame, struct candidate *candidates, double *scores,
                  size_t count)
 {
@@ -209,7 +209,7 @@ static void rank(const struct frame *frame, struct candidate *candidates, double
 
 static enum orl_result choose_best(struct frame *frame, size_t most)
 {
-    // The best by angle may all be clipped: radiance needs every exposure.
+    // The best photographs by angle may all be clipped; radiance needs every exposure.
     if (frame->radiance)
         return choose_all(frame, most);
     const struct orl_log *log = orl_gpu_log(frame->gpu);

@@ -17,7 +17,7 @@ enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, in
     if (old && old->params.width == params.width && old->params.height == params.height)
         return ORL_OK;
     orl_tex_destroy(gpu, &soften->guesses);
-    // A texel of the last level is as large as the largest blur, or all of the picture.
+    // A texel of the coarsest level is as large as the largest blur, or as the whole picture.
     int longer = width > height ? width : height;
     while (1 << params.levels < GUESS_BLUR_MOST * longer && longer >> (params.levels + 1) > 0)
         params.levels++;

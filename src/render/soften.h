@@ -1,19 +1,19 @@
-// Private to src/render: what the blur of guesses takes in; shaders/fill/compose.comp blurs.
+// Private to src/render: input of the blur on estimated depth, done by shaders/fill/compose.comp.
 #ifndef ORL_RENDER_SOFTEN_H
 #define ORL_RENDER_SOFTEN_H
 
 #include "render/frame.h"
 
 struct soften {
-    struct orl_tex *guesses; // mipmapped sums of colour on guessed depth: shaders/fill/compose.comp
+    struct orl_tex *guesses; // mipmapped sums over 2x2 pixels of (colour, 1) on estimated depth
 };
 
-// For pictures of this size; does nothing when they had it already.
+// Allocates for pictures of this size. Does nothing if the size is unchanged.
 enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
                                   int height);
 void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften);
-// Mipmaps of what is painted on guessed depth. Painters that finish pixels have written the sums;
-// of radiance they are made here.
+// Makes the mipmaps. Painters that finish pixels have written the sums; for radiance they are made
+// here.
 void orl_soften_prepare(const struct frame *frame);
 
 #endif

@@ -1,4 +1,4 @@
-// Depth from points: compute splatting, then pull-push (Airieau 2012, 5.1).
+// Reconstructs depth from points: compute splatting, then pull-push (Airieau 2012, 5.1).
 #include "render/splats.h"
 
 #include <math.h>
@@ -28,8 +28,8 @@ static void destroy(struct orl_gpu *gpu, void **state)
     *state = NULL;
 }
 
-// Pyramid levels, down to a pixel or two: level 0 is made with level 1, and pushed from it, so that
-// there are two at least.
+// Number of pyramid levels, down to a size of one or two pixels. At least two, since level 0 is
+// made together with level 1 and pushed from it.
 static int pyramid_levels(int width, int height)
 {
     int levels = 2;
@@ -41,13 +41,13 @@ static int pyramid_levels(int width, int height)
 static size_t target_bytes(const void *state, int width, int height)
 {
     const struct cloud *cloud = state;
-    // Three words a pixel of splats, 8 bytes of level 0, two depths, a normal, and 24 bytes
-    // of the coarser levels; four words more between chunks.
+    // Bytes per pixel: three words of splats, 8 bytes of level 0, two depths, a normal, and 24
+    // bytes of the coarser levels; four more words if there are several chunks.
     size_t chunks = cloud->chunk_count < 2 ? 0 : 16;
     return (size_t)width * (size_t)height * (12 + 8 + 8 + 8 + 24 / 3 + chunks);
 }
 
-// Each level half as large as the one before, rounded up: loads outside read as empty.
+// Each level is half as large as the one before, rounded up. Loads outside read as empty.
 static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
 {
     enum orl_result result = ORL_OK;
@@ -136,7 +136,7 @@ static enum orl_result resize(struct orl_gpu *gpu, const void *state, int width,
     return result;
 }
 
-// params: NULL where nothing is drawn.
+// params: NULL if nothing is drawn.
 static struct splat_block splat_params(const struct orl_view *view,
                                        const struct orl_render_params *params)
 {
@@ -185,7 +185,7 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
         }
 }
 
-// Level 0 goes into `depth` without normals, else into the target's splats.
+// Makes levels 0 and 1. Level 0 goes into `depth` without normals, else into the target's splats.
 static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block,
                     const struct orl_tex *depth, bool normals, struct splat_target *t)
 {
@@ -238,7 +238,8 @@ static void pull(struct orl_gpu *gpu, struct pyramid_block *block,
     orl_gpu_dispatch(gpu, &d);
 }
 
-// Into `level` from the one above; level 0 comes out as `depth`, and with the normal if asked for.
+// Pushes into `level` from the coarser one. Level 0 is written as `depth`, and as the normal if it
+// is asked for.
 static void push(struct orl_gpu *gpu, struct pyramid_block *block,
                  struct splat_target *t, int level, const struct orl_tex *depth, bool normals)
 {
@@ -259,7 +260,7 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
         d.images[4] = (struct orl_image_binding){t->normal, 0, GL_WRITE_ONLY, 0};
     }
     set_level(block, level ? t->surfel_a[level] : t->splats, level);
-    // One invocation per corner of the coarse level's pixels.
+    // One invocation handles one corner of the coarse level's pixels.
     orl_pixel_groups(block->level_size[0] / 2 + 1, block->level_size[1] / 2 + 1, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }

@@ -8,7 +8,7 @@
 #include "render/photos.h"
 #include "render/soften.h"
 
-// Lists of photographs by tile, and of groups of pixels that are left unfinished.
+// Makes room for the lists of photographs of each tile and of unfinished work groups.
 static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
 {
     static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/gather/unfinished.glsl
@@ -25,12 +25,12 @@ static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_
     return ORL_OK;
 }
 
-// From the photographs of each tile; the dispatch is the one that has listed them.
+// Paints from the photographs of each tile. `d`: the dispatch that has listed them.
 static void gather_tiles(const struct frame *frame, bool many, struct orl_dispatch d)
 {
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
-    // A program for pixels of two photographs and one for those of more.
+    // There is one program for at most two photographs per pixel and one for more.
     bool bicubic = frame->params->sampling == ORL_SAMPLING_BICUBIC;
     const char *defines = bicubic ? many ? "BICUBIC 1\nKEPT 4" : "BICUBIC 1\nKEPT 2"
                                   : many ? "KEPT 4" : "KEPT 2";
@@ -40,7 +40,7 @@ static void gather_tiles(const struct frame *frame, bool many, struct orl_dispat
     d.images[3] = (struct orl_image_binding){frame->soften->guesses, 0, GL_WRITE_ONLY, 0};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                 GL_COMMAND_BARRIER_BIT;
-    // 2x2 pixels an invocation.
+    // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
     orl_tex_clear(frame->soften->guesses, 0);
     orl_pass_begin(frame->gpu, "gather");
@@ -84,7 +84,7 @@ static enum orl_result paint(struct frame *frame)
 {
     if (frame->radiance)
         return orl_paint_gather.paint(frame);
-    // The choice of the best asks what hides the surface even when pixels do not.
+    // Depth is always needed: the selection per tile tests occlusion even if the pixels do not.
     enum orl_result result =
         orl_selection_of(frame->params)->choose(frame, (size_t)frame->photos->slot_count);
     for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++)

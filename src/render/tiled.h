@@ -1,5 +1,5 @@
-// Private to src/render: the painter of method oriel, who lists the best photographs of each tile
-// of the screen, so that a pixel's cost does not grow with their number.
+// Private to src/render: the painter of method oriel. It lists the best photographs of each tile of
+// the screen, so that the cost of a pixel does not grow with the number of photographs.
 #ifndef ORL_RENDER_TILED_H
 #define ORL_RENDER_TILED_H
 

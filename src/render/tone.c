@@ -17,7 +17,7 @@ const struct orl_tone_info orl_tones[ORL_TONE_COUNT] = {
     [ORL_TONE_MANTIUK] = {"mantiuk", "contrast by contrast, whole range of the picture", true},
 };
 
-// Light beyond this is this: the sun in a picture must not drive sums to infinity.
+// Upper bound of light, so that the sun in a picture does not drive sums to infinity.
 static const float light_max = 1e6f;
 
 // --- curves: linear light in and out, 1 is white ---
@@ -33,8 +33,8 @@ static void reinhard(float rgb[3], float white)
         rgb[c] *= scale;
 }
 
-// Narkowicz 2015, "ACES Filmic Tone Mapping Curve". The factor matches the exposure of
-// ACES, as he says.
+// Narkowicz 2015, "ACES Filmic Tone Mapping Curve". The factor is his match for the exposure of
+// ACES.
 static float filmic(float x)
 {
     x *= 0.6f;
@@ -50,13 +50,13 @@ static void apply_curve(const struct orl_tone_params *params, float rgb[3])
             rgb[c] = filmic(rgb[c]);
 }
 
-// NaN and negative values, of black or broken pixels, are 0.
+// Replaces NaN and negative values, which come from black or invalid pixels, by 0.
 static float clean(float value)
 {
     return value > 0 ? fminf(value, light_max) : 0;
 }
 
-// Light as the whole-picture operators give it, or as it was.
+// Applies a whole-picture operator; other curves leave the light unchanged.
 static enum orl_result map_picture(const struct orl_log *log, const struct orl_image *linear,
                                    enum orl_tone_curve curve, struct orl_image *mapped)
 {

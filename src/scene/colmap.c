@@ -189,3 +189,19 @@ const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_
             return &model->cameras[i];
     return NULL;
 }
+
+const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_model *model,
+                                                        const char *name)
+{
+    const struct orl_colmap_image key = {.name = (char *)name};
+    return model->image_count ? bsearch(&key, model->images, model->image_count,
+                                        sizeof *model->images, compare_images)
+                              : NULL;
+}
+
+struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,
+                                      const struct orl_colmap_image *image)
+{
+    return (struct orl_view){orl_colmap_camera_by_id(model, image->camera_id)->pinhole,
+                             image->cam_from_world};
+}

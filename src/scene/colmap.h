@@ -51,6 +51,13 @@ void orl_colmap_finish(struct orl_colmap_model *model);
 const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
                                                         uint32_t id);
 
+// NULL when there is none of that name.
+const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_model *model,
+                                                        const char *name);
+// Pose and pinhole camera of one of the model's images, without distortion.
+struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,
+                                      const struct orl_colmap_image *image);
+
 // Where a ray with x/z, y/z = ray meets the picture, in pixels, distortion included, as
 // COLMAP's model of this camera has it. The camera must come from orl_colmap_read.
 void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "scene/manifest.h"
 
 void orl_points_bounds(const struct orl_points *points, double low[3], double high[3])

@@ -1,110 +1,79 @@
 #include "scene/manifest.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
+#include "scene/tuned_settings.h"
 
-enum { JSON_MAX_BYTES = 64 << 20 };
-
-enum orl_result orl_json_read(const struct orl_log *log, const char *path, json_t **out)
+static enum orl_result read_split(const struct orl_json_place *place, const json_t *entry,
+                                  struct orl_photo *photo)
 {
-    *out = NULL;
-    uint8_t *data = NULL;
-    size_t size;
-    enum orl_result result = orl_file_read(log, path, JSON_MAX_BYTES, &data, &size);
-    if (result != ORL_OK)
-        return result;
-    json_error_t error;
-    *out = json_loadb((const char *)data, size, JSON_REJECT_DUPLICATES, &error);
-    free(data);
-    if (!*out)
-        return orl_fail(log, ORL_ERR_FORMAT, "%s: line %d (byte %d): %s", path, error.line,
-                        error.position, error.text);
-    if (json_is_object(*out))
-        return ORL_OK;
-    json_decref(*out);
-    *out = NULL;
-    return orl_fail(log, ORL_ERR_FORMAT, "%s: byte 0: not a JSON object", path);
-}
-
-enum orl_result orl_json_write(const struct orl_log *log, const char *path, const json_t *value)
-{
-    char *text = json_dumps(value, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
-    if (!text)
-        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its text", path);
-    enum orl_result result = orl_file_write(log, path, text, strlen(text));
-    free(text);
-    return result;
-}
-
-static enum orl_result bad(const struct orl_log *log, const char *path, const char *photo,
-                           const char *what)
-{
-    return orl_fail(log, ORL_ERR_FORMAT, "%s: photograph %s: %s", path, photo, what);
-}
-
-static enum orl_result read_split(const struct orl_log *log, const char *path,
-                                  const json_t *entry, struct orl_photo *photo)
-{
-    const char *split = json_string_value(json_object_get(entry, "split"));
+    const char *split = orl_json_text(entry, "split");
     if (!split || (strcmp(split, "train") != 0 && strcmp(split, "test") != 0))
-        return bad(log, path, photo->name, "\"split\" is neither \"train\" nor \"test\"");
+        return orl_json_refuse(place, "split", "\"train\" or \"test\"");
     photo->test = strcmp(split, "test") == 0;
     return ORL_OK;
 }
 
-static enum orl_result read_exposure(const struct orl_log *log, const char *path,
-                                     const json_t *entry, struct orl_photo *photo)
+static enum orl_result read_exposure(const struct orl_json_place *place, const json_t *entry,
+                                     struct orl_photo *photo)
 {
-    const json_t *ev = json_object_get(entry, "exposure_ev");
-    const json_t *series = json_object_get(entry, "series");
-    const json_t *gain = json_object_get(entry, "gain");
-    if (ev && !json_is_null(ev)) {
-        photo->exposure_ev = json_number_value(ev);
-        photo->has_exposure = true;
-        if (!json_is_number(ev) || !(fabs(photo->exposure_ev) <= 64))
-            return bad(log, path, photo->name, "\"exposure_ev\" is not a number within 64");
-    }
-    if (series) {
-        json_int_t number = json_integer_value(series);
-        if (!json_is_integer(series) || number < 0 || number > 65535)
-            return bad(log, path, photo->name, "\"series\" is not a number from 0");
-        photo->series = (int)number;
-    }
-    for (size_t i = 0; gain && i < 3; i++) {
-        double value = json_number_value(json_array_get(gain, i));
-        if (json_array_size(gain) != 3 || !(value > 0 && value < 1e6))
-            return bad(log, path, photo->name, "\"gain\" is not three positive numbers");
-        photo->gain[i] = (float)value;
-    }
+    double gain[3] = {1, 1, 1}, ev = NAN;
+    enum orl_result result;
+    if ((result = orl_json_number(place, entry, "exposure_ev", -64, 64, &ev)) != ORL_OK ||
+        (result = orl_json_integer(place, entry, "series", 0, 65535, &photo->series)) != ORL_OK ||
+        (result = orl_json_numbers(place, entry, "gain", 3, 1e-6, 1e6, gain)) != ORL_OK)
+        return result;
+    photo->has_exposure = !isnan(ev);
+    photo->exposure_ev = photo->has_exposure ? ev : 0;
+    for (int i = 0; i < 3; i++)
+        photo->gain[i] = (float)gain[i];
     return ORL_OK;
 }
 
-static enum orl_result read_optics(const struct orl_log *log, const char *path,
-                                   const json_t *entry, const struct orl_scene *scene,
-                                   struct orl_photo *photo)
+static enum orl_result read_optics(const struct orl_json_place *place, const json_t *entry,
+                                   const struct orl_scene *scene, struct orl_photo *photo)
 {
-    const json_t *vignette = json_object_get(entry, "vignette");
-    const json_t *response = json_object_get(entry, "response");
-    for (size_t i = 0; vignette && i < 3; i++) {
-        const json_t *value = json_array_get(vignette, i);
-        if (json_array_size(vignette) != 3 || !json_is_number(value) ||
-            !(fabs(json_number_value(value)) <= 16))
-            return bad(log, path, photo->name, "\"vignette\" is not three numbers within 16");
-        photo->vignette[i] = (float)json_number_value(value);
-    }
-    if (response && !json_is_null(response)) {
-        json_int_t number = json_integer_value(response);
-        if (!json_is_integer(response) || number < 0 ||
-            (size_t)number >= scene->response_count)
-            return bad(log, path, photo->name, "\"response\" is not one of \"responses\"");
-        photo->response = (int)number;
-    }
-    return ORL_OK;
+    double vignette[3] = {0};
+    enum orl_result result = orl_json_numbers(place, entry, "vignette", 3, -16, 16, vignette);
+    for (int i = 0; i < 3; i++)
+        photo->vignette[i] = (float)vignette[i];
+    if (result == ORL_OK && !scene->response_count &&
+        json_is_integer(json_object_get(entry, "response")))
+        return orl_json_refuse(place, "response", "one of \"responses\", which are none");
+    return result == ORL_OK ? orl_json_integer(place, entry, "response", 0,
+                                               (int)scene->response_count - 1, &photo->response)
+                            : result;
+}
+
+static enum orl_result read_mask(const struct orl_json_place *place, const json_t *entry,
+                                 const struct orl_scene *scene, struct orl_photo *photo)
+{
+    enum orl_result result = orl_json_bool(place, entry, "mask", &photo->masked);
+    if (result != ORL_OK || !photo->masked)
+        return result;
+    char *path = orl_scene_mask_path(place->log, scene, (size_t)(photo - scene->photos));
+    if (!path)
+        return ORL_ERR_MEMORY;
+    if (!orl_path_is_file(path))
+        result = orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: this mask is missing", path);
+    free(path);
+    return result;
+}
+
+static enum orl_result read_photo(const struct orl_json_place *place, const json_t *entry,
+                                  const struct orl_scene *scene, struct orl_photo *photo)
+{
+    enum orl_result result = read_split(place, entry, photo);
+    if (result == ORL_OK)
+        result = read_exposure(place, entry, photo);
+    if (result == ORL_OK)
+        result = read_optics(place, entry, scene, photo);
+    return result == ORL_OK ? read_mask(place, entry, scene, photo) : result;
 }
 
 static enum orl_result read_curve(const struct orl_log *log, const char *path,
@@ -145,12 +114,9 @@ static enum orl_result read_responses(const struct orl_log *log, const char *pat
     return result;
 }
 
-static struct orl_photo *find_photo(struct orl_scene *scene, const char *name)
+static int compare_photo(const void *name, const void *photo)
 {
-    for (size_t i = 0; name && i < scene->photo_count; i++)
-        if (strcmp(scene->photos[i].name, name) == 0)
-            return &scene->photos[i];
-    return NULL;
+    return strcmp(name, ((const struct orl_photo *)photo)->name);
 }
 
 static enum orl_result read_photos(const struct orl_log *log, const char *path,
@@ -167,19 +133,21 @@ static enum orl_result read_photos(const struct orl_log *log, const char *path,
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         const json_t *entry = json_array_get(list, i);
-        const char *name = json_string_value(json_object_get(entry, "name"));
-        struct orl_photo *photo = find_photo(scene, name);
+        const char *name = orl_json_text(entry, "name");
+        // They are sorted by name, as the sparse model is.
+        struct orl_photo *photo = !name ? NULL
+                                        : bsearch(name, scene->photos, scene->photo_count,
+                                                  sizeof *scene->photos, compare_photo);
         if (!photo || seen[photo - scene->photos]) {
-            result = bad(log, path, name ? name : "(without a name)",
-                         photo ? "listed twice" : "not in the sparse model");
+            result = orl_fail(log, ORL_ERR_FORMAT, "%s: photograph %s: %s", path,
+                              name ? name : "(without a name)",
+                              photo ? "listed twice" : "not in the sparse model");
             break;
         }
         seen[photo - scene->photos] = true;
-        result = read_split(log, path, entry, photo);
-        if (result == ORL_OK)
-            result = read_exposure(log, path, entry, photo);
-        if (result == ORL_OK)
-            result = read_optics(log, path, entry, scene, photo);
+        char what[512];
+        snprintf(what, sizeof what, "photograph %s", name);
+        result = read_photo(&(struct orl_json_place){log, path, what}, entry, scene, photo);
     }
     free(seen);
     return result;
@@ -195,12 +163,9 @@ static enum orl_result read_ground(const struct orl_log *log, const char *path,
     if (!told || json_is_null(told))
         return ORL_OK;
     double length2 = 0, height = json_number_value(json_object_get(told, "height"));
-    bool numbers = json_array_size(plane) == 4;
-    for (size_t k = 0; numbers && k < 4; k++) {
-        ground->plane[k] = json_number_value(json_array_get(plane, k));
-        numbers = json_is_number(json_array_get(plane, k)) && isfinite(ground->plane[k]);
-        length2 += k < 3 ? ground->plane[k] * ground->plane[k] : 0;
-    }
+    bool numbers = orl_json_read_numbers(plane, 4, ground->plane);
+    for (size_t k = 0; numbers && k < 3; k++)
+        length2 += ground->plane[k] * ground->plane[k];
     if (!numbers || fabs(length2 - 1) > 1e-6 || !(height > 0 && isfinite(height)))
         return orl_fail(log, ORL_ERR_FORMAT,
                         "%s: \"ground\" is not a plane, its normal of length 1, and a height above "
@@ -209,27 +174,44 @@ static enum orl_result read_ground(const struct orl_log *log, const char *path,
     return ORL_OK;
 }
 
-static enum orl_result check_points(const struct orl_log *log, const json_t *root,
-                                    const char *points_path)
+// Tells of each file of DIR that is not as the manifest `root` says, and counts it; of those in
+// `names` alone, which end with NULL, unless that is NULL.
+static enum orl_result check_files(const struct orl_log *log, const char *dir,
+                                   const json_t *root, const char *const *names,
+                                   enum orl_log_level level, size_t *bad)
 {
-    const char *expected =
-        json_string_value(json_object_get(json_object_get(root, "checksums"), "points.ply"));
-    if (!expected)
-        return ORL_OK;
-    uint64_t hash;
-    enum orl_result result = orl_file_hash(log, points_path, &hash);
-    if (result != ORL_OK)
-        return result;
-    char text[32];
-    snprintf(text, sizeof text, "xxh3:%016" PRIx64, hash);
-    if (strcmp(text, expected) != 0)
-        orl_logf(log, ORL_LOG_WARNING, "%s: changed since the scene was prepared", points_path);
+    const char *name;
+    json_t *value;
+    json_object_foreach(json_object_get(root, "checksums"), name, value) {
+        char sum[ORL_CHECKSUM_SIZE];
+        const char *told = json_string_value(value);
+        bool asked = !names;
+        for (size_t i = 0; names && names[i]; i++)
+            asked |= strcmp(names[i], name) == 0;
+        if (!asked || !told)
+            continue;
+        char *path = orl_path_join(log, dir, name);
+        if (!path)
+            return ORL_ERR_MEMORY;
+        bool read = orl_path_is_file(path) && orl_file_checksum(NULL, path, sum) == ORL_OK;
+        if (!read || strcmp(sum, told) != 0) {
+            orl_logf(log, level, "%s: %s", path,
+                     read ? "changed since the scene was prepared" : "missing or cannot be read");
+            ++*bad;
+        }
+        free(path);
+    }
     return ORL_OK;
 }
 
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
-                                  const char *points_path, struct orl_scene *scene)
+                                  struct orl_scene *scene)
 {
+    // Pictures take too long: oriel info --check reads them.
+    static const char *const read_on_opening[] = {"points.ply", "sparse/cameras.bin",
+                                                  "sparse/images.bin", "sparse/points3D.bin",
+                                                  NULL};
+    size_t changed = 0;
     json_t *root;
     enum orl_result result = orl_json_read(log, path, &root);
     if (result != ORL_OK)
@@ -247,12 +229,28 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
     if (result == ORL_OK)
         result = read_photos(log, path, root, scene);
     if (result == ORL_OK)
-        result = orl_manifest_read_tuned(log, path, root, scene);
+        result = orl_tuned_read(log, path, root, scene);
     if (result == ORL_OK)
         result = read_ground(log, path, root, &scene->ground);
     if (result == ORL_OK)
-        result = check_points(log, root, points_path);
+        result = check_files(log, scene->dir, root, read_on_opening, ORL_LOG_WARNING, &changed);
     json_decref(root);
+    return result;
+}
+
+enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, size_t *bad,
+                                   size_t *files)
+{
+    json_t *root = NULL;
+    *bad = *files = 0;
+    char *path = orl_path_join(log, dir, "scene.json");
+    enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        *files = json_object_size(json_object_get(root, "checksums"));
+        result = check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
+    }
+    json_decref(root);
+    free(path);
     return result;
 }
 

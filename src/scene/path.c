@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
@@ -46,25 +47,12 @@ void orl_path_finish(struct orl_path *path)
     memset(path, 0, sizeof *path);
 }
 
-static bool read_numbers(const json_t *array, double *out, size_t count)
-{
-    if (!json_is_array(array) || json_array_size(array) != count)
-        return false;
-    for (size_t i = 0; i < count; i++) {
-        const json_t *item = json_array_get(array, i);
-        out[i] = json_number_value(item);
-        if (!json_is_number(item) || !isfinite(out[i]))
-            return false;
-    }
-    return true;
-}
-
 static bool read_rows(const json_t *array, size_t rows, size_t columns, double *out)
 {
     if (!json_is_array(array) || json_array_size(array) != rows)
         return false;
     for (size_t i = 0; i < rows; i++)
-        if (!read_numbers(json_array_get(array, i), out + i * columns, columns))
+        if (!orl_json_read_numbers(json_array_get(array, i), columns, out + i * columns))
             return false;
     return true;
 }
@@ -178,9 +166,9 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             return false;
     } else {
         const json_t *up_json = json_object_get(key, "up");
-        if (!read_numbers(json_object_get(key, "position"), eye, 3) ||
-            !read_numbers(json_object_get(key, "target"), target, 3) ||
-            (up_json && !read_numbers(up_json, up, 3)))
+        if (!orl_json_read_numbers(json_object_get(key, "position"), 3, eye) ||
+            !orl_json_read_numbers(json_object_get(key, "target"), 3, target) ||
+            (up_json && !orl_json_read_numbers(up_json, 3, up)))
             return false;
         view->cam_from_world = orl_pose_look_at(eye, target, up);
     }
@@ -228,7 +216,7 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
 {
     double m[16], axes[3][3], centre[3];
     double fov = json_number_value(json_object_get(entry, "fov"));
-    if (!read_numbers(json_object_get(entry, "camera_to_world"), m, 16) ||
+    if (!orl_json_read_numbers(json_object_get(entry, "camera_to_world"), 16, m) ||
         !(fov > 0.1 && fov < 170))
         return false;
     for (int i = 0; i < 3; i++) {
@@ -254,7 +242,7 @@ static bool read_inria_view(const json_t *entry, struct orl_view *view)
         .fx = json_number_value(json_object_get(entry, "fx")),
         .fy = json_number_value(json_object_get(entry, "fy"))};
     return read_rows(json_object_get(entry, "rotation"), 3, 3, &axes[0][0]) &&
-           read_numbers(json_object_get(entry, "position"), centre, 3) &&
+           orl_json_read_numbers(json_object_get(entry, "position"), 3, centre) &&
            orl_camera_valid(&view->camera) &&
            pose_from_world_axes(axes, centre, &view->cam_from_world);
 }
@@ -374,11 +362,9 @@ enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene 
             result = read_colmap_text(log, scene, file, (const char *)text,
                                       (const char *)cameras, path);
     } else {
-        json_error_t error;
-        root = json_loadb((const char *)text, size, 0, &error);
-        result = root ? read_json(log, scene, file, root, path)
-                      : orl_fail(log, ORL_ERR_FORMAT, "%s: byte %d: %s", file, error.position,
-                                 error.text);
+        result = orl_json_parse(log, file, text, size, &root);
+        if (result == ORL_OK)
+            result = read_json(log, scene, file, root, path);
     }
     if (result != ORL_OK)
         orl_path_finish(path);

@@ -7,9 +7,9 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/colmap.h"
-#include "scene/ground.h"
+#include "scene/ground_plane.h"
 #include "scene/manifest.h"
-#include "scene/radii.h"
+#include "scene/point_radii.h"
 
 static enum orl_result set_photo(const struct orl_log *log, const char *dir,
                                  const struct orl_colmap_model *model,
@@ -235,6 +235,18 @@ static enum orl_result look(const struct orl_log *log, const char *dir, struct f
     return result;
 }
 
+// With the photographs and their splits known.
+static enum orl_result add_points(const struct orl_log *log, struct orl_scene *scene,
+                                  const struct orl_colmap_model *model, const char *path)
+{
+    enum orl_result result = read_points(log, scene, path);
+    if (result == ORL_OK)
+        result = set_photo_distance(log, scene, model);
+    if (result == ORL_OK && !scene->ground.known)
+        result = orl_ground_find(log, scene, &scene->ground);
+    return result;
+}
+
 static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
                             struct orl_colmap_model *model, const struct folder *folder)
 {
@@ -243,36 +255,52 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
         (result = set_photos(log, scene, model)) != ORL_OK)
         return result;
     if (folder->manifest &&
-        (result = orl_manifest_read(log, folder->manifest, folder->points, scene)) != ORL_OK)
+        (result = orl_manifest_read(log, folder->manifest, scene)) != ORL_OK)
         return result;
-    result = read_points(log, scene, folder->manifest ? folder->points : folder->fused);
-    if (result == ORL_OK)
-        result = set_photo_distance(log, scene, model);
-    if (result == ORL_OK && !scene->ground.known)
-        result = orl_ground_find(log, scene, &scene->ground);
-    return result;
+    return add_points(log, scene, model, folder->manifest ? folder->points : folder->fused);
+}
+
+static enum orl_result create(const struct orl_log *log, const char *dir, struct orl_scene **out)
+{
+    *out = orl_array(log, 1, sizeof **out);
+    if (*out)
+        (*out)->dir = orl_strdup(log, dir);
+    return *out && (*out)->dir ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 enum orl_result orl_scene_open(const struct orl_log *log, const char *dir, struct orl_scene **out)
 {
-    *out = NULL;
     struct folder folder = {0};
     struct orl_colmap_model model = {0};
-    struct orl_scene *scene = orl_array(log, 1, sizeof *scene);
-    if (!scene)
-        return ORL_ERR_MEMORY;
-    scene->dir = orl_strdup(log, dir);
-    enum orl_result result = scene->dir ? look(log, dir, &folder) : ORL_ERR_MEMORY;
+    enum orl_result result = create(log, dir, out);
     if (result == ORL_OK)
-        result = fill(log, scene, &model, &folder);
+        result = look(log, dir, &folder);
+    if (result == ORL_OK)
+        result = fill(log, *out, &model, &folder);
     orl_colmap_finish(&model);
     free(folder.manifest);
     free(folder.points);
     free(folder.fused);
+    if (result != ORL_OK)
+        orl_scene_destroy(out);
+    return result;
+}
+
+enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char *dir,
+                                          const struct orl_colmap_model *model,
+                                          const struct orl_names *test, struct orl_scene **out)
+{
+    char *points = orl_path_join(log, dir, "points.ply");
+    enum orl_result result = create(log, dir, out);
     if (result == ORL_OK)
-        *out = scene;
-    else
-        orl_scene_destroy(&scene);
+        result = points ? set_photos(log, *out, model) : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < (*out)->photo_count; i++)
+        (*out)->photos[i].test = test && orl_names_contain(test, (*out)->photos[i].name);
+    if (result == ORL_OK)
+        result = add_points(log, *out, model, points);
+    free(points);
+    if (result != ORL_OK)
+        orl_scene_destroy(out);
     return result;
 }
 
@@ -318,4 +346,9 @@ char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *sc
 char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
 {
     return orl_format(log, "%s/images_linear/%s.exr", scene->dir, scene->photos[photo].name);
+}
+
+char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+{
+    return orl_format(log, "%s/masks/%s.png", scene->dir, scene->photos[photo].name);
 }

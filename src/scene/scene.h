@@ -5,11 +5,15 @@
 #include "scene/camera.h"
 #include "scene/points.h"
 
+struct orl_colmap_model;
+struct orl_names;
+
 struct orl_photo {
     char *name;           // owned; file SCENE/images/<name>
     struct orl_view view; // size and intrinsics as of the undistorted file
     bool test;            // held out: calibration only
     bool linear;          // there is a linear version too: orl_scene_read_linear
+    bool masked;          // there is a mask: orl_scene_mask_path
     double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
@@ -56,6 +60,13 @@ struct orl_scene {
 // finished is refused with ORL_ERR_DATA, naming the missing stage.
 enum orl_result orl_scene_open(const struct orl_log *log, const char *dir,
                                struct orl_scene **out) ORL_CHECK_RESULT;
+// The same of a folder that is being prepared, from its sparse model and points.ply: nothing
+// is known of exposures, photographs named in `test` (NULL: none) are held out, and the ground
+// is that which points tell of.
+enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char *dir,
+                                          const struct orl_colmap_model *model,
+                                          const struct orl_names *test,
+                                          struct orl_scene **out) ORL_CHECK_RESULT;
 void orl_scene_destroy(struct orl_scene **scene);
 // Index of the photograph of this name (with or without extension), -1 if none.
 int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
@@ -65,5 +76,8 @@ char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *sc
 // "SCENE/images_linear/<name>.exr", there or not.
 char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene,
                             size_t photo);
+// "SCENE/masks/<name>.png": as large as the photograph, 0 where it does not show the subject.
+// There when photo->masked.
+char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
 
 #endif

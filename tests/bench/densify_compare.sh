@@ -2,7 +2,7 @@
 # oriel densify beside whatever other densifier is installed, on the same photographs with
 # the same cameras: COLMAP's (with CUDA) and OpenMVS's.
 #     tests/bench/densify_compare.sh ORIEL SCENE OUT [TRUTH]
-# SCENE is a scene of oriel prepare, which is only read; workspaces, logs and clouds go to
+# SCENE is a scene of oriel prepare --keep all, which is only read; workspaces, logs and clouds go to
 # OUT. TRUTH is what oriel synth wrote, when SCENE was made of its photographs; then
 # CLOUD_TRUTH names the program tests/cloud_truth of the build.
 # Depth maps are fused alike (COLMAP, three photographs agreeing); OpenMVS fuses its own.

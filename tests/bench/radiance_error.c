@@ -10,12 +10,12 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "datasets/synth.h"
 #include "eval/truth.h"
 #include "hdr/hdr.h"
 #include "io/picture.h"
-#include "scene/manifest.h"
 
 enum { EDGE_PX = 2 };
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Does radiance from three series cost accuracy on real photographs? Takes a prepared scene
 # with held-out photographs (or photographs, which it prepares), re-exposes its training
-# photographs by -2, 0 and +2 EV in turn (tests/bench/reexpose.c), and compares the held-out
+# photographs by -2, 0 and +2 EV in turn (tests/bench/reexpose_photos.c), and compares the held-out
 # photographs, left as they were, with renderings of the single-exposure scene and of
 # radiance brought back to their exposure.
 # usage: reexpose.sh ORIEL REEXPOSE SCENE|PHOTOS WORK_DIR [METHOD]
-#   REEXPOSE: the program bench_reexpose of a build
+#   REEXPOSE: the program bench_reexpose_photos of a build
 set -eu
 oriel=$1 reexpose=$2 from=$3 work=$4 method=${5:-oriel}
 noise=0.005

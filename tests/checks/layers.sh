@@ -1,29 +1,55 @@
 #!/bin/sh
 # Every module includes only headers of itself and of the modules it declares in USES.
+# A module is a folder of src/ or of the root, or a folder below another module; a file
+# belongs to the deepest module that holds it, and so does a header.
 # "shared/" is shaders/shared, which C shares with GLSL.
 # usage: layers.sh SOURCE_DIR TABLE; lines of TABLE are "module: used used ..."
 set -eu
 source=$1
 table=$2
-bad=0
-count=0
-while IFS=: read -r module uses; do
-    dir=$source/src/$module
-    [ -d "$dir" ] || dir=$source/$module
-    # Sub-folders are part of their module.
-    includes=$(find "$dir" -name '*.[ch]' -o -name '*.cpp' | sort |
-               xargs grep -nE '^ *# *include "[a-z]+/' /dev/null || true)
-    for other in $(echo "$includes" | sed -n 's|.*# *include "\([a-z]*\)/.*|\1|p' | sort -u); do
-        count=$((count + 1))
-        case " $module $uses shared " in
-        *" $other "*) ;;
-        *)
-            echo "$module includes headers of $other, which its USES does not name:"
-            echo "$includes" | grep "include \"$other/" || true
-            bad=1
-            ;;
-        esac
-    done
-done < "$table"
-[ "$count" -gt 10 ] || { echo "found no includes to check below $source"; exit 1; }
-exit $bad
+cd "$source"
+# The uses must not run in a circle.
+awk -F: '{ n = split($2, used, " "); for (i = 1; i <= n; i++) print $1, used[i] }' "$table" |
+    tsort >/dev/null || { echo "modules use one another in a circle"; exit 1; }
+folders=$(sed 's/:.*//' "$table" | while read -r module; do
+    if [ -d "src/$module" ]; then echo "src/$module"; else echo "$module"; fi
+done)
+# shellcheck disable=SC2086
+find $folders -name '*.[ch]' -o -name '*.cpp' | sort -u |
+    xargs grep -nE '^ *# *include "[a-z_]+/' /dev/null | awk -v table="$table" '
+    function module_of(path, name) {
+        for (name = path; sub("/[^/]*$", "", name);)
+            if (name in uses)
+                return name
+        return path ~ /^shared\// ? "shared" : ""
+    }
+    BEGIN {
+        while ((getline line < table) > 0) {
+            name = line
+            sub(":.*", "", name)
+            sub("^[^:]*: *", "", line)
+            uses[name] = " " name " " line " shared "
+        }
+    }
+    {
+        file = $0
+        sub(":.*", "", file)
+        sub("^src/", "", file)
+        header = $0
+        sub(".*# *include \"", "", header)
+        sub("\".*", "", header)
+        from = module_of(file)
+        to = module_of(header)
+        count++
+        if (to == "" || index(uses[from], " " to " ") == 0) {
+            print from " may not include headers of " (to == "" ? "no module" : to) ": " $0
+            bad = 1
+        }
+    }
+    END {
+        if (count <= 10) {
+            print "found no includes to check"
+            bad = 1
+        }
+        exit bad
+    }'

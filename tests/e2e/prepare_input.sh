@@ -75,4 +75,27 @@ prints "8 given, 5 used, 5 registered (4 train, 1 held out)"
 run 0 info "$work/s"
 prints "left out     $work/p/cut.png"
 
+# What is no file, one file under two names, and a name that later names would not fit: said at
+# once, not after calibration; nothing is waited for.
+photos "$work/odd" a.png b.png c.png
+long=$(printf 'x%.0s' {1..210}).png
+photos "$work/odd" "$long"
+mkfifo "$work/odd/pipe.jpg"
+ln "$work/odd/a.png" "$work/odd/hard.png"
+ln -s b.png "$work/odd/soft.png"
+cp "$work/odd/c.png" "$work/odd/copy.png"
+timeout 60 "$oriel" prepare "$work/odd" --out "$work/o" >"$work/out" 2>"$work/err" ||
+    fail "odd files stop prepare: $?"
+says "pipe.jpg: not a regular file"
+says "its name is longer than 200 bytes"
+says "hard.png: the same file as a.png"
+says "soft.png: the same file as b.png"
+says "copy.png: the same file as c.png"
+prints "8 given, 3 used, 3 registered"
+mkfifo "$work/list"
+timeout 60 "$oriel" prepare "$work/p" --out "$work/f" --exposures "$work/list" \
+    >"$work/out" 2>"$work/err"
+[ $? = 124 ] && fail "a FIFO for a list is waited for"
+says "$work/list: not a regular file"
+
 finish

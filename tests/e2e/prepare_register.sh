@@ -17,6 +17,7 @@ for name in 0 1 2; do
 iVBORw0KGgoAAAANSUhEUgAAAGAAAABQCAAAAADDiS9JAAAAN0lEQVR42u3NMQ0AAAwDoOqsfyFV
 sWMJGCA9FoFAIBAIBAKBQCAQCAQCgUAgEAgEAoFAIBB8DAZcnYyXbTp6ngAAAABJRU5ErkJggg==
 PNG
+    echo "$name" >>"$work/grey/$name.png" # not the same file
 done
 DOUBLE_NO_MODEL=1 run 2 prepare "$work/grey" --out "$work/none"
 says "only 0 of 3 photographs could be placed"
@@ -46,11 +47,20 @@ grep -q " 0$" "$work/bent/.oriel/calibrate/model/cameras.txt" || fail "the bent 
 photos "$work/m" 0.png 1.png.png
 run 0 prepare "$work/p" --out "$work/masked" --masks "$work/m"
 says "3 of 5 photographs have no mask"
-[ "$(ls "$work/masked/.oriel/masks" | tr '\n' ' ')" = "0.png.png 1.png.png " ] ||
-    fail "masks are $(ls "$work/masked/.oriel/masks")"
+[ "$(ls "$work/masked/masks" | tr '\n' ' ')" = "0.png.png 1.png.png " ] ||
+    fail "masks are $(ls "$work/masked/masks")"
+[ "$(grep -c '"mask": true' "$work/masked/scene.json")" = 2 ] || fail "scene.json lists other masks"
 for option in ImageReader StereoFusion; do
     grep -q -e "--$option.mask_path" "$work/masked/logs/colmap.log" || fail "no mask for $option"
 done
+
+# A scene whose mask is missing does not open; without masks the folder goes.
+cp -r "$work/masked" "$work/lacking"
+rm "$work/lacking/masks/1.png.png"
+run 2 info "$work/lacking"
+says "masks/1.png.png: this mask is missing"
+run 0 prepare "$work/p" --out "$work/masked" --resume
+[ -e "$work/masked/masks" ] && fail "masks of another job were kept"
 
 # A full disk, played by a limit on the size of files that no cloud fits into.
 (

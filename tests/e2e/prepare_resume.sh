@@ -11,7 +11,7 @@ all="$all stereo_fusion"
 prepare() {
     local expected=$1
     shift
-    run "$expected" prepare "$work/p" --out "$scene" --test-list 1,3.png "$@"
+    run "$expected" prepare "$work/p" --out "$scene" --test-list 1,3.png --keep all "$@"
 }
 
 # Without COLMAP: one clear sentence, and the photographs' check is kept.
@@ -46,10 +46,12 @@ sum=$(md5sum <"$scene/points.ply")
 : >"$work/trace"
 prepare 0 --resume
 [ -s "$work/trace" ] && fail "a whole scene was worked on"
-# The ground is looked for once a scene, and kept as it is.
+# The ground is looked for once a scene, and kept as the stage left it.
 grep -q '"ground": null' "$scene/scene.json" || fail "scene.json does not tell of the ground"
-sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' "$scene/scene.json"
+sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' \
+    "$scene/.oriel/stages.json"
 prepare 0 --resume
+says "ground: done already"
 grep -q '"height": 1.25' "$scene/scene.json" || fail "the ground of a whole scene was not kept"
 run 0 info "$scene"
 prints "ground       1.25 below the photographs"
@@ -64,24 +66,104 @@ grep -q '1\.png\|3\.png' "$scene/stereo/patch-match.cfg" && fail "a held-out pho
 
 # Other held-out photographs: calibration stays, stereo does not.
 : >"$work/trace"
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 [ "$(grep -v help "$work/trace" | uniq | tr '\n' ' ')" = "patch_match_stereo stereo_fusion " ] ||
     fail "other hold-outs redo $(tr '\n' ' ' <"$work/trace")"
 prints "4 train, 1 held out"
 grep -q '"height": 1.25' "$scene/scene.json" && fail "the ground of other hold-outs was kept"
-# Depth maps may be deleted once they are fused.
-rm -r "$scene/stereo"
+# Depth maps go once they are fused, unless all is to be kept, and are not made again for that.
 : >"$work/trace"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+[ -d "$scene/stereo" ] || fail "--keep all keeps no depth maps"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+[ -e "$scene/stereo" ] && fail "depth maps are kept by default"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+run 0 info "$scene" --check
 [ -s "$work/trace" ] && fail "deleted depth maps were made again"
+# Where they are asked for, or needed, they are.
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+grep -q patch_match_stereo "$work/trace" || fail "--keep all made no depth maps"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep minimal
+: >"$work/trace"
+rm "$scene/.oriel/fused.ply"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+[ "$(grep -v help "$work/trace" | uniq | tr '\n' ' ')" = "patch_match_stereo stereo_fusion " ] ||
+    fail "a lost cloud without depth maps redoes $(tr '\n' ' ' <"$work/trace")"
+run 2 prepare "$work/p" --out "$scene" --resume --keep some
+says "must be one of minimal, all"
 # A lost result is made again.
 rm "$scene/points.ply"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 [ -f "$scene/points.ply" ] || fail "points.ply was not made again"
+# Whatever is lost or damaged is noticed, on opening or by --check, and made again: the stage
+# that left it, and no other.
+run 0 info "$scene" --check
+prints "all as they were made"
+damage() { # FILE STAGE COMMANDS...: what a resume runs of COLMAP
+    local file=$1 stage=$2
+    shift 2
+    run 2 info "$scene" --check
+    says "$scene/$file: "
+    : >"$work/trace"
+    run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+    says "$scene/$file: "
+    says "$stage is done again"
+    [ "$(grep -v help "$work/trace" | uniq | tr '\n' ' ')" = "$*" ] ||
+        fail "$file: redone: $(tr '\n' ' ' <"$work/trace")"
+    [ "$(md5sum <"$scene/points.ply")" = "$sum" ] || fail "$file: points.ply is another"
+    run 0 info "$scene" --check
+}
+sum=$(md5sum <"$scene/points.ply")
+rm "$scene/images/2.png"
+damage images/2.png undistort "image_undistorter "
+printf x | dd of="$scene/images/1.png" bs=1 seek=100 conv=notrunc status=none
+damage images/1.png undistort "image_undistorter "
+echo "# a comment" >>"$scene/sparse/images.txt"
+damage sparse/images.txt undistort "image_undistorter "
+rm -r "$scene/sparse"
+damage sparse/cameras.txt undistort "image_undistorter "
+truncate -s -20 "$scene/points.ply"
+run 2 info "$scene"
+damage points.ply radii ""
+printf '\1' | dd of="$scene/points.ply" bs=1 seek=600 conv=notrunc status=none
+run 0 info "$scene"
+says "points.ply: changed since the scene was prepared"
+damage points.ply radii ""
+
+# One that does not come out the same, here since the stereo found other points, takes what was
+# made from it along.
+DOUBLE_SHIFT=1 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+rm "$scene/.oriel/fused.ply"
+DOUBLE_SHIFT=2 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+says "fuse is done again"
+says "densify: done already"
+grep -q "radii: done already" "$work/err" && fail "points of another cloud were kept"
+[ "$(md5sum <"$scene/points.ply")" = "$sum" ] && fail "points.ply is that of another cloud"
+run 0 info "$scene" --check
+
+# Damaged records: what they tell is not believed, and the scene can be had again.
+for damaged in '' '{"version": 1}' '{"version": 1, "done": []}' '{"version": 1, "done": 7' '[]'; do
+    echo "$damaged" >"$scene/.oriel/stages.json"
+    run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+    says "stages.json: damaged"
+    run 0 info "$scene" --check
+done
+for edit in 's/"photographs": \[/"photographs": [1, /' 's/"name": "2.png"/"nme": "2.png"/' \
+    's/"key"/"kex"/' 's/"ground": null/"grund": null/' 's/"left_out"/"left_in"/' \
+    's/"files": {/"fills": {/'; do
+    sed -i "$edit" "$scene/.oriel/stages.json"
+    run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+    run 0 info "$scene" --check
+done
+echo '{"version' >"$scene/scene.json"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+says "scene.json: cannot be read; written anew"
+run 0 info "$scene"
+
 # A changed photograph changes all.
 printf '\0' >>"$work/p/2.png"
 : >"$work/trace"
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 says "have changed"
 [ "$(grep -v help "$work/trace" | uniq | wc -l)" = 6 ] || fail "a changed photograph was not noticed"
 

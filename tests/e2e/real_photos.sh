@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 
 "$oriel" prepare "$photos" --out scene --max-size 384 --quality draft \
-    --test-list 0002.jpg,0005.jpg
+    --test-list 0002.jpg,0005.jpg --keep all
 "$oriel" info scene | tee info.txt
 grep -q '8 registered (6 train, 2 held out)' info.txt
 # Held-out photographs have no stereo maps.

@@ -55,7 +55,7 @@ refuses 2 'WxH' "$oriel" render ws --at 0001 --out out.png --size 0x9
 refuses 2 'folder or an .mp4' "$oriel" render ws --path photos --frames 2 --out out.png
 refuses 2 'missing.json' "$oriel" render ws --camera missing.json --out out.png
 echo '{"keyframes": [{"photo": "0001"}, {"photo": ' >cut.json
-refuses 2 'cut.json: byte' "$oriel" render ws --path cut.json --out out.dir
+refuses 2 'cut.json: line' "$oriel" render ws --path cut.json --out out.dir
 echo '[{"width": 10, "height": 10, "fx": -1, "fy": 5, "position": [0,0,0], "rotation": [[1,0,0],[0,1,0],[0,0,1]]}]' >bad.json
 refuses 2 'camera 0 is not usable' "$oriel" render ws --camera bad.json --out out.png
 refuses 2 'not-there' "$oriel" render not-there --at 0001 --out out.png

@@ -5,8 +5,9 @@
 
 #include "gpu_test.h"
 
+#include "core/lock.h"
 #include "io/picture.h"
-#include "preprocess/densify.h"
+#include "preprocess/densify/densify.h"
 #include "scene/colmap.h"
 
 enum { VIEWS_MAX = 4, GRID = 6 };
@@ -388,6 +389,37 @@ static void test_other_settings_make_maps_again(void **state)
     test_dir_remove(fresh);
 }
 
+// Maps are written below the workspace, by one densify at a time.
+static void test_links_and_locks(void **state)
+{
+    (void)state;
+    struct plane_scene scene = make_scene(40, 32, 0, 0);
+    static const char *const folders[] = {"stereo", "stereo/depth_maps",
+                                          "stereo/confidence_maps"};
+    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
+        char *dir = make_workspace(&scene), *other = test_dir_make(), path[4096];
+        struct orl_names found;
+        snprintf(path, sizeof path, "%s/stereo", dir);
+        assert_int_equal(i ? orl_dir_make(NULL, path) : ORL_OK, ORL_OK);
+        snprintf(path, sizeof path, "%s/%s", dir, folders[i]);
+        assert_int_equal(symlink(other, path), 0);
+        assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_ARGUMENT);
+        assert_int_equal(orl_dir_list(NULL, other, &found), ORL_OK);
+        assert_int_equal(found.count, 0);
+        orl_names_finish(&found);
+        test_dir_remove(dir);
+        test_dir_remove(other);
+    }
+    char *dir = make_workspace(&scene);
+    int fd = -1;
+    bool taken;
+    assert_int_equal(orl_lock(NULL, dir, &fd, &taken), ORL_OK);
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_ARGUMENT);
+    orl_unlock(&fd);
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_OK);
+    test_dir_remove(dir);
+}
+
 // COLMAP's own maps took hours: neither taken for ours nor removed.
 static void test_maps_of_others_stay(void **state)
 {
@@ -556,6 +588,7 @@ int main(void)
         cmocka_unit_test(test_held_out_is_never_read),
         cmocka_unit_test(test_resume_keeps_finished_maps),
         cmocka_unit_test(test_other_settings_make_maps_again),
+        cmocka_unit_test(test_links_and_locks),
         cmocka_unit_test(test_maps_of_others_stay),
         cmocka_unit_test(test_masks),
         cmocka_unit_test(test_lonely_photographs),

@@ -8,7 +8,7 @@
 
 #include "datasets/synth.h"
 #include "io/picture.h"
-#include "preprocess/densify.h"
+#include "preprocess/densify/densify.h"
 #include "scene/colmap.h"
 
 enum {

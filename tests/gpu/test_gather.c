@@ -71,6 +71,7 @@ static void occluded_photographs_are_rejected(void **state)
     add_photo(&f, look_from(-0.4, 0, 0, SIDE, 40), red);
     add_photo(&f, look_from(1.2, 0, 0, SIDE, 40), green);
     struct orl_render_params params = airieau();
+    params.distance_floor = 0.03f; // so that both photographs have a part in what both see
     struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     // From x = 1.2 the plate (0.7, z 2) hides the wall around x = 0.2: pixel 24 + 10 * 0.2.
     const float *hidden = color_at(&frame, 26, 24), *open = color_at(&frame, 18, 24);

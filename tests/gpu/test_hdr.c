@@ -108,6 +108,7 @@ static struct orl_hdr_params params_of(enum orl_hdr_merge merge, const char *met
     params.merge = merge;
     params.render = orl_method_find(NULL, method)->params;
     params.render.border_px = 0;
+    params.render.distance_floor = 0.03f; // so that no photograph outvotes all others by its place
     return params;
 }
 

@@ -3,9 +3,10 @@
 #include <math.h>
 
 #include "core/color.h"
-#include "preprocess/align.h"
-#include "preprocess/expose.h"
-#include "preprocess/response.h"
+#include "preprocess/expose/align.h"
+#include "preprocess/expose/gain_guess.h"
+#include "preprocess/job/exposure_list.h"
+#include "preprocess/expose/response.h"
 #include "test.h"
 
 enum { PHOTOS = 6, POINTS = 3000, SEEN = 4 };
@@ -330,7 +331,7 @@ static void lists_are_read(void **state)
     (void)state;
     char *dir, *path;
     assert_int_equal(test_file_make("list.csv", &dir, &path), 0);
-    const char text[] = "name,time,aperture,iso\na.jpg, 1/250, f/8, 100\r\n\nb,0.5,8,100\n";
+    const char text[] = "\xEF\xBB\xBFname,time,aperture,iso\na.jpg, 1/250, f/8, 100\r\n\nb,0.5,8,100\n";
     struct orl_exposure_list list;
     assert_int_equal(orl_file_write(NULL, path, text, sizeof text - 1), ORL_OK);
     assert_int_equal(orl_exposure_list_read(NULL, path, &list), ORL_OK);
@@ -341,6 +342,12 @@ static void lists_are_read(void **state)
     assert_float_equal(a->ev, log2(1.0 / 250 / 64), 1e-9);
     assert_float_equal(b->ev - a->ev, log2(125), 1e-9);
     orl_exposure_list_finish(&list);
+    const char marked[] = "\xEF\xBB\xBF" "a.jpg,1\nb.jpg,2\n";
+    assert_int_equal(orl_file_write(NULL, path, marked, sizeof marked - 1), ORL_OK);
+    assert_int_equal(orl_exposure_list_read(NULL, path, &list), ORL_OK);
+    assert_int_equal(list.count, 2);
+    assert_non_null(orl_exposure_list_find(&list, "a.jpg"));
+    orl_exposure_list_finish(&list);
     static const struct {
         const char *text, *why;
     } bad[] = {{"a.jpg,1,2\n", "line 1"},
@@ -348,6 +355,8 @@ static void lists_are_read(void **state)
                {"a.jpg,1\nb.jpg,1/0\n", "line 2"},
                {"a.jpg,-1,8,100\n", "line 1"},
                {"a.jpg,3\nb.jpg,1,8,100\n", "another kind"},
+               {"a.jpg,l/250,f/8,100\nb.jpg,1,8,100\n", "line 1"}, // a typo is no title
+               {"a.jpg,one\nb.jpg,1\n", "line 1"},
                {"name,ev\n", "no exposure"}};
     for (size_t i = 0; i < ORL_COUNT(bad); i++) {
         struct said said;

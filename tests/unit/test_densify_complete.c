@@ -4,7 +4,7 @@
 
 #include "test.h"
 
-#include "preprocess/densify_internal.h"
+#include "preprocess/densify/densify_internal.h"
 
 enum { WIDTH = 96, HEIGHT = 64, LEFT = 42, RIGHT = 50, TOP = 28, BOTTOM = 36, WALL = 120 };
 

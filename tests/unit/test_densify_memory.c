@@ -1,7 +1,7 @@
 // What the densifier gives up when the device's memory is short.
 #include "test.h"
 
-#include "preprocess/densify_internal.h"
+#include "preprocess/densify/densify_internal.h"
 
 static const uint64_t MIB = (uint64_t)1 << 20;
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/ground.h"
+#include "scene/ground_plane.h"
 #include "test.h"
 
 enum { PHOTOS = 9, GROUND = 150, FACADE = 3000 };

@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "io/picture.h"
-#include "preprocess/ground.h"
+#include "preprocess/cloud/ground.h"
 #include "scene/colmap.h"
 #include "test.h"
 

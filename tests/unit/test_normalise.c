@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "core/color.h"
-#include "preprocess/job.h"
+#include "preprocess/photos/normalise.h"
 #include "test.h"
 
 enum { SIDE = 64, COUNT = 4 };

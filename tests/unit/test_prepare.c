@@ -4,8 +4,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "preprocess/expose.h"
-#include "preprocess/job.h"
+#include "preprocess/expose/expose.h"
+#include "preprocess/job/colmap_run.h"
+#include "preprocess/photos/advice.h"
+#include "preprocess/photos/collect.h"
 #include "preprocess/prepare.h"
 #include "test.h"
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/radii.h"
+#include "scene/point_radii.h"
 #include "test.h"
 
 static double random_unit(uint32_t *state)

@@ -6,7 +6,7 @@
 #include "core/image.h"
 #include "io/picture.h"
 #include "opencv_response.h"
-#include "preprocess/response.h"
+#include "preprocess/expose/response.h"
 #include "test.h"
 
 enum {

@@ -5,7 +5,7 @@
 
 #include "core/process.h"
 #include "io/picture.h"
-#include "io/undistort.h"
+#include "io/remap.h"
 
 static char *dir;
 

@@ -1,7 +1,8 @@
-// The weighted mean of all samples. Streams: sums go on where the last turn left them.
+// The weighted mean of all samples. When the photographs come in several turns, each turn adds to
+// the sums of the one before.
 #include "gather/each.glsl"
 
-// Among all photographs no border shows.
+// A wide soft border is unnecessary: among all photographs the border of one does not show.
 const bool SOFT_BORDER = false;
 
 vec4 sum;

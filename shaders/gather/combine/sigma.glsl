@@ -1,16 +1,16 @@
-// The weighted mean of the samples that are no outliers by the standard deviation test: Orzan 2005,
-// 4.3.1. A sample is one if it lies farther than opt.sigma standard deviations from the mean in any
-// channel of the photographs' own encoding, and at least three photographs see the point. Where no
-// sample is left the pixel stays unpainted. Two sweeps: the first takes the mean and the deviation.
+// The weighted mean of the inliers of the standard deviation test: Orzan 2005, 4.3.1. With at least
+// three samples, an outlier lies farther than opt.sigma standard deviations from the mean in any
+// channel of the photographs' own encoding. A pixel without inliers stays unpainted. Two sweeps:
+// the first computes the mean and the standard deviation, the second adds the inliers.
 #include "gather/each.glsl"
 #include "shared/srgb.glsl"
 
 const bool SOFT_BORDER = false;
 const float LEAST_SAMPLES = 3.0;
-// Far less than a step of 8 bits: rounding is no outlier where all samples are alike.
+// Tolerance for rounding where all samples are alike; much less than a step of 8 bits.
 const float ROUNDING = 1e-4;
 
-vec4 sum; // of values, and their number; then of colour * weight, and weight
+vec4 sum; // sweep 0: values, their number; sweep 1: colour * weight, weight
 
 #if SWEEP == 0
 

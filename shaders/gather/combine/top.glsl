@@ -1,16 +1,17 @@
-// The four samples of greatest weight, each weighing 1 - w5 / w, w5 being the fifth's weight: a
-// photograph that another replaces has faded out by then (Buehler 2001, 4.2). Two sweeps: the first
-// finds the five greatest weights of a pixel, the second adds the samples.
+// The mean of the four samples of greatest weight, each with weight 1 - w5 / w, where w5 is the
+// fifth greatest weight. A photograph has faded out when another replaces it (Buehler 2001, 4.2).
+// Two sweeps: the first finds the five greatest weights of a pixel, the second adds the samples.
 #include "gather/each.glsl"
 
 const bool SOFT_BORDER = false;
 const int KEPT = 5;
-// Of full weight: samples that tie for the fifth place paint where there are no others.
+// Minimum weight relative to full weight, so that samples that tie for the fifth place still paint
+// when there are no others.
 const float TRACE = 1e-5;
 
 #if SWEEP == 0
 
-float best[KEPT]; // descending
+float best[KEPT]; // in descending order
 
 void combine_begin(ivec2 at)
 {

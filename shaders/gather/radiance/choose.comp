@@ -1,5 +1,5 @@
-// Lists, per tile of the screen, the photographs that say most of its radiance: a few points of
-// it ask every photograph for geometric weight, visibility and trust.
+// Lists, for each tile of the screen, the photographs that contribute most to its radiance. A few
+// probe points of the tile ask every photograph for geometric weight, visibility and confidence.
 #include <sample>
 #include <visibility>
 #include <weight>
@@ -7,19 +7,19 @@
 #include "gather/radiance/samples.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: guessed background
+layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
 layout(rgba16f, binding = 4) readonly uniform image2D view_normal;
 layout(std430, binding = 1) writeonly buffer tile_lists {
-    // ORL_RADIANCE_LIST per tile: photographs, best first, -1: none; bits of the best's weight.
+    // ORL_RADIANCE_LIST per tile: photographs, best first, -1: none; bits of the best one's weight.
     int chosen[];
 };
 
 const int PROBES_X = 4, PROBES_Y = 2;
 const ivec2 TILE = ivec2(ORL_PIXEL_GROUP_X, ORL_PIXEL_GROUP_Y);
-const float LEAST_SHARE = 0.01; // of the best photograph's weight
-const float CLIPPED_SHARE = 0.1; // of its geometric weight that a photograph has at least
+const float LEAST_SHARE = 0.01; // least weight of a listed photograph, fraction of the best one's
+const float CLIPPED_SHARE = 0.1; // least score of a photograph, fraction of its geometric weight
 
-// The most that a photograph weighs at any probe.
+// The greatest weight of a photograph at any probe point.
 float score(int i, ivec2 tile)
 {
     float most = 0.0;
@@ -35,7 +35,7 @@ float score(int i, ivec2 tile)
                             depth < 0.0);
         Answer a = ask(shot, i, point, true);
         Sample s = sample_of(shot, a, point.guessed);
-        // What clips still tells what is too dark to be true (radiance/merge.glsl).
+        // A clipped sample still reveals samples that are too dark (radiance/merge.glsl).
         most = max(most, max(weight_alone(shot, s), CLIPPED_SHARE * s.weight));
     }
     return most;
@@ -55,7 +55,7 @@ void main()
     for (int i = 0; i < photo_count; i++) {
         float mine = score(i, tile);
         int candidate = i;
-        for (int k = 0; k < ORL_RADIANCE_KEPT; k++) { // insertion
+        for (int k = 0; k < ORL_RADIANCE_KEPT; k++) { // insertion sort
             if (mine > best[k]) {
                 float b = best[k];
                 int n = index[k];

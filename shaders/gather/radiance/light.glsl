@@ -1,8 +1,8 @@
-// Visibility of radiance, whatever the method's, unless that is none.
+// Visibility for radiance. It replaces the visibility of every method but those with `none`.
 #include "gather/hidden.glsl"
 
-// How much of a sample is the surface at z, squared: what lies before it may be a thousand
-// times as bright.
+// Squared share of a sample that shows the surface at z. It is squared since an occluder may be a
+// thousand times as bright.
 float visible_surface(photo shot, Point at, vec4 seen, float z)
 {
     vec4 same = clamp(2.0 - abs(seen - z) / (z * opt.depth_tolerance), 0.0, 1.0);

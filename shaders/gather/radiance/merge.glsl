@@ -1,33 +1,34 @@
-// Combines photographs of several exposures into one radiance: the geometric weight of each times
-// its trust, so that clipped and noisy samples lose to better ones pixel by pixel. Each pixel asks
-// the photographs of its tile, which radiance/choose.comp lists, and keeps the heaviest samples.
-// LIMITED: no more than opt.photos_per_pixel count, as in methods of the best few.
+// Combines photographs of several exposures into one radiance. Each sample's weight is its
+// geometric weight times its confidence, so that at every pixel better samples outweigh clipped and
+// noisy ones. Each pixel asks the photographs of its tile, which radiance/choose.comp has listed,
+// and keeps the samples of greatest weight.
+// LIMITED: blends at most opt.photos_per_pixel samples, for methods of the best few photographs.
 #include "gather/radiance/samples.glsl"
 #ifdef LIMITED
 #include "gather/penalty.glsl"
 #include "gather/guess_blur.glsl"
 #endif
 
-// state_0: weight * trust, weight; on guessed depth 1 + log2 of the blur that it needs, in pixels,
-// else 0.
+// state_0: weight * confidence, weight; on estimated background depth 1 + log2 of the required blur
+// in pixels, else 0.
 layout(std430, binding = 1) readonly buffer tile_lists {
-    int chosen[]; // radiance/choose.comp
+    int chosen[]; // written by radiance/choose.comp
 };
 
 const bool SOFT_BORDER = true;
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
-const float LEAST_SHARE_FOUND = 0.02; // of the tile's best: with less a pixel asks all the others
-const float DOUBT_FROM = 0.1; // excess below which a sample keeps all but 1 % of its weight
-const float CLIPS_BELOW = 0.5; // mean trust as far as clipping goes
-const float SHARP_FROM = 0.02; // of the weight: with less a sample is not read again
+const float LEAST_SHARE_FOUND = 0.02; // of the tile's best weight; below it a pixel asks all others
+const float DOUBT_FROM = 0.1; // excess up to which a sample loses at most 1 % of its weight
+const float CLIPS_BELOW = 0.5; // mean confidence with respect to clipping
+const float SHARP_FROM = 0.02; // least fraction of the weight of a sample that is read again
 
-// The heaviest samples of a pixel. Only ever indexed by loops that compilers unroll: memory that
-// each invocation addresses by itself costs more than all the rest on a software renderer.
+// The samples of greatest weight of a pixel. All indices are of loops that compilers unroll: on a
+// software renderer, memory that each invocation indexes by itself costs more than all the rest.
 Sample samples[ORL_RADIANCE_KEPT];
 float weights[ORL_RADIANCE_KEPT]; // 0: no sample
 #define EACH_SAMPLE(k) for (int k = 0; k < ORL_RADIANCE_KEPT; k++)
 
-// In place of the lightest sample, if that is lighter.
+// Replaces the sample of least weight, if the new one has more.
 void put(Sample s, float weight)
 {
     int least = -1;
@@ -49,10 +50,10 @@ void put(Sample s, float weight)
     }
 }
 
-// --- whom a pixel asks: the tile's photographs and, where it finds little in them, all others: a
-// small surface that no probe of the tile met ---
+// --- photographs that a pixel asks: those of the tile and, if their weights are small, all others,
+// for a small surface that no probe point of the tile met ---
 
-int listed[ORL_RADIANCE_KEPT], asked_count, other; // other: where it is among all; -1: in the list
+int listed[ORL_RADIANCE_KEPT], asked_count, other; // other: index among all; -1: in the list
 float enough, heaviest;
 bool on_guess;
 
@@ -101,7 +102,7 @@ void combine_add(photo shot, Answer a)
     heaviest = max(heaviest, weight);
 }
 
-// --- what their samples come to ---
+// --- combination of the samples ---
 
 // Radiance of the sample at the weighted median of brightness.
 vec3 median_color()
@@ -122,7 +123,7 @@ vec3 median_color()
     return median;
 }
 
-// Largest weight that a method of the best few leaves out.
+// Largest weight that is left out by a method of the best few photographs.
 float left_out()
 {
 #ifdef LIMITED
@@ -154,18 +155,19 @@ Sample sample_at(int one)
     return s;
 }
 
-// Lessens the weights of things that moved between the photographs. noise: of the samples.
+// Deghosting: reduces the weights of objects that moved between the photographs. level: radiance
+// to compare with; noise: squared relative error of each sample.
 void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
 {
     float off[ORL_RADIANCE_KEPT], allowed[ORL_RADIANCE_KEPT]; // squared stops
-    int doubtful = 0; // bits
+    int doubtful = 0; // one bit per sample
     EACH_SAMPLE(k) {
         off[k] = stops2(samples[k].color, level);
-        // 1 / ln(2)^2 makes relative error stops.
+        // The factor 1 / ln(2)^2 converts squared relative error to squared stops.
         allowed[k] = opt.ghosts * opt.ghosts + 2.0814 * noise[k];
         doubtful |= weights[k] > 0.0 && off[k] > DOUBT_FROM * allowed[k] ? 1 << k : 0;
     }
-    do { // of those alone, since it is a read
+    do { // for doubtful samples only, since it reads a texel
         int one = findLSB(doubtful); // -1: none
         Sample s = sample_at(one);
         float more = unrest(photo_at(s.shot), s);
@@ -177,13 +179,14 @@ void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
     } while (doubtful != 0);
 }
 
-// What is darker than others' least light is not what they show: the tree that a photograph from
-// aside shows is not the sky, whatever its exposure. So far as what does not clip is contradicted,
-// what clips counts by geometry. On surfaces that takes a majority of at least two: one alone
-// clips beside an edge as often.
+// A sample that is darker than the lower bound given by clipped samples shows another surface: a
+// photograph taken from the side may show a tree in front of the sky. To the extent that unclipped
+// samples are contradicted in this way, clipped samples regain their geometric weight. On known
+// surfaces this takes a majority of at least two clipped samples, since a single one is often
+// clipped only because it lies beside an edge.
 void heed_clipped(bool guessed)
 {
-    float all = 0.0, best = 0.0, least = 0.0; // geometric weights; luminance
+    float all = 0.0, best = 0.0, least = 0.0; // sum and maximum of geometric weights; luminance
     EACH_SAMPLE(k) {
         float weight = samples[k].clip < CLIPS_BELOW ? samples[k].weight : 0.0;
         all += weight;
@@ -205,11 +208,12 @@ void heed_clipped(bool guessed)
         weights[k] += samples[k].clip < CLIPS_BELOW ? share * samples[k].weight : 0.0;
 }
 
-// Final weights and their sums times trust, times trust as far as clipping goes, and alone.
+// Computes the final weights. Returns their sums multiplied by the confidence, by the confidence
+// with respect to clipping, and by 1.
 vec3 weigh(bool guessed)
 {
-    // How far each sample is to be trusted depends on how much light there was, which its
-    // own noise must not decide: the median says.
+    // The confidence of a sample depends on the amount of light. The median estimates that amount,
+    // so that the sample's own noise has no influence.
     vec3 level = max(median_color(), least_radiance), inverse = 1.0 / level;
     float noise[ORL_RADIANCE_KEPT];
     EACH_SAMPLE(k) {
@@ -218,7 +222,8 @@ vec3 weigh(bool guessed)
     }
     if (opt.ghosts > 0.0)
         heed_clipped(guessed);
-    // Nearly all of it, so that none appears at once, and samples that tie with it remain.
+    // Subtracting slightly less than the limit keeps samples that tie with it. Weights still fall
+    // to almost zero before a sample is replaced.
     float limit = 0.999 * left_out();
     EACH_SAMPLE(k)
         weights[k] = max(weights[k] - limit, 0.0);
@@ -230,11 +235,11 @@ vec3 weigh(bool guessed)
     return sums;
 }
 
-// Sum of colour * weight; those that count are read again with the sharper filter.
+// Sum of colour * weight. Samples of sufficient weight are read again with the bicubic filter.
 vec3 blend(float total)
 {
     vec3 sum = vec3(0.0);
-    int sharp = 0; // bits
+    int sharp = 0; // one bit per sample
     EACH_SAMPLE(k) {
         bool counts = opt.sampling == ORL_BICUBIC && weights[k] > SHARP_FROM * total;
         sharp |= counts ? 1 << k : 0;
@@ -252,7 +257,7 @@ vec3 blend(float total)
     return sum;
 }
 
-// The blur that colour on guessed depth needs, log2 of pixels.
+// The blur that colour on estimated depth needs, log2 of pixels.
 float blur_of(vec3 p, float total)
 {
 #ifdef LIMITED

@@ -1,53 +1,54 @@
-// What photographs of several exposures say of a surface point, and how far each is believed.
-// Included after "gather/ask.glsl". Selects rather than branches: software renderers run both sides
-// of a condition.
+// Samples of a surface point in photographs of several exposures, and their confidence weights.
+// Included after "gather/ask.glsl". The code selects rather than branches, since software renderers
+// run both sides of a condition.
 #include "gather/radiance/trust.glsl"
 
 #define MODEL model_variance
 
 struct Sample {
     vec3 color;   // radiance
-    float clip;   // trust as far as clipping goes
+    float clip;   // confidence weight with respect to clipping
     float weight; // geometric; 0: the photograph does not see the point
     vec2 pixel;
     float mip;
     int shot;     // the photograph
 };
 
-// Squared relative error of a photograph by noise, where this is one over radiance.
+// Squared relative error of a photograph due to noise; inverse: 1 / radiance.
 float noise_of(photo shot, vec3 inverse)
 {
     return relative_variance(shot.gain.rgb * inverse, shot.noise);
 }
 
-// A geometric weight is an inverse variance too, in units of 1 / MODEL: errors of the model and
-// of noise add up, and a photograph taken from here has none but its noise.
-// The other way round, noise is never forgiven for bad geometry: its samples stray anyway.
+// A geometric weight is also an inverse variance, in units of 1 / MODEL. Errors of the model and of
+// noise add up, and a photograph taken from the viewpoint has noise only. The bound max(weight, 1)
+// never excuses noise by bad geometry, since samples of bad geometry are unreliable anyway.
 float total_weight(Sample s, float noise)
 {
-    // Traces of trust in clipped samples must tell them apart whatever their geometry.
+    // Clipped samples with minimal confidence are ranked by it, whatever their geometry.
     float trace = min(1024.0 * s.clip, 1.0);
     return s.clip * s.clip * s.clip * trace * trace * s.weight /
            (1.0 + max(s.weight, 1.0) * noise / MODEL);
 }
 
-// Squared difference in stops, mean of the channels.
+// Squared difference in stops, averaged over the channels.
 float stops2(vec3 a, vec3 b)
 {
     vec3 d = log2(max(a, least_radiance) / max(b, least_radiance));
     return dot(d, d) / 3.0;
 }
 
-// How much light varies around a sample in its photograph, squared stops: what a misplacement of
-// a pixel or two may change. Beside what clips there is no telling.
+// Variation of light around a sample in its photograph, squared stops: the change that a
+// misplacement of one or two pixels may cause. Beside clipped pixels it is unknown, thus large.
 float unrest(photo shot, Sample s)
 {
     vec4 around = photo_sample(shot, s.pixel, s.mip + 3.0);
     return 16.0 * stops2(s.color, around.rgb) + 64.0 * (1.0 - around.a);
 }
 
-// The colours that go with an answer. Its weight is in units of a photograph whose error by a wrong
-// surface is that of the model: a tenth of a radian away, or a tenth of the distance.
+// Reads the colours for an answer. The weight is in units of that of a photograph whose geometric
+// error equals the model error: at an angle of a tenth of a radian, or farther by a tenth of the
+// viewing distance.
 Sample sample_of(photo shot, Answer a, bool guessed)
 {
     Sample s;
@@ -61,7 +62,7 @@ Sample sample_of(photo shot, Answer a, bool guessed)
     return s;
 }
 
-// Its weight, by noise where there is as much light as it says itself.
+// Weight of a sample by itself: the noise is that of the light that the sample itself shows.
 float weight_alone(photo shot, Sample s)
 {
     return total_weight(s, noise_of(shot, 1.0 / s.color));

@@ -1,8 +1,8 @@
-// Samples of photographs as radiance.
+// Samples photographs as radiance.
 #include "gather/photo.glsl"
 
-// Radiance, and trust as far as clipping goes. Levels do not blend: between them a software
-// renderer reads twice as much.
+// Radiance, and the confidence weight with respect to clipping. Mip levels are not interpolated,
+// since a software renderer would read twice as much.
 vec4 photo_sample(photo shot, vec2 pixel, float mip)
 {
     vec4 texel = photo_bilinear(shot, pixel, floor(mip + 0.5));
@@ -10,11 +10,12 @@ vec4 photo_sample(photo shot, vec2 pixel, float mip)
     return vec4(exposure * shot.gain.rgb, texel.a);
 }
 
-// A filter that rings brightens or darkens by no more than this factor.
+// Largest factor by which the ringing of the sharpening filter may brighten or darken.
 const float SHARPEN_MAX = 1.5;
 
-// What is `color` by photo_sample, sharper. Where contrasts are high, or trust falls, the
-// negative lobes of this filter ring far below black: it changes by a factor, no more.
+// The sample `color` of photo_sample, read again with the bicubic filter. At high contrasts, or
+// where confidence falls, the filter's negative lobes ring far below black, so the change is
+// limited to a factor.
 vec3 photo_sharper(photo shot, vec2 pixel, float mip, vec3 color)
 {
     vec4 texel = photo_bicubic(shot, pixel, mip);

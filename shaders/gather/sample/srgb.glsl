@@ -1,10 +1,10 @@
-// Samples of photographs as they are: linear light, at the scene's exposure where aligned.
-// BICUBIC: by Catmull-Rom, else bilinear.
+// Samples photographs as linear light, brought to the scene's exposure where photographs are
+// aligned. BICUBIC: with a Catmull-Rom filter, else bilinear.
 #include "gather/photo.glsl"
 
-// Brings linear colour to the scene's exposure and white balance, the lens's fall-off undone.
-// Linear for all but the brightest; white stays white, as a photograph that clipped was at
-// least that bright, and cameras compress what is near. src/render/reexpose.c undoes it.
+// Brings linear colour to the scene's exposure and white balance and undoes the vignetting. The
+// mapping is linear except for the brightest colours. White stays white, since a clipped photograph
+// was at least that bright, and cameras compress highlights. src/render/reexpose.c inverts it.
 vec3 photo_aligned(photo shot, vec2 pixel, vec3 color)
 {
     vec2 off = pixel - shot.focal.zw;
@@ -12,20 +12,21 @@ vec3 photo_aligned(photo shot, vec2 pixel, vec3 color)
     float r2 = dot(off, off) * shot.lens.w;
     float light = 1.0 + r2 * (lens.x + r2 * (lens.y + r2 * lens.z));
     vec3 gain = shot.gain.rgb / max(light, 0.1);
-    // As much of the third power, and of the first for the rest, as leaves brighter brighter.
+    // Mixes the first and the third power of the colour such that the mapping stays increasing.
     vec3 more = gain - 1.0, third = min(more, vec3(0.5)), c = min(color, vec3(1.0));
     return gain * color / (1.0 + c * (more - third + third * c * c));
 }
 
-// Colour, and trust: all of it.
+// Colour, and full confidence.
 vec4 photo_sample(photo shot, vec2 pixel, float mip)
 {
-    // A program for each: software renderers run both sides of a condition.
+    // Each filter is a program of its own, since software renderers run both sides of a condition.
 #ifdef BICUBIC
     vec3 color = photo_bicubic(shot, pixel, mip).rgb;
 #else
-    // Levels blend in a narrow range only: a software renderer reads both of them there, and
-    // elsewhere one, the sharper one more often than not.
+    // Mip levels are interpolated only in a narrow range, where a software renderer reads two
+    // levels.
+    // Elsewhere it reads one, which is more often the sharper one.
     float level = floor(mip);
     level += clamp(5.0 * (mip - level) - 3.5, 0.0, 1.0);
     vec3 color = photo_bilinear(shot, pixel, level).rgb;

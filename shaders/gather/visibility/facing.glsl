@@ -1,5 +1,5 @@
-// A photograph sees what faces it, occluded or not: Orzan 2005, 4.4.1. The normal is that of the
-// surface at the pixel, in place of the triangle's.
+// A photograph sees every surface that faces it, occluded or not: Orzan 2005, 4.4.1. The normal is
+// that of the surface at the pixel instead of the triangle's.
 
 float visible_surface(photo shot, Point at, vec4 seen, float z)
 {

@@ -1,5 +1,5 @@
-// A photograph sees a point where its own depth map agrees, and is rejected elsewhere: shadow test of
-// Airieau 2012, 5.2.
+// A photograph sees a point if its depth map agrees: the shadow test of Airieau 2012, 5.2. It is
+// rejected where it has no depth.
 #include "gather/hidden.glsl"
 
 float visible_surface(photo shot, Point at, vec4 seen, float z)

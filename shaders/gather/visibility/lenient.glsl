@@ -1,4 +1,4 @@
-// As hard, but a photograph whose depth map has nothing there passes.
+// As hard, but a photograph without depth at the point is accepted.
 #include "gather/hidden.glsl"
 
 float visible_surface(photo shot, Point at, vec4 seen, float z)

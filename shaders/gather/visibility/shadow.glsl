@@ -1,4 +1,4 @@
-// A photograph sees what faces it and what its shadow map agrees with: Orzan 2005, 4.5.1.
+// A photograph sees a surface that faces it and agrees with its shadow map: Orzan 2005, 4.5.1.
 #include "gather/hidden.glsl"
 
 float visible_surface(photo shot, Point at, vec4 seen, float z)

@@ -1,4 +1,4 @@
-// How surely a photograph sees a point: nothing appears at once when the viewer moves.
+// Continuous visibility, so that no photograph appears suddenly when the viewer moves.
 #include "gather/hidden.glsl"
 
 float visible_surface(photo shot, Point at, vec4 seen, float z)

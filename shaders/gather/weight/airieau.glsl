@@ -1,9 +1,9 @@
-// Airieau 2012, 5.3: cos(theta) / delta, with delta relative to the viewing distance and kept
-// from zero, so that the weight has no unit and no pole.
+// Weight of Airieau 2012, equation 5.3: cos(theta) / delta. Here delta is relative to the viewing
+// distance and bounded away from zero, so that the weight has no unit and no pole.
 
-// Where depth is only guessed, photographs disagree: let the best one dominate.
+// On estimated background depth the photographs disagree: the best one dominates.
 const float GUESS_POWER = 8.0;
-// Powers of weights by differences of distance from none to all of the distance stay floats.
+// Scale of a weight before it is raised to GUESS_POWER, so that the power fits a float.
 const float GUESS_SCALE = 0.03;
 
 float weight_of(photo shot, Point at)
@@ -16,7 +16,7 @@ float weight_of(photo shot, Point at)
     return at.guessed ? pow(weight * GUESS_SCALE, GUESS_POWER) : weight;
 }
 
-// Of a photograph a tenth of the distance nearer or farther.
+// Weight of a photograph that is nearer or farther by a tenth of the viewing distance.
 float weight_unit(bool guessed)
 {
     float unit = 1.0 / (0.1 + opt.distance_floor);

@@ -6,7 +6,7 @@ float weight_of(photo shot, Point at)
     return max(dot(normalize(-at.p), normalize(shot.eye.xyz - at.p)), 0.0);
 }
 
-// Of a photograph a tenth of a radian away.
+// Weight of a photograph at an angle of a tenth of a radian.
 float weight_unit(bool guessed)
 {
     return cos(0.1);

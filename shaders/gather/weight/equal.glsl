@@ -1,4 +1,4 @@
-// Every photograph that sees the point counts the same: Li 2003, equation 1.
+// Every photograph that sees the point has the same weight: Li 2003, equation 1.
 
 float weight_of(photo shot, Point at)
 {

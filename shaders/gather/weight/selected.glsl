@@ -1,4 +1,4 @@
-// What the selection weighs the whole photograph: Orzan 2005, 4.3.2.
+// The weight that the selection gives to the whole photograph: Orzan 2005, 4.3.2.
 
 float weight_of(photo shot, Point at)
 {

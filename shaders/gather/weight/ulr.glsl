@@ -1,5 +1,5 @@
-// Unstructured lumigraph as SIBR's ulrv2 has it (Buehler 2001, 4.2): one over the angle between the
-// two lines of sight and a tenth of how much farther away the photograph was taken.
+// Weight of the unstructured lumigraph as in SIBR's ulrv2 (Buehler 2001, 4.2): the inverse of the
+// angle between the two lines of sight plus a tenth of the relative resolution penalty.
 
 float weight_of(photo shot, Point at)
 {
@@ -9,7 +9,7 @@ float weight_of(photo shot, Point at)
     return 1.0 / (angle + 0.1 * max((there - here) / there, 1e-4));
 }
 
-// Of a photograph a tenth of a radian away.
+// Weight of a photograph at an angle of a tenth of a radian.
 float weight_unit(bool guessed)
 {
     return 10.0;

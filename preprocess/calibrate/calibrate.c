@@ -1,0 +1,561 @@
+#include "preprocess/calibrate/calibrate.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "preprocess/job/colmap_run.h"
+#include "preprocess/photos/advice.h"
+#include "preprocess/photos/normalise.h"
+
+#define WORK ".oriel/calibrate.tmp"
+#define NORMALISED WORK "/normalised" // what features are taken from
+#define DONE ".oriel/calibrate"
+
+enum { EXHAUSTIVE_MAX = 120, COSTLY_MAX = 60 };
+
+// A model that the mapper made.
+struct candidate {
+    char *path; // owned; its folder, below WORK; NULL: there is none
+    struct orl_colmap_model model;
+    bool bent;  // has it a camera whose distortion turns back on itself?
+};
+
+struct calibration {
+    struct orl_job *job;
+    int *group;          // per photograph: its camera
+    int group_count;
+    struct candidate best; // so far
+    bool straight;       // distortion is taken to be none from now on
+    int tries;           // mapper runs, for folder names
+};
+
+// --- which photographs share a camera ---
+
+static bool has_exif(const struct orl_source *s)
+{
+    return s->exif.make[0] || s->exif.model[0] || s->exif.focal_mm > 0 || s->exif.focal_35mm > 0;
+}
+
+static bool same_camera(const struct orl_source *a, const struct orl_source *b, bool one_size)
+{
+    if (a->width != b->width || a->height != b->height || has_exif(a) != has_exif(b))
+        return false;
+    if (!has_exif(a))
+        return one_size;
+    return strcmp(a->exif.make, b->exif.make) == 0 && strcmp(a->exif.model, b->exif.model) == 0 &&
+           a->exif.focal_mm == b->exif.focal_mm && a->exif.focal_35mm == b->exif.focal_35mm;
+}
+
+static enum orl_result group_photos(struct calibration *c)
+{
+    const struct orl_job *job = c->job;
+    enum orl_camera_sharing sharing = job->params->sharing;
+    c->group = orl_array(job->log, job->source_count, sizeof *c->group);
+    if (!c->group)
+        return ORL_ERR_MEMORY;
+    bool one_size = true;
+    for (size_t i = 1; i < job->source_count; i++)
+        one_size = one_size && job->sources[i].width == job->sources[0].width &&
+                   job->sources[i].height == job->sources[0].height;
+    if (sharing == ORL_SHARING_SINGLE && !one_size)
+        return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                        "--camera-sharing single: the photographs have different sizes");
+    for (size_t i = 0; i < job->source_count; i++) {
+        int group = -1;
+        for (size_t k = 0; k < i && group < 0 && sharing != ORL_SHARING_EACH; k++)
+            if (sharing == ORL_SHARING_SINGLE ||
+                same_camera(&job->sources[k], &job->sources[i], one_size))
+                group = c->group[k];
+        c->group[i] = group >= 0 ? group : c->group_count++;
+    }
+    return ORL_OK;
+}
+
+// --- features and matches ---
+
+static enum orl_result link_masks(const struct calibration *c, char **masks)
+{
+    const struct orl_job *job = c->job;
+    *masks = NULL;
+    enum orl_result result = ORL_OK;
+    if (!job->params->masks_dir)
+        return ORL_OK;
+    result = orl_job_fresh_dir(job, WORK "/masks");
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
+        const struct orl_source *source = &job->sources[i];
+        if (!source->mask)
+            continue;
+        char *path = orl_job_path(job, WORK "/masks/%s.png", source->name);
+        result = path ? orl_job_link(job, source->mask, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    if (result == ORL_OK && !(*masks = orl_job_path(job, WORK "/masks")))
+        result = ORL_ERR_MEMORY;
+    return result;
+}
+
+static void feature_settings(const struct orl_job *job, bool costly, struct orl_colmap_args *args)
+{
+    static const int sizes[] = {[ORL_QUALITY_DRAFT] = 1600, [ORL_QUALITY_STANDARD] = 3200,
+                                [ORL_QUALITY_HIGH] = 3200};
+    static const int counts[] = {[ORL_QUALITY_DRAFT] = 4096, [ORL_QUALITY_STANDARD] = 8192,
+                                 [ORL_QUALITY_HIGH] = 16384};
+    enum orl_quality quality = job->params->quality;
+    orl_colmap_arg(args, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda && !costly);
+    orl_colmap_arg(args, "--SiftExtraction.max_image_size", "%d", sizes[quality]);
+    orl_colmap_arg(args, "--SiftExtraction.max_num_features", "%d",
+                   counts[quality] * (costly ? 2 : 1));
+    if (costly) {
+        orl_colmap_arg(args, "--SiftExtraction.estimate_affine_shape", "1");
+        orl_colmap_arg(args, "--SiftExtraction.domain_size_pooling", "1");
+        orl_colmap_arg(args, "--SiftExtraction.peak_threshold", "0.004");
+    }
+}
+
+// Features of the photographs in `names`, which share one camera or have one each.
+static enum orl_result extract(const struct calibration *c, const struct orl_names *names,
+                               bool shared, bool costly, double done)
+{
+    struct orl_job *job = c->job;
+    struct orl_colmap_args args = {0};
+    char *list = orl_job_path(job, WORK "/list.txt"), *masks = NULL;
+    char *database = orl_job_path(job, WORK "/database.db");
+    char *photos = orl_job_path(job, orl_job_has(job, NORMALISED) ? NORMALISED : ".oriel/photos");
+    enum orl_result result = list && database && photos ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_job_write_list(job, list, names);
+    if (result == ORL_OK)
+        result = link_masks(c, &masks);
+    if (result != ORL_OK)
+        goto end;
+    // More parameters need more photographs to determine them.
+    bool rich = shared && names->count >= 8 && job->params->quality == ORL_QUALITY_HIGH;
+    orl_colmap_arg(&args, "--database_path", "%s", database);
+    orl_colmap_arg(&args, "--image_path", "%s", photos);
+    orl_colmap_arg(&args, "--image_list_path", "%s", list);
+    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
+    orl_colmap_arg(&args, shared ? "--ImageReader.single_camera"
+                                 : "--ImageReader.single_camera_per_image", "1");
+    orl_colmap_arg(&args, "--ImageReader.camera_model", "%s", rich ? "OPENCV" : "SIMPLE_RADIAL");
+    if (masks)
+        orl_colmap_arg(&args, "--ImageReader.mask_path", "%s", masks);
+    feature_settings(job, costly, &args);
+    result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "feature_extractor", .step = "features", .done = done,
+        .share = (double)names->count, .total = (double)job->source_count}, &args);
+end:
+    free(list);
+    free(masks);
+    free(database);
+    free(photos);
+    return result;
+}
+
+static enum orl_result collect_group(const struct calibration *c, int group, bool alone,
+                                     const int *sizes, struct orl_names *names)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < c->job->source_count; i++)
+        if (alone ? sizes[c->group[i]] == 1 : c->group[i] == group && sizes[group] > 1)
+            result = orl_names_add(c->job->log, names, c->job->sources[i].name);
+    return result;
+}
+
+static enum orl_result extract_all(const struct calibration *c, bool costly)
+{
+    const struct orl_job *job = c->job;
+    int *sizes = orl_array(job->log, (size_t)c->group_count, sizeof *sizes);
+    if (!sizes)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < job->source_count; i++)
+        sizes[c->group[i]]++;
+    enum orl_result result = ORL_OK;
+    double done = 0;
+    // One run a shared camera; the last one takes all that have a camera of their own.
+    for (int g = 0; result == ORL_OK && g <= c->group_count; g++) {
+        struct orl_names names = {0};
+        bool alone = g == c->group_count;
+        result = collect_group(c, alone ? 0 : g, alone, sizes, &names);
+        if (result == ORL_OK && names.count)
+            result = extract(c, &names, !alone, costly, done);
+        done += (double)names.count;
+        orl_names_finish(&names);
+    }
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "features", 1, 1, NULL);
+    free(sizes);
+    return result;
+}
+
+static enum orl_result match(const struct calibration *c, bool sequential, bool guided)
+{
+    struct orl_job *job = c->job;
+    struct orl_colmap_args args = {0};
+    char *database = orl_job_path(job, WORK "/database.db");
+    if (!database)
+        return ORL_ERR_MEMORY;
+    orl_colmap_arg(&args, "--database_path", "%s", database);
+    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
+    orl_colmap_arg(&args, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
+    orl_colmap_arg(&args, "--SiftMatching.guided_matching", "%d", guided);
+    if (sequential) {
+        orl_colmap_arg(&args, "--SequentialMatching.overlap", "20");
+    } else {
+        // Smaller blocks than COLMAP's 50 show progress; their cost is the same.
+        size_t block = job->source_count / 8;
+        orl_colmap_arg(&args, "--ExhaustiveMatching.block_size", "%zu", block < 5 ? 5 : block);
+    }
+    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = sequential ? "sequential_matcher" : "exhaustive_matcher", .step = "matching",
+        .share = 1, .total = 1}, &args);
+    free(database);
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "matching", 1, 1, NULL);
+    return result;
+}
+
+// --- the mapper ---
+
+static void candidate_finish(struct candidate *candidate)
+{
+    free(candidate->path);
+    orl_colmap_finish(&candidate->model);
+    *candidate = (struct candidate){0};
+}
+
+static bool is_better(const struct candidate *a, const struct candidate *b)
+{
+    return !b->path || a->model.image_count > b->model.image_count ||
+           (a->model.image_count == b->model.image_count &&
+            a->model.point_count > b->model.point_count);
+}
+
+// Takes the model in `path` if it is better than the best so far. One that cannot
+// be read does not count: the mapper may have left it half-written.
+static enum orl_result consider(struct calibration *c, const char *path)
+{
+    struct candidate candidate = {0};
+    enum orl_result result = orl_colmap_read(c->job->log, path, &candidate.model);
+    if (result != ORL_OK)
+        return result;
+    for (size_t i = 0; i < candidate.model.camera_count; i++)
+        candidate.bent |= !orl_colmap_camera_reaches_corners(&candidate.model.cameras[i]);
+    candidate.path = orl_strdup(c->job->log, path);
+    if (candidate.path && is_better(&candidate, &c->best)) {
+        struct candidate worse = c->best;
+        c->best = candidate;
+        candidate = worse;
+    }
+    candidate_finish(&candidate);
+    return c->best.path ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+// `out` is a model itself, or holds some in numbered folders.
+static enum orl_result consider_all(struct calibration *c, const char *out)
+{
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(c->job->log, out, &names);
+    if (result == ORL_OK && orl_names_contain(&names, "cameras.bin"))
+        result = consider(c, out);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        char *path = orl_path_join(c->job->log, out, names.items[i]);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (orl_path_is_dir(path))
+            result = consider(c, path);
+        free(path);
+    }
+    orl_names_finish(&names);
+    return result;
+}
+
+// COLMAP's mapper fails when no pair of photographs can start a model. That is for
+// us to judge, not an error yet.
+static enum orl_result map(struct calibration *c, bool loose, const char *from)
+{
+    struct orl_job *job = c->job;
+    struct orl_colmap_args args = {0};
+    char name[64];
+    snprintf(name, sizeof name, WORK "/models-%d", c->tries++);
+    char *database = orl_job_path(job, WORK "/database.db"), *out = orl_job_path(job, "%s", name);
+    char *photos = orl_job_path(job, ".oriel/photos");
+    enum orl_result result = database && out && photos ? orl_job_fresh_dir(job, name)
+                                                       : ORL_ERR_MEMORY;
+    if (result != ORL_OK)
+        goto end;
+    orl_colmap_arg(&args, "--database_path", "%s", database);
+    orl_colmap_arg(&args, "--image_path", "%s", photos);
+    orl_colmap_arg(&args, "--output_path", "%s", out);
+    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
+    // A later, larger model must not be thrown away for being under ten photographs.
+    orl_colmap_arg(&args, "--Mapper.min_model_size", "3");
+    if (c->straight)
+        orl_colmap_arg(&args, "--Mapper.ba_refine_extra_params", "0");
+    if (from)
+        orl_colmap_arg(&args, "--input_path", "%s", from);
+    if (loose) {
+        orl_colmap_arg(&args, "--Mapper.init_min_tri_angle", "6");
+        orl_colmap_arg(&args, "--Mapper.init_min_num_inliers", "40");
+        orl_colmap_arg(&args, "--Mapper.abs_pose_min_num_inliers", "15");
+        orl_colmap_arg(&args, "--Mapper.abs_pose_min_inlier_ratio", "0.15");
+    }
+    result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "mapper", .step = "mapping", .share = (double)job->source_count,
+        .total = (double)job->source_count, .tolerated = "failed to create sparse model"},
+        &args);
+    if (result == ORL_OK)
+        result = consider_all(c, out);
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "mapping", 1, 1, NULL);
+end:
+    free(database);
+    free(out);
+    free(photos);
+    return result;
+}
+
+// --- attempts ---
+
+// Photographs in the best model so far.
+static size_t registered(const struct calibration *c)
+{
+    return c->best.model.image_count;
+}
+
+static bool enough(const struct calibration *c)
+{
+    return registered(c) >= 3 && 2 * registered(c) >= c->job->source_count;
+}
+
+static bool all(const struct calibration *c)
+{
+    return registered(c) == c->job->source_count;
+}
+
+static void say(const struct calibration *c, const char *what)
+{
+    orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: %zu of %zu photographs register; %s",
+             registered(c), c->job->source_count, what);
+}
+
+// Marks the database as whole for these inputs and settings.
+static enum orl_result set_mark(const struct calibration *c, bool matched)
+{
+    char *path = orl_job_path(c->job, WORK "/matched");
+    const char *key = c->job->keys[ORL_STAGE_CALIBRATE];
+    enum orl_result result = !path ? ORL_ERR_MEMORY
+                             : matched ? orl_file_write(c->job->log, path, key, strlen(key))
+                                       : orl_dir_remove(c->job->log, path);
+    free(path);
+    return result;
+}
+
+static enum orl_result restart_database(const struct calibration *c)
+{
+    static const char *const names[] = {"database.db", "database.db-wal", "database.db-shm"};
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(names); i++) {
+        char *path = orl_job_path(c->job, WORK "/%s", names[i]);
+        result = path ? orl_dir_remove(c->job->log, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    return result;
+}
+
+// More features that bear wider baselines, for sets that hardly overlap.
+static enum orl_result try_costly(struct calibration *c)
+{
+    enum orl_result result;
+    say(c, "trying affine-shape features and guided matching");
+    if ((result = set_mark(c, false)) != ORL_OK || (result = restart_database(c)) != ORL_OK ||
+        (result = extract_all(c, true)) != ORL_OK ||
+        (result = match(c, false, true)) != ORL_OK || (result = map(c, false, NULL)) != ORL_OK)
+        return result;
+    return enough(c) ? ORL_OK : map(c, true, NULL);
+}
+
+// The poses of the model found are good: photographs with fewer matches may join it.
+static enum orl_result join_more(struct calibration *c)
+{
+    if (registered(c) < 3 || all(c))
+        return ORL_OK;
+    say(c, "letting photographs with fewer matches join");
+    char *from = orl_strdup(c->job->log, c->best.path);
+    enum orl_result result = from ? map(c, true, from) : ORL_ERR_MEMORY;
+    free(from);
+    return result;
+}
+
+static enum orl_result try_hard(struct calibration *c, bool sequential)
+{
+    enum orl_result result = join_more(c);
+    if (result == ORL_OK && !enough(c) && sequential) {
+        say(c, "matching all pairs");
+        result = match(c, false, false);
+        if (result == ORL_OK)
+            result = map(c, false, NULL);
+    }
+    // Where most are missing another pair may be the better start.
+    if (result == ORL_OK && 5 * registered(c) < 4 * c->job->source_count) {
+        say(c, "starting from narrower baselines and fewer inliers");
+        result = map(c, true, NULL);
+    }
+    if (result == ORL_OK && !enough(c) && c->job->source_count <= COSTLY_MAX) {
+        result = try_costly(c);
+        if (result == ORL_OK)
+            result = join_more(c);
+    }
+    return result;
+}
+
+// Where nothing tells a lens's distortion (a small thing in the middle of each photograph, gloss) the
+// mapper may find one that no lens has, and of the photographs the middle alone would be left. Better
+// none then, if about as many photographs register.
+static enum orl_result straighten(struct calibration *c)
+{
+    struct candidate bent = c->best;
+    if (!bent.bent)
+        return ORL_OK;
+    say(c, "with a distortion that no lens has; trying without");
+    c->straight = true;
+    c->best = (struct candidate){0};
+    enum orl_result result = map(c, false, NULL);
+    bool better = result == ORL_OK && c->best.path && !c->best.bent &&
+                  4 * registered(c) >= 3 * bent.model.image_count;
+    candidate_finish(better ? &bent : &c->best);
+    if (!better)
+        c->best = bent;
+    return result;
+}
+
+static bool is_marked(const struct calibration *c)
+{
+    uint8_t *data = NULL;
+    size_t size;
+    char *path = orl_job_path(c->job, WORK "/matched");
+    bool same = path && orl_file_read(NULL, path, 64, &data, &size) == ORL_OK &&
+                strcmp((const char *)data, c->job->keys[ORL_STAGE_CALIBRATE]) == 0;
+    free(data);
+    free(path);
+    return same;
+}
+
+static enum orl_result normalise(const struct calibration *c)
+{
+    size_t copies;
+    enum orl_result result = orl_normalise(c->job, NORMALISED, &copies);
+    if (result == ORL_OK && copies)
+        orl_logf(c->job->log, ORL_LOG_INFO,
+                 "calibrate: exposures differ; features of %zu photographs come from brightened "
+                 "copies", copies);
+    return result;
+}
+
+// Features and matches survive an interruption of the mapper.
+static enum orl_result begin_database(struct calibration *c, bool sequential)
+{
+    enum orl_result result;
+    if (is_marked(c)) {
+        orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: features and matches are there already");
+        return ORL_OK;
+    }
+    if ((result = orl_job_fresh_dir(c->job, WORK)) != ORL_OK ||
+        (result = normalise(c)) != ORL_OK || (result = extract_all(c, false)) != ORL_OK ||
+        (result = match(c, sequential, false)) != ORL_OK)
+        return result;
+    return set_mark(c, true);
+}
+
+// Cameras that stood still, one or some all around, are a common mistake.
+static enum orl_result fail_to_place(const struct calibration *c)
+{
+    const struct orl_job *job = c->job;
+    size_t views;
+    enum orl_result result = orl_count_views(job, 3, &views);
+    if (result != ORL_OK)
+        return result;
+    const char *why =
+        views < 2 ? "all show one view, as of a camera that stood still, and tell no depth: take "
+                    "them from different positions, a step or two from one to the next"
+        : views < 3 ? "all show one of two views, as of two cameras that stood still, which is too "
+                      "few: take them from more positions, a step or two from one to the next"
+                    : "take more, with at least two thirds of overlap from one to the next, sharp, "
+                      "with texture, and from different positions; a few cameras fixed around a "
+                      "scene stand too far apart";
+    return orl_fail(job->log, ORL_ERR_DATA,
+                    "only %zu of %zu photographs could be placed relative to each other, and three "
+                    "are needed: %s (what was done is kept in %s)", registered(c),
+                    job->source_count, why, job->dir);
+}
+
+static enum orl_result finish(struct calibration *c)
+{
+    const struct orl_job *job = c->job;
+    if (registered(c) < 3)
+        return fail_to_place(c);
+    char *model = orl_job_path(job, WORK "/model");
+    if (!model)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = orl_dir_remove(job->log, model);
+    if (result == ORL_OK)
+        result = orl_job_remove(job, NORMALISED);
+    if (result == ORL_OK && rename(c->best.path, model) != 0)
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", model, strerror(errno));
+    free(model);
+    for (int i = 0; result == ORL_OK && i < c->tries; i++) {
+        char *path = orl_job_path(job, WORK "/models-%d", i);
+        result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    return result == ORL_OK ? orl_job_replace(job, WORK, DONE) : result;
+}
+
+static void name_left_out(const struct calibration *c, json_t *record)
+{
+    const struct orl_colmap_model *model = &c->best.model;
+    json_t *left_out = json_array();
+    for (size_t i = 0; i < c->job->source_count; i++) {
+        const char *name = c->job->sources[i].name;
+        if (orl_colmap_image_by_name(model, name))
+            continue;
+        orl_logf(c->job->log, ORL_LOG_WARNING, "%s: cannot be placed, left out", name);
+        json_array_append_new(left_out, json_string(name));
+    }
+    json_object_set_new(record, "registered", json_integer((json_int_t)model->image_count));
+    json_object_set_new(record, "sparse_points", json_integer((json_int_t)model->point_count));
+    json_object_set_new(record, "left_out", left_out);
+}
+
+enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
+{
+    struct calibration c = {.job = job};
+    enum orl_result result = orl_job_find_colmap(job);
+    bool sequential = job->params->matching == ORL_MATCHING_SEQUENTIAL ||
+                      (job->params->matching == ORL_MATCHING_AUTO &&
+                       job->source_count > EXHAUSTIVE_MAX);
+    if (result != ORL_OK)
+        return result;
+    if ((result = group_photos(&c)) != ORL_OK)
+        goto end;
+    orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu photographs, %d camera%s, %s matching",
+             job->source_count, c.group_count, c.group_count == 1 ? "" : "s",
+             sequential ? "sequential (neighbours by name)" : "exhaustive");
+    if ((result = begin_database(&c, sequential)) != ORL_OK ||
+        (result = map(&c, false, NULL)) != ORL_OK ||
+        (!all(&c) && (result = try_hard(&c, sequential)) != ORL_OK) ||
+        (result = straighten(&c)) != ORL_OK ||
+        (result = finish(&c)) != ORL_OK)
+        goto end;
+    json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
+    json_object_set_new(record, "cameras", json_integer(c.group_count));
+    json_object_set_new(record, "matching", json_string(sequential ? "sequential" : "exhaustive"));
+    name_left_out(&c, record);
+    orl_job_set_calibrated(job, &c.best.model);
+end:
+    free(c.group);
+    candidate_finish(&c.best);
+    return result;
+}

@@ -1,0 +1,112 @@
+#include "preprocess/calibrate/undistort.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "preprocess/calibrate/companions.h"
+#include "preprocess/job/colmap_run.h"
+
+#define WORK ".oriel/undistort.tmp"
+
+static enum orl_result run_undistorter(struct orl_job *job)
+{
+    struct orl_colmap_args args = {0};
+    char *photos = orl_job_path(job, ".oriel/photos"), *out = orl_job_path(job, WORK);
+    char *model = orl_job_path(job, ".oriel/calibrate/model");
+    enum orl_result result = photos && out && model ? orl_job_fresh_dir(job, WORK) : ORL_ERR_MEMORY;
+    if (result != ORL_OK)
+        goto end;
+    orl_colmap_arg(&args, "--image_path", "%s", photos);
+    orl_colmap_arg(&args, "--input_path", "%s", model);
+    orl_colmap_arg(&args, "--output_path", "%s", out);
+    orl_colmap_arg(&args, "--max_image_size", "%d", orl_prepare_max_size(job->params));
+    result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "image_undistorter", .step = "undistort", .share = 1, .total = 1}, &args);
+end:
+    free(photos);
+    free(out);
+    free(model);
+    return result;
+}
+
+// COLMAP does not notice when a picture cannot be written, so each is read again.
+static enum orl_result check_photo(const struct orl_job *job,
+                                   const struct orl_colmap_model *model,
+                                   const struct orl_colmap_image *image)
+{
+    const struct orl_camera *camera =
+        &orl_colmap_camera_by_id(model, image->camera_id)->pinhole;
+    struct orl_image picture = {0};
+    char *path = orl_job_path(job, WORK "/images/%s", image->name);
+    enum orl_result result = path ? orl_picture_read(job->log, path, 1, &picture)
+                                  : ORL_ERR_MEMORY;
+    if (result == ORL_OK && (picture.width != camera->width || picture.height != camera->height))
+        result = orl_fail(job->log, ORL_ERR_EXTERNAL, "%s: %dx%d pixels, but COLMAP's camera has "
+                          "%dx%d", path, picture.width, picture.height, camera->width,
+                          camera->height);
+    else if (result != ORL_OK && result != ORL_ERR_MEMORY)
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: COLMAP did not write it whole", path);
+    orl_image_finish(&picture);
+    free(path);
+    return result;
+}
+
+static enum orl_result check_output(const struct orl_job *job,
+                                    const struct orl_colmap_model *model, json_t *record)
+{
+    int width = 0, height = 0;
+    size_t test = 0;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+        result = check_photo(job, model, &model->images[i]);
+        test += orl_job_find(job, model->images[i].name)->test;
+    }
+    for (size_t i = 0; i < model->camera_count; i++) {
+        const struct orl_camera *camera = &model->cameras[i].pinhole;
+        if (camera->width > width)
+            width = camera->width, height = camera->height;
+    }
+    if (result == ORL_OK && model->image_count < test + 2)
+        result = orl_fail(job->log, ORL_ERR_DATA,
+                          "of the photographs that are not held out only %zu could be placed; "
+                          "two are needed", model->image_count - test);
+    orl_progress_report(job->progress, "undistort", 1, 1, NULL);
+    if (result == ORL_OK)
+        json_object_set_new(record, "largest", json_pack("[i, i]", width, height));
+    else
+        orl_job_hint_disk(job);
+    return result;
+}
+
+// Moves what was made of some photographs to SCENE/`name`; of none: what was there goes.
+static enum orl_result replace_some(const struct orl_job *job, size_t count, const char *temp,
+                                    const char *name)
+{
+    return count ? orl_job_replace(job, temp, name) : orl_job_remove(job, name);
+}
+
+enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
+{
+    const struct orl_colmap_model *model;
+    size_t linear = 0, masks = 0;
+    enum orl_result result;
+    if ((result = orl_job_find_colmap(job)) != ORL_OK ||
+        (result = run_undistorter(job)) != ORL_OK ||
+        (result = orl_job_set_sparse(job, WORK "/sparse", &model)) != ORL_OK ||
+        (result = check_output(job, model, record)) != ORL_OK ||
+        (result = orl_undistort_linear(job, model, WORK "/linear", &linear)) != ORL_OK ||
+        (result = orl_undistort_masks(job, model, WORK "/masks", &masks)) != ORL_OK ||
+        (result = orl_job_replace(job, WORK "/sparse", "sparse")) != ORL_OK ||
+        (result = replace_some(job, linear, WORK "/linear", "images_linear")) != ORL_OK ||
+        (result = replace_some(job, masks, WORK "/masks", "masks")) != ORL_OK ||
+        (result = orl_job_replace(job, WORK "/images", "images")) != ORL_OK)
+        return result;
+    if (linear)
+        json_object_set_new(record, "linear_scale", json_real(job->linear_scale));
+    if (masks)
+        json_object_set_new(record, "masks", json_integer((json_int_t)masks));
+    json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
+    return orl_job_remove(job, WORK);
+}

@@ -1,0 +1,205 @@
+#include "preprocess/cloud/fuse.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "preprocess/job/colmap_run.h"
+#include "scene/point_radii.h"
+#include "scene/thin.h"
+
+// Of depth: a photograph that sees so much farther sees past a point.
+static const float STRAY_TOLERANCE = 0.01f;
+
+static double available_gib(void)
+{
+    long pages = sysconf(_SC_AVPHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
+    double gib = pages > 0 && size > 0 ? (double)pages * (double)size / (1 << 30) : 4;
+    // The kernel's own figure counts the file cache, which it can give up.
+    FILE *info = fopen("/proc/meminfo", "r");
+    char line[256];
+    unsigned long kib;
+    while (info && fgets(line, sizeof line, info))
+        if (sscanf(line, "MemAvailable: %lu kB", &kib) == 1)
+            gib = (double)kib / (1 << 20);
+    if (info)
+        fclose(info);
+    return gib;
+}
+
+// Depth, normal and colour of all photographs, as COLMAP keeps them.
+static double maps_gib(const struct orl_colmap_model *model)
+{
+    double bytes = 0;
+    for (size_t i = 0; i < model->image_count; i++) {
+        const struct orl_camera *camera =
+            &orl_colmap_camera_by_id(model, model->images[i].camera_id)->pinhole;
+        bytes += 24.0 * camera->width * camera->height;
+    }
+    return bytes / (1 << 30);
+}
+
+// GiB of COLMAP's cache of maps; 0: they all fit in memory.
+static double plan_cache(const struct orl_job *job, const struct orl_colmap_model *model)
+{
+    double need = maps_gib(model), have = available_gib();
+    if (need <= 0.5 * have)
+        return 0;
+    double cache_gib = 0.4 * have > 1 ? 0.4 * have : 1;
+    orl_logf(job->log, ORL_LOG_INFO,
+             "fuse: the maps need %.1f GiB and %.1f are free; reading them through a cache of "
+             "%.1f GiB, which is slower", need, have, cache_gib);
+    return cache_gib;
+}
+
+static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_pixels,
+                                 double cache_gib, struct orl_colmap_args *args)
+{
+    orl_colmap_arg(args, "--workspace_path", "%s", job->dir);
+    orl_colmap_arg(args, "--output_path", "%s", out);
+    orl_colmap_arg(args, "--input_type", "geometric");
+    orl_colmap_arg(args, "--StereoFusion.min_num_pixels", "%d", min_pixels);
+    // With several threads the points depend on which is faster; fusion is quick enough.
+    orl_colmap_arg(args, "--StereoFusion.num_threads", "1");
+    if (job->params->masks_dir) {
+        char *masks = orl_job_path(job, "masks");
+        if (!masks)
+            return ORL_ERR_MEMORY;
+        orl_colmap_arg(args, "--StereoFusion.mask_path", "%s", masks);
+        free(masks);
+    }
+    orl_colmap_arg(args, "--StereoFusion.use_cache", "%d", cache_gib > 0);
+    if (cache_gib > 0)
+        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.1f", cache_gib);
+    return ORL_OK;
+}
+
+// Reads the cloud that COLMAP fused, and how many photographs agree on each point.
+static enum orl_result read_cloud(const struct orl_job *job, const char *path,
+                                  struct orl_points *points)
+{
+    enum orl_result result = orl_points_read(job->log, path, points);
+    char *lists = result == ORL_OK ? orl_format(job->log, "%s.vis", path) : NULL;
+    if (result == ORL_OK)
+        result = lists ? orl_colmap_visibility_read(job->log, lists, points->count,
+                                                    points->photographs)
+                       : ORL_ERR_MEMORY;
+    free(lists);
+    return result;
+}
+
+// Runs COLMAP's fusion with that many photographs agreeing on a point. `done` of the
+// stage's work was done before.
+static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double cache_gib,
+                                  double done, struct orl_points *points)
+{
+    struct orl_colmap_args args = {0};
+    char *out = orl_job_path(job, ".oriel/fuse.tmp/%d.ply", min_pixels);
+    enum orl_result result =
+        out ? fuse_args(job, out, min_pixels, cache_gib, &args) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_job_colmap(job, &(struct orl_colmap_run){
+            .command = "stereo_fusion", .step = "fuse", .done = done, .share = 0.5, .total = 1},
+            &args);
+    if (result == ORL_OK)
+        result = read_cloud(job, out, points);
+    free(out);
+    return result;
+}
+
+// Points in front of what photographs see are strays: bright sky before a dark statue,
+// mostly. Reads the depth maps once each.
+static enum orl_result drop_strays(const struct orl_job *job, const struct orl_colmap_model *model,
+                                   struct orl_points *points)
+{
+    uint16_t *seen_past = orl_array(job->log, points->count, sizeof *seen_past);
+    enum orl_result result = seen_past ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+        const struct orl_colmap_image *image = &model->images[i];
+        struct orl_image depth = {0};
+        if (orl_job_find(job, image->name)->test)
+            continue;
+        char *path = orl_job_path(job, "stereo/depth_maps/%s.geometric.bin", image->name);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (orl_path_is_file(path)) // COLMAP makes none without sources
+            result = orl_colmap_map_read(job->log, path, &depth);
+        if (depth.f32) {
+            struct orl_view view = orl_colmap_image_view(model, image);
+            orl_points_count_seen_past(points, &view, &depth, STRAY_TOLERANCE, seen_past);
+        }
+        orl_image_finish(&depth);
+        free(path);
+    }
+    if (result == ORL_OK)
+        orl_points_drop_seen_past(seen_past, points);
+    free(seen_past);
+    return result;
+}
+
+// What three photographs agree on is good; what only two do is noisier and strays more,
+// but it is all there is of places that few see (docs/pipeline.md).
+static enum orl_result join_clouds(const struct orl_job *job, struct orl_points *pairs,
+                                   struct orl_points *points)
+{
+    const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
+    const struct orl_thin_params thin = {ORL_THIN_DEFAULTS};
+    if (pairs->count == 0)
+        return orl_fail(job->log, ORL_ERR_DATA,
+                        "no surface was found that two photographs agree on: take photographs "
+                        "closer together, of textured and matt surfaces, or with --quality high");
+    enum orl_result result = orl_points_set_radii(job->log, NULL, &radii, NULL, 0, pairs);
+    return result == ORL_OK ? orl_points_add_thin(job->log, &thin, pairs, points) : result;
+}
+
+static enum orl_result write_cloud(struct orl_job *job, struct orl_points *points)
+{
+    char *path = orl_job_path(job, ".oriel/fused.ply");
+    for (size_t i = 0; i < points->count; i++)
+        points->radius[i] = 0; // the next stage's
+    enum orl_result result =
+        path ? orl_points_write(job->log, path, points) : ORL_ERR_MEMORY;
+    if (result == ORL_ERR_IO)
+        orl_job_hint_disk(job);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
+{
+    struct orl_points pairs = {0}, points = {0};
+    const struct orl_colmap_model *model = NULL;
+    size_t three = 0;
+    enum orl_result result = orl_job_find_colmap(job);
+    if (result == ORL_OK)
+        result = orl_job_fresh_dir(job, ".oriel/fuse.tmp");
+    if (result == ORL_OK)
+        result = orl_job_sparse(job, &model);
+    double cache_gib = result == ORL_OK ? plan_cache(job, model) : 0;
+    if (result == ORL_OK)
+        result = fuse_cloud(job, 2, cache_gib, 0, &pairs);
+    if (result == ORL_OK)
+        result = fuse_cloud(job, 3, cache_gib, 0.5, &points);
+    three = points.count;
+    if (result == ORL_OK)
+        result = join_clouds(job, &pairs, &points);
+    size_t joined = points.count;
+    if (result == ORL_OK)
+        result = drop_strays(job, model, &points);
+    if (result == ORL_OK)
+        result = write_cloud(job, &points);
+    if (result == ORL_OK)
+        result = orl_job_remove(job, ".oriel/fuse.tmp");
+    if (result == ORL_OK) {
+        json_object_set_new(record, "cache_gib", json_real(cache_gib));
+        json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
+        json_object_set_new(record, "points_of_three", json_integer((json_int_t)three));
+        json_object_set_new(record, "strays", json_integer((json_int_t)(joined - points.count)));
+        json_object_set_new(record, "points", json_integer((json_int_t)points.count));
+        orl_progress_report(job->progress, "fuse", 1, 1, NULL);
+    }
+    orl_points_finish(&pairs);
+    orl_points_finish(&points);
+    return result;
+}

@@ -1,0 +1,348 @@
+#include "preprocess/cloud/ground.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bridge/bridge.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/vec3.h"
+#include "io/picture.h"
+#include "scene/colmap.h"
+#include "scene/ground_plane.h"
+#include "scene/manifest.h"
+
+enum {
+    SIDE = 256,         // longer side that photographs are looked at in, pixels
+    SHOTS_MAX = 24,
+    NEAR_MAX = 6,       // photographs that each is compared with
+    SPOTS = 12000,      // looked at in a photograph, about
+    SAMPLES_LEAST = 1000,
+    BLUR_TAPS = 31,
+    STEPS = 5, ROUNDS_MAX = 4, // of the search: halvings, and moves of each length
+};
+static const double BLUR_SIGMA = 6.2;  // pixels: exposure and vignetting are coarser
+static const double REACH = 15;        // heights: farther ground is a few rows of pixels
+static const double QUIET = 0.005;     // contrast that means nothing, of white
+// First steps of the search, in shares of the height and in radians, and its bounds.
+static const double SHIFT = 0.15, TILT = 0.02, SHIFT_MOST = 0.5, TILT_MOST = 0.08;
+// Costs COST of disagreement: the points have their say.
+static const double SHIFT_SIGMA = 0.2, TILT_SIGMA = 0.03, COST = 0.01;
+
+// A training photograph, small.
+struct shot {
+    struct orl_view view;
+    int width, height;
+    float *detail; // luma less its surroundings, of white
+    bool *open;    // no stereo depth
+    double eye[3];
+    int near[NEAR_MAX], near_count;
+};
+
+// Tilt and height of a plane, relative to the one that was found.
+struct move {
+    double log_height, tilt[2];
+};
+
+struct search {
+    const struct orl_ground *found;
+    struct shot shots[SHOTS_MAX];
+    int shot_count;
+    double axes[2][3]; // that it tilts along
+    double eye[3];     // mean of the photographs'
+};
+
+static enum orl_result find_detail(const struct orl_log *log, const struct orl_image *small,
+                                   struct shot *shot)
+{
+    struct orl_image luma = {0}, blurred = {0};
+    size_t count = (size_t)shot->width * (size_t)shot->height;
+    enum orl_result result =
+        orl_image_init(log, &luma, shot->width, shot->height, 1, ORL_PIXEL_F32);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        const uint8_t *rgb = &small->u8[3 * i];
+        luma.f32[i] = (0.299f * rgb[0] + 0.587f * rgb[1] + 0.114f * rgb[2]) / 255;
+    }
+    if (result == ORL_OK)
+        result = orl_bridge_blur(log, &luma, BLUR_TAPS, BLUR_SIGMA, &blurred);
+    shot->detail = result == ORL_OK ? orl_array(log, count, sizeof *shot->detail) : NULL;
+    if (result == ORL_OK && !shot->detail)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        shot->detail[i] = luma.f32[i] - blurred.f32[i];
+    orl_image_finish(&luma);
+    orl_image_finish(&blurred);
+    return result;
+}
+
+static enum orl_result find_open(const struct orl_log *log, const struct orl_image *depth,
+                                 struct shot *shot)
+{
+    shot->open = orl_array(log, (size_t)shot->width * (size_t)shot->height, sizeof *shot->open);
+    if (!shot->open)
+        return ORL_ERR_MEMORY;
+    for (int y = 0; y < shot->height; y++)
+        for (int x = 0; x < shot->width; x++) {
+            int u = (2 * x + 1) * depth->width / (2 * shot->width);
+            int v = (2 * y + 1) * depth->height / (2 * shot->height);
+            shot->open[y * shot->width + x] = !(depth->f32[v * depth->width + u] > 0);
+        }
+    return ORL_OK;
+}
+
+static enum orl_result read_shot(const struct orl_log *log, const struct orl_scene *scene, size_t i,
+                                 const char *depth_path, struct shot *shot)
+{
+    struct orl_image picture = {0}, small = {0}, depth = {0};
+    shot->view = scene->photos[i].view;
+    const struct orl_camera *c = &shot->view.camera;
+    double scale = fmin(1, (double)SIDE / (c->width > c->height ? c->width : c->height));
+    shot->width = (int)fmax(1, round(c->width * scale));
+    shot->height = (int)fmax(1, round(c->height * scale));
+    char *path = orl_scene_photo_path(log, scene, i);
+    enum orl_result result = path ? orl_picture_read(log, path, 3, &picture) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_bridge_resize(log, &picture, shot->width, shot->height, &small);
+    if (result == ORL_OK)
+        result = find_detail(log, &small, shot);
+    if (result == ORL_OK)
+        result = orl_colmap_map_read(log, depth_path, &depth);
+    if (result == ORL_OK)
+        result = find_open(log, &depth, shot);
+    shot->view.camera = orl_camera_resized(c, shot->width, shot->height);
+    orl_pose_centre(&shot->view.cam_from_world, shot->eye);
+    orl_image_finish(&picture);
+    orl_image_finish(&small);
+    orl_image_finish(&depth);
+    free(path);
+    return result;
+}
+
+// At most SHOTS_MAX of the training photographs with depth maps, evenly.
+static enum orl_result read_shots(const struct orl_log *log, const struct orl_scene *scene,
+                                  struct search *s)
+{
+    size_t train = 0, seen = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        train += !scene->photos[i].test;
+    size_t step = (train + SHOTS_MAX - 1) / SHOTS_MAX;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (scene->photos[i].test || seen++ % step != 0)
+            continue;
+        char *path = orl_format(log, "%s/stereo/depth_maps/%s.geometric.bin", scene->dir,
+                                scene->photos[i].name);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (orl_path_is_file(path)) // else deleted, as they may be
+            result = read_shot(log, scene, i, path, &s->shots[s->shot_count++]);
+        free(path);
+    }
+    return result;
+}
+
+static void find_near(struct search *s)
+{
+    for (int a = 0; a < s->shot_count; a++) {
+        struct shot *shot = &s->shots[a];
+        double away[SHOTS_MAX];
+        for (int b = 0; b < s->shot_count; b++) {
+            const double to[3] = {s->shots[b].eye[0] - shot->eye[0],
+                                  s->shots[b].eye[1] - shot->eye[1],
+                                  s->shots[b].eye[2] - shot->eye[2]};
+            away[b] = a == b ? INFINITY : orl_dot3(to, to);
+        }
+        while (shot->near_count < NEAR_MAX && shot->near_count < s->shot_count - 1) {
+            int nearest = 0;
+            for (int b = 1; b < s->shot_count; b++)
+                nearest = away[b] < away[nearest] ? b : nearest;
+            away[nearest] = INFINITY;
+            shot->near[shot->near_count++] = nearest;
+        }
+    }
+}
+
+static void find_axes(struct search *s)
+{
+    const double *n = s->found->plane;
+    int least = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
+    least = fabs(n[2]) < fabs(n[least]) ? 2 : least;
+    double *u = s->axes[0];
+    for (int k = 0; k < 3; k++)
+        u[k] = (k == least) - n[least] * n[k];
+    orl_normalize3(u);
+    orl_cross3(n, u, s->axes[1]);
+    for (int i = 0; i < s->shot_count; i++)
+        for (int k = 0; k < 3; k++)
+            s->eye[k] += s->shots[i].eye[k] / s->shot_count;
+}
+
+static struct orl_ground moved(const struct search *s, const struct move *move)
+{
+    struct orl_ground ground = {.known = true,
+                                .height = s->found->height * exp(move->log_height)};
+    double *n = ground.plane;
+    for (int k = 0; k < 3; k++)
+        n[k] = s->found->plane[k] + move->tilt[0] * s->axes[0][k] + move->tilt[1] * s->axes[1][k];
+    orl_normalize3(n);
+    // As far below the photographs' middle as it was, times exp(log_height).
+    double was = orl_plane_height(s->found->plane, s->eye);
+    n[3] = was * exp(move->log_height) - orl_dot3(n, s->eye);
+    return ground;
+}
+
+// What a photograph shows of a point of the ground; false: nothing, or something else.
+static bool look_up(const struct shot *shot, const double at[3], double *detail)
+{
+    double pixel[2], depth;
+    if (!orl_view_project(&shot->view, at, pixel, &depth))
+        return false;
+    double u = pixel[0] - 0.5, v = pixel[1] - 0.5;
+    if (!(u >= 2 && v >= 2 && u < shot->width - 3 && v < shot->height - 3))
+        return false;
+    int x = (int)u, y = (int)v;
+    if (!shot->open[y * shot->width + x])
+        return false;
+    const float *d = &shot->detail[y * shot->width + x];
+    u -= x;
+    v -= y;
+    *detail = (1 - v) * ((1 - u) * (double)d[0] + u * (double)d[1]) +
+              v * ((1 - u) * (double)d[shot->width] + u * (double)d[shot->width + 1]);
+    return true;
+}
+
+struct tally {
+    double off, contrast;
+    long samples;
+};
+
+// One photograph's open pixels on the ground against what its neighbours show there.
+static void compare(const struct search *s, const struct shot *shot,
+                    const struct orl_ground *ground, struct tally *tally)
+{
+    const struct orl_camera *c = &shot->view.camera;
+    double down[3];
+    if (!orl_ground_along_rays(ground, &shot->view, down))
+        return;
+    int step = 1 + (int)sqrt((double)shot->width * shot->height / SPOTS);
+    for (int y = step / 2; y < shot->height; y += step)
+        for (int x = step / 2; x < shot->width; x += step) {
+            const double ray[3] = {(x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy, 1};
+            double inverse = orl_dot3(down, ray), at[3];
+            if (!shot->open[y * shot->width + x] || inverse * REACH * ground->height < 1)
+                continue;
+            orl_view_unproject(&shot->view, x + 0.5, y + 0.5, 1 / inverse, at);
+            double here = (double)shot->detail[y * shot->width + x], there;
+            for (int k = 0; k < shot->near_count; k++) {
+                if (!look_up(&s->shots[shot->near[k]], at, &there))
+                    continue;
+                tally->off += fabs(here - there);
+                tally->contrast += fabs(here) + fabs(there) + QUIET;
+                tally->samples++;
+            }
+        }
+}
+
+// Relative to contrast, else the best ground would be where nothing is to be seen.
+static double disagreement(const struct search *s, const struct move *move, long samples_least)
+{
+    struct orl_ground ground = moved(s, move);
+    struct tally tally = {0};
+    for (int i = 0; i < s->shot_count; i++)
+        compare(s, &s->shots[i], &ground, &tally);
+    if (tally.samples < samples_least)
+        return INFINITY;
+    double shift = move->log_height / SHIFT_SIGMA, tilt = hypot(move->tilt[0], move->tilt[1]);
+    return tally.off / tally.contrast +
+           COST * (shift * shift + tilt * tilt / (TILT_SIGMA * TILT_SIGMA));
+}
+
+// The best of a move's 26 neighbours, if better; all at once, since height and tilt depend on
+// one another.
+static bool improve(const struct search *s, double length, long samples_least, struct move *best,
+                    double *least)
+{
+    struct move from = *best;
+    bool better = false;
+    for (int i = 0; i < 27; i++) {
+        struct move to = {from.log_height + (i % 3 - 1) * length * SHIFT,
+                          {from.tilt[0] + (i / 3 % 3 - 1) * length * TILT,
+                           from.tilt[1] + (i / 9 - 1) * length * TILT}};
+        if (fabs(to.log_height) > SHIFT_MOST || fabs(to.tilt[0]) > TILT_MOST ||
+            fabs(to.tilt[1]) > TILT_MOST)
+            continue;
+        double here = disagreement(s, &to, samples_least);
+        if (here >= *least)
+            continue;
+        *least = here;
+        *best = to;
+        better = true;
+    }
+    return better;
+}
+
+static void search(const struct orl_log *log, const struct search *s, struct orl_ground *ground)
+{
+    struct move best = {0};
+    struct tally tally = {0};
+    for (int i = 0; i < s->shot_count; i++)
+        compare(s, &s->shots[i], s->found, &tally);
+    if (tally.samples < SAMPLES_LEAST)
+        return;
+    // Fewer would be another ground, which less is seen of.
+    long samples_least = tally.samples / 2;
+    double before = disagreement(s, &best, samples_least), least = before, length = 1;
+    for (int i = 0; i < STEPS; i++, length /= 2)
+        for (int k = 0; k < ROUNDS_MAX && improve(s, length, samples_least, &best, &least); k++)
+            ;
+    *ground = moved(s, &best);
+    orl_logf(log, ORL_LOG_INFO, "ground: %.2f times as far below as points tell, tilted by %.1f "
+             "degrees; photographs differ by %.0f %% of contrast on it, before by %.0f %%",
+             exp(best.log_height), hypot(best.tilt[0], best.tilt[1]) * 57.29578, 100 * least,
+             100 * before);
+}
+
+enum orl_result orl_ground_refine(const struct orl_log *log, struct orl_scene *scene)
+{
+    if (!(scene->ground.height > 0))
+        return ORL_OK;
+    struct search *s = orl_array(log, 1, sizeof *s);
+    if (!s)
+        return ORL_ERR_MEMORY;
+    struct orl_ground found = scene->ground;
+    s->found = &found;
+    enum orl_result result = read_shots(log, scene, s);
+    if (result == ORL_OK && s->shot_count > 1) {
+        find_near(s);
+        find_axes(s);
+        search(log, s, &scene->ground);
+    }
+    for (int i = 0; i < s->shot_count; i++) {
+        free(s->shots[i].detail);
+        free(s->shots[i].open);
+    }
+    free(s);
+    return result;
+}
+
+enum orl_result orl_stage_ground(struct orl_job *job, json_t *record)
+{
+    const struct orl_colmap_model *model;
+    struct orl_names test = {0};
+    struct orl_scene *scene = NULL;
+    enum orl_result result = orl_job_sparse(job, &model);
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
+        if (job->sources[i].test)
+            result = orl_names_add(job->log, &test, job->sources[i].name);
+    if (result == ORL_OK)
+        result = orl_scene_open_unfinished(job->log, job->dir, model, &test, &scene);
+    if (result == ORL_OK)
+        result = orl_ground_refine(job->log, scene);
+    if (result == ORL_OK &&
+        json_object_set_new(record, "ground", orl_manifest_ground(&scene->ground)) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the ground");
+    orl_scene_destroy(&scene);
+    orl_names_finish(&test);
+    return result;
+}

@@ -1,0 +1,558 @@
+// Densify: every photograph by its own looks, then again with its sources' depths, once or
+// more.
+#include "preprocess/densify/densify.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/lock.h"
+#include "core/memory.h"
+#include "io/picture.h"
+#include "preprocess/densify/densify_internal.h"
+
+enum {
+    LEVELS_MAX = 9, // of the reference; sources that show the scene finer have more
+    COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this
+    GEOMETRIC_PASSES_MAX = 8,
+    PASSES_MAX = GEOMETRIC_PASSES_MAX + 1,
+    SPECKLE_SHARE = 2000, // pieces of less than one in so many pixels are dropped
+};
+
+// One walk over the photographs: from the maps of the one before to its own, each in
+// stereo/*_maps/NAME.KIND.bin.
+struct pass {
+    char kind[24];
+    bool geometric; // with the sources' depths of the pass before
+};
+
+struct densifier {
+    const struct orl_log *log;
+    struct orl_gpu *gpu;
+    struct orl_densify_params params; // sources: as many as fit
+    int shrink;                       // halvings of the photographs
+    const struct orl_progress *progress;
+    char *images_dir, *depth_dir, *normal_dir, *confidence_dir, *sparse_dir; // owned
+    const struct orl_colmap_model *model;
+    struct orl_colmap_model own_model; // where the caller gave none
+    struct densify_photos photos;
+    struct densify_plan *plans;
+    struct densify_device *device;
+    struct densify_cache *cache;
+    struct pass passes[PASSES_MAX];
+    int pass_count;
+    double done, total;
+    int lock_fd;
+};
+
+static enum orl_result check_params(const struct orl_log *log, const struct orl_densify_params *p)
+{
+    const struct {
+        const char *name;
+        int value, low, high;
+    } table[] = {
+        {"sources", p->sources, 1, ORL_DENSIFY_SOURCES_MAX},
+        {"iterations", p->iterations, 1, 16},
+        {"geometric_passes", p->geometric_passes, 0, GEOMETRIC_PASSES_MAX},
+        {"window_radius", p->window_radius, 1, 15},
+        {"window_step", p->window_step, 1, 4},
+    };
+    for (size_t i = 0; i < ORL_COUNT(table); i++)
+        if (table[i].value < table[i].low || table[i].value > table[i].high)
+            return orl_fail(log, ORL_ERR_ARGUMENT, "densify: %s is %d, not within [%d, %d]",
+                            table[i].name, table[i].value, table[i].low, table[i].high);
+    return ORL_OK;
+}
+
+// --- files ---
+
+static char *map_path(const struct densifier *d, const char *dir, size_t photo,
+                      const struct pass *pass)
+{
+    return orl_format(d->log, "%s/%s.%s.bin", dir, densify_photo_name(&d->photos, photo),
+                      pass->kind);
+}
+
+// Names may have folders.
+static enum orl_result make_folder_of(const struct densifier *d, const char *path)
+{
+    char *folder = orl_strdup(d->log, path);
+    if (!folder)
+        return ORL_ERR_MEMORY;
+    *strrchr(folder, '/') = '\0';
+    enum orl_result result = orl_dir_make(d->log, folder);
+    free(folder);
+    return result;
+}
+
+static enum orl_result write_map(const struct densifier *d, const char *dir, size_t photo,
+                                 const struct pass *pass, const struct orl_image *map)
+{
+    char *path = map_path(d, dir, photo, pass);
+    enum orl_result result = path ? make_folder_of(d, path) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_colmap_map_write(d->log, path, map);
+    free(path);
+    return result;
+}
+
+static enum orl_result read_map(const struct densifier *d, const char *dir, size_t photo,
+                                const struct pass *pass, int channels, struct orl_image *map)
+{
+    char *path = map_path(d, dir, photo, pass);
+    enum orl_result result = path ? orl_colmap_map_read(d->log, path, map) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && map->channels != channels) {
+        result = orl_fail(d->log, ORL_ERR_FORMAT, "%s: %d channels where %d are needed", path,
+                          map->channels, channels);
+        orl_image_finish(map);
+    }
+    free(path);
+    return result;
+}
+
+// The depth map is written last, so that a photograph with one has all.
+static enum orl_result write_maps(const struct densifier *d, size_t photo,
+                                  const struct pass *pass, const struct densify_maps *maps)
+{
+    enum orl_result result = write_map(d, d->normal_dir, photo, pass, &maps->normal);
+    if (result == ORL_OK && pass == &d->passes[d->pass_count - 1])
+        result = write_map(d, d->confidence_dir, photo, pass, &maps->confidence);
+    if (result == ORL_OK)
+        result = write_map(d, d->depth_dir, photo, pass, &maps->depth);
+    return result;
+}
+
+static enum orl_result has_maps(const struct densifier *d, size_t photo,
+                                const struct pass *pass, bool *has)
+{
+    char *depth = map_path(d, d->depth_dir, photo, pass);
+    char *normal = map_path(d, d->normal_dir, photo, pass);
+    enum orl_result result = depth && normal ? ORL_OK : ORL_ERR_MEMORY;
+    *has = result == ORL_OK && orl_path_is_file(depth) && orl_path_is_file(normal);
+    free(depth);
+    free(normal);
+    return result;
+}
+
+static enum orl_result read_mask(const struct densifier *d, struct densify_job *job)
+{
+    const struct orl_image *picture = &job->reference->levels[0];
+    if (!d->params.masks_dir)
+        return ORL_OK;
+    char *path = orl_format(d->log, "%s/%s.png", d->params.masks_dir, job->name);
+    if (!path)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    if (orl_path_is_file(path)) {
+        result = orl_picture_read(d->log, path, 1, &job->mask);
+        if (result == ORL_OK &&
+            (job->mask.width != picture->width || job->mask.height != picture->height))
+            result = orl_fail(d->log, ORL_ERR_DATA, "%s: %dx%d, but its photograph is %dx%d", path,
+                              job->mask.width, job->mask.height, picture->width, picture->height);
+    } else {
+        orl_logf(d->log, ORL_LOG_WARNING, "%s: no mask; the whole photograph is used", path);
+    }
+    free(path);
+    return result;
+}
+
+// --- one photograph ---
+
+// FNV-1a, so that a photograph's result does not depend on which others take part.
+static uint32_t name_seed(uint32_t seed, const char *name)
+{
+    uint32_t hash = 2166136261u ^ seed;
+    for (; *name; name++)
+        hash = (hash ^ (uint8_t)*name) * 16777619u;
+    return hash;
+}
+
+// Inverse depths of the photograph's sparse points at the coarsest level, spread to the
+// pixels nearest to them.
+static enum orl_result make_seeds(const struct densifier *d, size_t photo, struct densify_job *job)
+{
+    const struct orl_image *luma = &job->reference->levels[job->levels - 1];
+    const struct orl_colmap_image *image = &d->model->images[d->photos.images[photo]];
+    struct orl_view view = {.camera = orl_densify_level_camera(&job->reference->camera,
+                                                               job->levels - 1),
+                            .cam_from_world = job->view.cam_from_world};
+    enum orl_result result = orl_image_init(d->log, &job->seeds, luma->width, luma->height, 1,
+                                            ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    size_t pixels = (size_t)luma->width * (size_t)luma->height, filled = 0;
+    size_t width = (size_t)luma->width, height = (size_t)luma->height;
+    float *seeds = job->seeds.f32;
+    size_t *queue = orl_array(d->log, pixels, sizeof *queue);
+    if (!queue)
+        return ORL_ERR_MEMORY;
+    for (size_t k = 0; k < image->point_count; k++) {
+        double pixel[2], depth;
+        if (!orl_view_project(&view, d->model->points[image->points[k]].position, pixel, &depth) ||
+            !(pixel[0] >= 0.0 && pixel[1] >= 0.0 && pixel[0] < (double)width &&
+              pixel[1] < (double)height))
+            continue;
+        size_t at = (size_t)pixel[1] * width + (size_t)pixel[0];
+        if (!(seeds[at] > 0.0f))
+            queue[filled++] = at;
+        seeds[at] = fmaxf(seeds[at], (float)(1.0 / depth));
+    }
+    for (size_t i = 0; i < filled; i++) {
+        size_t at = queue[i], x = at % width, y = at / width;
+        size_t near[4] = {at - 1, at + 1, at - width, at + width};
+        bool there[4] = {x > 0, x + 1 < width, y > 0, y + 1 < height};
+        for (int k = 0; k < 4; k++)
+            if (there[k] && !(seeds[near[k]] > 0.0f)) {
+                seeds[near[k]] = seeds[at];
+                queue[filled++] = near[k];
+            }
+    }
+    free(queue);
+    return ORL_OK;
+}
+
+static void job_finish(struct densify_job *job)
+{
+    orl_image_finish(&job->mask);
+    orl_image_finish(&job->seeds);
+    for (int k = 0; k < ORL_DENSIFY_SOURCES_MAX; k++)
+        orl_image_finish(&job->source_depths[k]);
+}
+
+static int level_count(int width, int height)
+{
+    int side = width < height ? width : height, levels = 1;
+    while (levels < LEVELS_MAX && side >> levels >= COARSEST_SIDE)
+        levels++;
+    return levels;
+}
+
+static enum orl_result check_size(const struct densifier *d, const char *name,
+                                  const struct densify_pyramid *pyramid,
+                                  const struct orl_image *map)
+{
+    const struct orl_image *picture = &pyramid->levels[d->shrink];
+    if (map->width == picture->width && map->height == picture->height)
+        return ORL_OK;
+    return orl_fail(d->log, ORL_ERR_DATA,
+                    "%s: its maps are of another size; remove them to have them made again", name);
+}
+
+static enum orl_result read_source_depth(const struct densifier *d, const struct pass *before,
+                                         size_t photo, int slot, struct densify_job *job)
+{
+    struct orl_image *depth = &job->source_depths[slot];
+    enum orl_result result = read_map(d, d->depth_dir, photo, before, 1, depth);
+    if (result == ORL_OK)
+        result = check_size(d, densify_photo_name(&d->photos, photo), job->sources[slot], depth);
+    return result;
+}
+
+static enum orl_result job_open(const struct densifier *d, size_t photo, const struct pass *pass,
+                                struct densify_job *job)
+{
+    const struct densify_plan *plan = &d->plans[photo];
+    *job = (struct densify_job){
+        .name = densify_photo_name(&d->photos, photo),
+        .seed = name_seed(d->params.seed, densify_photo_name(&d->photos, photo)),
+        .view = d->photos.views[photo],
+        .plan = plan,
+        .finest = d->shrink,
+        .draw = (int)(pass - d->passes),
+        .last = pass == &d->passes[d->pass_count - 1],
+        .progress = d->progress,
+        .done = d->done,
+        .total = d->total,
+    };
+    orl_densify_cache_turn(d->cache);
+    enum orl_result result = orl_densify_cache_get(d->cache, photo, &job->reference);
+    if (result != ORL_OK)
+        return result;
+    job->levels = level_count(job->reference->levels[0].width, job->reference->levels[0].height);
+    if (pass->geometric || job->levels <= d->shrink)
+        job->levels = d->shrink + 1;
+    for (int k = 0; k < plan->count && result == ORL_OK; k++) {
+        size_t source = plan->sources[k].photo;
+        job->source_views[k] = d->photos.views[source];
+        result = orl_densify_cache_get(d->cache, source, &job->sources[k]);
+        if (result == ORL_OK && pass->geometric)
+            result = read_source_depth(d, &pass[-1], source, k, job);
+    }
+    if (result == ORL_OK)
+        result = read_mask(d, job);
+    if (result == ORL_OK && !pass->geometric)
+        result = make_seeds(d, photo, job);
+    return result;
+}
+
+// Maps without any depth, for a photograph that nothing can be matched with.
+static enum orl_result write_empty(const struct densifier *d, size_t photo,
+                                   const struct pass *pass)
+{
+    struct densify_maps maps = {0};
+    int width, height;
+    char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, photo));
+    enum orl_result result = path ? orl_picture_size(d->log, path, &width, &height)
+                                  : ORL_ERR_MEMORY;
+    free(path);
+    if (result == ORL_OK)
+        result = orl_image_init(d->log, &maps.depth, width >> d->shrink, height >> d->shrink, 1,
+                                ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
+                                ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(d->log, &maps.confidence, width >> d->shrink, height >> d->shrink,
+                                1, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = write_maps(d, photo, pass, &maps);
+    orl_densify_maps_finish(&maps);
+    return result;
+}
+
+static enum orl_result read_start(const struct densifier *d, size_t photo,
+                                  const struct pass *before, const struct densify_job *job,
+                                  struct densify_maps *start)
+{
+    enum orl_result result = read_map(d, d->depth_dir, photo, before, 1, &start->depth);
+    if (result == ORL_OK)
+        result = read_map(d, d->normal_dir, photo, before, 3, &start->normal);
+    if (result == ORL_OK)
+        result = check_size(d, job->name, job->reference, &start->depth);
+    if (result == ORL_OK)
+        result = check_size(d, job->name, job->reference, &start->normal);
+    return result;
+}
+
+static enum orl_result process(struct densifier *d, size_t photo, const struct pass *pass)
+{
+    struct densify_maps start = {0}, maps = {0};
+    struct densify_job job = {0};
+    enum orl_result result = job_open(d, photo, pass, &job);
+    if (result != ORL_OK)
+        goto end;
+    if (pass->geometric) {
+        result = read_start(d, photo, &pass[-1], &job, &start);
+        job.start = &start;
+        if (result == ORL_OK)
+            result = orl_densify_geometric(d->device, &job, &maps);
+    } else {
+        result = orl_densify_photometric(d->device, &job, &maps);
+    }
+    size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
+    struct orl_camera camera = orl_densify_level_camera(&job.reference->camera, job.finest);
+    if (result == ORL_OK && job.last)
+        result = orl_densify_remove_speckles(d->log, &camera, &maps, pixels / SPECKLE_SHARE,
+                                             0.01f);
+    if (result == ORL_OK && job.last)
+        result = orl_densify_complete(d->log, &job, &maps);
+    if (result == ORL_OK)
+        result = write_maps(d, photo, pass, &maps);
+end:
+    orl_densify_maps_finish(&start);
+    orl_densify_maps_finish(&maps);
+    job_finish(&job);
+    return result;
+}
+
+static enum orl_result process_all(struct densifier *d, const struct pass *pass)
+{
+    for (size_t i = 0; i < d->photos.count; i++) {
+        const char *name = densify_photo_name(&d->photos, i);
+        bool has;
+        enum orl_result result = has_maps(d, i, pass, &has);
+        if (result != ORL_OK)
+            return result;
+        if (orl_progress_cancelled(d->progress))
+            return ORL_ERR_CANCELLED;
+        orl_progress_report(d->progress, "densify", d->done, d->total, name);
+        if (!has && !d->plans[i].count) {
+            if (!pass->geometric)
+                orl_logf(d->log, ORL_LOG_WARNING,
+                         "%s: too little in common with the other photographs; no depth", name);
+            result = write_empty(d, i, pass);
+        } else if (!has) {
+            result = process(d, i, pass);
+        }
+        if (result != ORL_OK)
+            return result;
+        d->done += 1.0;
+        orl_progress_report(d->progress, "densify", d->done, d->total, name);
+    }
+    return ORL_OK;
+}
+
+// --- passes ---
+
+static void plan_passes(struct densifier *d)
+{
+    int agreeing = d->params.geometric_passes;
+    d->pass_count = agreeing + 1;
+    for (int i = 0; i < d->pass_count; i++) {
+        struct pass *pass = &d->passes[i];
+        pass->geometric = i > 0;
+        if (i > 0 && i < agreeing)
+            snprintf(pass->kind, sizeof pass->kind, "agreed-%d", i);
+        else
+            snprintf(pass->kind, sizeof pass->kind, "%s", i ? "geometric" : "photometric");
+    }
+    d->total = (double)d->photos.count * d->pass_count;
+}
+
+// Maps between the first and the last serve nothing once all are made.
+static enum orl_result remove_intermediate(const struct densifier *d)
+{
+    const char *dirs[] = {d->depth_dir, d->normal_dir};
+    for (size_t i = 0; i < d->photos.count; i++)
+        for (int p = 1; p < d->pass_count - 1; p++)
+            for (size_t k = 0; k < ORL_COUNT(dirs); k++) {
+                char *path = map_path(d, dirs[k], i, &d->passes[p]);
+                if (!path)
+                    return ORL_ERR_MEMORY;
+                remove(path);
+                free(path);
+            }
+    return ORL_OK;
+}
+
+static enum orl_result process_passes(struct densifier *d)
+{
+    bool all = true, has;
+    for (size_t i = 0; i < d->photos.count && all; i++) {
+        enum orl_result result = has_maps(d, i, &d->passes[d->pass_count - 1], &has);
+        if (result != ORL_OK)
+            return result;
+        all = has;
+    }
+    enum orl_result result = ORL_OK;
+    for (int p = 0; p < d->pass_count && result == ORL_OK && !all; p++)
+        result = process_all(d, &d->passes[p]);
+    return result == ORL_OK ? remove_intermediate(d) : result;
+}
+
+static enum orl_result check_plans(const struct densifier *d)
+{
+    for (size_t i = 0; i < d->photos.count; i++)
+        if (d->plans[i].count)
+            return ORL_OK;
+    return orl_fail(d->log, ORL_ERR_DATA,
+                    "none of the %zu photographs shares enough with another from a different "
+                    "place: take more photographs, walking sideways between them so that "
+                    "neighbours overlap by two thirds or more", d->photos.count);
+}
+
+// Settles how many sources and what size the device's memory allows, and says so.
+static enum orl_result plan_memory(struct densifier *d)
+{
+    struct densify_need need = {.padding = orl_densify_padding(&d->params),
+                                .geometric = d->params.geometric_passes > 0};
+    struct densify_budget budget;
+    int width, height, asked = d->params.sources;
+    for (size_t i = 0; i < d->photos.count; i++) {
+        char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, i));
+        enum orl_result result = path ? orl_picture_size(d->log, path, &width, &height)
+                                      : ORL_ERR_MEMORY;
+        free(path);
+        if (result != ORL_OK)
+            return result;
+        need.width = width > need.width ? width : need.width;
+        need.height = height > need.height ? height : need.height;
+        int side = width < height ? width : height;
+        need.least_side = i == 0 || side < need.least_side ? side : need.least_side;
+    }
+    bool fits = orl_densify_fit(&need, asked, d->params.max_vram_bytes, &budget);
+    if (!fits)
+        return orl_fail(d->log, ORL_ERR_GPU,
+                        "densify: %zu MiB of device memory are not enough for a photograph of "
+                        "%dx%d: the least is %.1f MiB", d->params.max_vram_bytes >> 20,
+                        need.width, need.height, (double)budget.bytes / (1 << 20));
+    d->params.sources = budget.sources;
+    d->shrink = budget.shrink;
+    bool less = budget.sources < asked || budget.shrink > 0;
+    if (less)
+        orl_logf(d->log, ORL_LOG_WARNING,
+                 "densify: %d sources at %dx%d need %.0f MiB of device memory; using less", asked,
+                 need.width, need.height,
+                 (double)orl_densify_bytes(&need, asked, 0) / (1 << 20));
+    orl_logf(d->log, ORL_LOG_INFO, "densify: up to %.0f MiB on the device: %d sources, %dx%d",
+             (double)budget.bytes / (1 << 20), budget.sources, need.width >> budget.shrink,
+             need.height >> budget.shrink);
+    return ORL_OK;
+}
+
+static enum orl_result open_workspace(struct densifier *d, const char *workspace,
+                                      const struct orl_names *names)
+{
+    d->images_dir = orl_path_join(d->log, workspace, "images");
+    d->sparse_dir = orl_path_join(d->log, workspace, "sparse");
+    d->depth_dir = orl_path_join(d->log, workspace, "stereo/depth_maps");
+    d->normal_dir = orl_path_join(d->log, workspace, "stereo/normal_maps");
+    d->confidence_dir = orl_path_join(d->log, workspace, "stereo/confidence_maps");
+    if (!d->images_dir || !d->sparse_dir || !d->depth_dir || !d->normal_dir || !d->confidence_dir)
+        return ORL_ERR_MEMORY;
+    enum orl_result result =
+        d->params.model ? ORL_OK : orl_colmap_read(d->log, d->sparse_dir, &d->own_model);
+    d->model = d->params.model ? d->params.model : &d->own_model;
+    if (result == ORL_OK)
+        result = orl_densify_photos_init(d->log, d->model, names, &d->photos);
+    if (result == ORL_OK)
+        result = plan_memory(d);
+    if (result == ORL_OK)
+        result = orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans);
+    if (result == ORL_OK)
+        result = check_plans(d);
+    if (result == ORL_OK)
+        result = orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink);
+    if (result == ORL_OK)
+        result = orl_dir_make(d->log, d->depth_dir);
+    if (result == ORL_OK)
+        result = orl_dir_make(d->log, d->normal_dir);
+    if (result == ORL_OK)
+        result = orl_dir_make(d->log, d->confidence_dir);
+    return result;
+}
+
+// Two at once would write one another's maps.
+static enum orl_result lock_workspace(struct densifier *d, const char *workspace)
+{
+    bool taken;
+    enum orl_result result = orl_lock(d->log, workspace, &d->lock_fd, &taken);
+    return result == ORL_OK && taken
+               ? orl_fail(d->log, ORL_ERR_ARGUMENT, "%s: another oriel densify is at work here",
+                          workspace)
+               : result;
+}
+
+enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
+                            const struct orl_names *photos,
+                            const struct orl_densify_params *params,
+                            const struct orl_progress *progress)
+{
+    struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
+                          .progress = progress, .lock_fd = -1};
+    enum orl_result result = check_params(d.log, params);
+    if (result == ORL_OK)
+        result = lock_workspace(&d, workspace);
+    if (result == ORL_OK)
+        result = open_workspace(&d, workspace, photos);
+    if (result == ORL_OK)
+        result = orl_densify_device_create(gpu, &d.params, &d.device);
+    if (result == ORL_OK)
+        result = orl_densify_cache_create(d.log, &d.photos, d.images_dir, &d.cache);
+    plan_passes(&d);
+    if (result == ORL_OK)
+        result = process_passes(&d);
+    orl_densify_cache_destroy(&d.cache);
+    orl_densify_device_destroy(&d.device);
+    free(d.plans);
+    orl_densify_photos_finish(&d.photos);
+    orl_colmap_finish(&d.own_model);
+    free(d.images_dir);
+    free(d.sparse_dir);
+    free(d.depth_dir);
+    free(d.normal_dir);
+    free(d.confidence_dir);
+    orl_unlock(&d.lock_fd);
+    return result;
+}

@@ -1,0 +1,581 @@
+// One photograph's depth and normals on the device.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "preprocess/densify/densify_internal.h"
+
+enum {
+    BAND_PIXELS = 1 << 17, // of one dispatch: bounded, so that no watchdog ends it
+    VIEWS_COARSE = 8,      // sources judged at the coarsest level
+    VIEWS_FINE = 3,        // and at the others
+    RANDOM_TRIES = 6,
+};
+
+// Greatest costs of depth that is kept: without and with other photographs' depths that
+// confirm it.
+static const float COST_MATCHED = 0.7f, COST_AGREED = 0.9f;
+
+enum program {
+    INIT_RANDOM,
+    INIT_COARSE,
+    INIT_FINE,
+    SWEEP_FINE,
+    INIT_MAPS,
+    SWEEP,
+    SWEEP_GEOMETRIC,
+    FIT,
+    FINISH_MATCHED,
+    FINISH_AGREED,
+    FINISH_LAST,
+    PROGRAM_COUNT
+};
+static const struct {
+    const char *file, *defines;
+} program_table[PROGRAM_COUNT] = {
+    [INIT_RANDOM] = {"densify/init.comp", "FROM_RANDOM"},
+    [INIT_COARSE] = {"densify/init.comp", "FROM_COARSE"},
+    [INIT_FINE] = {"densify/init.comp", "FROM_COARSE"},
+    [SWEEP_FINE] = {"densify/sweep.comp", ""},
+    [INIT_MAPS] = {"densify/init.comp", "FROM_MAPS\nGEOMETRIC"},
+    [SWEEP] = {"densify/sweep.comp", ""},
+    [SWEEP_GEOMETRIC] = {"densify/sweep.comp", "GEOMETRIC"},
+    [FIT] = {"densify/fit.comp", ""},
+    [FINISH_MATCHED] = {"densify/finish.comp", ""},
+    [FINISH_AGREED] = {"densify/finish.comp", "GEOMETRIC"},
+    [FINISH_LAST] = {"densify/finish.comp", "GEOMETRIC\nSMOOTH"},
+};
+
+struct densify_device {
+    struct orl_gpu *gpu;
+    struct orl_densify_params params;
+    int padding; // texels around each source layer
+};
+
+// The state of one level.
+struct level {
+    struct orl_tex *reference, *sources, *source_depths, *planes, *costs, *view_costs;
+    struct orl_tex *extra; // what the first planes come from
+    bool extra_owned;
+    struct densify_block block;
+    int number; // 0 = full size
+};
+
+static void level_finish(struct orl_gpu *gpu, struct level *level)
+{
+    orl_tex_destroy(gpu, &level->reference);
+    orl_tex_destroy(gpu, &level->sources);
+    orl_tex_destroy(gpu, &level->source_depths);
+    orl_tex_destroy(gpu, &level->planes);
+    orl_tex_destroy(gpu, &level->costs);
+    orl_tex_destroy(gpu, &level->view_costs);
+    orl_tex_destroy(gpu, &level->extra);
+}
+
+enum orl_result orl_densify_device_create(struct orl_gpu *gpu,
+                                          const struct orl_densify_params *params,
+                                          struct densify_device **out)
+{
+    struct densify_device *device = orl_array(orl_gpu_log(gpu), 1, sizeof *device);
+    *out = device;
+    if (!device)
+        return ORL_ERR_MEMORY;
+    device->gpu = gpu;
+    device->params = *params;
+    device->padding = orl_densify_padding(params);
+    return ORL_OK;
+}
+
+void orl_densify_device_destroy(struct densify_device **handle)
+{
+    struct densify_device *device = *handle;
+    if (!device)
+        return;
+    free(device);
+    *handle = NULL;
+}
+
+static int half(int value)
+{
+    return value > 1 ? value / 2 : 1;
+}
+
+static struct orl_prog *program_of(const struct densify_device *device, enum program which)
+{
+    char defines[256];
+    const struct orl_densify_params *p = &device->params;
+    // Coarser levels have told the rough shape, and agreement with other photographs holds
+    // planes in place, so that patches may be small: they then belong to one surface up to
+    // a pixel or two from its edge.
+    bool fine = which == INIT_FINE || which == SWEEP_FINE;
+    bool small = which == INIT_MAPS || which == SWEEP_GEOMETRIC || which == FINISH_AGREED ||
+                 which == FINISH_LAST;
+    int radius = fine ? (p->window_radius + 1) / 2 : p->window_radius;
+    snprintf(defines, sizeof defines, "RADIUS %d\nSTEP %d\nSOURCES %d\nPADDING %d\n%s",
+             small ? half(p->window_radius) : radius,
+             small ? half(p->window_step) : p->window_step, p->sources, device->padding,
+             program_table[which].defines);
+    return orl_prog_get(device->gpu, program_table[which].file, NULL, defines);
+}
+
+// --- upload ---
+
+static enum orl_result make_state(struct orl_gpu *gpu, struct level *level, int width, int height)
+{
+    const struct {
+        struct orl_tex **tex;
+        GLenum format;
+        const char *tag;
+    } table[] = {{&level->planes, GL_RGBA32F, "densify planes"},
+                 {&level->costs, GL_R32F, "densify costs"},
+                 {&level->view_costs, GL_RGBA32UI, "densify view costs"}};
+    for (size_t i = 0; i < ORL_COUNT(table); i++) {
+        struct orl_tex_params params = {.width = width, .height = height,
+                                        .format = table[i].format, .tag = table[i].tag};
+        enum orl_result result = orl_tex_create(gpu, &params, table[i].tex);
+        if (result != ORL_OK)
+            return result;
+    }
+    return ORL_OK;
+}
+
+bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y)
+{
+    if (!mask->data)
+        return true;
+    int size = 1 << level;
+    for (int j = y * size; j < (y + 1) * size; j++)
+        for (int i = x * size; i < (x + 1) * size; i++)
+            if (mask->u8[(size_t)j * (size_t)mask->width + (size_t)i])
+                return true;
+    return false;
+}
+
+static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densify_job *job,
+                                        struct level *level)
+{
+    const struct orl_image *luma = &job->reference->levels[level->number];
+    struct orl_tex_params params = {.width = luma->width, .height = luma->height,
+                                    .format = GL_RG8, .tag = "densify reference"};
+    enum orl_result result = orl_tex_create(gpu, &params, &level->reference);
+    if (result != ORL_OK)
+        return result;
+    size_t count = (size_t)luma->width * (size_t)luma->height;
+    uint8_t *pixels = orl_array(orl_gpu_log(gpu), count, 2);
+    if (!pixels)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        int x = (int)(i % (size_t)luma->width), y = (int)(i / (size_t)luma->width);
+        pixels[2 * i] = luma->u8[i];
+        pixels[2 * i + 1] = orl_densify_mask_at(&job->mask, level->number, x, y) ? 255 : 0;
+    }
+    orl_tex_write(level->reference, 0, 0, GL_RG, GL_UNSIGNED_BYTE, pixels);
+    free(pixels);
+    return ORL_OK;
+}
+
+static int source_level(const struct densify_job *job, int source, int level)
+{
+    int wanted = level + job->plan->sources[source].finer;
+    int most = job->sources[source]->count - 1;
+    return wanted < most ? wanted : most;
+}
+
+static int clamp_int(int value, int low, int high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+// Each texel holds its 2x2 neighbourhood; the edge is repeated into the padding.
+static void pack_quads(const struct orl_image *luma, int padding, uint32_t *quads)
+{
+    int width = luma->width + 2 * padding, height = luma->height + 2 * padding;
+    for (int y = 0; y < height; y++) {
+        int y0 = clamp_int(y - padding, 0, luma->height - 1);
+        int y1 = clamp_int(y + 1 - padding, 0, luma->height - 1);
+        const uint8_t *row0 = luma->u8 + (size_t)y0 * (size_t)luma->width;
+        const uint8_t *row1 = luma->u8 + (size_t)y1 * (size_t)luma->width;
+        for (int x = 0; x < width; x++) {
+            int x0 = clamp_int(x - padding, 0, luma->width - 1);
+            int x1 = clamp_int(x + 1 - padding, 0, luma->width - 1);
+            *quads++ = (uint32_t)row0[x0] | (uint32_t)row0[x1] << 8 | (uint32_t)row1[x0] << 16 |
+                       (uint32_t)row1[x1] << 24;
+        }
+    }
+}
+
+static enum orl_result upload_sources(struct densify_device *device, const struct densify_job *job,
+                                      struct level *level)
+{
+    int count = job->plan->count, pad = device->padding;
+    struct orl_tex_params params = {.layers = count, .format = GL_R32UI,
+                                    .tag = "densify sources"};
+    for (int k = 0; k < count; k++) {
+        const struct orl_image *luma =
+            &job->sources[k]->levels[source_level(job, k, level->number)];
+        params.width = luma->width + 2 * pad > params.width ? luma->width + 2 * pad : params.width;
+        params.height =
+            luma->height + 2 * pad > params.height ? luma->height + 2 * pad : params.height;
+    }
+    enum orl_result result = orl_tex_create(device->gpu, &params, &level->sources);
+    if (result != ORL_OK)
+        return result;
+    uint32_t *quads = orl_array(orl_gpu_log(device->gpu),
+                                (size_t)params.width * (size_t)params.height, sizeof *quads);
+    if (!quads)
+        return ORL_ERR_MEMORY;
+    for (int k = 0; k < count; k++) {
+        const struct orl_image *luma =
+            &job->sources[k]->levels[source_level(job, k, level->number)];
+        pack_quads(luma, pad, quads);
+        orl_tex_write_part(level->sources, 0, k, luma->width + 2 * pad, luma->height + 2 * pad,
+                           GL_RED_INTEGER, GL_UNSIGNED_INT, quads);
+    }
+    free(quads);
+    return ORL_OK;
+}
+
+static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct densify_job *job,
+                                            struct level *level)
+{
+    struct orl_tex_params params = {.layers = job->plan->count, .format = GL_R32F,
+                                    .tag = "densify source depths"};
+    for (int k = 0; k < job->plan->count; k++) {
+        const struct orl_image *depth = &job->source_depths[k];
+        params.width = depth->width > params.width ? depth->width : params.width;
+        params.height = depth->height > params.height ? depth->height : params.height;
+    }
+    enum orl_result result = orl_tex_create(gpu, &params, &level->source_depths);
+    if (result != ORL_OK)
+        return result;
+    float *inverse = orl_array(orl_gpu_log(gpu), (size_t)params.width * (size_t)params.height,
+                               sizeof *inverse);
+    if (!inverse)
+        return ORL_ERR_MEMORY;
+    for (int k = 0; k < job->plan->count; k++) {
+        const struct orl_image *depth = &job->source_depths[k];
+        size_t count = (size_t)depth->width * (size_t)depth->height;
+        for (size_t i = 0; i < count; i++)
+            inverse[i] = depth->f32[i] > 0.0f ? 1.0f / depth->f32[i] : 0.0f;
+        orl_tex_write_part(level->source_depths, 0, k, depth->width, depth->height, GL_RED,
+                           GL_FLOAT, inverse);
+    }
+    free(inverse);
+    return ORL_OK;
+}
+
+static enum orl_result upload_start(struct orl_gpu *gpu, const struct densify_job *job,
+                                    struct level *level)
+{
+    const struct orl_image *depth = &job->start->depth, *normal = &job->start->normal;
+    struct orl_tex_params params = {.width = depth->width, .height = depth->height,
+                                    .format = GL_RGBA32F, .tag = "densify start"};
+    enum orl_result result = orl_tex_create(gpu, &params, &level->extra);
+    if (result != ORL_OK)
+        return result;
+    size_t count = (size_t)depth->width * (size_t)depth->height;
+    float *pixels = orl_array(orl_gpu_log(gpu), count, 4 * sizeof *pixels);
+    if (!pixels)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(&pixels[4 * i], &normal->f32[3 * i], 3 * sizeof *pixels);
+        pixels[4 * i + 3] = depth->f32[i];
+    }
+    orl_tex_write(level->extra, 0, 0, GL_RGBA, GL_FLOAT, pixels);
+    free(pixels);
+    return ORL_OK;
+}
+
+static enum orl_result upload_seeds(struct orl_gpu *gpu, const struct densify_job *job,
+                                    struct level *level)
+{
+    struct orl_tex_params params = {.width = job->seeds.width, .height = job->seeds.height,
+                                    .format = GL_R32F, .tag = "densify seeds"};
+    enum orl_result result = orl_tex_create(gpu, &params, &level->extra);
+    if (result == ORL_OK)
+        orl_tex_write(level->extra, 0, 0, GL_RED, GL_FLOAT, job->seeds.f32);
+    return result;
+}
+
+// --- parameters ---
+
+// Pixels by which matches move per unit of inverse depth at the picture's centre,
+// averaged over the sources.
+static double parallax(const struct densify_job *job, const struct orl_camera *camera,
+                       const struct densify_block *block)
+{
+    double sum = 0.0, total = 0.0;
+    double w = 0.5 * (job->plan->w_min + job->plan->w_max * 0.6);
+    for (int k = 0; k < job->plan->count; k++) {
+        double c[3], q[4] = {0.5 * camera->width, 0.5 * camera->height, 1.0, w};
+        for (int i = 0; i < 3; i++) {
+            const float *row = block->forward[3 * k + i];
+            c[i] = row[0] * q[0] + row[1] * q[1] + row[2] * q[2] + row[3] * q[3];
+        }
+        if (!(c[2] > 0.0))
+            continue;
+        double motion = block->forward[3 * k + 2][3];
+        double x = (block->forward[3 * k][3] - c[0] / c[2] * motion) / c[2];
+        double y = (block->forward[3 * k + 1][3] - c[1] / c[2] * motion) / c[2];
+        sum += job->plan->sources[k].prior * hypot(x, y);
+        total += job->plan->sources[k].prior;
+    }
+    return sum > 0.0 ? sum / total : 1.0 / job->plan->w_max;
+}
+
+static void set_block(const struct densify_device *device, const struct densify_job *job,
+                      struct level *level)
+{
+    struct densify_block *block = &level->block;
+    struct orl_view ref = job->view;
+    ref.camera = orl_densify_level_camera(&job->reference->camera, level->number);
+    for (int k = 0; k < job->plan->count; k++) {
+        int shrunk = source_level(job, k, level->number);
+        struct orl_view source = job->source_views[k];
+        source.camera = orl_densify_level_camera(&job->sources[k]->camera, job->finest);
+        orl_densify_transfer(&ref, &source, &block->backward[3 * k]);
+        source.camera = orl_densify_level_camera(&job->sources[k]->camera, shrunk);
+        block->extent[k][0] = (float)source.camera.width;
+        block->extent[k][1] = (float)source.camera.height;
+        block->extent[k][2] = (float)job->plan->sources[k].prior;
+        block->extent[k][3] = (float)(1 << (shrunk - job->finest));
+        // Texel centres at whole numbers, behind the padding.
+        source.camera.cx += device->padding - 0.5;
+        source.camera.cy += device->padding - 0.5;
+        orl_densify_transfer(&source, &ref, &block->forward[3 * k]);
+    }
+    const struct orl_camera *c = &ref.camera;
+    memcpy(block->camera, (float[]){(float)c->fx, (float)c->fy, (float)c->cx, (float)c->cy},
+           sizeof block->camera);
+    block->range[0] = (float)job->plan->w_min;
+    block->range[1] = (float)job->plan->w_max;
+    block->range[2] = (float)(1.0 / parallax(job, c, block));
+    block->area[0] = c->width;
+    block->area[1] = c->height;
+    block->tune[2] = 0.2f; // Xu and Tao 2019, 3.3
+    block->tune[3] = 3.0f;
+    block->limit[0] = COST_AGREED;
+    block->limit[1] = 1.5f;
+    block->limit[2] = 0.9f;
+    block->limit[3] = 0.5f;
+    block->run[0] = (int)job->seed;
+}
+
+// --- dispatch ---
+
+static enum orl_result run(struct densify_device *device, const struct densify_job *job,
+                           struct level *level, enum program which, struct orl_tex *extra,
+                           double done)
+{
+    struct orl_prog *prog = program_of(device, which);
+    enum orl_result result = ORL_OK;
+    int width = level->block.area[0], height = level->block.area[1];
+    bool half = which == SWEEP || which == SWEEP_FINE || which == SWEEP_GEOMETRIC;
+    int band = (BAND_PIXELS / width / ORL_PIXEL_GROUP_Y + 1) * ORL_PIXEL_GROUP_Y;
+    for (int row = 0; row < height && result == ORL_OK; row += band) {
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        int end = row + band < height ? row + band : height;
+        level->block.area[2] = row;
+        level->block.area[3] = end;
+        struct orl_dispatch dispatch = {
+            .prog = prog,
+            .params = &level->block,
+            .params_size = sizeof level->block,
+            .textures = {level->reference, level->sources, level->source_depths},
+            .images = {{level->planes, 0, GL_READ_WRITE}, {level->costs, 0, GL_READ_WRITE},
+                       {level->view_costs, 0, GL_READ_WRITE}, {extra, 0, GL_READ_WRITE}},
+            .groups = {orl_groups((size_t)(half ? (width + 1) / 2 : width), ORL_PIXEL_GROUP_X),
+                       orl_groups((size_t)(end - row), ORL_PIXEL_GROUP_Y)},
+            .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT,
+        };
+        orl_gpu_dispatch(device->gpu, &dispatch);
+        result = orl_gpu_finish(device->gpu);
+    }
+    orl_progress_report(job->progress, "densify", job->done + done, job->total, job->name);
+    return result;
+}
+
+static enum orl_result sweep(struct densify_device *device, const struct densify_job *job,
+                             struct level *level, enum program which, double done)
+{
+    enum orl_result result = ORL_OK;
+    for (int color = 0; color < 2 && result == ORL_OK; color++) {
+        level->block.run[1]++;
+        level->block.run[2] = color;
+        result = run(device, job, level, which, NULL, done);
+    }
+    return result;
+}
+
+static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
+                                 struct densify_maps *maps)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    int width = tex->params.width, height = tex->params.height;
+    size_t count = (size_t)width * (size_t)height;
+    float *pixels = orl_array(log, count, 4 * sizeof *pixels);
+    if (!pixels)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = orl_image_init(log, &maps->depth, width, height, 1, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &maps->normal, width, height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &maps->confidence, width, height, 1, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        goto end;
+    orl_tex_read(tex, 0, GL_RGBA, GL_FLOAT, count * 4 * sizeof *pixels, pixels);
+    result = orl_gpu_finish(gpu);
+    for (size_t i = 0; i < count; i++) {
+        const float *n = &pixels[4 * i];
+        float confidence = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int k = 0; k < 3 && confidence > 0.0f; k++)
+            maps->normal.f32[3 * i + (size_t)k] = n[k] / confidence;
+        maps->confidence.f32[i] = confidence;
+        maps->depth.f32[i] = n[3];
+    }
+end:
+    free(pixels);
+    if (result != ORL_OK)
+        orl_densify_maps_finish(maps);
+    return result;
+}
+
+static enum orl_result finish(struct densify_device *device, const struct densify_job *job,
+                              struct level *level, enum program which, struct densify_maps *maps)
+{
+    struct orl_tex *out = NULL;
+    struct orl_tex_params params = {.width = level->block.area[0], .height = level->block.area[1],
+                                    .format = GL_RGBA32F, .tag = "densify maps"};
+    enum orl_result result = orl_tex_create(device->gpu, &params, &out);
+    if (result == ORL_OK)
+        result = run(device, job, level, FIT, NULL, 0.95);
+    if (result == ORL_OK)
+        result = run(device, job, level, which, out, 1.0);
+    if (result == ORL_OK)
+        result = read_maps(device->gpu, out, maps);
+    orl_tex_destroy(device->gpu, &out);
+    return result;
+}
+
+static enum orl_result level_open(struct densify_device *device, const struct densify_job *job,
+                                  struct level *level)
+{
+    set_block(device, job, level);
+    enum orl_result result = make_state(device->gpu, level, level->block.area[0],
+                                        level->block.area[1]);
+    if (result == ORL_OK)
+        result = upload_reference(device->gpu, job, level);
+    if (result == ORL_OK)
+        result = upload_sources(device, job, level);
+    return result;
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+// Depth and normal changes tried, halved from sweep to sweep.
+static void set_steps(struct level *level, float pixels, float normal, int number)
+{
+    level->block.tune[0] = fmaxf(pixels * exp2f((float)-number), 0.1f);
+    level->block.tune[1] = fmaxf(normal * exp2f((float)-number), 0.05f);
+}
+
+static enum orl_result sweeps_coarsest(struct densify_device *device, const struct densify_job *job,
+                                       struct level *level, double share)
+{
+    int count = device->params.iterations + 2;
+    level->block.run[3] = RANDOM_TRIES;
+    enum orl_result result = upload_seeds(device->gpu, job, level);
+    if (result == ORL_OK)
+        result = run(device, job, level, INIT_RANDOM, level->extra, 0.0);
+    level->block.tests[0] = 8;
+    level->block.tests[1] = 6;
+    level->block.tests[2] = least(VIEWS_COARSE, device->params.sources);
+    for (int i = 0; i < count && result == ORL_OK; i++) {
+        set_steps(level, 4.0f, 0.5f, i);
+        result = sweep(device, job, level, SWEEP, share * (i + 1) / count);
+    }
+    return result;
+}
+
+static enum orl_result sweeps_finer(struct densify_device *device, const struct densify_job *job,
+                                    struct level *level, struct orl_tex *coarse, double begin,
+                                    double end)
+{
+    int count = (device->params.iterations + 1) / 2;
+    bool fine = level->number <= job->finest + 1;
+    level->block.run[3] = 1;
+    enum orl_result result = run(device, job, level, fine ? INIT_FINE : INIT_COARSE, coarse, begin);
+    level->block.tests[0] = 4;
+    level->block.tests[1] = 4;
+    level->block.tests[2] = least(VIEWS_FINE, device->params.sources);
+    for (int i = 0; i < count && result == ORL_OK; i++) {
+        set_steps(level, 1.0f, 0.3f, i);
+        result = sweep(device, job, level, fine ? SWEEP_FINE : SWEEP,
+                       begin + (end - begin) * (i + 1) / count);
+    }
+    return result;
+}
+
+enum orl_result orl_densify_photometric(struct densify_device *device,
+                                        const struct densify_job *job,
+                                        struct densify_maps *maps)
+{
+    struct level level = {0}, coarser = {0};
+    enum orl_result result = ORL_OK;
+    int count = job->levels;
+    for (int number = count - 1; number >= job->finest && result == ORL_OK; number--) {
+        // Each level has four times the pixels of the one before.
+        double end = exp2(2.0 * (job->finest - number)), begin = 0.25 * end;
+        level = (struct level){.number = number};
+        result = level_open(device, job, &level);
+        if (result != ORL_OK)
+            break;
+        level.block.run[1] = 1000 * number;
+        level.block.limit[0] = COST_MATCHED;
+        if (number == count - 1)
+            result = sweeps_coarsest(device, job, &level, end);
+        else
+            result = sweeps_finer(device, job, &level, coarser.planes, begin, end);
+        level_finish(device->gpu, &coarser);
+        if (result == ORL_OK && number == job->finest)
+            result = finish(device, job, &level, FINISH_MATCHED, maps);
+        coarser = level;
+        level = (struct level){0};
+    }
+    level_finish(device->gpu, &level);
+    level_finish(device->gpu, &coarser);
+    return result;
+}
+
+enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
+                                      struct densify_maps *maps)
+{
+    struct level level = {.number = job->finest};
+    enum orl_result result = level_open(device, job, &level);
+    if (result == ORL_OK)
+        result = upload_source_depths(device->gpu, job, &level);
+    if (result == ORL_OK)
+        result = upload_start(device->gpu, job, &level);
+    if (result != ORL_OK)
+        goto end;
+    level.block.run[1] = 1000 * (DENSIFY_LEVELS_MAX + job->draw);
+    level.block.run[3] = 1;
+    result = run(device, job, &level, INIT_MAPS, level.extra, 0.2);
+    level.block.tests[0] = 6;
+    level.block.tests[1] = 1;
+    level.block.tests[2] = least(VIEWS_FINE, device->params.sources);
+    set_steps(&level, 0.5f, 0.15f, 0);
+    if (result == ORL_OK)
+        result = sweep(device, job, &level, SWEEP_GEOMETRIC, 0.9);
+    if (result == ORL_OK)
+        result = finish(device, job, &level, job->last ? FINISH_LAST : FINISH_AGREED, maps);
+end:
+    level_finish(device->gpu, &level);
+    return result;
+}

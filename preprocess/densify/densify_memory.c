@@ -1,0 +1,53 @@
+// Device memory of the densifier: what one photograph needs, and what to give up when
+// that is not there.
+#include "preprocess/densify/densify_internal.h"
+
+enum {
+    SOURCES_LEAST = 4, // fewer lose more than halving the size does
+    SIDE_LEAST = 16, // of any photograph, so that it has as many levels as the others
+};
+
+// Drivers refuse larger ones, or are slow with them.
+static const uint64_t TEXTURE_MAX = (uint64_t)1 << 30;
+
+static uint64_t pixels(int width, int height, int padding)
+{
+    return (uint64_t)(width + 2 * padding) * (uint64_t)(height + 2 * padding);
+}
+
+int orl_densify_padding(const struct orl_densify_params *params)
+{
+    return 3 * params->window_radius + 2;
+}
+
+uint64_t orl_densify_bytes(const struct densify_need *need, int sources, int shrink)
+{
+    int width = need->width >> shrink, height = need->height >> shrink;
+    uint64_t own = pixels(width, height, 0), padded = pixels(width, height, need->padding);
+    // Luma and mask 2, planes 16, costs 4, costs of views 16; each source a quad of 4.
+    uint64_t level = 38 * own + 4 * (uint64_t)sources * padded;
+    uint64_t coarser = 38 * pixels(width / 2, height / 2, 0) +
+                       4 * (uint64_t)sources * pixels(width / 2, height / 2, need->padding);
+    // The coarser level goes before the maps (16) come.
+    uint64_t matching = level + (coarser > 16 * own ? coarser : 16 * own);
+    // First and finished maps, the sources' depths.
+    uint64_t agreeing = level + 32 * own + 4 * (uint64_t)sources * own;
+    return need->geometric && agreeing > matching ? agreeing : matching;
+}
+
+bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_bytes,
+                     struct densify_budget *budget)
+{
+    int fewest = sources < SOURCES_LEAST ? sources : SOURCES_LEAST;
+    for (int shrink = 0; shrink == 0 || need->least_side >> shrink >= SIDE_LEAST; shrink++)
+        for (int count = sources; count >= fewest; count--) {
+            uint64_t layer = 4 * pixels(need->width >> shrink, need->height >> shrink,
+                                        need->padding);
+            *budget = (struct densify_budget){.sources = count, .shrink = shrink,
+                                              .bytes = orl_densify_bytes(need, count, shrink)};
+            if ((!max_bytes || budget->bytes <= max_bytes) &&
+                layer * (uint64_t)count <= TEXTURE_MAX)
+                return true;
+        }
+    return false;
+}

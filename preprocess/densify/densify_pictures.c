@@ -1,0 +1,260 @@
+// Photographs as luma pyramids, decoded once while memory lasts, and clean-up of finished
+// maps.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "io/picture.h"
+#include "preprocess/densify/densify_internal.h"
+
+static enum orl_result halve(const struct orl_log *log, const struct orl_image *fine,
+                             struct orl_image *coarse)
+{
+    enum orl_result result = orl_image_init(log, coarse, fine->width / 2, fine->height / 2, 1,
+                                            ORL_PIXEL_U8);
+    if (result != ORL_OK)
+        return result;
+    size_t stride = (size_t)fine->width;
+    for (int y = 0; y < coarse->height; y++) {
+        const uint8_t *row = fine->u8 + 2 * (size_t)y * stride;
+        uint8_t *out = coarse->u8 + (size_t)y * (size_t)coarse->width;
+        for (int x = 0; x < coarse->width; x++, row += 2)
+            out[x] = (uint8_t)((row[0] + row[1] + row[stride] + row[stride + 1] + 2) / 4);
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *path,
+                                         const struct orl_camera *camera,
+                                         struct densify_pyramid *pyramid)
+{
+    memset(pyramid, 0, sizeof *pyramid);
+    enum orl_result result = orl_picture_read(log, path, 1, &pyramid->levels[0]);
+    if (result != ORL_OK)
+        return result;
+    const struct orl_image *picture = &pyramid->levels[0];
+    pyramid->camera = orl_camera_resized(camera, picture->width, picture->height);
+    pyramid->count = 1;
+    while (pyramid->count < DENSIFY_LEVELS_MAX &&
+           pyramid->levels[pyramid->count - 1].width >= 4 &&
+           pyramid->levels[pyramid->count - 1].height >= 4) {
+        result = halve(log, &pyramid->levels[pyramid->count - 1], &pyramid->levels[pyramid->count]);
+        if (result != ORL_OK) {
+            orl_densify_pyramid_finish(pyramid);
+            return result;
+        }
+        pyramid->count++;
+    }
+    return ORL_OK;
+}
+
+void orl_densify_pyramid_finish(struct densify_pyramid *pyramid)
+{
+    for (int i = 0; i < pyramid->count; i++)
+        orl_image_finish(&pyramid->levels[i]);
+    memset(pyramid, 0, sizeof *pyramid);
+}
+
+struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int level)
+{
+    double scale = 1.0 / (double)(1 << level);
+    return (struct orl_camera){.width = camera->width >> level,
+                               .height = camera->height >> level,
+                               .fx = camera->fx * scale,
+                               .fy = camera->fy * scale,
+                               .cx = camera->cx * scale,
+                               .cy = camera->cy * scale};
+}
+
+void orl_densify_maps_finish(struct densify_maps *maps)
+{
+    orl_image_finish(&maps->depth);
+    orl_image_finish(&maps->normal);
+    orl_image_finish(&maps->confidence);
+}
+
+// --- decoded photographs: each is the source of several, and serves every pass ---
+
+// Beyond this, only those of the photograph at work are held.
+static const size_t BYTES_MAX = (size_t)256 << 20;
+
+struct cache_entry {
+    struct densify_pyramid pyramid; // count 0: not here
+    uint64_t turn;                  // when it was last asked for
+};
+
+struct densify_cache {
+    const struct orl_log *log;
+    const struct densify_photos *photos;
+    const char *images_dir;
+    struct cache_entry *entries; // one per photograph
+    uint64_t turn;
+    size_t bytes;
+};
+
+enum orl_result orl_densify_cache_create(const struct orl_log *log,
+                                         const struct densify_photos *photos,
+                                         const char *images_dir, struct densify_cache **out)
+{
+    struct densify_cache *cache = orl_array(log, 1, sizeof *cache);
+    *out = NULL;
+    if (!cache)
+        return ORL_ERR_MEMORY;
+    *cache = (struct densify_cache){.log = log, .photos = photos, .images_dir = images_dir};
+    cache->entries = orl_array(log, photos->count, sizeof *cache->entries);
+    if (!cache->entries) {
+        free(cache);
+        return ORL_ERR_MEMORY;
+    }
+    *out = cache;
+    return ORL_OK;
+}
+
+void orl_densify_cache_destroy(struct densify_cache **handle)
+{
+    struct densify_cache *cache = *handle;
+    if (!cache)
+        return;
+    for (size_t i = 0; i < cache->photos->count; i++)
+        orl_densify_pyramid_finish(&cache->entries[i].pyramid);
+    free(cache->entries);
+    free(cache);
+    *handle = NULL;
+}
+
+void orl_densify_cache_turn(struct densify_cache *cache)
+{
+    cache->turn++;
+}
+
+static size_t pyramid_bytes(const struct densify_pyramid *pyramid)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < pyramid->count; i++)
+        bytes += (size_t)pyramid->levels[i].width * (size_t)pyramid->levels[i].height;
+    return bytes;
+}
+
+// Drops those not asked for longest until the rest fits; none of this turn.
+static void make_room(struct densify_cache *cache)
+{
+    while (cache->bytes > BYTES_MAX) {
+        struct cache_entry *oldest = NULL;
+        for (size_t i = 0; i < cache->photos->count; i++) {
+            struct cache_entry *entry = &cache->entries[i];
+            if (entry->pyramid.count && entry->turn < cache->turn &&
+                (!oldest || entry->turn < oldest->turn))
+                oldest = entry;
+        }
+        if (!oldest)
+            return;
+        cache->bytes -= pyramid_bytes(&oldest->pyramid);
+        orl_densify_pyramid_finish(&oldest->pyramid);
+    }
+}
+
+enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
+                                      const struct densify_pyramid **pyramid)
+{
+    struct cache_entry *entry = &cache->entries[photo];
+    enum orl_result result = ORL_OK;
+    if (!entry->pyramid.count) {
+        char *path = orl_path_join(cache->log, cache->images_dir,
+                                   densify_photo_name(cache->photos, photo));
+        result = path ? orl_densify_pyramid_read(cache->log, path,
+                                                 &cache->photos->views[photo].camera,
+                                                 &entry->pyramid)
+                      : ORL_ERR_MEMORY;
+        free(path);
+        cache->bytes += pyramid_bytes(&entry->pyramid);
+    }
+    entry->turn = cache->turn;
+    *pyramid = &entry->pyramid;
+    make_room(cache);
+    return result;
+}
+
+// --- speckles ---
+
+enum { REACH = 2 }; // pixels from one to the next of a piece, so that pinholes do not cut it
+
+struct flood {
+    const struct densify_maps *maps;
+    const struct orl_camera *camera;
+    uint8_t *seen;
+    size_t *queue;
+    float tolerance;
+};
+
+// Off the pixel's plane by less than `tolerance` of its depth. Depths alone would not do:
+// on ground seen at a flat angle they differ by several percent from row to row.
+static bool connected(const struct flood *flood, size_t from, size_t to)
+{
+    const struct orl_camera *c = flood->camera;
+    const float *depth = flood->maps->depth.f32, *n = &flood->maps->normal.f32[3 * from];
+    size_t width = (size_t)flood->maps->depth.width;
+    float off = 0.0f, point[2][3];
+    for (int k = 0; k < 2; k++) {
+        size_t at = k ? to : from;
+        float z = depth[at];
+        point[k][0] = z * (float)(((double)(at % width) + 0.5 - c->cx) / c->fx);
+        point[k][1] = z * (float)(((double)(at / width) + 0.5 - c->cy) / c->fy);
+        point[k][2] = z;
+    }
+    for (int i = 0; i < 3; i++)
+        off += n[i] * (point[1][i] - point[0][i]);
+    return depth[to] > 0.0f && fabsf(off) < flood->tolerance * depth[from];
+}
+
+// Queues the piece that holds `start`; returns its size.
+static size_t flood_from(struct flood *flood, size_t start)
+{
+    int width = flood->maps->depth.width, height = flood->maps->depth.height;
+    size_t count = 0;
+    flood->queue[count++] = start;
+    flood->seen[start] = 1;
+    for (size_t i = 0; i < count; i++) {
+        size_t at = flood->queue[i];
+        int x = (int)(at % (size_t)width), y = (int)(at / (size_t)width);
+        int left = x > REACH ? x - REACH : 0, top = y > REACH ? y - REACH : 0;
+        for (int v = top; v <= y + REACH && v < height; v++)
+            for (int u = left; u <= x + REACH && u < width; u++) {
+                size_t near = (size_t)v * (size_t)width + (size_t)u;
+                if (flood->seen[near] || !connected(flood, at, near))
+                    continue;
+                flood->seen[near] = 1;
+                flood->queue[count++] = near;
+            }
+    }
+    return count;
+}
+
+enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
+                                            const struct orl_camera *camera,
+                                            struct densify_maps *maps, size_t least,
+                                            float tolerance)
+{
+    size_t count = (size_t)maps->depth.width * (size_t)maps->depth.height;
+    struct flood flood = {.maps = maps, .camera = camera, .tolerance = tolerance};
+    enum orl_result result = ORL_ERR_MEMORY;
+    flood.seen = orl_array(log, count, sizeof *flood.seen);
+    flood.queue = orl_array(log, count, sizeof *flood.queue);
+    if (!flood.seen || !flood.queue)
+        goto end;
+    for (size_t start = 0; start < count; start++) {
+        if (flood.seen[start] || !(maps->depth.f32[start] > 0.0f))
+            continue;
+        size_t piece = flood_from(&flood, start);
+        for (size_t i = 0; piece < least && i < piece; i++) {
+            maps->depth.f32[flood.queue[i]] = 0.0f;
+            maps->confidence.f32[flood.queue[i]] = 0.0f;
+            memset(&maps->normal.f32[3 * flood.queue[i]], 0, 3 * sizeof(float));
+        }
+    }
+    result = ORL_OK;
+end:
+    free(flood.seen);
+    free(flood.queue);
+    return result;
+}

@@ -1,0 +1,185 @@
+// stereo/densify.json: what the maps beside it were made from and with, so that a run
+// that would make others does not take them for its own.
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <xxhash.h>
+
+#include "core/json.h"
+#include "core/memory.h"
+#include "preprocess/densify/densify_internal.h"
+
+static const char *const map_dirs[] = {"stereo/depth_maps", "stereo/normal_maps",
+                                       "stereo/confidence_maps"};
+
+struct digest {
+    const struct orl_log *log;
+    XXH3_state_t *state;
+};
+
+static void add_text(struct digest *digest, const char *text)
+{
+    XXH3_64bits_update(digest->state, text, strlen(text) + 1);
+}
+
+// A file's name and contents; one that is not there counts as such.
+static enum orl_result add_file(struct digest *digest, const char *dir, const char *name,
+                                const char *suffix)
+{
+    uint64_t hash = 0;
+    enum orl_result result = ORL_OK;
+    char *path = orl_format(digest->log, "%s/%s%s", dir, name, suffix);
+    if (!path)
+        return ORL_ERR_MEMORY;
+    if (orl_path_is_file(path))
+        result = orl_file_hash(digest->log, path, &hash);
+    add_text(digest, name);
+    XXH3_64bits_update(digest->state, &hash, sizeof hash);
+    free(path);
+    return result;
+}
+
+static enum orl_result add_model(struct digest *digest, const char *workspace)
+{
+    static const char *const names[] = {"cameras", "images", "points3D"};
+    char *dir = orl_path_join(digest->log, workspace, "sparse");
+    enum orl_result result = dir ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(names); i++) {
+        result = add_file(digest, dir, names[i], ".bin");
+        if (result == ORL_OK)
+            result = add_file(digest, dir, names[i], ".txt");
+    }
+    free(dir);
+    return result;
+}
+
+static enum orl_result add_pictures(struct digest *digest, const char *workspace,
+                                    const struct densify_photos *photos, const char *masks_dir)
+{
+    char *dir = orl_path_join(digest->log, workspace, "images");
+    enum orl_result result = dir ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < photos->count; i++) {
+        result = add_file(digest, dir, densify_photo_name(photos, i), "");
+        if (result == ORL_OK && masks_dir)
+            result = add_file(digest, masks_dir, densify_photo_name(photos, i), ".png");
+    }
+    free(dir);
+    return result;
+}
+
+static enum orl_result make_record(const struct orl_log *log, const char *workspace,
+                                   const struct densify_photos *photos,
+                                   const struct orl_densify_params *params, int shrink,
+                                   json_t **record)
+{
+    struct digest digest = {log, XXH3_createState()};
+    if (!digest.state)
+        return orl_fail(log, ORL_ERR_MEMORY, "no memory for a checksum");
+    XXH3_64bits_reset(digest.state);
+    enum orl_result result = add_model(&digest, workspace);
+    if (result == ORL_OK)
+        result = add_pictures(&digest, workspace, photos, params->masks_dir);
+    if (result == ORL_OK)
+        *record = json_pack(
+            "{s:i, s:{s:i, s:i, s:i, s:i, s:i, s:I, s:i, s:b}, s:o}", "version",
+            ORL_DENSIFY_VERSION, "settings", "sources", params->sources, "iterations",
+            params->iterations, "geometric_passes", params->geometric_passes, "window_radius",
+            params->window_radius, "window_step", params->window_step, "seed",
+            (json_int_t)params->seed, "halvings", shrink, "masks", params->masks_dir != NULL,
+            "inputs", json_sprintf("xxh3:%016" PRIx64, XXH3_64bits_digest(digest.state)));
+    if (result == ORL_OK && !*record)
+        result = orl_fail(log, ORL_ERR_MEMORY, "no memory for the stereo's record");
+    XXH3_freeState(digest.state);
+    return result;
+}
+
+// Sets *any when a photograph taking part has a map of any kind.
+static enum orl_result find_maps(const struct orl_log *log, const char *workspace,
+                                 const struct densify_photos *photos, bool *any)
+{
+    static const char *const kinds[] = {"photometric", "geometric"};
+    *any = false;
+    for (size_t i = 0; i < photos->count; i++)
+        for (size_t k = 0; k < ORL_COUNT(kinds) * ORL_COUNT(map_dirs); k++) {
+            char *path = orl_format(log, "%s/%s/%s.%s.bin", workspace, map_dirs[k / 2],
+                                    densify_photo_name(photos, i), kinds[k % 2]);
+            if (!path)
+                return ORL_ERR_MEMORY;
+            *any = *any || orl_path_is_file(path);
+            free(path);
+        }
+    return ORL_OK;
+}
+
+static enum orl_result remove_maps(const struct orl_log *log, const char *workspace)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(map_dirs); i++) {
+        char *path = orl_path_join(log, workspace, map_dirs[i]);
+        result = path ? orl_dir_remove(log, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    return result;
+}
+
+// Maps are removed and written below the workspace only.
+static enum orl_result refuse_links(const struct orl_log *log, const char *workspace)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i <= ORL_COUNT(map_dirs); i++) {
+        struct stat st;
+        char *path = orl_path_join(log, workspace, i ? map_dirs[i - 1] : "stereo");
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (lstat(path, &st) == 0 && !S_ISDIR(st.st_mode))
+            result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: a link or file in place of the folder of "
+                              "maps, which is not followed; remove it", path);
+        free(path);
+    }
+    return result;
+}
+
+enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *workspace,
+                                       const struct densify_photos *photos,
+                                       const struct orl_densify_params *params, int shrink)
+{
+    json_t *record = NULL, *old = NULL;
+    bool any = false;
+    char *stereo = orl_path_join(log, workspace, "stereo");
+    char *path = orl_path_join(log, workspace, "stereo/densify.json");
+    enum orl_result result = stereo && path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result != ORL_OK)
+        goto end;
+    if ((result = refuse_links(log, workspace)) != ORL_OK ||
+        (result = make_record(log, workspace, photos, params, shrink, &record)) != ORL_OK ||
+        (result = find_maps(log, workspace, photos, &any)) != ORL_OK)
+        goto end;
+    bool ours = orl_path_is_file(path);
+    if (any && !ours) {
+        result = orl_fail(log, ORL_ERR_ARGUMENT,
+                          "%s/depth_maps: these maps were not made by oriel densify, or by one "
+                          "that kept no record of how; remove them to have them made", stereo);
+        goto end;
+    }
+    // A record that cannot be read says nothing of what the maps were made with.
+    bool same = ours && orl_json_read(NULL, path, &old) == ORL_OK && json_equal(old, record);
+    if (same)
+        goto end;
+    if (any)
+        orl_logf(log, ORL_LOG_WARNING,
+                 "densify: the maps there are of other photographs or settings: made again");
+    // In this order: interrupted, the old record stands for what is left of the old maps.
+    if (ours)
+        result = remove_maps(log, workspace);
+    if (result == ORL_OK)
+        result = orl_dir_make(log, stereo);
+    if (result == ORL_OK)
+        result = orl_json_write(log, path, record);
+end:
+    json_decref(record);
+    json_decref(old);
+    free(stereo);
+    free(path);
+    return result;
+}

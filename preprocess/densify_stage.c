@@ -1,0 +1,216 @@
+#include "preprocess/densify_stage.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "gpu/gpu.h"
+#include "preprocess/densify/densify.h"
+#include "preprocess/job/colmap_run.h"
+
+enum { COLMAP_SOURCES = 20 };
+
+// --- COLMAP's lists: training photographs only ---
+
+// Photographs of `names` that share most sparse points with image `ref`, best first.
+static size_t best_sources(const struct orl_colmap_model *model, const struct orl_names *names,
+                           size_t ref, bool *seen, size_t best[COLMAP_SOURCES])
+{
+    size_t shared[COLMAP_SOURCES] = {0}, count = 0;
+    const struct orl_colmap_image *image = &model->images[ref];
+    memset(seen, 0, model->point_count);
+    for (size_t p = 0; p < image->point_count; p++)
+        seen[image->points[p]] = true;
+    for (size_t i = 0; i < model->image_count; i++) {
+        size_t common = 0;
+        if (i == ref || !orl_names_contain(names, model->images[i].name))
+            continue;
+        for (size_t p = 0; p < model->images[i].point_count; p++)
+            common += seen[model->images[i].points[p]];
+        size_t at = count;
+        while (at > 0 && shared[at - 1] < common)
+            at--;
+        if (common == 0 || at == COLMAP_SOURCES)
+            continue;
+        count += count < COLMAP_SOURCES;
+        for (size_t k = count - 1; k > at; k--)
+            shared[k] = shared[k - 1], best[k] = best[k - 1];
+        shared[at] = common;
+        best[at] = i;
+    }
+    return count;
+}
+
+static enum orl_result write_sources(struct orl_job *job, FILE *out,
+                                     const struct orl_names *names)
+{
+    const struct orl_colmap_model *model;
+    enum orl_result result = orl_job_sparse(job, &model);
+    if (result != ORL_OK)
+        return result;
+    bool *seen = orl_array(job->log, model->point_count, sizeof *seen);
+    if (!seen)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < model->image_count; i++) {
+        size_t best[COLMAP_SOURCES];
+        if (!orl_names_contain(names, model->images[i].name))
+            continue;
+        size_t count = best_sources(model, names, i, seen, best);
+        if (!count)
+            continue; // COLMAP stops at a photograph without sources
+        fprintf(out, "%s\n", model->images[i].name);
+        for (size_t k = 0; k < count; k++)
+            fprintf(out, "%s%s", k ? ", " : "", model->images[best[k]].name);
+        fprintf(out, "\n");
+    }
+    free(seen);
+    return ORL_OK;
+}
+
+// COLMAP's own lists would take held-out photographs as sources.
+static enum orl_result write_stereo_lists(struct orl_job *job, const struct orl_names *train)
+{
+    struct orl_atomic_file file = {0};
+    char *fusion = orl_job_path(job, "stereo/fusion.cfg");
+    char *sources = orl_job_path(job, "stereo/patch-match.cfg");
+    FILE *out = NULL;
+    enum orl_result result = fusion && sources ? orl_job_write_list(job, fusion, train)
+                                               : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_atomic_begin(job->log, sources, &file);
+    if (result != ORL_OK)
+        goto end;
+    out = fopen(file.temp, "w");
+    if (!out) {
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be written", sources);
+        goto end;
+    }
+    result = write_sources(job, out, train);
+    if (fclose(out) != 0 && result == ORL_OK)
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be written", sources);
+    if (result == ORL_OK)
+        result = orl_atomic_commit(job->log, &file);
+end:
+    orl_atomic_abort(&file);
+    free(fusion);
+    free(sources);
+    return result;
+}
+
+// --- densify ---
+
+static struct orl_densify_params densify_settings(const struct orl_job *job)
+{
+    struct orl_densify_params params = {ORL_DENSIFY_DEFAULTS};
+    if (job->params->quality == ORL_QUALITY_DRAFT) {
+        params.sources = 5;
+        params.iterations = 3;
+    } else if (job->params->quality == ORL_QUALITY_HIGH) {
+        params.sources = 10;
+        params.iterations = 6;
+        params.geometric_passes = 2;
+    }
+    params.seed = job->params->seed;
+    params.max_vram_bytes = job->params->max_vram_bytes;
+    return params;
+}
+
+static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *train,
+                                  json_t *record)
+{
+    struct orl_densify_params params = densify_settings(job);
+    enum orl_result result = orl_job_sparse(job, &params.model);
+    struct orl_gpu *own = NULL, *gpu = job->params->gpu;
+    char *masks = orl_job_path(job, "masks");
+    if (!masks)
+        result = ORL_ERR_MEMORY;
+    if (result == ORL_OK && !gpu) {
+        result = orl_gpu_create(job->log,
+                                &(struct orl_gpu_params){.shader_dir = job->params->shader_dir},
+                                &own);
+        gpu = own;
+    }
+    if (result != ORL_OK)
+        goto end;
+    params.masks_dir = job->params->masks_dir ? masks : NULL;
+    const struct orl_gpu_caps *caps = orl_gpu_caps(gpu);
+    json_object_set_new(record, "tool", json_string("built-in PatchMatch"));
+    json_object_set_new(record, "device", json_string(caps->renderer));
+    json_object_set_new(record, "settings", json_pack(
+        "{s:i, s:i, s:i, s:i, s:i}", "sources", params.sources, "iterations", params.iterations,
+        "geometric_passes", params.geometric_passes, "window_radius", params.window_radius,
+        "window_step", params.window_step));
+    orl_logf(job->log, ORL_LOG_INFO, "densify: %zu photographs on %s", train->count,
+             caps->renderer);
+    result = orl_densify(gpu, job->dir, train, &params, job->progress);
+end:
+    orl_gpu_destroy(&own);
+    free(masks);
+    return result;
+}
+
+static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
+{
+    struct orl_colmap_args args = {0};
+    orl_colmap_arg(&args, "--workspace_path", "%s", job->dir);
+    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
+    orl_colmap_arg(&args, "--PatchMatchStereo.geom_consistency", "1");
+    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "patch_match_stereo", .step = "densify", .share = 1, .total = 1}, &args);
+    json_object_set_new(record, "tool",
+                        json_sprintf("COLMAP %s patch_match_stereo", job->colmap_version));
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "densify", 1, 1, NULL);
+    return result;
+}
+
+// Maps of an interrupted run are kept when they were made with the same settings.
+static enum orl_result begin_stereo(const struct orl_job *job)
+{
+    const char *key = job->keys[ORL_STAGE_DENSIFY];
+    uint8_t *data = NULL;
+    size_t size;
+    char *path = orl_job_path(job, "stereo/.oriel-key");
+    if (!path)
+        return ORL_ERR_MEMORY;
+    bool same = orl_file_read(NULL, path, 64, &data, &size) == ORL_OK &&
+                strcmp((const char *)data, key) == 0;
+    enum orl_result result = ORL_OK;
+    if (!same) {
+        static const char *const dirs[] = {"stereo", "stereo/depth_maps", "stereo/normal_maps",
+                                           "stereo/consistency_graphs"};
+        for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++)
+            result = orl_job_fresh_dir(job, dirs[i]);
+        if (result == ORL_OK)
+            result = orl_file_write(job->log, path, key, strlen(key));
+    }
+    free(data);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_stage_densify(struct orl_job *job, json_t *record)
+{
+    struct orl_names train = {0};
+    enum orl_densifier densifier = job->params->densifier;
+    enum orl_result result = densifier == ORL_DENSIFIER_GL ? ORL_OK : orl_job_find_colmap(job);
+    if (result != ORL_OK)
+        return result;
+    bool use_colmap = densifier == ORL_DENSIFIER_COLMAP ||
+                      (densifier == ORL_DENSIFIER_AUTO && job->colmap_cuda);
+    if (use_colmap && !job->colmap_cuda)
+        return orl_fail(job->log, ORL_ERR_UNSUPPORTED,
+                        "--densifier colmap: COLMAP %s here was built without CUDA; use gl",
+                        job->colmap_version);
+    if ((result = orl_job_train_names(job, &train)) != ORL_OK ||
+        (result = begin_stereo(job)) != ORL_OK ||
+        (result = write_stereo_lists(job, &train)) != ORL_OK)
+        goto end;
+    result = use_colmap ? densify_colmap(job, record) : densify_gl(job, &train, record);
+    if (result == ORL_ERR_IO)
+        orl_job_hint_disk(job);
+end:
+    orl_names_finish(&train);
+    return result;
+}

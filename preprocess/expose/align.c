@@ -1,0 +1,500 @@
+#include "preprocess/expose/align.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "preprocess/expose/cholesky.h"
+
+enum {
+    ITERATIONS = 6,
+    TUKEY_ITERATIONS = 2, // the last ones: what does not fit has no say at all
+    ROUNDS = 3,           // again without photographs that were refused
+    SAMPLES_MIN = 20,     // fewer say nothing about a photograph
+    LENS_PHOTOS_MIN = 3,  // fewer cannot tell a lens from what it shows
+    LENS_TERMS = 3,
+};
+static const double LN2 = 0.69314718055994531;
+// Standard deviation of a sample's log colour: gloss, registration. Noise comes on top.
+static const double SAMPLE_SIGMA = 0.1;
+// What thousands of samples share cannot make a photograph's gain surer than this.
+static const double GAIN_SIGMA = 0.02;
+
+// --- the problem: log colour + log gain - log vignetting is the same for all of a point ---
+
+struct problem {
+    const struct orl_log *log;
+    const struct orl_samples *samples;
+    const struct orl_align_params *params;
+    struct orl_align_photo *photos;
+    size_t photo_count, lens_count;
+    float (*value)[4];  // log of linear colour: r g b and their mean; per observation
+    float *sigma;       // of it; INFINITY: takes no part
+    float *weight;      // robust
+    float *lens_log;    // log of the vignetting found so far
+    float *scratch;     // per observation
+    double *matrix, *x, *prior, *precision;
+    size_t *lens_photos;        // photographs of each lens
+    double (*lens)[LENS_TERMS]; // log vignetting = sum of lens[k] r^(2 k + 2)
+};
+
+// One observation's row: coefficients of unknowns.
+struct row {
+    size_t index[1 + LENS_TERMS];
+    double factor[1 + LENS_TERMS];
+    int count;
+};
+
+static struct row row_of(const struct problem *p, size_t i, bool with_lens)
+{
+    const struct orl_observation *item = &p->samples->items[i];
+    struct row row = {.index = {item->photo}, .factor = {1}, .count = 1};
+    double power = 1;
+    for (int k = 0; with_lens && k < LENS_TERMS; k++) {
+        power *= (double)item->r2;
+        row.index[row.count] =
+            p->photo_count + LENS_TERMS * (size_t)p->photos[item->photo].lens + (size_t)k;
+        row.factor[row.count++] = -power;
+    }
+    return row;
+}
+
+static double row_times(const struct row *row, const double *x)
+{
+    double sum = 0;
+    for (int k = 0; k < row->count; k++)
+        sum += row->factor[k] * x[row->index[k]];
+    return sum;
+}
+
+static double weight_of(const struct problem *p, size_t i)
+{
+    return (double)p->weight[i] / ((double)p->sigma[i] * (double)p->sigma[i]);
+}
+
+// a += factor * left * right^T
+static void add_product(double *a, size_t n, const struct row *left, const struct row *right,
+                        double factor)
+{
+    for (int k = 0; k < left->count; k++)
+        for (int m = 0; m < right->count; m++)
+            a[left->index[k] * n + right->index[m]] +=
+                factor * left->factor[k] * right->factor[m];
+}
+
+// The colour of the point itself is eliminated: what counts are differences from the
+// weighted mean of its observations.
+static void add_point(const struct problem *p, size_t point, int channel, bool with_lens,
+                      double scale, double *a, double *b, size_t n)
+{
+    size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
+    double total = 0, mean = 0;
+    for (size_t i = begin; i < end; i++) {
+        total += weight_of(p, i);
+        mean += weight_of(p, i) * (double)(p->value[i][channel] - p->lens_log[i]);
+    }
+    if (!(total > 0))
+        return;
+    mean /= total;
+    for (size_t i = begin; i < end; i++) {
+        double w = weight_of(p, i);
+        if (!(w > 0))
+            continue;
+        struct row row = row_of(p, i, with_lens);
+        double off = (double)(p->value[i][channel] - p->lens_log[i]) - mean;
+        for (int k = 0; k < row.count; k++)
+            b[row.index[k]] -= scale * w * row.factor[k] * off;
+        add_product(a, n, &row, &row, scale * w);
+        for (size_t j = begin; j < end; j++) {
+            double both = scale * w * weight_of(p, j) / total;
+            if (!with_lens)
+                a[p->samples->items[i].photo * n + p->samples->items[j].photo] -= both;
+            else if (both > 0) {
+                struct row other = row_of(p, j, true);
+                add_product(a, n, &row, &other, -both);
+            }
+        }
+    }
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// Of the `count` values in p->scratch, which are not negative.
+static double median(struct problem *p, size_t count)
+{
+    if (!count)
+        return 0;
+    qsort(p->scratch, count, sizeof *p->scratch, compare_floats);
+    return (double)p->scratch[count / 2];
+}
+
+// Calls for every observation that takes part: its residual from its point's mean.
+static void residuals(struct problem *p, int channel, bool with_lens, float *out)
+{
+    for (size_t point = 0; point < p->samples->point_count; point++) {
+        size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
+        double total = 0, mean = 0;
+        for (size_t i = begin; i < end; i++) {
+            struct row row = row_of(p, i, with_lens);
+            out[i] = p->value[i][channel] - p->lens_log[i] + (float)row_times(&row, p->x);
+            total += weight_of(p, i);
+            mean += weight_of(p, i) * (double)out[i];
+        }
+        for (size_t i = begin; i < end; i++)
+            out[i] = total > 0 ? out[i] - (float)(mean / total) : 0;
+    }
+}
+
+// Robust standard deviation of the residuals, relative to their sigmas or absolute.
+static double spread(struct problem *p, const float *residual, bool relative)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < p->samples->count; i++)
+        if (isfinite(p->sigma[i]))
+            p->scratch[count++] = fabsf(residual[i]) / (relative ? p->sigma[i] : 1);
+    return 1.4826 * median(p, count);
+}
+
+// Huber's weights, then Tukey's, which let outliers have no say at all.
+static void reweigh(struct problem *p, const float *residual, bool tukey)
+{
+    double scale = fmax(spread(p, residual, true), 0.1);
+    for (size_t i = 0; i < p->samples->count; i++) {
+        double t = fabs((double)residual[i]) / ((double)p->sigma[i] * scale);
+        double huber = t <= 1.345 ? 1 : 1.345 / t, u = t / 4.685;
+        p->weight[i] = !isfinite(p->sigma[i]) ? 0
+                       : !tukey ? (float)huber
+                                : u < 1 ? (float)((1 - u * u) * (1 - u * u)) : 0;
+    }
+}
+
+static bool step(struct problem *p, int channel, bool with_lens, double scale)
+{
+    size_t n = p->photo_count + (with_lens ? LENS_TERMS * p->lens_count : 0);
+    memset(p->matrix, 0, n * n * sizeof *p->matrix);
+    memset(p->x, 0, n * sizeof *p->x);
+    for (size_t point = 0; point < p->samples->point_count; point++)
+        add_point(p, point, channel, with_lens, scale, p->matrix, p->x, n);
+    for (size_t i = 0; i < n; i++) {
+        bool photo = i < p->photo_count;
+        size_t lens = photo ? 0 : (i - p->photo_count) / LENS_TERMS;
+        double precision = photo ? p->precision[i]
+                           : p->lens_photos[lens] < LENS_PHOTOS_MIN ? 1e12 : 1;
+        p->matrix[i * n + i] += precision;
+        p->x[i] += photo ? precision * p->prior[i] : 0;
+    }
+    return orl_cholesky_solve(p->matrix, p->x, n);
+}
+
+// Iteratively reweighted least squares; the unknowns are left in p->x.
+static enum orl_result fit(struct problem *p, int channel, bool with_lens, float *residual)
+{
+    double information = 0;
+    for (size_t i = 0; i < p->samples->count; i++) {
+        p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
+        information += weight_of(p, i);
+    }
+    double limit = (double)p->photo_count / (GAIN_SIGMA * GAIN_SIGMA);
+    double scale = information > limit ? limit / information : 1;
+    for (int i = 0; i < ITERATIONS; i++) {
+        if (!step(p, channel, with_lens, scale))
+            return orl_fail(p->log, ORL_ERR_DATA, "photographs cannot be aligned: no solution");
+        residuals(p, channel, with_lens, residual);
+        reweigh(p, residual, i + 1 >= ITERATIONS - TUKEY_ITERATIONS);
+    }
+    return ORL_OK;
+}
+
+// --- vignetting ---
+
+static double lens_log(const double terms[LENS_TERMS], double r2)
+{
+    return r2 * (terms[0] + r2 * (terms[1] + r2 * terms[2]));
+}
+
+// Light that falls off, and does so believably, as far out as there are samples.
+static bool is_lens(const double terms[LENS_TERMS], double r2_max)
+{
+    double last = 0;
+    for (int i = 1; i <= 32; i++) {
+        double now = lens_log(terms, r2_max * i / 32);
+        if (now > last + 0.003 || now < -2)
+            return false;
+        last = now;
+    }
+    return true;
+}
+
+// exp(sum of terms[k] r^(2k+2)) as 1 + v0 r^2 + v1 r^4 + v2 r^6, by least squares; farther
+// out than there are samples it stays as it is there.
+static void to_polynomial(const double terms[LENS_TERMS], double r2_max, float v[3])
+{
+    double a[9] = {0}, b[3] = {0};
+    for (int i = 1; i <= 64; i++) {
+        double r2 = i / 64.0, power[3] = {r2, r2 * r2, r2 * r2 * r2};
+        double light = exp(lens_log(terms, fmin(r2, r2_max)));
+        for (int j = 0; j < 3; j++) {
+            b[j] += power[j] * (light - 1);
+            for (int k = 0; k < 3; k++)
+                a[3 * j + k] += power[j] * power[k];
+        }
+    }
+    bool ok = orl_cholesky_solve(a, b, 3);
+    for (int k = 0; k < 3; k++)
+        v[k] = ok ? (float)b[k] : 0;
+}
+
+static double farthest(const struct problem *p, size_t lens)
+{
+    float r2 = 0;
+    for (size_t i = 0; i < p->samples->count; i++)
+        if ((size_t)p->photos[p->samples->items[i].photo].lens == lens && isfinite(p->sigma[i]))
+            r2 = fmaxf(r2, p->samples->items[i].r2);
+    return (double)r2;
+}
+
+static enum orl_result fit_lenses(struct problem *p, float *residual,
+                                  struct orl_alignment *alignment)
+{
+    enum orl_result result = fit(p, 3, false, residual);
+    double before = spread(p, residual, false);
+    if (result == ORL_OK)
+        result = fit(p, 3, true, residual);
+    // A lens that explains less than a hundredth of the spread is not worth believing.
+    if (result != ORL_OK || spread(p, residual, false) > 0.99 * before)
+        return result;
+    for (size_t k = 0; k < p->lens_count; k++) {
+        const double *terms = p->x + p->photo_count + LENS_TERMS * k;
+        double r2_max = farthest(p, k);
+        if (!(r2_max > 0.3) || !is_lens(terms, r2_max))
+            continue;
+        memcpy(p->lens[k], terms, sizeof p->lens[k]);
+        to_polynomial(terms, r2_max, alignment->vignette[k]);
+    }
+    for (size_t i = 0; i < p->samples->count; i++) {
+        const struct orl_observation *item = &p->samples->items[i];
+        p->lens_log[i] =
+            (float)lens_log(p->lens[p->photos[item->photo].lens], (double)item->r2);
+    }
+    return ORL_OK;
+}
+
+// --- gains ---
+
+// Linear light of a value that may lie between two 8-bit ones.
+static double decode(const float *linear, float value)
+{
+    if (!linear)
+        return (double)orl_srgb_decode(value / 255);
+    int below = (int)value;
+    below = below < 0 ? 0 : below > 254 ? 254 : below;
+    float part = value - (float)below;
+    return (double)(linear[below] + part * (linear[below + 1] - linear[below]));
+}
+
+static void set_values(struct problem *p)
+{
+    for (size_t i = 0; i < p->samples->count; i++) {
+        const struct orl_observation *item = &p->samples->items[i];
+        const struct orl_align_photo *photo = &p->photos[item->photo];
+        double noise = item->clipped ? INFINITY : 0;
+        p->value[i][3] = 0;
+        p->sigma[i] = INFINITY;
+        for (int c = 0; c < 3 && !item->clipped; c++) {
+            const float *curve = photo->linear ? photo->linear[c] : NULL;
+            double light = decode(curve, item->value[c]);
+            if (!(light > 1e-6)) {
+                noise = INFINITY;
+                break;
+            }
+            // Half a step of the 8-bit values and what is lost in the dark.
+            double more = decode(curve, fminf(item->value[c] + 1, 255));
+            noise = fmax(noise, (more - light) / light);
+            p->value[i][c] = (float)log(light);
+            p->value[i][3] += p->value[i][c] / 3;
+        }
+        if (!photo->refused && isfinite(noise))
+            p->sigma[i] = (float)sqrt(SAMPLE_SIGMA * SAMPLE_SIGMA + noise * noise);
+    }
+}
+
+static double mean_ev(const struct problem *p)
+{
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < p->photo_count; i++)
+        if (p->photos[i].known) {
+            sum += p->photos[i].ev;
+            count++;
+        }
+    return count > 0 ? sum / count : 0;
+}
+
+static void set_prior(struct problem *p)
+{
+    double centre = mean_ev(p);
+    for (size_t i = 0; i < p->photo_count; i++) {
+        const struct orl_align_photo *photo = &p->photos[i];
+        double sigma = LN2 * (photo->known ? p->params->exposure_sigma_ev
+                                           : p->params->gain_sigma_ev);
+        p->prior[i] = photo->known ? -LN2 * (photo->ev - centre) : 0;
+        p->precision[i] = 1 / (sigma * sigma);
+    }
+}
+
+// Brings the channel's gains to the reference exposure: known exposures undone on average.
+static void set_gains(struct problem *p, int channel)
+{
+    double shift = 0, count = 0;
+    bool any = false;
+    for (size_t i = 0; i < p->photo_count; i++)
+        any = any || p->photos[i].known;
+    for (size_t i = 0; i < p->photo_count; i++)
+        if ((p->photos[i].known || !any) && !p->photos[i].refused) {
+            shift -= p->x[i] + (any ? LN2 * p->photos[i].ev : 0);
+            count++;
+        }
+    shift = count > 0 ? shift / count : 0;
+    for (size_t i = 0; i < p->photo_count; i++)
+        p->photos[i].gain[channel] = (float)exp(p->x[i] + shift);
+}
+
+static void count_samples(struct problem *p)
+{
+    for (size_t i = 0; i < p->photo_count; i++)
+        p->photos[i].samples = 0;
+    for (size_t i = 0; i < p->samples->count; i++)
+        p->photos[p->samples->items[i].photo].samples += isfinite(p->sigma[i]);
+}
+
+static bool is_plausible(const struct problem *p, const struct orl_align_photo *photo)
+{
+    double mean = 0;
+    for (int c = 0; c < 3; c++)
+        mean += log2((double)photo->gain[c]) / 3;
+    for (int c = 0; c < 3; c++)
+        if (!(fabs(log2((double)photo->gain[c]) - mean) <= p->params->colour_limit_ev))
+            return false;
+    // Unknown exposures may be any; twice as much is plausible.
+    return fabs(mean + (photo->known ? photo->ev : 0)) <=
+           (photo->known ? 1 : 2) * p->params->limit_ev;
+}
+
+// True when there is a new one to leave out. What has no samples has its prior's gain.
+static bool refuse(struct problem *p)
+{
+    bool again = false;
+    for (size_t i = 0; i < p->photo_count; i++) {
+        struct orl_align_photo *photo = &p->photos[i];
+        if (!photo->refused && photo->samples >= SAMPLES_MIN && !is_plausible(p, photo))
+            again = photo->refused = true;
+    }
+    return again;
+}
+
+static void fall_back(struct problem *p)
+{
+    for (size_t i = 0; i < p->photo_count; i++) {
+        struct orl_align_photo *photo = &p->photos[i];
+        for (int c = 0; c < 3; c++)
+            if (photo->refused || photo->samples < SAMPLES_MIN)
+                photo->gain[c] = photo->known ? (float)exp2(-photo->ev) : 1;
+    }
+}
+
+static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignment)
+{
+    float *residual = orl_array(p->log, p->samples->count, sizeof *residual);
+    enum orl_result result = residual ? ORL_OK : ORL_ERR_MEMORY;
+    bool again = true;
+    set_prior(p);
+    for (int round = 0; result == ORL_OK && again && round < ROUNDS; round++) {
+        set_values(p);
+        count_samples(p);
+        if (round == 0) {
+            for (size_t i = 0; i < p->samples->count; i++)
+                p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
+            residuals(p, 3, false, residual);
+            alignment->spread_before_ev = spread(p, residual, false) / LN2;
+            if (p->params->vignetting)
+                result = fit_lenses(p, residual, alignment);
+        }
+        for (int c = 0; result == ORL_OK && c < 4; c++) {
+            result = fit(p, c, false, residual);
+            if (result == ORL_OK && c < 3)
+                set_gains(p, c);
+        }
+        again = result == ORL_OK && refuse(p);
+    }
+    if (result == ORL_OK) {
+        alignment->spread_after_ev = spread(p, residual, false) / LN2;
+        fall_back(p);
+    }
+    free(residual);
+    return result;
+}
+
+static size_t lens_count(const struct orl_align_photo *photos, size_t count)
+{
+    int lenses = 0;
+    for (size_t i = 0; i < count; i++)
+        lenses = photos[i].lens >= lenses ? photos[i].lens + 1 : lenses;
+    return (size_t)lenses;
+}
+
+enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
+                          const struct orl_align_params *params, struct orl_align_photo *photos,
+                          size_t photo_count, struct orl_alignment *alignment)
+{
+    memset(alignment, 0, sizeof *alignment);
+    struct problem p = {.log = log, .samples = samples, .params = params, .photos = photos,
+                        .photo_count = photo_count, .lens_count = lens_count(photos, photo_count)};
+    size_t unknowns = photo_count + LENS_TERMS * p.lens_count, count = samples->count;
+    p.value = orl_array(log, count, sizeof *p.value);
+    p.sigma = orl_array(log, count, sizeof *p.sigma);
+    p.weight = orl_array(log, count, sizeof *p.weight);
+    p.lens_log = orl_array(log, count, sizeof *p.lens_log);
+    p.scratch = orl_array(log, count, sizeof *p.scratch);
+    p.matrix = orl_array(log, unknowns, unknowns * sizeof *p.matrix);
+    p.x = orl_array(log, unknowns, sizeof *p.x);
+    p.prior = orl_array(log, photo_count, sizeof *p.prior);
+    p.precision = orl_array(log, photo_count, sizeof *p.precision);
+    p.lens = orl_array(log, p.lens_count, sizeof *p.lens);
+    p.lens_photos = orl_array(log, p.lens_count, sizeof *p.lens_photos);
+    alignment->vignette = orl_array(log, p.lens_count, sizeof *alignment->vignette);
+    alignment->lens_count = p.lens_count;
+    enum orl_result result = ORL_ERR_MEMORY;
+    if (p.value && p.sigma && p.weight && p.lens_log && p.scratch && p.matrix && p.x &&
+        p.prior && p.precision && p.lens && p.lens_photos && alignment->vignette) {
+        for (size_t i = 0; i < photo_count; i++) {
+            photos[i].refused = false;
+            p.lens_photos[photos[i].lens]++;
+        }
+        result = solve_all(&p, alignment);
+    }
+    free(p.value);
+    free(p.sigma);
+    free(p.weight);
+    free(p.lens_log);
+    free(p.scratch);
+    free(p.matrix);
+    free(p.x);
+    free(p.prior);
+    free(p.precision);
+    free(p.lens);
+    free(p.lens_photos);
+    if (result != ORL_OK)
+        orl_alignment_finish(alignment);
+    return result;
+}
+
+void orl_alignment_finish(struct orl_alignment *alignment)
+{
+    free(alignment->vignette);
+    memset(alignment, 0, sizeof *alignment);
+}

@@ -1,0 +1,487 @@
+#include "preprocess/expose/expose.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "preprocess/expose/align.h"
+#include "preprocess/expose/gain_guess.h"
+#include "preprocess/expose/response.h"
+#include "scene/points.h"
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Series of a photograph: that of the nearest known exposure. `sorted` ascends.
+static int nearest_series(const double *sorted, size_t count, double step_ev, double ev)
+{
+    int series = 0, best = 0;
+    double distance = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        if (i && sorted[i] - sorted[i - 1] >= step_ev)
+            series++;
+        if (fabs(sorted[i] - ev) < distance) {
+            distance = fabs(sorted[i] - ev);
+            best = series;
+        }
+    }
+    return best;
+}
+
+enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
+                                    size_t count, double step_ev, int *series_count)
+{
+    size_t known = 0;
+    double *sorted = orl_array(log, count, sizeof *sorted);
+    if (!sorted)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        if (exposures[i].known && !exposures[i].test)
+            sorted[known++] = exposures[i].ev;
+    qsort(sorted, known, sizeof *sorted, compare_doubles);
+    double median = known ? sorted[(known - 1) / 2] : 0; // an exposure that was really used
+    *series_count = 1;
+    for (size_t i = 1; i < known; i++)
+        *series_count += sorted[i] - sorted[i - 1] >= step_ev;
+    for (size_t i = 0; i < count; i++) {
+        struct orl_exposure *e = &exposures[i];
+        // Nothing to be relative to: as if unknown.
+        e->known = e->known && known;
+        e->series = nearest_series(sorted, known, step_ev, e->known ? e->ev : median);
+        e->ev = e->known ? e->ev - median : 0;
+    }
+    free(sorted);
+    return ORL_OK;
+}
+
+// --- what the stage works on ---
+
+struct photo {
+    const struct orl_source *source;
+    const struct orl_colmap_image *image;
+    struct orl_view view;
+    enum orl_exposure_source from;
+    int response; // index into the responses, -1: sRGB
+    int camera;   // photographs of one number may share a response, -1: none
+    float gain[3], vignette[3];
+};
+
+// Training photographs first, each part in order of name.
+struct exposing {
+    struct orl_job *job;
+    json_t *record;
+    const struct orl_colmap_model *model; // the job's
+    struct photo *photos;
+    struct orl_exposure *exposures;
+    size_t count, train;
+    struct orl_samples samples; // of training photographs
+    struct orl_response *responses;
+    size_t response_count;
+    json_t *response_list;
+    int series_count;
+    bool last; // nothing is fitted again after this
+};
+
+static bool same_camera(const struct orl_source *a, const struct orl_source *b)
+{
+    return strcmp(a->exif.make, b->exif.make) == 0 && strcmp(a->exif.model, b->exif.model) == 0;
+}
+
+// Deep photographs are known to be sRGB: their 8-bit twins were made so.
+static void set_cameras(struct exposing *e)
+{
+    int cameras = 0;
+    for (size_t i = 0; i < e->count; i++) {
+        struct photo *photo = &e->photos[i];
+        photo->response = photo->camera = -1;
+        if (photo->source->deep)
+            continue;
+        for (size_t k = 0; k < i && photo->camera < 0; k++)
+            if (e->photos[k].camera >= 0 && same_camera(photo->source, e->photos[k].source))
+                photo->camera = e->photos[k].camera;
+        if (photo->camera < 0)
+            photo->camera = cameras++;
+    }
+}
+
+static enum orl_result find_photos(struct exposing *e)
+{
+    struct orl_job *job = e->job;
+    enum orl_result result = orl_job_sparse(job, &e->model);
+    if (result != ORL_OK)
+        return result;
+    e->photos = orl_array(job->log, e->model->image_count, sizeof *e->photos);
+    e->exposures = orl_array(job->log, e->model->image_count, sizeof *e->exposures);
+    if (!e->photos || !e->exposures)
+        return ORL_ERR_MEMORY;
+    for (int test = 0; test < 2; test++) {
+        for (size_t i = 0; i < e->model->image_count; i++) {
+            const struct orl_colmap_image *image = &e->model->images[i];
+            const struct orl_source *source = orl_job_find(job, image->name);
+            if (source->test != (test == 1))
+                continue;
+            e->exposures[e->count].test = source->test;
+            e->photos[e->count++] = (struct photo){
+                .source = source, .image = image, .gain = {1, 1, 1},
+                .view = orl_colmap_image_view(e->model, image)};
+            e->train += test == 0;
+        }
+    }
+    set_cameras(e);
+    return ORL_OK;
+}
+
+// --- exposures ---
+
+static enum orl_result set_exposures(struct exposing *e)
+{
+    for (size_t i = 0; i < e->count; i++) {
+        struct photo *photo = &e->photos[i];
+        photo->from = orl_source_exposure(e->job, photo->source, &e->exposures[i].ev);
+        e->exposures[i].known = photo->from != ORL_EXPOSURE_UNKNOWN;
+    }
+    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV,
+                               &e->series_count);
+}
+
+// Without EXIF or list, exposures are those that gains undo: relative, and good to the
+// tolerance of the samples. Where all are unknown they make series of their own.
+static enum orl_result estimate_exposures(struct exposing *e)
+{
+    size_t known = 0, estimated = 0;
+    for (size_t i = 0; i < e->count; i++)
+        known += e->exposures[i].known;
+    for (size_t i = 0; i < e->train; i++) {
+        struct orl_exposure *exposure = &e->exposures[i];
+        const float *gain = e->photos[i].gain;
+        if (exposure->known)
+            continue;
+        exposure->known = true;
+        exposure->ev = -log2((double)gain[0] * (double)gain[1] * (double)gain[2]) / 3;
+        e->photos[i].from = ORL_EXPOSURE_SCENE;
+        estimated++;
+    }
+    if (!estimated)
+        return ORL_OK;
+    orl_logf(e->job->log, ORL_LOG_INFO,
+             "expose: exposures of %zu photographs are not told; estimated from the scene, "
+             "relative to each other", estimated);
+    // Their scale stays that of the gains.
+    double *ev = orl_array(e->job->log, e->count, sizeof *ev);
+    if (!ev)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < e->count; i++)
+        ev[i] = e->exposures[i].ev;
+    enum orl_result result = orl_exposures_group(
+        e->job->log, e->exposures, e->count,
+        known ? ORL_EXPOSURE_STEP_EV : ORL_ESTIMATED_STEP_EV, &e->series_count);
+    for (size_t i = 0; i < e->count; i++)
+        e->exposures[i].ev = ev[i];
+    free(ev);
+    return result;
+}
+
+// --- samples, responses, gains ---
+
+static enum orl_result take_samples(struct exposing *e)
+{
+    struct orl_job *job = e->job;
+    const struct orl_sample_params params = {ORL_SAMPLE_DEFAULTS};
+    struct orl_points points = {0};
+    struct orl_sample_photo *photos = orl_array(job->log, e->train, sizeof *photos);
+    char **paths = orl_array(job->log, e->train, sizeof *paths);
+    char *cloud = orl_job_path(job, "points.ply");
+    enum orl_result result = photos && paths && cloud ? orl_points_read(job->log, cloud, &points)
+                                                      : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
+        paths[i] = orl_job_path(job, "images/%s", e->photos[i].source->name);
+        photos[i] = (struct orl_sample_photo){paths[i], e->photos[i].view};
+        if (!paths[i])
+            result = ORL_ERR_MEMORY;
+    }
+    if (result == ORL_OK)
+        result = orl_samples_take(job->log, job->progress, photos, e->train, &points, &params,
+                                  &e->samples);
+    for (size_t i = 0; paths && i < e->train; i++)
+        free(paths[i]);
+    free(paths);
+    free(photos);
+    free(cloud);
+    orl_points_finish(&points);
+    return result;
+}
+
+static json_t *curves_record(const struct orl_response *response)
+{
+    json_t *curves = json_array();
+    for (int c = 0; c < 3; c++) {
+        json_t *curve = json_array();
+        for (int v = 0; v < 256; v++)
+            json_array_append_new(curve, json_real((double)response->linear[c][v]));
+        json_array_append_new(curves, curve);
+    }
+    return curves;
+}
+
+static const char *camera_name(const struct orl_source *source)
+{
+    return source->exif.model[0] ? source->exif.model : "camera";
+}
+
+static void say_response(const struct exposing *e, const struct orl_source *source,
+                         const struct orl_response_fit *fit)
+{
+    static const char *const why[] = {
+        [ORL_RESPONSE_FOUND] = "", [ORL_RESPONSE_ONE_EXPOSURE] = "no two known exposures differ",
+        [ORL_RESPONSE_FEW_SAMPLES] = "too few points seen at several exposures",
+        [ORL_RESPONSE_SRGB] = "it fits"};
+    const struct orl_log *log = e->job->log;
+    if (fit->verdict == ORL_RESPONSE_FOUND)
+        orl_logf(log, ORL_LOG_INFO,
+                 "expose: response curve of %s from %zu points (radiance agrees within %.2f EV, "
+                 "as sRGB within %.2f)", camera_name(source), fit->points, fit->spread_ev,
+                 fit->spread_srgb_ev);
+    else
+        orl_logf(log, ORL_LOG_INFO, "expose: sRGB is taken for the response of %s: %s",
+                 camera_name(source), why[fit->verdict]);
+}
+
+static enum orl_result fit_camera(struct exposing *e, int camera)
+{
+    struct orl_response_photo *photos = orl_array(e->job->log, e->train, sizeof *photos);
+    const struct orl_source *source = NULL;
+    struct orl_response_fit fit;
+    if (!photos)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < e->train; i++) {
+        photos[i] = (struct orl_response_photo){
+            .use = e->photos[i].camera == camera && e->exposures[i].known,
+            .ev = e->exposures[i].ev};
+        memcpy(photos[i].vignette, e->photos[i].vignette, sizeof photos[i].vignette);
+        if (e->photos[i].camera == camera)
+            source = e->photos[i].source;
+    }
+    enum orl_result result = ORL_OK;
+    if (!source)
+        goto end; // held-out photographs only
+    struct orl_response *response = &e->responses[e->response_count];
+    result = orl_response_fit(e->job->log, &e->samples, photos, e->train, response, &fit);
+    if (result != ORL_OK)
+        goto end;
+    if (e->last)
+        say_response(e, source, &fit);
+    if (fit.verdict != ORL_RESPONSE_FOUND)
+        goto end;
+    for (size_t i = 0; i < e->count; i++)
+        if (e->photos[i].camera == camera)
+            e->photos[i].response = (int)e->response_count;
+    e->response_count++;
+    json_array_append_new(e->response_list,
+                          json_pack("{s:s, s:i, s:f, s:f, s:o}", "camera", camera_name(source),
+                                    "points", (int)fit.points, "spread_ev", fit.spread_ev,
+                                    "spread_srgb_ev", fit.spread_srgb_ev, "linear",
+                                    curves_record(response)));
+end:
+    free(photos);
+    return result;
+}
+
+static enum orl_result fit_responses(struct exposing *e)
+{
+    int cameras = 0;
+    e->response_count = 0;
+    json_array_clear(e->response_list);
+    for (size_t i = 0; i < e->count; i++)
+        cameras = e->photos[i].camera >= cameras ? e->photos[i].camera + 1 : cameras;
+    if (!e->responses)
+        e->responses = orl_array(e->job->log, (size_t)cameras, sizeof *e->responses);
+    enum orl_result result = e->responses ? ORL_OK : ORL_ERR_MEMORY;
+    for (int camera = 0; result == ORL_OK && camera < cameras; camera++)
+        result = fit_camera(e, camera);
+    return result;
+}
+
+// Photographs of one camera of the model share their lens.
+static int lens_of(const struct exposing *e, size_t photo)
+{
+    for (size_t i = 0; i < e->model->camera_count; i++)
+        if (e->model->cameras[i].id == e->photos[photo].image->camera_id)
+            return (int)i;
+    return 0;
+}
+
+static void say_alignment(const struct exposing *e, const struct orl_align_photo *photos,
+                          const struct orl_alignment *alignment)
+{
+    const struct orl_log *log = e->job->log;
+    orl_logf(log, ORL_LOG_INFO,
+             "expose: %zu points seen by several photographs; their colours agreed within "
+             "%.2f EV, and do within %.2f", e->samples.point_count, alignment->spread_before_ev,
+             alignment->spread_after_ev);
+    for (size_t i = 0; i < e->train; i++)
+        if (photos[i].refused)
+            orl_logf(log, ORL_LOG_WARNING,
+                     "%s: too unlike the others to be aligned; its exposure is taken as it is",
+                     e->photos[i].source->name);
+}
+
+static enum orl_result align(struct exposing *e)
+{
+    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
+    struct orl_alignment alignment = {0};
+    struct orl_align_photo *photos = orl_array(e->job->log, e->train, sizeof *photos);
+    enum orl_result result = photos ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
+        int response = e->photos[i].response;
+        photos[i] = (struct orl_align_photo){
+            .known = e->exposures[i].known, .ev = e->exposures[i].ev, .lens = lens_of(e, i),
+            .linear = response < 0 ? NULL
+                                   : (const float (*)[256])e->responses[response].linear};
+    }
+    if (result == ORL_OK)
+        result = orl_align(e->job->log, &e->samples, &params, photos, e->train, &alignment);
+    for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
+        size_t lens = (size_t)lens_of(e, i);
+        if (i < e->train)
+            memcpy(e->photos[i].gain, photos[i].gain, sizeof photos[i].gain);
+        if (lens < alignment.lens_count)
+            memcpy(e->photos[i].vignette, alignment.vignette[lens], sizeof e->photos[i].vignette);
+    }
+    if (result == ORL_OK && e->last) {
+        say_alignment(e, photos, &alignment);
+        json_object_set_new(e->record, "co_visible_points",
+                            json_integer((json_int_t)e->samples.point_count));
+        json_object_set_new(e->record, "spread_before_ev",
+                            json_real(alignment.spread_before_ev));
+        json_object_set_new(e->record, "spread_after_ev", json_real(alignment.spread_after_ev));
+    }
+    orl_alignment_finish(&alignment);
+    free(photos);
+    return result;
+}
+
+// Responses and vignetting need each other: twice is enough, as vignetting is slight.
+static enum orl_result fit_all(struct exposing *e)
+{
+    enum orl_result result = ORL_OK;
+    for (int round = 0; result == ORL_OK && round < 2; round++) {
+        e->last = round == 1;
+        for (size_t i = 0; i < e->count; i++)
+            e->photos[i].response = -1;
+        result = fit_responses(e);
+        if (result == ORL_OK)
+            result = align(e);
+    }
+    return result;
+}
+
+// --- held-out photographs ---
+
+// Sparse points in common: calibration saw held-out photographs too.
+static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, uint32_t *own)
+{
+    bool *seen = orl_array(e->job->log, e->model->point_count, sizeof *seen);
+    if (!seen)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < e->count; i++) {
+        const struct orl_colmap_image *image = e->photos[i].image;
+        memset(seen, 0, e->model->point_count * sizeof *seen);
+        for (size_t p = 0; p < image->point_count; p++)
+            seen[image->points[p]] = true;
+        own[i] = (uint32_t)image->point_count;
+        for (size_t k = 0; k < e->train; k++) {
+            const struct orl_colmap_image *other = e->photos[k].image;
+            for (size_t p = 0; p < other->point_count; p++)
+                shared[i * e->train + k] += seen[other->points[p]];
+        }
+    }
+    free(seen);
+    return ORL_OK;
+}
+
+static enum orl_result guess_held_out(struct exposing *e)
+{
+    const struct orl_log *log = e->job->log;
+    struct orl_gain_view *views = orl_array(log, e->count, sizeof *views);
+    uint32_t *shared = orl_array(log, e->count, e->train * sizeof *shared);
+    uint32_t *own = orl_array(log, e->count, sizeof *own);
+    enum orl_result result = views && shared && own ? count_shared(e, shared, own)
+                                                    : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
+        bool told = e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
+        views[i].known = told && e->exposures[i].known;
+        views[i].ev = e->exposures[i].ev;
+        memcpy(views[i].gain, e->photos[i].gain, sizeof views[i].gain);
+        orl_pose_centre(&e->photos[i].view.cam_from_world, views[i].eye);
+    }
+    if (result == ORL_OK) {
+        enum orl_gain_guess guess = orl_gains_guess(views, e->train, views + e->train,
+                                                    e->count - e->train, shared, own);
+        for (size_t i = e->train; i < e->count; i++)
+            memcpy(e->photos[i].gain, views[i].gain, sizeof views[i].gain);
+        json_object_set_new(e->record, "held_out_gain", json_string(orl_gain_guess_name(guess)));
+    }
+    free(views);
+    free(shared);
+    free(own);
+    return result;
+}
+
+// --- the record ---
+
+static json_t *photo_record(const struct photo *p, const struct orl_exposure *e)
+{
+    static const char *const from[] = {[ORL_EXPOSURE_EXIF] = "exif", [ORL_EXPOSURE_LIST] = "list",
+                                       [ORL_EXPOSURE_SCENE] = "scene"};
+    json_t *entry = json_pack(
+        "{s:s, s:s, s:o, s:i, s:[f,f,f]}", "name", p->source->name, "split",
+        e->test ? "test" : "train", "exposure_ev", e->known ? json_real(e->ev) : json_null(),
+        "series", e->series, "gain", (double)p->gain[0], (double)p->gain[1], (double)p->gain[2]);
+    if (e->known && from[p->from])
+        json_object_set_new(entry, "exposure_from", json_string(from[p->from]));
+    if (p->vignette[0] != 0 || p->vignette[1] != 0 || p->vignette[2] != 0)
+        json_object_set_new(entry, "vignette",
+                            json_pack("[f,f,f]", (double)p->vignette[0], (double)p->vignette[1],
+                                      (double)p->vignette[2]));
+    if (p->response >= 0)
+        json_object_set_new(entry, "response", json_integer(p->response));
+    return entry;
+}
+
+static void write_record(const struct exposing *e)
+{
+    json_t *photos = json_array();
+    size_t told = 0;
+    for (size_t i = 0; i < e->count; i++) {
+        json_array_append_new(photos, photo_record(&e->photos[i], &e->exposures[i]));
+        told += e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
+    }
+    json_object_set_new(e->record, "photographs", photos);
+    json_object_set(e->record, "responses", e->response_list);
+    json_object_set_new(e->record, "tool", json_string("libexif, co-visible points"));
+    json_object_set_new(e->record, "series", json_integer(e->series_count));
+    json_object_set_new(e->record, "with_exposure", json_integer((json_int_t)told));
+}
+
+enum orl_result orl_stage_expose(struct orl_job *job, json_t *record)
+{
+    struct exposing e = {.job = job, .record = record, .response_list = json_array()};
+    enum orl_result result = e.response_list ? find_photos(&e) : ORL_ERR_MEMORY;
+    if (result != ORL_OK || (result = set_exposures(&e)) != ORL_OK ||
+        (result = take_samples(&e)) != ORL_OK || (result = fit_all(&e)) != ORL_OK ||
+        (result = estimate_exposures(&e)) != ORL_OK || (result = guess_held_out(&e)) != ORL_OK)
+        goto end;
+    write_record(&e);
+    orl_progress_report(job->progress, "expose", 1, 1, NULL);
+end:
+    orl_samples_finish(&e.samples);
+    json_decref(e.response_list);
+    free(e.responses);
+    free(e.exposures);
+    free(e.photos);
+    return result;
+}

@@ -1,0 +1,505 @@
+#include "preprocess/expose/response.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "preprocess/expose/cholesky.h"
+
+enum {
+    NODES = 256,       // 8-bit values; 0 is not used: its logarithm has no bound
+    TERMS = 6,         // of the polynomial
+    ITERATIONS = 12,
+    TUKEY_ITERATIONS = 2,
+    POINTS_MIN = 200,  // seen at exposures that differ
+    BINS = 16,         // of values, that samples must span
+    BINS_MIN = 12,
+    PER_BIN_MIN = 20,
+    VALUE_MAX = 251,   // of those above, noise clips the brighter ones: what is left is biased
+    FLOOR_MAX = 64,    // a floor is below
+};
+static const double LN2 = 0.69314718055994531;
+static const double SAMPLE_SIGMA = 0.1; // of log colour, as in align.c
+static const double PAIR_MIN_EV = 0.4;  // exposures of a point that say something
+// Of a floor: values rise less than by this share of the exposure, which is at most
+// FLOOR_EV_MAX lower in the other photograph.
+static const double FLAT_MAX = 0.3, FLOOR_EV_MAX = 2.1;
+// Weight of the squared second derivative of the curve's logarithm, by what samples weigh.
+static const double SMOOTHNESS = 1e-6;
+static const double PULL = 1e-3;        // on the terms: there is always a solution
+static const double OFFSET_SIGMA = 0.2; // of a photograph's log exposure from what is known
+static const double FIRM = 1e8;         // weight of what must hold
+static const double MUST_GAIN = 0.97;   // spread of the curve by that of sRGB
+// Log exposure per 8-bit value below which a curve may not rise: keeps it monotone.
+static const double RISE_MIN = 1e-4;
+
+struct problem {
+    const struct orl_samples *samples;
+    const struct orl_response_photo *photos;
+    float *sigma;    // per observation; INFINITY: takes no part
+    float *weight, *residual, *scratch;
+    float *light;    // log of vignetting times exposure
+    double floor;    // value at which the dark ends: what is there has no weight
+    double srgb[NODES], off[NODES]; // log exposure of sRGB; what the curve adds to it
+    int channel;
+    size_t photo_count;
+    double *matrix, *unknown, *offset; // offset: of each photograph's log exposure
+    double *share;   // of each photograph in what samples weigh, times photo_count
+};
+
+static double vignetting(const float v[3], double r2)
+{
+    return fmax(1 + r2 * ((double)v[0] + r2 * ((double)v[1] + r2 * (double)v[2])), 0.05);
+}
+
+// The nodes around a value, and the share of the upper one.
+static size_t node_of(double value, double *upper)
+{
+    double at = fmin(fmax(value, 1), NODES - 1);
+    size_t node = (size_t)at;
+    node = node < NODES - 2 ? node : NODES - 2;
+    *upper = at - (double)node;
+    return node;
+}
+
+static double curve_at(const struct problem *p, double value)
+{
+    double u;
+    size_t n = node_of(value, &u);
+    return log((double)orl_srgb_decode((float)value / 255)) + (1 - u) * p->off[n] +
+           u * p->off[n + 1];
+}
+
+static double weight_of(const struct problem *p, size_t i)
+{
+    return isfinite(p->sigma[i])
+               ? (double)p->weight[i] / ((double)p->sigma[i] * (double)p->sigma[i]) : 0;
+}
+
+static bool is_usable(const struct problem *p, const struct orl_observation *item)
+{
+    double value = (double)item->value[p->channel];
+    return p->photos[item->photo].use && !(item->clipped & 1u << p->channel) && value >= 2 &&
+           value <= VALUE_MAX;
+}
+
+// What the same point shows at the next lower exposure; NULL: nothing that says something.
+static const struct orl_observation *darker(const struct problem *p, size_t begin, size_t end,
+                                            const struct orl_observation *item)
+{
+    const struct orl_observation *best = NULL;
+    double ev = p->photos[item->photo].ev;
+    for (size_t i = begin; i < end; i++) {
+        const struct orl_observation *other = &p->samples->items[i];
+        double less = ev - p->photos[other->photo].ev;
+        if (is_usable(p, other) && less >= PAIR_MIN_EV && less <= FLOOR_EV_MAX &&
+            (!best || p->photos[other->photo].ev > p->photos[best->photo].ev))
+            best = other;
+    }
+    return best;
+}
+
+// Where black is not 0 (scans of film, stray light), dark values hardly follow exposure.
+// Counts them by value, and those that say so.
+static void count_flat(const struct problem *p, size_t flat[NODES], size_t all[NODES])
+{
+    for (size_t point = 0; point < p->samples->point_count; point++) {
+        size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
+        for (size_t i = begin; i < end; i++) {
+            const struct orl_observation *item = &p->samples->items[i], *other = NULL;
+            if (is_usable(p, item) && item->value[p->channel] < FLOOR_MAX)
+                other = darker(p, begin, end, item);
+            if (!other)
+                continue;
+            double value = (double)item->value[p->channel];
+            double ratio = (double)orl_srgb_decode((float)value / 255) /
+                           (double)orl_srgb_decode(other->value[p->channel] / 255);
+            double ev = p->photos[item->photo].ev - p->photos[other->photo].ev;
+            all[(size_t)value]++;
+            flat[(size_t)value] += log2(ratio) < FLAT_MAX * ev;
+        }
+    }
+}
+
+// The darkest value from which on values follow exposure, less 1.
+static double find_floor(const struct problem *p)
+{
+    size_t flat[NODES] = {0}, all[NODES] = {0}, flat_sum = 0, sum = 0;
+    double floor = 0;
+    count_flat(p, flat, all);
+    for (size_t v = 0; v < FLOOR_MAX; v++) {
+        flat_sum += flat[v];
+        sum += all[v];
+        if (sum < PER_BIN_MIN)
+            continue;
+        if (4 * flat_sum < sum)
+            break;
+        floor = (double)v;
+        flat_sum = sum = 0;
+    }
+    return floor;
+}
+
+// Points count when exposures of theirs differ enough to say something. Returns how many do.
+static size_t choose(struct problem *p)
+{
+    size_t points = 0;
+    p->floor = find_floor(p);
+    for (size_t point = 0; point < p->samples->point_count; point++) {
+        size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
+        double least = INFINITY, most = -INFINITY;
+        for (size_t i = begin; i < end; i++) {
+            const struct orl_observation *item = &p->samples->items[i];
+            const struct orl_response_photo *photo = &p->photos[item->photo];
+            if (!photo->use)
+                continue;
+            least = fmin(least, photo->ev);
+            most = fmax(most, photo->ev);
+        }
+        bool counts = most - least >= PAIR_MIN_EV;
+        points += counts;
+        for (size_t i = begin; i < end; i++) {
+            const struct orl_observation *item = &p->samples->items[i];
+            const struct orl_response_photo *photo = &p->photos[item->photo];
+            double value = (double)item->value[p->channel] - p->floor, slope;
+            p->sigma[i] = INFINITY;
+            p->light[i] = (float)(LN2 * photo->ev +
+                                  log(vignetting(photo->vignette, (double)item->r2)));
+            if (!counts || !is_usable(p, item) || value < 2)
+                continue;
+            slope = log((double)orl_srgb_decode((float)(value + 1) / 255) /
+                        (double)orl_srgb_decode((float)(value - 1) / 255)) / 2;
+            p->sigma[i] = (float)sqrt(SAMPLE_SIGMA * SAMPLE_SIGMA + slope * slope);
+        }
+    }
+    return points;
+}
+
+static bool spans(const struct problem *p)
+{
+    size_t bins[BINS] = {0};
+    int full = 0;
+    for (size_t i = 0; i < p->samples->count; i++)
+        if (isfinite(p->sigma[i]))
+            bins[(int)(p->samples->items[i].value[p->channel] * BINS / 256)]++;
+    for (int b = 0; b < BINS; b++)
+        full += bins[b] >= PER_BIN_MIN;
+    return full >= BINS_MIN;
+}
+
+static void set_residuals(struct problem *p)
+{
+    for (size_t point = 0; point < p->samples->point_count; point++) {
+        size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
+        double total = 0, mean = 0;
+        for (size_t i = begin; i < end; i++) {
+            if (!isfinite(p->sigma[i]))
+                continue;
+            double value = (double)p->samples->items[i].value[p->channel];
+            p->residual[i] = (float)(curve_at(p, value) - (double)p->light[i] -
+                                     p->offset[p->samples->items[i].photo]);
+            total += weight_of(p, i);
+            mean += weight_of(p, i) * (double)p->residual[i];
+        }
+        for (size_t i = begin; i < end; i++)
+            p->residual[i] = total > 0 && isfinite(p->sigma[i])
+                                 ? p->residual[i] - (float)(mean / total) : 0;
+    }
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// Robust standard deviation of the residuals, relative to their sigmas or absolute.
+static double spread(struct problem *p, bool relative)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < p->samples->count; i++)
+        if (isfinite(p->sigma[i]))
+            p->scratch[count++] = fabsf(p->residual[i]) / (relative ? p->sigma[i] : 1);
+    if (!count)
+        return 0;
+    qsort(p->scratch, count, sizeof *p->scratch, compare_floats);
+    return 1.4826 * (double)p->scratch[count / 2];
+}
+
+static void reset_weights(struct problem *p)
+{
+    for (size_t i = 0; i < p->samples->count; i++)
+        p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
+}
+
+static void reweigh(struct problem *p, bool tukey)
+{
+    double scale = fmax(spread(p, true), 0.05);
+    for (size_t i = 0; i < p->samples->count; i++) {
+        double t = fabs((double)p->residual[i]) / ((double)p->sigma[i] * scale), u = t / 4.685;
+        double huber = t <= 1.345 ? 1 : 1.345 / t;
+        p->weight[i] = !isfinite(p->sigma[i]) ? 0
+                       : !tukey ? (float)huber
+                                : u < 1 ? (float)((1 - u * u) * (1 - u * u)) : 0;
+    }
+}
+
+// Chebyshev polynomials of first to TERMS-th degree, 0 to 255 being their range.
+static void terms_at(double value, double t[TERMS])
+{
+    double x = 2 * value / (NODES - 1) - 1, before = 1, now = x;
+    for (int k = 0; k < TERMS; k++) {
+        double next = 2 * x * now - before;
+        t[k] = now;
+        before = now;
+        now = next;
+    }
+}
+
+// Observation i: log exposure as sRGB less the exposure, and the polynomial's terms there.
+static double row_of(const struct problem *p, size_t i, double t[TERMS])
+{
+    double value = (double)p->samples->items[i].value[p->channel];
+    terms_at(value, t);
+    return log((double)orl_srgb_decode((float)value / 255)) - (double)p->light[i];
+}
+
+// The point's radiance is eliminated: what counts are differences from its mean. Unknowns:
+// the terms, then an offset of each photograph's log exposure.
+static void add_point(const struct problem *p, size_t point, double *a, double *b)
+{
+    size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
+    size_t n = TERMS + p->photo_count;
+    double total = 0, mean = 0, middle[TERMS] = {0}, t[TERMS];
+    for (size_t i = begin; i < end; i++) {
+        double w = weight_of(p, i);
+        if (!(w > 0))
+            continue;
+        mean += w * row_of(p, i, t);
+        total += w;
+        for (int k = 0; k < TERMS; k++)
+            middle[k] += w * t[k];
+    }
+    for (size_t i = begin; total > 0 && i < end; i++) {
+        double w = weight_of(p, i);
+        if (!(w > 0))
+            continue;
+        double y = row_of(p, i, t) - mean / total;
+        double *own = a + (TERMS + p->samples->items[i].photo) * n;
+        b[TERMS + p->samples->items[i].photo] += w * y;
+        own[TERMS + p->samples->items[i].photo] += w;
+        for (size_t j = begin; j < end; j++)
+            own[TERMS + p->samples->items[j].photo] -= w * weight_of(p, j) / total;
+        for (size_t k = 0; k < TERMS; k++) {
+            double off = t[k] - middle[k] / total;
+            b[k] -= w * off * y;
+            own[k] -= w * off;
+            for (size_t m = 0; m < TERMS; m++)
+                a[k * n + m] += w * off * (t[m] - middle[m] / total);
+        }
+    }
+}
+
+// Integral of the squared second derivative over [0, 1].
+static void add_smoothness(double *a, size_t n, double weight)
+{
+    enum { STEPS = 64 };
+    for (int i = 1; i < STEPS; i++) {
+        double h = 1.0 / STEPS, below[TERMS], here[TERMS], above[TERMS];
+        terms_at((i - 1) * h * (NODES - 1), below);
+        terms_at(i * h * (NODES - 1), here);
+        terms_at((i + 1) * h * (NODES - 1), above);
+        for (size_t k = 0; k < TERMS; k++)
+            for (size_t m = 0; m < TERMS; m++)
+                a[k * n + m] += weight * h * (below[k] - 2 * here[k] + above[k]) *
+                                (below[m] - 2 * here[m] + above[m]) / (h * h * h * h);
+    }
+}
+
+// Offsets neither shift nor stretch the exposures that are known: stretching them and the
+// curve's exponent alike would fit as well. Photographs count by what they show (`share`,
+// all ones' mean being 1): else nearly black ones would make up for a stretch of the rest.
+static void add_offsets(const struct problem *p, double *a, size_t n)
+{
+    const double *share = p->share;
+    double mean = 0, total = 0;
+    for (size_t i = 0; i < p->photo_count; i++) {
+        mean += share[i] * p->photos[i].ev;
+        total += share[i];
+    }
+    mean /= total;
+    for (size_t i = 0; i < p->photo_count; i++) {
+        a[(TERMS + i) * n + TERMS + i] += p->photos[i].use ? 1 / (OFFSET_SIGMA * OFFSET_SIGMA) : 1;
+        for (size_t k = 0; k < p->photo_count; k++)
+            if (p->photos[i].use && p->photos[k].use)
+                a[(TERMS + i) * n + TERMS + k] +=
+                    FIRM * share[i] * share[k] *
+                    (1 + (p->photos[i].ev - mean) * (p->photos[k].ev - mean));
+    }
+}
+
+static void set_shares(struct problem *p)
+{
+    double *share = p->share;
+    double total = 0;
+    memset(share, 0, p->photo_count * sizeof *share);
+    for (size_t i = 0; i < p->samples->count; i++) {
+        share[p->samples->items[i].photo] += weight_of(p, i);
+        total += weight_of(p, i);
+    }
+    for (size_t i = 0; i < p->photo_count; i++)
+        share[i] *= (double)p->photo_count / total;
+}
+
+// Without `curve` offsets alone are found, for sRGB.
+static bool step(struct problem *p, bool curve)
+{
+    size_t n = TERMS + p->photo_count;
+    double t[TERMS], *a = p->matrix, *b = p->unknown, information = 0;
+    memset(a, 0, n * n * sizeof *a);
+    memset(b, 0, n * sizeof *b);
+    for (size_t point = 0; point < p->samples->point_count; point++)
+        add_point(p, point, a, b);
+    for (size_t i = 0; i < p->samples->count; i++)
+        information += weight_of(p, i);
+    add_smoothness(a, n, SMOOTHNESS * information);
+    set_shares(p);
+    add_offsets(p, a, n);
+    for (size_t k = 0; k < TERMS; k++)
+        a[k * n + k] += curve ? PULL : FIRM * FIRM;
+    if (!orl_cholesky_solve(a, b, n))
+        return false;
+    for (size_t v = 0; v < NODES; v++) {
+        terms_at((double)v, t);
+        p->off[v] = 0;
+        for (int k = 0; k < TERMS; k++)
+            p->off[v] += b[k] * t[k];
+    }
+    memcpy(p->offset, b + TERMS, p->photo_count * sizeof *b);
+    return true;
+}
+
+// Linear, rising, 1 at 255.
+static void finish_curve(const struct problem *p, float linear[256])
+{
+    double g[NODES];
+    for (size_t v = 1; v < NODES; v++)
+        g[v] = p->srgb[v] + p->off[v];
+    // From the middle, which samples know best.
+    for (size_t v = NODES / 2 + 1; v < NODES; v++)
+        g[v] = fmax(g[v], g[v - 1] + RISE_MIN);
+    for (size_t v = NODES / 2 - 1; v > 0; v--)
+        g[v] = fmin(g[v], g[v + 1] - RISE_MIN);
+    linear[0] = 0;
+    for (size_t v = 1; v < NODES; v++)
+        linear[v] = (float)exp(g[v] - g[NODES - 1]);
+    linear[NODES - 1] = 1;
+}
+
+// Iteratively reweighted least squares, and the spread that is left.
+static bool iterate(struct problem *p, bool curve, double *spread_ev)
+{
+    reset_weights(p);
+    set_residuals(p);
+    for (int i = 0; i < ITERATIONS; i++) {
+        reweigh(p, i >= ITERATIONS - TUKEY_ITERATIONS);
+        if (!step(p, curve))
+            return false;
+        set_residuals(p);
+    }
+    reset_weights(p);
+    set_residuals(p);
+    *spread_ev = spread(p, false) / LN2;
+    return true;
+}
+
+static enum orl_result fit_channel(const struct orl_log *log, struct problem *p, int channel,
+                                   float linear[256], struct orl_response_fit *fit)
+{
+    p->channel = channel;
+    memset(p->off, 0, sizeof p->off);
+    memset(p->offset, 0, p->photo_count * sizeof *p->offset);
+    fit->points = choose(p);
+    if (fit->points < POINTS_MIN || !spans(p)) {
+        fit->verdict = ORL_RESPONSE_FEW_SAMPLES;
+        return ORL_OK;
+    }
+    double srgb = 0, found = 0;
+    if (!iterate(p, false, &srgb) || !iterate(p, true, &found))
+        return orl_fail(log, ORL_ERR_DATA, "the response curve has no solution");
+    fit->spread_srgb_ev += srgb / 3;
+    fit->spread_ev += found / 3;
+    finish_curve(p, linear);
+    return ORL_OK;
+}
+
+static double exposure_range(const struct orl_samples *samples,
+                             const struct orl_response_photo *photos)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (size_t i = 0; i < samples->count; i++) {
+        const struct orl_response_photo *photo = &photos[samples->items[i].photo];
+        if (photo->use) {
+            least = fmin(least, photo->ev);
+            most = fmax(most, photo->ev);
+        }
+    }
+    return most - least;
+}
+
+static void set_srgb(struct orl_response *response)
+{
+    for (int c = 0; c < 3; c++)
+        for (int v = 0; v < 256; v++)
+            response->linear[c][v] = orl_srgb_decode((float)v / 255);
+}
+
+static void set_logarithms(struct problem *p)
+{
+    for (size_t v = 1; v < NODES; v++)
+        p->srgb[v] = log((double)orl_srgb_decode((float)v / 255));
+}
+
+enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_samples *samples,
+                                 const struct orl_response_photo *photos, size_t photo_count,
+                                 struct orl_response *response, struct orl_response_fit *fit)
+{
+    memset(fit, 0, sizeof *fit);
+    set_srgb(response);
+    fit->verdict = ORL_RESPONSE_ONE_EXPOSURE;
+    if (!(exposure_range(samples, photos) >= ORL_RESPONSE_RANGE_EV))
+        return ORL_OK;
+    fit->verdict = ORL_RESPONSE_FOUND;
+    size_t count = samples->count;
+    struct problem p = {.samples = samples, .photos = photos, .photo_count = photo_count};
+    size_t unknowns = TERMS + photo_count;
+    p.matrix = orl_array(log, unknowns, unknowns * sizeof *p.matrix);
+    p.unknown = orl_array(log, unknowns, sizeof *p.unknown);
+    p.offset = orl_array(log, photo_count, sizeof *p.offset);
+    p.share = orl_array(log, photo_count, sizeof *p.share);
+    float *block = orl_array(log, count, 5 * sizeof *block);
+    enum orl_result result = block && p.matrix && p.unknown && p.offset && p.share
+                                 ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        p.sigma = block;
+        p.weight = block + count;
+        p.residual = block + 2 * count;
+        p.scratch = block + 3 * count;
+        p.light = block + 4 * count;
+        set_logarithms(&p);
+    }
+    for (int c = 0; result == ORL_OK && c < 3 && fit->verdict == ORL_RESPONSE_FOUND; c++)
+        result = fit_channel(log, &p, c, response->linear[c], fit);
+    if (fit->verdict == ORL_RESPONSE_FOUND && fit->spread_ev > MUST_GAIN * fit->spread_srgb_ev)
+        fit->verdict = ORL_RESPONSE_SRGB;
+    if (result != ORL_OK || fit->verdict != ORL_RESPONSE_FOUND)
+        set_srgb(response);
+    free(block);
+    free(p.matrix);
+    free(p.unknown);
+    free(p.offset);
+    free(p.share);
+    return result;
+}

@@ -1,0 +1,39 @@
+// A camera's response curve from scene points that were seen at several exposures.
+#ifndef ORL_PREPROCESS_RESPONSE_H
+#define ORL_PREPROCESS_RESPONSE_H
+
+#include "preprocess/expose/samples.h"
+#include "scene/scene.h"
+
+enum orl_response_verdict {
+    ORL_RESPONSE_FOUND,
+    ORL_RESPONSE_ONE_EXPOSURE, // exposures differ by less than ORL_RESPONSE_RANGE_EV
+    ORL_RESPONSE_FEW_SAMPLES,  // or they do not span the values
+    ORL_RESPONSE_SRGB,         // sRGB explains the samples as well
+};
+#define ORL_RESPONSE_RANGE_EV 0.5
+
+struct orl_response_photo {
+    bool use;        // of the camera in question, with a known exposure
+    double ev;       // log2 of exposure
+    float vignette[3]; // as in struct orl_photo
+};
+
+struct orl_response_fit {
+    enum orl_response_verdict verdict;
+    size_t points; // scene points seen at exposures that differ
+    double spread_srgb_ev, spread_ev; // robust spread of a point's radiance, sRGB and curve
+};
+
+// Debevec and Malik 1997, eq. 3, with points that only some photographs show, robust against
+// outliers. The curve is sRGB times the exponential of a smooth polynomial of the value: that
+// continues it sensibly where there are no samples, and keeps series that are equally far
+// apart from leaving it open (a ripple with their period would go unnoticed). Exposures may
+// be off in each photograph, as long as they are right on the whole. With another verdict
+// than ORL_RESPONSE_FOUND the curve is sRGB.
+enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_samples *samples,
+                                 const struct orl_response_photo *photos, size_t photo_count,
+                                 struct orl_response *response,
+                                 struct orl_response_fit *fit) ORL_CHECK_RESULT;
+
+#endif

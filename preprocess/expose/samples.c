@@ -1,0 +1,372 @@
+#include "preprocess/expose/samples.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "io/picture.h"
+
+enum {
+    DEPTH_SIDE = 512,     // larger side of the depth buffers
+    SPLAT_MAX = 6,        // largest half side of a splat in them
+    LEVELS_MAX = 8,       // of the pyramid of a photograph
+    PHOTOS_PER_POINT = 32, // more say little new and cost their square to align
+};
+// Fraction of depth. Splats are flat and face the camera, surfaces do not.
+static const double DEPTH_TOLERANCE = 0.02;
+static const uint8_t CLIPPED = 254, BLACK = 0;
+static const float SPOILT_MAX = 0.02f; // share of clipped pixels in a patch
+
+// --- depth of all points, seen from one photograph ---
+
+struct depth_buffer {
+    int width, height;
+    double scale; // its pixels per pixel of the photograph
+    float *z;     // owned; INFINITY: nothing
+};
+
+static void splat(struct depth_buffer *buffer, const double pixel[2], double depth, double radius)
+{
+    int x = (int)floor(pixel[0] * buffer->scale), y = (int)floor(pixel[1] * buffer->scale);
+    int r = (int)fmin(radius * buffer->scale + 0.5, SPLAT_MAX);
+    for (int j = y - r < 0 ? 0 : y - r; j <= y + r && j < buffer->height; j++)
+        for (int i = x - r < 0 ? 0 : x - r; i <= x + r && i < buffer->width; i++) {
+            float *z = &buffer->z[(size_t)j * (size_t)buffer->width + (size_t)i];
+            *z = fminf(*z, (float)depth);
+        }
+}
+
+static bool in_picture(const struct orl_camera *camera, const double pixel[2])
+{
+    return pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < camera->width &&
+           pixel[1] < camera->height;
+}
+
+static bool project(const struct orl_view *view, const float position[3], double pixel[2],
+                    double *depth)
+{
+    const double world[3] = {(double)position[0], (double)position[1], (double)position[2]};
+    return orl_view_project(view, world, pixel, depth) && in_picture(&view->camera, pixel);
+}
+
+static enum orl_result draw_depth(const struct orl_log *log, const struct orl_view *view,
+                                  const struct orl_points *points, struct depth_buffer *buffer)
+{
+    const struct orl_camera *c = &view->camera;
+    int side = c->width > c->height ? c->width : c->height;
+    buffer->scale = fmin(1, (double)DEPTH_SIDE / side);
+    buffer->width = (int)ceil(c->width * buffer->scale);
+    buffer->height = (int)ceil(c->height * buffer->scale);
+    size_t count = (size_t)buffer->width * (size_t)buffer->height;
+    buffer->z = orl_array(log, count, sizeof *buffer->z);
+    if (!buffer->z)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        buffer->z[i] = INFINITY;
+    for (size_t i = 0; i < points->count; i++) {
+        double pixel[2], depth;
+        if (project(view, points->position[i], pixel, &depth))
+            splat(buffer, pixel, depth, (double)points->radius[i] * c->fx / depth);
+    }
+    return ORL_OK;
+}
+
+// Nothing stands clearly before it, nor beside it within a pixel: poses and depths are
+// not exact, and a patch needs room.
+static bool is_visible(const struct depth_buffer *buffer, const double pixel[2], double depth)
+{
+    int x = (int)(pixel[0] * buffer->scale), y = (int)(pixel[1] * buffer->scale);
+    if (x < 1 || y < 1 || x + 1 >= buffer->width || y + 1 >= buffer->height)
+        return false;
+    for (int j = y - 1; j <= y + 1; j++)
+        for (int i = x - 1; i <= x + 1; i++)
+            if ((double)buffer->z[(size_t)j * (size_t)buffer->width + (size_t)i] <
+                depth * (1 - DEPTH_TOLERANCE))
+                return false;
+    return true;
+}
+
+// --- a photograph at several scales ---
+
+struct texel {
+    float rgb[3];    // linear
+    float spoilt[3]; // share of pixels that are clipped or black, by channel
+};
+
+struct pyramid {
+    struct orl_image image;
+    int width[LEVELS_MAX], height[LEVELS_MAX], levels;
+    struct texel *level[LEVELS_MAX]; // owned; level 0 is the image itself
+    float linear[256];
+};
+
+static struct texel fetch(const struct pyramid *p, int level, int x, int y)
+{
+    x = x < 0 ? 0 : x >= p->width[level] ? p->width[level] - 1 : x;
+    y = y < 0 ? 0 : y >= p->height[level] ? p->height[level] - 1 : y;
+    size_t at = (size_t)y * (size_t)p->width[level] + (size_t)x;
+    if (level > 0)
+        return p->level[level][at];
+    const uint8_t *v = p->image.u8 + 3 * at;
+    struct texel texel = {{p->linear[v[0]], p->linear[v[1]], p->linear[v[2]]}, {0}};
+    for (int c = 0; c < 3; c++)
+        texel.spoilt[c] = v[c] >= CLIPPED || v[c] <= BLACK;
+    return texel;
+}
+
+static enum orl_result make_level(const struct orl_log *log, struct pyramid *p, int level)
+{
+    int width = (p->width[level - 1] + 1) / 2, height = (p->height[level - 1] + 1) / 2;
+    struct texel *out = orl_array(log, (size_t)width * (size_t)height, sizeof *out);
+    if (!out)
+        return ORL_ERR_MEMORY;
+    p->width[level] = width;
+    p->height[level] = height;
+    p->level[level] = out;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++, out++)
+            for (int k = 0; k < 4; k++) {
+                struct texel from = fetch(p, level - 1, 2 * x + (k & 1), 2 * y + (k >> 1));
+                for (int c = 0; c < 3; c++) {
+                    out->rgb[c] += 0.25f * from.rgb[c];
+                    out->spoilt[c] += 0.25f * from.spoilt[c];
+                }
+            }
+    return ORL_OK;
+}
+
+static enum orl_result make_pyramid(const struct orl_log *log,
+                                    const struct orl_sample_photo *photo, struct pyramid *p)
+{
+    const struct orl_camera *c = &photo->view.camera;
+    enum orl_result result = orl_picture_read(log, photo->path, 3, &p->image);
+    if (result == ORL_OK && (p->image.width != c->width || p->image.height != c->height))
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
+                          photo->path, p->image.width, p->image.height, c->width, c->height);
+    if (result != ORL_OK)
+        return result;
+    for (int v = 0; v < 256; v++)
+        p->linear[v] = orl_srgb_decode((float)v / 255);
+    p->width[0] = p->image.width;
+    p->height[0] = p->image.height;
+    for (p->levels = 1; result == ORL_OK && p->levels < LEVELS_MAX; p->levels++) {
+        if (p->width[p->levels - 1] < 8 || p->height[p->levels - 1] < 8)
+            break;
+        result = make_level(log, p, p->levels);
+    }
+    return result;
+}
+
+static void finish_pyramid(struct pyramid *p)
+{
+    orl_image_finish(&p->image);
+    for (int i = 1; i < LEVELS_MAX; i++)
+        free(p->level[i]);
+}
+
+// Between texels: they step by 1, the mean must not.
+static struct texel bilinear(const struct pyramid *p, int level, double x, double y)
+{
+    int left = (int)floor(x - 0.5), top = (int)floor(y - 0.5);
+    float u = (float)(x - 0.5 - left), v = (float)(y - 0.5 - top);
+    struct texel sum = {0};
+    for (int k = 0; k < 4; k++) {
+        struct texel from = fetch(p, level, left + (k & 1), top + (k >> 1));
+        float w = (k & 1 ? u : 1 - u) * (k >> 1 ? v : 1 - v);
+        for (int c = 0; c < 3; c++) {
+            sum.rgb[c] += w * from.rgb[c];
+            sum.spoilt[c] += w * from.spoilt[c];
+        }
+    }
+    return sum;
+}
+
+// Mean of 3x3 texels that are as far apart as the patch is wide, by thirds. False when the
+// patch is spoilt in every channel, or too uneven for its mean to say what another
+// photograph would show.
+static bool take_patch(const struct pyramid *p, const double pixel[2], double radius,
+                       float contrast_max, struct orl_observation *item)
+{
+    double step = 2 * radius / 3;
+    int level = 0;
+    while (level + 1 < p->levels && step > 1.42 * (1 << level))
+        level++;
+    double scale = 1.0 / (1 << level), sum[3] = {0};
+    float darkest = INFINITY, brightest = 0;
+    item->clipped = 0;
+    for (int k = 0; k < 9; k++) {
+        struct texel t = bilinear(p, level, (pixel[0] + (k % 3 - 1) * step) * scale,
+                                  (pixel[1] + (k / 3 - 1) * step) * scale);
+        for (int c = 0; c < 3; c++)
+            item->clipped |= (uint8_t)((t.spoilt[c] > SPOILT_MAX) << c);
+        float luminance = orl_luminance(t.rgb);
+        darkest = fminf(darkest, luminance);
+        brightest = fmaxf(brightest, luminance);
+        for (int c = 0; c < 3; c++)
+            sum[c] += (double)t.rgb[c] / 9;
+    }
+    if (item->clipped == 7 || brightest - darkest > contrast_max * 0.5f * (brightest + darkest))
+        return false;
+    for (int c = 0; c < 3; c++)
+        item->value[c] = 255 * orl_srgb_encode((float)sum[c]);
+    return true;
+}
+
+// --- all of them ---
+
+struct taking {
+    const struct orl_log *log;
+    const struct orl_points *points;
+    const struct orl_sample_params *params;
+    size_t stride;
+    struct orl_observation *items;
+    uint32_t *item_points;
+    size_t count, item_capacity, point_capacity;
+};
+
+static bool faces(const struct orl_points *points, size_t i, const double eye[3], double min)
+{
+    const float *n = points->normal[i], *at = points->position[i];
+    double to[3], dot = 0, length = 0;
+    if (n[0] == 0 && n[1] == 0 && n[2] == 0)
+        return true;
+    for (int k = 0; k < 3; k++) {
+        to[k] = eye[k] - (double)at[k];
+        dot += to[k] * (double)n[k];
+        length += to[k] * to[k];
+    }
+    return dot >= min * sqrt(length);
+}
+
+static double squared_radius(const struct orl_camera *c, const double pixel[2])
+{
+    double dx = pixel[0] - c->cx, dy = pixel[1] - c->cy;
+    double half_squared = 0.25 * ((double)c->width * c->width + (double)c->height * c->height);
+    return (dx * dx + dy * dy) / half_squared;
+}
+
+static enum orl_result take_point(struct taking *t, uint32_t photo, const struct orl_view *view,
+                                  const double eye[3], const struct depth_buffer *buffer,
+                                  const struct pyramid *pyramid, size_t point)
+{
+    double pixel[2], depth;
+    struct orl_observation item = {.photo = photo};
+    if (!project(view, t->points->position[point], pixel, &depth) ||
+        !faces(t->points, point, eye, (double)t->params->cosine_min) ||
+        !is_visible(buffer, pixel, depth))
+        return ORL_OK;
+    // Never less than the pixels that calibration may be off.
+    double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 1.5);
+    if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, &item))
+        return ORL_OK;
+    enum orl_result result = orl_grow(t->log, (void **)&t->items, &t->item_capacity,
+                                      t->count + 1, sizeof *t->items);
+    if (result == ORL_OK)
+        result = orl_grow(t->log, (void **)&t->item_points, &t->point_capacity, t->count + 1,
+                          sizeof *t->item_points);
+    if (result != ORL_OK)
+        return result;
+    item.r2 = (float)squared_radius(&view->camera, pixel);
+    t->items[t->count] = item;
+    t->item_points[t->count++] = (uint32_t)point;
+    return ORL_OK;
+}
+
+static enum orl_result take_photo(struct taking *t, const struct orl_sample_photo *photo,
+                                  uint32_t index)
+{
+    struct depth_buffer buffer = {0};
+    struct pyramid pyramid = {0};
+    double eye[3];
+    orl_pose_centre(&photo->view.cam_from_world, eye);
+    enum orl_result result = make_pyramid(t->log, photo, &pyramid);
+    if (result == ORL_OK)
+        result = draw_depth(t->log, &photo->view, t->points, &buffer);
+    for (size_t i = 0; result == ORL_OK && i < t->points->count; i += t->stride)
+        result = take_point(t, index, &photo->view, eye, &buffer, &pyramid, i);
+    free(buffer.z);
+    finish_pyramid(&pyramid);
+    return result;
+}
+
+enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_progress *progress,
+                                 const struct orl_sample_photo *photos, size_t photo_count,
+                                 const struct orl_points *points,
+                                 const struct orl_sample_params *params,
+                                 struct orl_samples *samples)
+{
+    memset(samples, 0, sizeof *samples);
+    ORL_REQUIRE(log, points->count < UINT32_MAX && photo_count < UINT32_MAX);
+    struct taking t = {.log = log, .points = points, .params = params, .stride = 1};
+    if (params->points_max && points->count > params->points_max)
+        t.stride = (points->count + params->points_max - 1) / params->points_max;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
+        if (orl_progress_cancelled(progress))
+            result = ORL_ERR_CANCELLED;
+        else
+            result = take_photo(&t, &photos[i], (uint32_t)i);
+        orl_progress_report(progress, "expose", (double)(i + 1), (double)photo_count + 1, NULL);
+    }
+    if (result == ORL_OK)
+        result = orl_samples_collect(log, t.items, t.item_points, t.count, points->count, samples);
+    free(t.items);
+    free(t.item_points);
+    return result;
+}
+
+// Of `seen` observations of a point, is number `index` one of those kept? Evenly spaced, with
+// a phase that differs from point to point.
+static bool is_kept(size_t index, size_t seen, size_t point)
+{
+    if (seen <= PHOTOS_PER_POINT)
+        return true;
+    size_t turned = (index + point) % seen;
+    return turned * PHOTOS_PER_POINT / seen != (turned + 1) * PHOTOS_PER_POINT / seen;
+}
+
+enum orl_result orl_samples_collect(const struct orl_log *log,
+                                    const struct orl_observation *observations,
+                                    const uint32_t *points, size_t count, size_t point_limit,
+                                    struct orl_samples *samples)
+{
+    memset(samples, 0, sizeof *samples);
+    size_t *at = orl_array(log, point_limit, sizeof *at), *seen = NULL, *passed = NULL;
+    seen = orl_array(log, point_limit, sizeof *seen);
+    passed = orl_array(log, point_limit, sizeof *passed);
+    samples->first = orl_array(log, point_limit + 1, sizeof *samples->first);
+    samples->items = orl_array(log, count, sizeof *samples->items);
+    enum orl_result result = at && seen && passed && samples->first && samples->items
+                                 ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        seen[points[i]]++;
+    for (size_t p = 0; result == ORL_OK && p < point_limit; p++) {
+        at[p] = samples->count;
+        if (seen[p] < 2)
+            continue;
+        samples->first[samples->point_count++] = samples->count;
+        samples->count += seen[p] < PHOTOS_PER_POINT ? seen[p] : PHOTOS_PER_POINT;
+    }
+    if (result == ORL_OK)
+        samples->first[samples->point_count] = samples->count;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        size_t p = points[i];
+        if (seen[p] > 1 && is_kept(passed[p]++, seen[p], p))
+            samples->items[at[p]++] = observations[i];
+    }
+    free(at);
+    free(seen);
+    free(passed);
+    if (result != ORL_OK)
+        orl_samples_finish(samples);
+    return result;
+}
+
+void orl_samples_finish(struct orl_samples *samples)
+{
+    free(samples->first);
+    free(samples->items);
+    memset(samples, 0, sizeof *samples);
+}

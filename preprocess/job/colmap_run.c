@@ -1,0 +1,162 @@
+#include "preprocess/job/colmap_run.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/process.h"
+
+void orl_colmap_arg(struct orl_colmap_args *args, const char *name, const char *format, ...)
+{
+    char value[4096];
+    va_list list;
+    va_start(list, format);
+    int length = vsnprintf(value, sizeof value, format, list);
+    va_end(list);
+    if (length < 0 || (size_t)length >= sizeof value || args->count + 2 > ORL_COLMAP_ARGS_MAX) {
+        args->failed = true;
+        return;
+    }
+    const char *const texts[] = {name, value};
+    for (int i = 0; i < 2; i++) {
+        char *copy = orl_strdup(NULL, texts[i]);
+        if (copy)
+            args->items[args->count++] = copy;
+        else
+            args->failed = true;
+    }
+}
+
+static void args_finish(struct orl_colmap_args *args)
+{
+    for (size_t i = 0; i < args->count; i++)
+        free(args->items[i]);
+    memset(args, 0, sizeof *args);
+}
+
+double orl_colmap_line_progress(const char *line, double total)
+{
+    unsigned a, b, c, d;
+    if (sscanf(line, "Matching block [%u/%u, %u/%u]", &a, &b, &c, &d) == 4 && a && c && b && d)
+        return ((a - 1.0) * d + c) / ((double)b * d);
+    if (sscanf(line, "Registering image #%u (%u)", &a, &b) == 2 && total > 0)
+        return b / total;
+    bool counted = sscanf(line, "Processed file [%u/%u]", &a, &b) == 2 ||
+                   sscanf(line, "Matching image [%u/%u]", &a, &b) == 2 ||
+                   sscanf(line, "Undistorting image [%u/%u]", &a, &b) == 2 ||
+                   sscanf(line, "Fusing image [%u/%u]", &a, &b) == 2 ||
+                   sscanf(line, "Processing view %u / %u", &a, &b) == 2;
+    if (counted && b)
+        return (double)a / b;
+    return -1;
+}
+
+struct watch {
+    const struct orl_job *job;
+    const struct orl_colmap_run *run;
+    bool tolerated;
+    char error[4096]; // held back until it is clear whether it counts
+};
+
+static void hold_error(void *priv, enum orl_log_level level, const char *message)
+{
+    struct watch *watch = priv;
+    if (level == ORL_LOG_ERROR)
+        snprintf(watch->error, sizeof watch->error, "%s", message);
+}
+
+static void watch_line(void *priv, const char *line)
+{
+    struct watch *watch = priv;
+    const struct orl_colmap_run *run = watch->run;
+    if (run->tolerated && strstr(line, run->tolerated))
+        watch->tolerated = true;
+    double part = orl_colmap_line_progress(line, run->share);
+    if (part < 0)
+        return;
+    double done = run->done + run->share * (part < 1 ? part : 1);
+    // Only orl_job_colmap's callers know when a step is over.
+    double limit = 0.999 * run->total;
+    orl_progress_report(watch->job->progress, run->step, done < limit ? done : limit, run->total,
+                        NULL);
+}
+
+static enum orl_result advise_missing(const struct orl_job *job)
+{
+    return orl_fail(job->log, ORL_ERR_EXTERNAL,
+                    "COLMAP is needed: install it (Debian: apt install colmap) or name its "
+                    "program in ORIEL_COLMAP");
+}
+
+enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run *run,
+                               struct orl_colmap_args *args)
+{
+    // Qt would look for a display otherwise.
+    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
+    const char *argv[ORL_COLMAP_ARGS_MAX + 3] = {job->colmap, run->command};
+    for (size_t i = 0; i < args->count; i++)
+        argv[2 + i] = args->items[i];
+    char *log_path = orl_job_path(job, "logs/colmap.log");
+    struct watch watch = {.job = job, .run = run};
+    struct orl_log held = {.level = ORL_LOG_ERROR, .print = hold_error, .priv = &watch};
+    struct orl_process_params params = {.argv = argv, .log_path = log_path,
+                                        .progress = job->progress, .line = watch_line,
+                                        .line_priv = &watch, .env = env};
+    struct orl_process_usage usage = {0};
+    enum orl_result result = ORL_ERR_MEMORY;
+    if (!log_path || args->failed)
+        goto end;
+    if (run->done == 0)
+        orl_progress_report(job->progress, run->step, 0, run->total, NULL);
+    result = orl_process_run(&held, &params, &usage);
+    if (result == ORL_ERR_EXTERNAL && watch.tolerated)
+        result = ORL_OK;
+    else if (watch.error[0])
+        orl_logf(job->log, ORL_LOG_ERROR, "%s", watch.error);
+    job->child_cpu_s += usage.cpu_s;
+    if (usage.peak_rss_bytes > job->child_peak_bytes)
+        job->child_peak_bytes = usage.peak_rss_bytes;
+    if (result == ORL_ERR_NOT_FOUND) {
+        result = advise_missing(job);
+    } else if (result == ORL_ERR_EXTERNAL) {
+        orl_logf(job->log, ORL_LOG_ERROR, "all of COLMAP's output is in %s", log_path);
+        orl_job_hint_disk(job);
+    }
+end:
+    free(log_path);
+    args_finish(args);
+    return result;
+}
+
+static void find_version(void *priv, const char *line)
+{
+    struct orl_job *job = priv;
+    if (strncmp(line, "COLMAP ", 7) == 0 && !job->colmap_version[0])
+        snprintf(job->colmap_version, sizeof job->colmap_version, "%.*s",
+                 (int)strcspn(line + 7, " "), line + 7);
+    if (strstr(line, "with CUDA"))
+        job->colmap_cuda = true;
+}
+
+enum orl_result orl_job_find_colmap(struct orl_job *job)
+{
+    if (job->colmap_known)
+        return ORL_OK;
+    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
+    const char *chosen = getenv("ORIEL_COLMAP");
+    job->colmap = chosen && *chosen ? chosen : "colmap";
+    const char *const argv[] = {job->colmap, "help", NULL};
+    struct orl_process_params params = {.argv = argv, .progress = job->progress,
+                                        .line = find_version, .line_priv = job, .env = env};
+    enum orl_result result = orl_process_run(job->log, &params, NULL);
+    if (result == ORL_ERR_NOT_FOUND)
+        return advise_missing(job);
+    if (result != ORL_OK)
+        return result;
+    job->colmap_known = true;
+    orl_logf(job->log, ORL_LOG_DEBUG, "COLMAP %s, %s CUDA", job->colmap_version,
+             job->colmap_cuda ? "with" : "without");
+    return ORL_OK;
+}

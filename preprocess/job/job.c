@@ -1,0 +1,294 @@
+#include "preprocess/job/job.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "core/lock.h"
+#include "core/memory.h"
+
+static void forget(struct orl_job_model *model)
+{
+    if (model->known)
+        orl_colmap_finish(&model->model);
+    model->known = false;
+}
+
+// --- the folder ---
+
+static enum orl_result fail_there(const struct orl_job *job)
+{
+    return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                    "%s: there already; go on with --resume or choose another folder", job->dir);
+}
+
+// Never touches what it did not make: a folder is taken when it is new, empty, or
+// prepare's own and --resume says so.
+static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
+{
+    struct orl_names names = {0};
+    enum orl_result result = orl_dir_list(job->log, job->dir, &names);
+    if (result != ORL_OK)
+        return result;
+    bool ours = orl_names_contain(&names, ".oriel");
+    if (names.count && !ours)
+        result = orl_fail(job->log, ORL_ERR_ARGUMENT,
+                          "%s: not empty, and not made by oriel prepare; choose another folder",
+                          job->dir);
+    else if (ours && !job->params->resume)
+        result = fail_there(job);
+    *empty = names.count == 0;
+    orl_names_finish(&names);
+    return result;
+}
+
+// What the folder is must be decided with the lock held: until then another prepare may have
+// taken it, and finished.
+static enum orl_result lock_folder(struct orl_job *job, bool empty)
+{
+    bool taken = false;
+    char *path = orl_job_path(job, ".oriel/lock");
+    enum orl_result result = path ? orl_lock(job->log, path, &job->lock_fd, &taken)
+                                  : ORL_ERR_MEMORY;
+    bool begun = orl_job_has(job, ".oriel/stages.json");
+    if (result == ORL_OK && taken)
+        result = orl_fail(job->log, ORL_ERR_ARGUMENT,
+                          "%s: another oriel prepare is at work here", job->dir);
+    else if (result == ORL_OK && begun && !job->params->resume)
+        result = fail_there(job);
+    job->fresh = result == ORL_OK && empty && !begun;
+    free(path);
+    return result;
+}
+
+enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
+                             const struct orl_prepare_params *params,
+                             const struct orl_progress *progress)
+{
+    static const char *const dirs[] = {".oriel", "logs"};
+    *job = (struct orl_job){.log = log, .params = params, .progress = progress, .lock_fd = -1,
+                            .linear_scale = 1, .skipped = json_array()};
+    enum orl_result result = job->skipped ? orl_dir_make(log, params->out) : ORL_ERR_MEMORY;
+    if (result != ORL_OK)
+        return result;
+    job->dir = realpath(params->out, NULL);
+    if (!job->dir)
+        return orl_fail(log, ORL_ERR_IO, "%s: %s", params->out, strerror(errno));
+    bool empty = false;
+    result = claim_folder(job, &empty);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++) {
+        char *path = orl_job_path(job, "%s", dirs[i]);
+        result = path ? orl_dir_make(log, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    return result == ORL_OK ? lock_folder(job, empty) : result;
+}
+
+void orl_job_leave(const struct orl_job *job)
+{
+    if (job->fresh && orl_job_remove(job, ".oriel") == ORL_OK &&
+        orl_job_remove(job, "logs") == ORL_OK)
+        rmdir(job->dir);
+}
+
+void orl_source_finish(struct orl_source *source)
+{
+    free(source->name);
+    free(source->given);
+    free(source->path);
+    free(source->original);
+    free(source->mask);
+    memset(source, 0, sizeof *source);
+}
+
+void orl_job_close(struct orl_job *job)
+{
+    for (size_t i = 0; i < job->source_count; i++)
+        orl_source_finish(&job->sources[i]);
+    free(job->sources);
+    orl_exposure_list_finish(&job->exposures);
+    forget(&job->calibrated);
+    forget(&job->sparse);
+    json_decref(job->skipped);
+    json_decref(job->stages);
+    orl_unlock(&job->lock_fd);
+    free(job->dir);
+}
+
+// --- files in the scene ---
+
+char *orl_job_path(const struct orl_job *job, const char *format, ...)
+{
+    char name[4096];
+    va_list args;
+    va_start(args, format);
+    int length = vsnprintf(name, sizeof name, format, args);
+    va_end(args);
+    if (length < 0 || (size_t)length >= sizeof name) {
+        orl_logf(job->log, ORL_LOG_ERROR, "%s: a path is too long", job->dir);
+        return NULL;
+    }
+    return orl_path_join(job->log, job->dir, name);
+}
+
+bool orl_job_has(const struct orl_job *job, const char *name)
+{
+    char *path = orl_job_path(job, "%s", name);
+    bool there = path && access(path, F_OK) == 0;
+    free(path);
+    return there;
+}
+
+enum orl_result orl_job_replace(const struct orl_job *job, const char *temp, const char *name)
+{
+    char *from = orl_job_path(job, "%s", temp), *to = orl_job_path(job, "%s", name);
+    enum orl_result result = from && to ? orl_dir_remove(job->log, to) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && rename(from, to) != 0)
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", to, strerror(errno));
+    free(from);
+    free(to);
+    return result;
+}
+
+enum orl_result orl_job_remove(const struct orl_job *job, const char *name)
+{
+    char *path = orl_job_path(job, "%s", name);
+    enum orl_result result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+enum orl_result orl_job_fresh_dir(const struct orl_job *job, const char *name)
+{
+    char *path = orl_job_path(job, "%s", name);
+    enum orl_result result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_dir_make(job->log, path);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_job_link(const struct orl_job *job, const char *target, const char *path)
+{
+    if (symlink(target, path) == 0)
+        return ORL_OK;
+    bool unknown = errno == EPERM || errno == ENOTSUP || errno == ENOSYS || errno == EINVAL;
+    if (!unknown)
+        return orl_fail(job->log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    uint8_t *data;
+    size_t size;
+    enum orl_result result = orl_file_read(job->log, target, SIZE_MAX / 2, &data, &size);
+    if (result == ORL_OK)
+        result = orl_file_write(job->log, path, data, size);
+    free(data);
+    return result;
+}
+
+enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,
+                                   const struct orl_names *names)
+{
+    size_t size = 0;
+    for (size_t i = 0; i < names->count; i++)
+        size += strlen(names->items[i]) + 1;
+    char *text = orl_array(job->log, size + 1, 1);
+    if (!text)
+        return ORL_ERR_MEMORY;
+    char *at = text;
+    for (size_t i = 0; i < names->count; i++)
+        at += sprintf(at, "%s\n", names->items[i]);
+    enum orl_result result = orl_file_write(job->log, path, text, size);
+    free(text);
+    return result;
+}
+
+void orl_job_hint_disk(const struct orl_job *job)
+{
+    struct statvfs fs;
+    if (statvfs(job->dir, &fs) != 0)
+        return;
+    double mib = (double)fs.f_bavail * (double)fs.f_frsize / (1 << 20);
+    if (mib < 64)
+        orl_logf(job->log, ORL_LOG_ERROR, "%s: its disk has only %.1f MiB left", job->dir, mib);
+}
+
+// --- photographs and their model ---
+
+static int compare_source(const void *name, const void *source)
+{
+    return strcmp(name, ((const struct orl_source *)source)->name);
+}
+
+const struct orl_source *orl_job_find(const struct orl_job *job, const char *name)
+{
+    return job->source_count ? bsearch(name, job->sources, job->source_count,
+                                       sizeof *job->sources, compare_source)
+                             : NULL;
+}
+
+enum orl_exposure_source orl_source_exposure(const struct orl_job *job,
+                                             const struct orl_source *source, double *ev)
+{
+    return orl_exposure_told(&job->exposures, source->name, source->given, &source->exif, ev);
+}
+
+static enum orl_result read_model(const struct orl_job *job, const char *name,
+                                  struct orl_job_model *model)
+{
+    if (model->known)
+        return ORL_OK;
+    char *path = orl_job_path(job, "%s", name);
+    enum orl_result result = path ? orl_colmap_read(job->log, path, &model->model)
+                                  : ORL_ERR_MEMORY;
+    free(path);
+    model->known = result == ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < model->model.image_count; i++)
+        if (!orl_job_find(job, model->model.images[i].name))
+            result = orl_fail(job->log, ORL_ERR_DATA, "%s/%s: photograph %s was not given",
+                              job->dir, name, model->model.images[i].name);
+    if (result != ORL_OK)
+        forget(model);
+    return result;
+}
+
+enum orl_result orl_job_calibrated(struct orl_job *job, const struct orl_colmap_model **model)
+{
+    *model = &job->calibrated.model;
+    return read_model(job, ".oriel/calibrate/model", &job->calibrated);
+}
+
+enum orl_result orl_job_sparse(struct orl_job *job, const struct orl_colmap_model **model)
+{
+    *model = &job->sparse.model;
+    return read_model(job, "sparse", &job->sparse);
+}
+
+enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
+                                   const struct orl_colmap_model **model)
+{
+    forget(&job->sparse);
+    *model = &job->sparse.model;
+    return read_model(job, name, &job->sparse);
+}
+
+void orl_job_set_calibrated(struct orl_job *job, struct orl_colmap_model *model)
+{
+    forget(&job->calibrated);
+    job->calibrated = (struct orl_job_model){*model, true};
+    *model = (struct orl_colmap_model){0};
+}
+
+enum orl_result orl_job_train_names(struct orl_job *job, struct orl_names *names)
+{
+    const struct orl_colmap_model *model;
+    enum orl_result result = orl_job_sparse(job, &model);
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
+        if (!orl_job_find(job, model->images[i].name)->test)
+            result = orl_names_add(job->log, names, model->images[i].name);
+    if (result != ORL_OK)
+        orl_names_finish(names);
+    return result;
+}

@@ -1,0 +1,14 @@
+#include "preprocess/job/prepare_params.h"
+
+const char *const orl_quality_names[] = {"draft", "standard", "high", NULL};
+const char *const orl_camera_sharing_names[] = {"auto", "single", "each", NULL};
+const char *const orl_matching_names[] = {"auto", "exhaustive", "sequential", NULL};
+const char *const orl_densifier_names[] = {"auto", "gl", "colmap", NULL};
+const char *const orl_keep_names[] = {"minimal", "all", NULL};
+
+int orl_prepare_max_size(const struct orl_prepare_params *params)
+{
+    static const int sizes[] = {[ORL_QUALITY_DRAFT] = 800, [ORL_QUALITY_STANDARD] = 1600,
+                                [ORL_QUALITY_HIGH] = 3200};
+    return params->max_size ? params->max_size : sizes[params->quality];
+}

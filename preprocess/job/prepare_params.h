@@ -1,0 +1,53 @@
+// What oriel prepare is asked to do.
+#ifndef ORL_PREPROCESS_PREPARE_PARAMS_H
+#define ORL_PREPROCESS_PREPARE_PARAMS_H
+
+#include "core/file.h"
+
+struct orl_gpu;
+
+enum orl_quality { ORL_QUALITY_DRAFT, ORL_QUALITY_STANDARD, ORL_QUALITY_HIGH };
+// auto: photographs of one size and one EXIF camera and focal length share a camera.
+enum orl_camera_sharing { ORL_SHARING_AUTO, ORL_SHARING_SINGLE, ORL_SHARING_EACH };
+// auto: exhaustive up to 120 photographs, then neighbours by name, then exhaustive
+// after all when too few of them register.
+enum orl_matching { ORL_MATCHING_AUTO, ORL_MATCHING_EXHAUSTIVE, ORL_MATCHING_SEQUENTIAL };
+// auto: COLMAP's when it was built with CUDA, else the built-in one.
+enum orl_densifier { ORL_DENSIFIER_AUTO, ORL_DENSIFIER_GL, ORL_DENSIFIER_COLMAP };
+
+// minimal: only what commands read; all: depth, normal and confidence maps (stereo/) too.
+enum orl_keep { ORL_KEEP_MINIMAL, ORL_KEEP_ALL };
+
+// Names of the values above, in their order; NULL after the last.
+extern const char *const orl_quality_names[];
+extern const char *const orl_camera_sharing_names[];
+extern const char *const orl_matching_names[];
+extern const char *const orl_densifier_names[];
+extern const char *const orl_keep_names[];
+
+struct orl_prepare_params {
+    const char *const *inputs; // photographs and folders of them
+    size_t input_count;
+    const char *out;           // the scene folder
+    int test_every;            // hold out photographs 0, N, 2N, ... by name; 0: none
+    const struct orl_names *test_list; // hold out these (extension optional); NULL: none
+    int max_size;              // larger side of the undistorted photographs in pixels;
+                               // 0: by quality
+    enum orl_quality quality;
+    enum orl_camera_sharing sharing;
+    enum orl_matching matching;
+    enum orl_densifier densifier;
+    enum orl_keep keep;
+    const char *masks_dir;     // NAME.png or NAME.EXT.png, black = ignore; NULL: none
+    const char *exposures;     // CSV that overrides EXIF (exposure_list.h); NULL: none
+    bool resume;               // go on with what is there
+    uint32_t seed;
+    struct orl_gpu *gpu;       // NULL: opened when densify needs it
+    size_t max_vram_bytes;     // device memory that densify keeps to; 0: no limit
+    const char *shader_dir;    // for that; NULL: the embedded shaders
+};
+
+// Larger side of the undistorted photographs, as asked for or by quality.
+int orl_prepare_max_size(const struct orl_prepare_params *params);
+
+#endif

@@ -1,0 +1,444 @@
+#include "preprocess/photos/collect.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "preprocess/photos/advice.h"
+#include "preprocess/photos/develop.h"
+
+// Pictures that a user may expect to be taken.
+static bool is_other_photo_name(const char *name)
+{
+    static const char *const known[] = {"heic", "heif", "webp", "bmp", "gif", "avif", NULL};
+    return name[0] != '.' && orl_has_extension(name, known);
+}
+
+static void skip(struct orl_job *job, const char *name, const char *why)
+{
+    orl_logf(job->log, ORL_LOG_WARNING, "%s: %s; skipped", name, why);
+    json_t *entry = json_pack("{s:s, s:s}", "name", name, "why", why);
+    if (!entry) // JSON is UTF-8
+        entry = json_pack("{s:s, s:s}", "name", "(name is not UTF-8)", "why", "cannot be used");
+    json_array_append_new(job->skipped, entry);
+}
+
+// Names of files that are made from a photograph's are longer, and file systems take 255 bytes.
+enum { NAME_MAX_BYTES = 200 };
+
+// COLMAP's lists are lines, its stereo lists are parted by commas, and '#' starts a
+// comment: a name must survive all of them. NULL: it does.
+static const char *name_problem(const char *name)
+{
+    size_t length = strlen(name);
+    if (name[0] == '#' || isspace((unsigned char)name[0]) ||
+        isspace((unsigned char)name[length - 1]))
+        return "its name starts with # or starts or ends with a space: rename it";
+    for (const char *c = name; *c; c++)
+        if ((unsigned char)*c < 32 || *c == ',')
+            return "its name has a comma or a control character: rename it";
+    if (length > NAME_MAX_BYTES)
+        return "its name is longer than 200 bytes: rename it";
+    json_t *text = json_string(name);
+    json_decref(text);
+    return text ? NULL : "its name is not UTF-8: rename it";
+}
+
+static enum orl_result add_candidate(struct orl_job *job, const char *path)
+{
+    const char *name = orl_path_name(path);
+    job->given++;
+    char *real = realpath(path, NULL);
+    const char *problem = !real ? strerror(errno)
+                          : !orl_path_is_file(real) ? "not a regular file"
+                                                    : name_problem(name);
+    enum orl_result result = ORL_OK;
+    if (problem) {
+        skip(job, path, problem);
+        goto end;
+    }
+    result = orl_grow(job->log, (void **)&job->sources, &job->source_capacity,
+                      job->source_count + 1, sizeof *job->sources);
+    if (result != ORL_OK)
+        goto end;
+    struct orl_source *source = &job->sources[job->source_count++];
+    *source = (struct orl_source){.name = orl_develop_wanted(name)
+                                              ? orl_develop_name(job->log, name)
+                                              : orl_strdup(job->log, name),
+                                  .given = orl_strdup(job->log, name), .path = real};
+    real = NULL;
+    result = source->name && source->given ? ORL_OK : ORL_ERR_MEMORY;
+end:
+    free(real);
+    return result;
+}
+
+static enum orl_result add_folder(struct orl_job *job, const char *dir)
+{
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(job->log, dir, &names);
+    size_t before = job->given, videos = 0;
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        char *path = orl_path_join(job->log, dir, names.items[i]);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (orl_is_photo_name(names.items[i]) && !orl_path_is_dir(path))
+            result = add_candidate(job, path);
+        else if (orl_is_video_name(names.items[i]))
+            videos++;
+        else if (is_other_photo_name(names.items[i])) {
+            job->given++;
+            skip(job, path, "not JPEG, PNG, TIFF, EXR or RAW");
+        }
+        free(path);
+    }
+    orl_names_finish(&names);
+    if (result == ORL_OK && job->given == before)
+        result = orl_fail_no_photos(job, dir);
+    else if (result == ORL_OK && videos)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: videos are left out: %zu", dir, videos);
+    return result;
+}
+
+static enum orl_result list_inputs(struct orl_job *job)
+{
+    const struct orl_prepare_params *params = job->params;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < params->input_count; i++) {
+        const char *input = params->inputs[i];
+        if (orl_path_is_dir(input))
+            result = add_folder(job, input);
+        else if (orl_is_video_name(orl_path_name(input)) && orl_path_is_file(input))
+            result = orl_fail_video(job, input);
+        else if (access(input, F_OK) == 0)
+            result = add_candidate(job, input);
+        else
+            result = orl_fail(job->log, ORL_ERR_NOT_FOUND,
+                              "%s: no such folder or file; give a folder of photographs", input);
+    }
+    return result;
+}
+
+static int compare_sources(const void *a, const void *b)
+{
+    return strcmp(((const struct orl_source *)a)->name, ((const struct orl_source *)b)->name);
+}
+
+// Moves a source up behind the *kept ones before it.
+static void keep_source(struct orl_job *job, struct orl_source *source, size_t *kept)
+{
+    if (&job->sources[*kept] != source) {
+        job->sources[*kept] = *source;
+        memset(source, 0, sizeof *source);
+    }
+    ++*kept;
+}
+
+// For messages of a decoder, which become the reason in our own.
+struct reason {
+    char text[512];
+};
+
+static void keep_reason(void *priv, enum orl_log_level level, const char *message)
+{
+    struct reason *reason = priv;
+    if (level == ORL_LOG_ERROR)
+        snprintf(reason->text, sizeof reason->text, "%s", message);
+}
+
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot ? (size_t)(dot - name) : strlen(name);
+}
+
+static void skip_for(struct orl_job *job, struct orl_source *source, const struct reason *reason)
+{
+    // Decoders name the file first; it is named already.
+    size_t length = strlen(source->path);
+    bool named = strncmp(reason->text, source->path, length) == 0;
+    const char *why = reason->text + (named ? length : 0);
+    skip(job, source->path, why + strspn(why, ": "));
+    orl_source_finish(source);
+}
+
+// Of those that stand for a JPEG of the same name, so that it can be used after all.
+static void drop_unreadable(struct orl_job *job)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        struct reason reason = {"cannot be read"};
+        struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
+        struct orl_picture_info info;
+        if (orl_develop_wanted(source->given) &&
+            orl_picture_inspect(&log, source->path, &info) != ORL_OK)
+            skip_for(job, source, &reason);
+        else
+            keep_source(job, source, &kept);
+    }
+    job->source_count = kept;
+}
+
+// Cameras write a JPEG beside a RAW file: the same moment, and two photographs from one
+// place would only mislead COLMAP.
+static void drop_twins(struct orl_job *job)
+{
+    drop_unreadable(job);
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        static const char *const jpeg[] = {"jpg", "jpeg", NULL};
+        const struct orl_source *better = NULL;
+        size_t stem = stem_length(source->given);
+        bool may_be = orl_has_extension(source->given, jpeg);
+        for (size_t k = 0; may_be && k < job->source_count && !better; k++) {
+            const struct orl_source *other = &job->sources[k];
+            if (other->given && orl_develop_wanted(other->given) &&
+                stem_length(other->given) == stem &&
+                strncasecmp(other->given, source->given, stem) == 0)
+                better = other;
+        }
+        if (better) {
+            char why[512];
+            snprintf(why, sizeof why, "%s holds more of the same photograph", better->given);
+            skip(job, source->path, why);
+            orl_source_finish(source);
+        } else {
+            keep_source(job, source, &kept);
+        }
+    }
+    job->source_count = kept;
+}
+
+// The same file given twice counts once; two files of one name cannot be told apart.
+static enum orl_result drop_duplicates(struct orl_job *job)
+{
+    if (job->source_count)
+        qsort(job->sources, job->source_count, sizeof *job->sources, compare_sources);
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        struct orl_source *last = kept ? &job->sources[kept - 1] : NULL;
+        if (last && strcmp(last->name, source->name) == 0) {
+            if (strcmp(last->path, source->path) != 0)
+                return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                                "%s and %s have the same name: rename one", last->path,
+                                source->path);
+            orl_source_finish(source);
+            job->given--;
+            continue;
+        }
+        keep_source(job, source, &kept);
+    }
+    job->source_count = kept;
+    return ORL_OK;
+}
+
+// What an earlier run found out about this file.
+static bool known_good(const struct orl_job *job, const struct orl_source *source)
+{
+    const json_t *photos = json_object_get(
+        json_object_get(json_object_get(job->stages, "done"), "collect"), "photographs");
+    const char *hash = json_string_value(json_object_get(photos, source->name));
+    char text[32];
+    snprintf(text, sizeof text, "%016" PRIx64, source->hash);
+    return hash && strcmp(hash, text) == 0;
+}
+
+// False, with the reason, when the file cannot be used. Decodes the whole picture,
+// as only that finds truncated ones.
+static bool inspect(const struct orl_job *job, struct orl_source *source, struct reason *reason)
+{
+    struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = reason};
+    struct orl_image image = {0};
+    struct orl_picture_info info;
+    if (orl_file_hash(&log, source->path, &source->hash) != ORL_OK ||
+        orl_picture_inspect(&log, source->path, &info) != ORL_OK ||
+        orl_exif_read(&log, source->path, &source->exif) != ORL_OK)
+        return false;
+    source->width = info.width;
+    source->height = info.height;
+    source->deep = info.bits > 8;
+    source->unbounded = info.unbounded;
+    if (source->width < 64 || source->height < 64) {
+        snprintf(reason->text, sizeof reason->text, "%dx%d pixels are too few", source->width,
+                 source->height);
+        return false;
+    }
+    if (known_good(job, source))
+        return true;
+    bool good = orl_picture_read(&log, source->path, 1, &image) == ORL_OK;
+    orl_image_finish(&image);
+    return good;
+}
+
+static enum orl_result inspect_all(struct orl_job *job)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        orl_progress_report(job->progress, "collect", (double)i, (double)job->source_count,
+                            source->name);
+        struct reason reason = {"cannot be read"};
+        if (!inspect(job, source, &reason)) {
+            skip_for(job, source, &reason);
+            continue;
+        }
+        keep_source(job, source, &kept);
+    }
+    job->source_count = kept;
+    orl_progress_report(job->progress, "collect", 1, 1, NULL);
+    return ORL_OK;
+}
+
+// One photograph under two names (a link, a copy) would be matched with itself, and one of them
+// held out would be known to the others. The first by name stays.
+static void drop_copies(struct orl_job *job)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        const struct orl_source *same = NULL;
+        for (size_t k = 0; k < kept && !same; k++)
+            if (job->sources[k].hash == source->hash)
+                same = &job->sources[k];
+        if (same) {
+            char why[512];
+            snprintf(why, sizeof why, "the same file as %s", same->given);
+            skip(job, source->given, why); // its path may be that of the other
+            orl_source_finish(source);
+        } else {
+            keep_source(job, source, &kept);
+        }
+    }
+    job->source_count = kept;
+}
+
+// "name", with or without its extension.
+static bool same_photo(const char *name, const char *given)
+{
+    size_t stem = stem_length(name);
+    return strcmp(name, given) == 0 || (strlen(given) == stem && strncmp(name, given, stem) == 0);
+}
+
+static enum orl_result choose_test(struct orl_job *job)
+{
+    const struct orl_prepare_params *params = job->params;
+    size_t held_out = 0;
+    for (size_t i = 0; params->test_every && i < job->source_count; i += (size_t)params->test_every)
+        job->sources[i].test = true;
+    for (size_t n = 0; params->test_list && n < params->test_list->count; n++) {
+        bool found = false;
+        for (size_t i = 0; i < job->source_count; i++)
+            if (same_photo(job->sources[i].name, params->test_list->items[n]) ||
+                same_photo(job->sources[i].given, params->test_list->items[n]))
+                found = job->sources[i].test = true;
+        if (!found)
+            return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                            "--test-list %s: no usable photograph of this name",
+                            params->test_list->items[n]);
+    }
+    for (size_t i = 0; i < job->source_count; i++)
+        held_out += job->sources[i].test;
+    if (job->source_count - held_out < 2)
+        return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                        "%zu of %zu photographs held out: at least two must remain", held_out,
+                        job->source_count);
+    return ORL_OK;
+}
+
+static enum orl_result find_mask(struct orl_job *job, struct orl_source *source)
+{
+    const char *dot = strrchr(source->name, '.');
+    char *paths[2] = {
+        orl_format(job->log, "%s/%s.png", job->params->masks_dir, source->name),
+        orl_format(job->log, "%s/%.*s.png", job->params->masks_dir,
+                   (int)(dot ? dot - source->name : (long)strlen(source->name)), source->name)};
+    enum orl_result result = paths[0] && paths[1] ? ORL_OK : ORL_ERR_MEMORY;
+    for (int i = 0; result == ORL_OK && i < 2 && !source->mask; i++)
+        if (orl_path_is_file(paths[i]))
+            source->mask = realpath(paths[i], NULL);
+    int width, height;
+    if (source->mask &&
+        (result = orl_file_hash(job->log, source->mask, &source->mask_hash)) == ORL_OK &&
+        (result = orl_picture_size(job->log, source->mask, &width, &height)) == ORL_OK &&
+        (width != source->width || height != source->height))
+        result = orl_fail(job->log, ORL_ERR_DATA, "%s: %dx%d pixels, but its photograph %s has "
+                          "%dx%d", source->mask, width, height, source->name, source->width,
+                          source->height);
+    free(paths[0]);
+    free(paths[1]);
+    return result;
+}
+
+static enum orl_result find_masks(struct orl_job *job)
+{
+    if (!job->params->masks_dir)
+        return ORL_OK;
+    if (!orl_path_is_dir(job->params->masks_dir))
+        return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--masks %s: no such folder",
+                        job->params->masks_dir);
+    size_t found = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        enum orl_result result = find_mask(job, &job->sources[i]);
+        if (result != ORL_OK)
+            return result;
+        found += job->sources[i].mask != NULL;
+    }
+    if (!found)
+        return orl_fail(job->log, ORL_ERR_NOT_FOUND,
+                        "--masks %s: no mask for any photograph (NAME.png or NAME.EXT.png)",
+                        job->params->masks_dir);
+    if (found < job->source_count)
+        orl_logf(job->log, ORL_LOG_WARNING, "%zu of %zu photographs have no mask: used whole",
+                 job->source_count - found, job->source_count);
+    return ORL_OK;
+}
+
+static enum orl_result link_photos(struct orl_job *job)
+{
+    enum orl_result result = orl_job_fresh_dir(job, ".oriel/photos");
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
+        char *path = orl_job_path(job, ".oriel/photos/%s", job->sources[i].name);
+        result = path ? orl_job_link(job, job->sources[i].path, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    return result;
+}
+
+// Names the folder when one was given.
+static enum orl_result too_few(const struct orl_job *job)
+{
+    const struct orl_prepare_params *params = job->params;
+    return orl_fail(job->log, ORL_ERR_DATA,
+                    "%s%s: %zu usable photograph%s of %zu; at least three are needed that show "
+                    "the same place from different positions", params->inputs[0],
+                    params->input_count > 1 ? " and others" : "", job->source_count,
+                    job->source_count == 1 ? "" : "s", job->given);
+}
+
+enum orl_result orl_stage_collect(struct orl_job *job)
+{
+    enum orl_result result;
+    if ((result = list_inputs(job)) != ORL_OK)
+        return result;
+    drop_twins(job);
+    if ((result = drop_duplicates(job)) != ORL_OK || (result = inspect_all(job)) != ORL_OK)
+        return result;
+    drop_copies(job);
+    if (job->source_count < 3)
+        return too_few(job);
+    if ((result = choose_test(job)) != ORL_OK || (result = find_masks(job)) != ORL_OK ||
+        (result = orl_develop(job)) != ORL_OK)
+        return result;
+    return link_photos(job);
+}

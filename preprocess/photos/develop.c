@@ -1,0 +1,185 @@
+#include "preprocess/photos/develop.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+
+enum { TWIN_QUALITY = 98 };
+
+static const float light_max = 65504; // of half floats; infinities would spread
+
+bool orl_develop_wanted(const char *name)
+{
+    static const char *const known[] = {".tif", ".tiff", ".exr"};
+    const char *dot = strrchr(name, '.');
+    for (size_t i = 0; dot && i < ORL_COUNT(known); i++)
+        if (strcasecmp(dot, known[i]) == 0)
+            return true;
+    return orl_picture_is_raw(name);
+}
+
+char *orl_develop_name(const struct orl_log *log, const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return orl_format(log, "%.*s.jpg", (int)(dot ? dot - name : (long)strlen(name)), name);
+}
+
+// --- floating point photographs: which light is white? ---
+
+static char *cache_path(const struct orl_job *job, const struct orl_source *source,
+                        const char *end)
+{
+    return orl_job_path(job, ".oriel/developed/%016" PRIx64 "%s", source->hash, end);
+}
+
+// log2 of the geometric mean of what is not black.
+static double log_average(const struct orl_image *image)
+{
+    size_t count = (size_t)image->width * (size_t)image->height;
+    double sum = 0, used = 0;
+    for (size_t i = 0; i < count; i++) {
+        float l = orl_luminance(image->f32 + 3 * i);
+        if (l > 0 && isfinite(l)) {
+            sum += log2((double)l);
+            used++;
+        }
+    }
+    return used > 0 ? sum / used : 0;
+}
+
+// Kept beside the twins, as it takes decoding the whole file.
+static enum orl_result read_light(const struct orl_job *job, const struct orl_source *source,
+                                  double *light)
+{
+    struct orl_image image = {0};
+    uint8_t *text = NULL;
+    size_t size = 0;
+    char line[64];
+    char *path = cache_path(job, source, ".light");
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(path) &&
+        orl_file_read(NULL, path, sizeof line, &text, &size) == ORL_OK &&
+        sscanf((const char *)text, "%lf", light) == 1 && isfinite(*light))
+        goto end;
+    if (result == ORL_OK)
+        result = orl_picture_read_linear(job->log, source->path, &image);
+    if (result == ORL_OK) {
+        *light = log_average(&image);
+        int length = snprintf(line, sizeof line, "%a\n", *light);
+        result = orl_file_write(job->log, path, line, (size_t)length);
+    }
+end:
+    orl_image_finish(&image);
+    free(text);
+    free(path);
+    return result;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// One factor for all of them, so that their brightness still compares: the median
+// picture's average becomes middle grey. A power of two loses nothing of half floats.
+static enum orl_result choose_scale(struct orl_job *job)
+{
+    double *lights = orl_array(job->log, job->source_count, sizeof *lights);
+    enum orl_result result = lights ? ORL_OK : ORL_ERR_MEMORY;
+    size_t count = 0;
+    for (size_t i = 0; i < job->source_count && result == ORL_OK; i++)
+        if (job->sources[i].unbounded)
+            result = read_light(job, &job->sources[i], &lights[count++]);
+    job->linear_scale = 1;
+    if (result == ORL_OK && count) {
+        qsort(lights, count, sizeof *lights, compare_doubles);
+        job->linear_scale = exp2(round(log2(0.18) - lights[count / 2]));
+    }
+    free(lights);
+    return result;
+}
+
+enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_source *source,
+                                 struct orl_image *image)
+{
+    enum orl_result result = orl_picture_read_linear(
+        job->log, source->original ? source->original : source->path, image);
+    size_t count = result == ORL_OK ? orl_image_bytes(image) / sizeof(float) : 0;
+    float scale = source->unbounded ? (float)job->linear_scale : 1;
+    for (size_t i = 0; i < count; i++) { // NaN and negative light are none
+        float value = scale * image->f32[i];
+        image->f32[i] = value > 0 ? fminf(value, light_max) : 0;
+    }
+    return result;
+}
+
+// --- 8-bit twins ---
+
+static enum orl_result write_twin(const struct orl_job *job, const struct orl_source *source,
+                                  const char *path)
+{
+    struct orl_image linear = {0}, twin = {0};
+    enum orl_result result = orl_develop_read(job, source, &linear);
+    if (result == ORL_OK)
+        result = orl_image_init(job->log, &twin, linear.width, linear.height, 3, ORL_PIXEL_U8);
+    size_t count = result == ORL_OK ? orl_image_bytes(&twin) : 0;
+    for (size_t i = 0; i < count; i++)
+        twin.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(linear.f32[i]));
+    if (result == ORL_OK)
+        result = orl_jpeg_write(job->log, path, &twin, TWIN_QUALITY, &source->exif);
+    orl_image_finish(&linear);
+    orl_image_finish(&twin);
+    return result;
+}
+
+static enum orl_result develop(const struct orl_job *job, struct orl_source *source)
+{
+    char end[64] = ".jpg";
+    if (source->unbounded)
+        snprintf(end, sizeof end, ".%d.jpg", (int)log2(job->linear_scale));
+    char *path = cache_path(job, source, end);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !orl_path_is_file(path))
+        result = write_twin(job, source, path);
+    if (result == ORL_OK) {
+        source->original = source->path;
+        source->path = path;
+        path = NULL;
+    }
+    free(path);
+    return result;
+}
+
+enum orl_result orl_develop(struct orl_job *job)
+{
+    size_t count = 0, done = 0;
+    for (size_t i = 0; i < job->source_count; i++)
+        count += orl_develop_wanted(job->sources[i].given);
+    if (!count)
+        return ORL_OK;
+    char *dir = orl_job_path(job, ".oriel/developed");
+    enum orl_result result = dir ? orl_dir_make(job->log, dir) : ORL_ERR_MEMORY;
+    free(dir);
+    if (result == ORL_OK)
+        result = choose_scale(job);
+    for (size_t i = 0; i < job->source_count && result == ORL_OK; i++) {
+        struct orl_source *source = &job->sources[i];
+        if (!orl_develop_wanted(source->given))
+            continue;
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        orl_progress_report(job->progress, "develop", (double)done++, (double)count,
+                            source->given);
+        result = develop(job, source);
+    }
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "develop", 1, 1, NULL);
+    return result;
+}

@@ -1,0 +1,104 @@
+#include "preprocess/photos/normalise.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+
+// Exposures must differ by this much before copies are made, and a photograph must be this
+// much darker than the median to get one.
+static const double RANGE_MIN_EV = 1, DARKER_MIN_EV = 0.5;
+static const double BRIGHTEN_MAX_EV = 8; // beyond it there is nothing but noise
+enum { JPEG_QUALITY = 98 };
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// The exposure that darker photographs are brought to; false when copies are not needed.
+static bool find_target(const struct orl_job *job, double *target)
+{
+    double *known = orl_array(job->log, job->source_count, sizeof *known);
+    size_t count = 0;
+    for (size_t i = 0; known && i < job->source_count; i++)
+        count += orl_source_exposure(job, &job->sources[i], &known[count]) !=
+                 ORL_EXPOSURE_UNKNOWN;
+    if (count)
+        qsort(known, count, sizeof *known, compare_doubles);
+    bool needed = count > 1 && known[count - 1] - known[0] >= RANGE_MIN_EV;
+    *target = count ? known[count / 2] : 0;
+    free(known);
+    return needed;
+}
+
+// How much a photograph is to be brightened, EV; 0: not at all.
+static double needed_ev(const struct orl_job *job, const struct orl_source *source, double target)
+{
+    double ev;
+    if (orl_source_exposure(job, source, &ev) == ORL_EXPOSURE_UNKNOWN ||
+        target - ev < DARKER_MIN_EV)
+        return 0;
+    return fmin(target - ev, BRIGHTEN_MAX_EV);
+}
+
+bool orl_normalise_wanted(const struct orl_job *job)
+{
+    double target;
+    return find_target(job, &target);
+}
+
+static bool is_png(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && strcasecmp(dot, ".png") == 0;
+}
+
+// Same pixels, brighter; from more than 8 bits where there are more.
+static enum orl_result write_copy(const struct orl_job *job, const struct orl_source *source,
+                                  double ev, const char *path)
+{
+    struct orl_image linear = {0}, copy = {0};
+    enum orl_result result = orl_picture_read_linear(
+        job->log, source->original ? source->original : source->path, &linear);
+    if (result == ORL_OK)
+        result = orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8);
+    float factor = (float)(exp2(ev) * (source->unbounded ? job->linear_scale : 1));
+    size_t count = result == ORL_OK ? orl_image_bytes(&copy) : 0;
+    for (size_t i = 0; i < count; i++)
+        copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(factor * linear.f32[i]));
+    if (result == ORL_OK)
+        result = is_png(source->name)
+                     ? orl_png_write(job->log, path, &copy)
+                     : orl_jpeg_write(job->log, path, &copy, JPEG_QUALITY, &source->exif);
+    orl_image_finish(&linear);
+    orl_image_finish(&copy);
+    return result;
+}
+
+enum orl_result orl_normalise(const struct orl_job *job, const char *dir, size_t *copies)
+{
+    double target;
+    bool wanted = find_target(job, &target);
+    *copies = 0;
+    enum orl_result result = wanted ? orl_job_fresh_dir(job, dir) : ORL_OK;
+    for (size_t i = 0; wanted && result == ORL_OK && i < job->source_count; i++) {
+        const struct orl_source *source = &job->sources[i];
+        double ev = needed_ev(job, source, target);
+        char *path = orl_job_path(job, "%s/%s", dir, source->name);
+        if (orl_progress_cancelled(job->progress))
+            result = ORL_ERR_CANCELLED;
+        else if (!path)
+            result = ORL_ERR_MEMORY;
+        else
+            result = ev > 0 ? write_copy(job, source, ev, path)
+                            : orl_job_link(job, source->path, path);
+        *copies += ev > 0;
+        free(path);
+    }
+    return result;
+}

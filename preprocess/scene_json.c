@@ -1,0 +1,152 @@
+#include "preprocess/scene_json.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/json.h"
+#include "scene/manifest.h"
+
+static json_t *stage_value(const json_t *done, const char *stage, const char *key)
+{
+    return json_object_get(json_object_get(done, stage), key);
+}
+
+static json_t *settings(const struct orl_prepare_params *p)
+{
+    return json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:b}", "quality",
+                     orl_quality_names[p->quality], "camera_sharing",
+                     orl_camera_sharing_names[p->sharing], "matching",
+                     orl_matching_names[p->matching], "densifier",
+                     orl_densifier_names[p->densifier], "max_size", orl_prepare_max_size(p),
+                     "seed", (int)p->seed, "masks", p->masks_dir != NULL);
+}
+
+// The records of the stages, in their order, without what has a place of its own.
+static json_t *copy_stages(const json_t *plan, const json_t *done)
+{
+    static const char *const elsewhere[] = {"photographs", "responses", "left_out",
+                                             "skipped", "ground", "files"};
+    json_t *stages = json_object();
+    for (size_t k = 0; k < json_array_size(plan); k++) {
+        const char *name = json_string_value(json_array_get(plan, k));
+        json_t *record = name ? json_deep_copy(json_object_get(done, name)) : NULL;
+        for (size_t i = 0; record && i < ORL_COUNT(elsewhere); i++)
+            json_object_del(record, elsewhere[i]);
+        if (record)
+            json_object_set_new(stages, name, record);
+    }
+    return stages;
+}
+
+// Of all files of the scene, as the stages summed them up when they made them. What is below
+// .oriel is not part of it.
+static json_t *checksums(const json_t *plan, const json_t *done)
+{
+    json_t *sums = json_object(), *sum;
+    const char *name;
+    for (size_t k = 0; k < json_array_size(plan); k++) {
+        const char *stage = json_string_value(json_array_get(plan, k));
+        json_object_foreach(stage_value(done, stage, "files"), name, sum)
+            if (strncmp(name, ".oriel/", 7) != 0)
+                json_object_set(sums, name, sum);
+    }
+    return sums;
+}
+
+static int compare_photos(const void *a, const void *b)
+{
+    return strcmp(orl_json_text(*(json_t *const *)a, "name"),
+                  orl_json_text(*(json_t *const *)b, "name"));
+}
+
+// Sorted by name, like everything else that lists photographs.
+static json_t *list_photos(const struct orl_job *job, const json_t *photos)
+{
+    size_t count = json_array_size(photos);
+    json_t **items = calloc(count + 1, sizeof *items);
+    json_t *sorted = json_array();
+    for (size_t i = 0; items && i < count; i++)
+        items[i] = json_array_get(photos, i);
+    if (items)
+        qsort(items, count, sizeof *items, compare_photos);
+    for (size_t i = 0; items && i < count; i++) {
+        const struct orl_source *source = orl_job_find(job, orl_json_text(items[i], "name"));
+        json_t *entry = json_copy(items[i]);
+        if (source && source->mask)
+            json_object_set_new(entry, "mask", json_true());
+        json_array_append_new(sorted, entry);
+    }
+    free(items);
+    return sorted;
+}
+
+static json_t *counts(const struct orl_job *job, const json_t *done, const json_t *photos)
+{
+    size_t test = 0;
+    for (size_t i = 0; i < json_array_size(photos); i++) {
+        const char *split =
+            json_string_value(json_object_get(json_array_get(photos, i), "split"));
+        test += split && strcmp(split, "test") == 0;
+    }
+    json_int_t registered = (json_int_t)json_array_size(photos);
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:O*, s:O*}", "given",
+                     (json_int_t)job->given, "skipped", (json_int_t)json_array_size(job->skipped),
+                     "used", (json_int_t)job->source_count, "registered", registered, "train",
+                     registered - (json_int_t)test, "test", (json_int_t)test, "left_out",
+                     (json_int_t)job->source_count - registered, "sparse_points",
+                     stage_value(done, "calibrate", "sparse_points"), "points",
+                     stage_value(done, "radii", "points"));
+}
+
+static json_t *left_out(const struct orl_job *job, const json_t *done)
+{
+    json_t *list = json_deep_copy(job->skipped);
+    const json_t *unplaced = stage_value(done, "calibrate", "left_out");
+    for (size_t i = 0; i < json_array_size(unplaced); i++)
+        json_array_append_new(list, json_pack("{s:O, s:s}", "name", json_array_get(unplaced, i),
+                                              "why", "cannot be placed"));
+    return list;
+}
+
+// What oriel tune found, in a scene that is still the same. A manifest that cannot be read has
+// nothing to keep: it is written anew.
+static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
+{
+    json_t *old = NULL;
+    if (!orl_path_is_file(path)) // removed before a stage was done again
+        return ORL_OK;
+    enum orl_result result = ORL_OK;
+    if (orl_json_read(NULL, path, &old) != ORL_OK)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: cannot be read; written anew", path);
+    json_t *tuned = json_object_get(old, "tuned");
+    if (tuned && json_object_set(root, "tuned", tuned) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    json_decref(old);
+    return result;
+}
+
+enum orl_result orl_scene_json_write(struct orl_job *job)
+{
+    const json_t *plan = json_object_get(job->stages, "plan");
+    const json_t *done = json_object_get(job->stages, "done");
+    json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"));
+    char *path = orl_job_path(job, "scene.json");
+    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O}", "format",
+                             "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
+                             "oriel " ORL_VERSION, "settings", settings(job->params), "counts",
+                             counts(job, done, photos), "photographs", photos, "responses",
+                             stage_value(done, "expose", "responses"), "left_out",
+                             left_out(job, done), "stages", copy_stages(plan, done),
+                             "checksums", checksums(plan, done), "ground",
+                             stage_value(done, "ground", "ground"));
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !root)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    if (result == ORL_OK)
+        result = keep_tuned(job, path, root);
+    if (result == ORL_OK)
+        result = orl_json_write(job->log, path, root);
+    json_decref(root);
+    free(path);
+    return result;
+}

@@ -1,0 +1,375 @@
+// What the stages are, what the result of each depends on, and what is known of those done
+// before (.oriel/stages.json).
+#include "preprocess/stages.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <xxhash.h>
+
+#include "core/json.h"
+#include "core/process.h"
+#include "preprocess/calibrate/calibrate.h"
+#include "preprocess/calibrate/undistort.h"
+#include "preprocess/cloud/fuse.h"
+#include "preprocess/cloud/ground.h"
+#include "preprocess/cloud/radii.h"
+#include "preprocess/densify/densify.h"
+#include "preprocess/densify_stage.h"
+#include "preprocess/expose/expose.h"
+#include "preprocess/photos/collect.h"
+#include "preprocess/photos/normalise.h"
+#include "preprocess/results.h"
+#include "scene/manifest.h"
+
+// --- what the result of a stage depends on, besides the stages before it ---
+
+static json_t *photo_hashes(const struct orl_job *job)
+{
+    json_t *photos = json_object();
+    for (size_t i = 0; i < job->source_count; i++)
+        json_object_set_new(photos, job->sources[i].name,
+                            json_sprintf("%016" PRIx64, job->sources[i].hash));
+    return photos;
+}
+
+static json_t *mask_hashes(const struct orl_job *job)
+{
+    json_t *masks = json_object();
+    for (size_t i = 0; i < job->source_count; i++)
+        if (job->sources[i].mask)
+            json_object_set_new(masks, job->sources[i].name,
+                                json_sprintf("%016" PRIx64, job->sources[i].mask_hash));
+    return masks;
+}
+
+static json_t *test_names(const struct orl_job *job)
+{
+    json_t *names = json_array();
+    for (size_t i = 0; i < job->source_count; i++)
+        if (job->sources[i].test)
+            json_array_append_new(names, json_string(job->sources[i].name));
+    return names;
+}
+
+static json_t *calibrate_settings(const struct orl_job *job)
+{
+    const struct orl_prepare_params *p = job->params;
+    return json_pack("{s:s, s:s, s:s, s:i, s:o, s:o*}", "quality", orl_quality_names[p->quality],
+                     "sharing", orl_camera_sharing_names[p->sharing], "matching",
+                     orl_matching_names[p->matching], "seed", (int)p->seed, "masks",
+                     mask_hashes(job), "normalised",
+                     orl_normalise_wanted(job) ? json_string(job->exposures_hash) : NULL);
+}
+
+static json_t *undistort_settings(const struct orl_job *job)
+{
+    return json_pack("{s:i}", "max_size", orl_prepare_max_size(job->params));
+}
+
+static json_t *densify_settings(const struct orl_job *job)
+{
+    const struct orl_prepare_params *p = job->params;
+    // Without a limit the key stays what it was before there was one.
+    return json_pack("{s:s, s:s, s:i, s:o, s:o*}", "quality", orl_quality_names[p->quality],
+                     "densifier", orl_densifier_names[p->densifier], "seed", (int)p->seed, "test",
+                     test_names(job), "max_vram",
+                     p->max_vram_bytes ? json_integer((json_int_t)p->max_vram_bytes) : NULL);
+}
+
+static json_t *expose_settings(const struct orl_job *job)
+{
+    return json_pack("{s:o, s:s}", "test", test_names(job), "exposures", job->exposures_hash);
+}
+
+static json_t *no_settings(const struct orl_job *job)
+{
+    (void)job;
+    return json_object();
+}
+
+// --- the stages ---
+
+enum { RESULTS_MAX = 4 };
+
+struct stage {
+    const char *name;
+    int version; // raised when the stage's result changes for the same settings
+    enum orl_stage_id needs;
+    json_t *(*settings)(const struct orl_job *job);
+    enum orl_result (*run)(struct orl_job *job, json_t *record);
+    const char *results[RESULTS_MAX + 1]; // files and folders that it leaves
+    const char *tells; // of the record: what scene.json cannot be written without
+    bool repeatable;   // made again it should be the same, and then what builds on it stays
+};
+
+static const struct stage stages[ORL_STAGE_COUNT] = {
+    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, {0}, NULL, true},
+    [ORL_STAGE_CALIBRATE] = {"calibrate", 1, ORL_STAGE_COLLECT, calibrate_settings,
+                             orl_stage_calibrate, {".oriel/calibrate/model"}, "left_out", false},
+    [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
+                             orl_stage_undistort,
+                             {"sparse", "images", "images_linear", "masks"}, "largest", true},
+    // Its maps may be deleted once they are read, and COLMAP's differ from run to run.
+    [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
+                           orl_stage_densify, {0}, "tool", false},
+    [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
+                        {".oriel/fused.ply"}, "points", true},
+    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii,
+                         {"points.ply"}, "points", true},
+    [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, {0},
+                          "ground", true},
+    [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
+                          "photographs", true},
+};
+
+static enum orl_result set_keys(struct orl_job *job)
+{
+    for (int i = 0; i < ORL_STAGE_COUNT; i++) {
+        json_t *inputs = json_pack("{s:s, s:i, s:s, s:o}", "stage", stages[i].name, "version",
+                                   stages[i].version, "after", job->keys[stages[i].needs],
+                                   "settings", stages[i].settings(job));
+        char *text = inputs ? json_dumps(inputs, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
+        json_decref(inputs);
+        if (!text)
+            return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
+        snprintf(job->keys[i], sizeof job->keys[i], "%016" PRIx64,
+                 (uint64_t)XXH3_64bits(text, strlen(text)));
+        free(text);
+    }
+    return ORL_OK;
+}
+
+static json_t *done_stages(const struct orl_job *job)
+{
+    return json_object_get(job->stages, "done");
+}
+
+static enum orl_result save_stages(const struct orl_job *job)
+{
+    char *path = orl_job_path(job, ".oriel/stages.json");
+    enum orl_result result = path ? orl_json_write(job->log, path, job->stages) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+// A file that cannot be read, or is none of ours, tells nothing: all is done again.
+static json_t *read_stages(const struct orl_job *job, const char *path)
+{
+    json_t *root = NULL;
+    if (orl_path_is_file(path) && (orl_json_read(NULL, path, &root) != ORL_OK ||
+                                   !json_is_object(json_object_get(root, "done")))) {
+        orl_logf(job->log, ORL_LOG_WARNING,
+                 "%s: damaged, so nothing is known of the stages that were done", path);
+        json_decref(root);
+        root = NULL;
+    }
+    return root ? root
+                : json_pack("{s:i, s:[], s:{}}", "version", ORL_MANIFEST_VERSION, "plan", "done");
+}
+
+enum orl_result orl_stages_load(struct orl_job *job)
+{
+    char *path = orl_job_path(job, ".oriel/stages.json");
+    // The plan is this program's, whatever wrote the file.
+    json_t *plan = json_array();
+    for (int i = 0; i < ORL_STAGE_COUNT; i++)
+        json_array_append_new(plan, json_string(stages[i].name));
+    job->stages = path ? read_stages(job, path) : NULL;
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && json_object_set(job->stages, "plan", plan) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the stages");
+    json_decref(plan);
+    free(path);
+    return result;
+}
+
+static const char *old_key(const struct orl_job *job, int id)
+{
+    return orl_json_text(json_object_get(done_stages(job), stages[id].name), "key");
+}
+
+static bool has_key(const struct orl_job *job, int id)
+{
+    return old_key(job, id) != NULL;
+}
+
+static bool has_same_key(const struct orl_job *job, int id)
+{
+    return has_key(job, id) && strcmp(old_key(job, id), job->keys[id]) == 0;
+}
+
+// Does the record say all that is asked of it later? A file that was edited or damaged may not.
+static bool is_sound(const json_t *record, enum orl_stage_id id)
+{
+    const json_t *told = json_object_get(record, stages[id].tells);
+    bool sound = told != NULL;
+    for (size_t i = 0; id == ORL_STAGE_EXPOSE && i < json_array_size(told); i++)
+        sound = sound && orl_json_text(json_array_get(told, i), "name");
+    const json_t *files = json_object_get(record, "files");
+    return sound && (!stages[id].results[0] || json_object_size(files) > 0);
+}
+
+// Was the stage done with these inputs and settings, and is its result there as it was left?
+static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id, bool *there)
+{
+    const json_t *record = json_object_get(done_stages(job), stages[id].name);
+    const char *damaged = NULL, *why = NULL;
+    *there = has_same_key(job, id) && is_sound(record, id);
+    if (!*there)
+        return ORL_OK;
+    enum orl_result result =
+        orl_results_check(job, json_object_get(record, "files"), &damaged, &why);
+    if (damaged)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s/%s: %s; %s is done again", job->dir, damaged, why,
+                 stages[id].name);
+    *there = !damaged;
+    return result;
+}
+
+static enum orl_result find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])
+{
+    bool there[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
+    // As if done: what is made again will be what it was.
+    bool settled[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
+    current[ORL_STAGE_COLLECT] = true;
+    for (int i = 1; i < ORL_STAGE_COUNT; i++) {
+        enum orl_result result = look_for(job, (enum orl_stage_id)i, &there[i]);
+        if (result != ORL_OK)
+            return result;
+    }
+    // Fuse and ground read the depth maps, which are gone when both were done.
+    bool read = !there[ORL_STAGE_FUSE] || !there[ORL_STAGE_GROUND] ||
+                job->params->keep == ORL_KEEP_ALL;
+    if (read && !orl_job_has(job, "stereo/.oriel-key"))
+        there[ORL_STAGE_DENSIFY] = false;
+    for (int i = 1; i < ORL_STAGE_COUNT; i++) {
+        bool after = settled[stages[i].needs];
+        current[i] = after && there[i];
+        settled[i] = current[i] || (after && has_same_key(job, i) && stages[i].repeatable);
+    }
+    return ORL_OK;
+}
+
+// Before anything of a stage changes, the folder stops being a scene, and the records
+// of the stage and of all that builds on it go.
+static enum orl_result invalidate(const struct orl_job *job, const bool *current)
+{
+    bool all = true, changed = false;
+    for (int i = 0; i < ORL_STAGE_COUNT; i++) {
+        all = all && current[i];
+        changed = changed || (has_key(job, i) && !has_same_key(job, i));
+        if (!current[i])
+            json_object_del(done_stages(job), stages[i].name);
+    }
+    if (all)
+        return ORL_OK;
+    enum orl_result result = orl_job_remove(job, "scene.json");
+    if (result == ORL_OK && changed)
+        orl_logf(job->log, ORL_LOG_INFO,
+                 "photographs or settings have changed: some stages are done again");
+    return result == ORL_OK ? save_stages(job) : result;
+}
+
+static double cpu_seconds(const struct rusage *usage)
+{
+    return (double)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) +
+           1e-6 * (double)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
+}
+
+static void add_usage(const struct orl_job *job, double start_s, const struct rusage *before,
+                      json_t *record)
+{
+    struct rusage after;
+    getrusage(RUSAGE_SELF, &after);
+    json_object_set_new(record, "wall_s", json_real(orl_time_s() - start_s));
+    json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(before) +
+                                                   job->child_cpu_s));
+    // Of Oriel it is the peak since it started; children are new processes.
+    json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
+    json_object_set_new(record, "child_peak_rss_mib",
+                        json_real((double)job->child_peak_bytes / (1 << 20)));
+}
+
+static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json_t *record)
+{
+    struct rusage before;
+    json_t *files = json_object();
+    double start = orl_time_s();
+    getrusage(RUSAGE_SELF, &before);
+    job->child_cpu_s = 0;
+    job->child_peak_bytes = 0;
+    json_object_set_new(record, "key", json_string(job->keys[id]));
+    enum orl_result result = files ? stages[id].run(job, record) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_results_sum(job, stages[id].results, files);
+    if (json_object_size(files))
+        json_object_set(record, "files", files);
+    json_decref(files);
+    add_usage(job, start, &before, record);
+    return result;
+}
+
+// What was made from another result than this is not current, whatever it was thought to be.
+static void drop_dependents(const struct orl_job *job, enum orl_stage_id id, bool *current)
+{
+    bool depends[ORL_STAGE_COUNT] = {0};
+    for (int i = (int)id + 1; i < ORL_STAGE_COUNT; i++) {
+        depends[i] = stages[i].needs == id || depends[stages[i].needs];
+        if (!depends[i])
+            continue;
+        current[i] = false;
+        json_object_del(done_stages(job), stages[i].name);
+    }
+}
+
+// `before`: the records of earlier runs. A stage's new record and the end of those that it makes
+// obsolete are saved as one.
+static enum orl_result redo_stage(struct orl_job *job, enum orl_stage_id id, const json_t *before,
+                                  bool *current)
+{
+    json_t *record = json_object();
+    enum orl_result result = record ? run_stage(job, id, record) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        const json_t *old = json_object_get(json_object_get(before, stages[id].name), "files");
+        if (!old || !json_equal(old, json_object_get(record, "files")))
+            drop_dependents(job, id, current);
+        json_object_set(done_stages(job), stages[id].name, record);
+        result = save_stages(job);
+    }
+    json_decref(record);
+    return result;
+}
+
+enum orl_result orl_stages_run(struct orl_job *job)
+{
+    bool current[ORL_STAGE_COUNT];
+    json_t *before = json_deep_copy(done_stages(job));
+    enum orl_result result = before ? find_current(job, current) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = invalidate(job, current);
+    for (int i = 1; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
+        if (orl_progress_cancelled(job->progress))
+            result = ORL_ERR_CANCELLED;
+        else if (current[i])
+            orl_logf(job->log, ORL_LOG_INFO, "%s: done already", stages[i].name);
+        else
+            result = redo_stage(job, (enum orl_stage_id)i, before, current);
+    }
+    json_decref(before);
+    return result;
+}
+
+enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
+{
+    enum orl_result result = set_keys(job);
+    if (result != ORL_OK)
+        return result;
+    json_object_set_new(done_stages(job), "collect",
+                        json_pack("{s:s, s:f, s:o, s:O}", "key", job->keys[ORL_STAGE_COLLECT],
+                                  "wall_s", wall_s, "photographs", photo_hashes(job), "skipped",
+                                  job->skipped));
+    return save_stages(job);
+}

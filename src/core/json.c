@@ -1,0 +1,145 @@
+#include "core/json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+
+enum { JSON_MAX_BYTES = 64 << 20 };
+
+enum orl_result orl_json_parse(const struct orl_log *log, const char *path, const void *text,
+                               size_t size, json_t **out)
+{
+    json_error_t error;
+    *out = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+    return *out ? ORL_OK
+                : orl_fail(log, ORL_ERR_FORMAT, "%s: line %d (byte %d): %s", path, error.line,
+                           error.position, error.text);
+}
+
+enum orl_result orl_json_read(const struct orl_log *log, const char *path, json_t **out)
+{
+    *out = NULL;
+    uint8_t *data = NULL;
+    size_t size;
+    enum orl_result result = orl_file_read(log, path, JSON_MAX_BYTES, &data, &size);
+    if (result == ORL_OK)
+        result = orl_json_parse(log, path, data, size, out);
+    free(data);
+    if (result != ORL_OK || json_is_object(*out))
+        return result;
+    json_decref(*out);
+    *out = NULL;
+    return orl_fail(log, ORL_ERR_FORMAT, "%s: byte 0: not a JSON object", path);
+}
+
+enum orl_result orl_json_write(const struct orl_log *log, const char *path, const json_t *value)
+{
+    char *text = json_dumps(value, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
+    if (!text)
+        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its text", path);
+    enum orl_result result = orl_file_write(log, path, text, strlen(text));
+    free(text);
+    return result;
+}
+
+enum orl_result orl_json_refuse(const struct orl_json_place *place, const char *key,
+                                const char *wanted)
+{
+    return orl_fail(place->log, ORL_ERR_FORMAT, "%s: %s%s\"%s\" is not %s", place->path,
+                    place->what ? place->what : "", place->what ? ": " : "", key, wanted);
+}
+
+static enum orl_result refuse_range(const struct orl_json_place *place, const char *key,
+                                    const char *wanted, double low, double high)
+{
+    char text[128];
+    snprintf(text, sizeof text, "%s from %g to %g", wanted, low, high);
+    return orl_json_refuse(place, key, text);
+}
+
+// NULL: absent or null.
+static const json_t *find(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    return json_is_null(value) ? NULL : value;
+}
+
+static bool is_within(const json_t *value, double low, double high)
+{
+    double number = json_number_value(value);
+    return json_is_number(value) && number >= low && number <= high;
+}
+
+enum orl_result orl_json_number(const struct orl_json_place *place, const json_t *object,
+                                const char *key, double low, double high, double *value)
+{
+    const json_t *item = find(object, key);
+    if (!item)
+        return ORL_OK;
+    if (!is_within(item, low, high))
+        return refuse_range(place, key, "a number", low, high);
+    *value = json_number_value(item);
+    return ORL_OK;
+}
+
+enum orl_result orl_json_integer(const struct orl_json_place *place, const json_t *object,
+                                 const char *key, int low, int high, int *value)
+{
+    const json_t *item = find(object, key);
+    if (!item)
+        return ORL_OK;
+    if (!json_is_integer(item) || !is_within(item, low, high))
+        return refuse_range(place, key, "a whole number", low, high);
+    *value = (int)json_integer_value(item);
+    return ORL_OK;
+}
+
+enum orl_result orl_json_bool(const struct orl_json_place *place, const json_t *object,
+                              const char *key, bool *value)
+{
+    const json_t *item = find(object, key);
+    if (!item)
+        return ORL_OK;
+    if (!json_is_boolean(item))
+        return orl_json_refuse(place, key, "true or false");
+    *value = json_is_true(item);
+    return ORL_OK;
+}
+
+enum orl_result orl_json_numbers(const struct orl_json_place *place, const json_t *object,
+                                 const char *key, size_t count, double low, double high,
+                                 double *values)
+{
+    const json_t *array = find(object, key);
+    if (!array)
+        return ORL_OK;
+    char wanted[64];
+    snprintf(wanted, sizeof wanted, "%zu numbers", count);
+    bool good = json_is_array(array) && json_array_size(array) == count;
+    for (size_t i = 0; good && i < count; i++) {
+        good = is_within(json_array_get(array, i), low, high);
+        values[i] = json_number_value(json_array_get(array, i));
+    }
+    return good ? ORL_OK : refuse_range(place, key, wanted, low, high);
+}
+
+bool orl_json_read_numbers(const json_t *array, size_t count, double *values)
+{
+    if (!json_is_array(array) || json_array_size(array) != count)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *item = json_array_get(array, i);
+        values[i] = json_number_value(item);
+        if (!json_is_number(item) || !isfinite(values[i]))
+            return false;
+    }
+    return true;
+}
+
+const char *orl_json_text(const json_t *object, const char *key)
+{
+    return json_string_value(json_object_get(object, key));
+}

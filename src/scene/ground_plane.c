@@ -1,0 +1,201 @@
+#include "scene/ground_plane.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/vec3.h"
+
+enum {
+    POINTS_MAX = 4096,
+    PHOTOS_MAX = 64,
+    PAIRS = 5, // that each point is tried in
+};
+
+// Of a photograph's height above the ground.
+static const double HEIGHT_SPREAD = 0.2;  // standard deviation of the heights, at most
+static const double TOLERANCE = 0.01;     // of the photographs' distance: points on it are this near
+static const double BENEATH = 2;          // tolerances beneath it: a point that cannot be there
+static const double EXTENT = 1;           // heights: RMS spread of the points on it, at least
+// Mean cosines between the plane's normal and the photographs' axes.
+static const double FORWARD_MOST = 0.5, UPWARD_LEAST = 0.85;
+// Shares of all points.
+static const double BENEATH_MOST = 0.005, SCORE_LEAST = 0.02;
+// Points whose own normal agrees, and points beneath, count so often.
+static const double ALIGNED_COSINE = 0.7;
+static const int ALIGNED_COUNTS = 3, BENEATH_COUNTS = 3;
+
+struct sample {
+    double (*position)[3], (*normal)[3];
+    int count;
+    const struct orl_pose *poses[PHOTOS_MAX];
+    double centres[PHOTOS_MAX][3];
+    int photo_count;
+    double tolerance; // scene units
+    double along[3]; // unit: where the photographs' centres spread most
+};
+
+// Largest eigenvector of the centres' covariance, by power iteration.
+static void find_along(struct sample *s)
+{
+    double mean[3] = {0}, c[3][3] = {{0}};
+    for (int i = 0; i < s->photo_count; i++)
+        for (int k = 0; k < 3; k++)
+            mean[k] += s->centres[i][k] / s->photo_count;
+    for (int i = 0; i < s->photo_count; i++)
+        for (int k = 0; k < 3; k++)
+            for (int l = 0; l < 3; l++)
+                c[k][l] += (s->centres[i][k] - mean[k]) * (s->centres[i][l] - mean[l]);
+    double v[3] = {0.8, 0.5, 0.3};
+    for (int n = 0; n < 64; n++) {
+        double next[3] = {orl_dot3(c[0], v), orl_dot3(c[1], v), orl_dot3(c[2], v)};
+        if (!(orl_normalize3(next) > 0))
+            break;
+        for (int k = 0; k < 3; k++)
+            v[k] = next[k];
+    }
+    for (int k = 0; k < 3; k++)
+        s->along[k] = v[k];
+}
+
+static void take_photos(const struct orl_scene *scene, struct sample *s)
+{
+    size_t train = 0, seen = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        train += !scene->photos[i].test;
+    size_t step = (train + PHOTOS_MAX - 1) / PHOTOS_MAX;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        if (scene->photos[i].test || seen++ % step != 0)
+            continue;
+        s->poses[s->photo_count] = &scene->photos[i].view.cam_from_world;
+        orl_pose_centre(s->poses[s->photo_count], s->centres[s->photo_count]);
+        s->photo_count++;
+    }
+}
+
+static enum orl_result take_sample(const struct orl_log *log, const struct orl_scene *scene,
+                                   struct sample *s)
+{
+    const struct orl_points *points = &scene->points;
+    s->position = orl_array(log, POINTS_MAX, sizeof *s->position);
+    s->normal = orl_array(log, POINTS_MAX, sizeof *s->normal);
+    if (!s->position || !s->normal)
+        return ORL_ERR_MEMORY;
+    size_t step = (points->count + POINTS_MAX - 1) / POINTS_MAX;
+    for (size_t i = 0; i < points->count; i += step, s->count++)
+        for (int k = 0; k < 3; k++) {
+            s->position[s->count][k] = (double)points->position[i][k];
+            s->normal[s->count][k] = (double)points->normal[i][k];
+        }
+    s->tolerance = TOLERANCE * scene->photo_distance;
+    take_photos(scene, s);
+    find_along(s);
+    return ORL_OK;
+}
+
+// Turns the plane towards the photographs. Their mean height, 0: they did not stand on this.
+static double stood_height(const struct sample *s, double plane[4])
+{
+    double sum = 0, squares = 0, least = INFINITY, across[3] = {0};
+    for (int i = 0; i < s->photo_count; i++)
+        sum += orl_plane_height(plane, s->centres[i]);
+    for (int k = 0; sum < 0 && k < 4; k++)
+        plane[k] = -plane[k];
+    double mean = fabs(sum) / s->photo_count;
+    for (int i = 0; i < s->photo_count; i++) {
+        double height = orl_plane_height(plane, s->centres[i]);
+        squares += (height - mean) * (height - mean) / s->photo_count;
+        least = fmin(least, height);
+        for (int k = 0; k < 3; k++)
+            across[k] += fabs(orl_dot3(s->poses[i]->r[k], plane)) / s->photo_count;
+    }
+    // Photographs may be on their side.
+    bool level = across[2] <= FORWARD_MOST && fmax(across[0], across[1]) >= UPWARD_LEAST;
+    return level && least > 0 && sqrt(squares) <= HEIGHT_SPREAD * mean ? mean : 0;
+}
+
+// How well the points agree that this is the ground, as a share of them; negative: they do not.
+static double score(const struct sample *s, const double plane[4], double height)
+{
+    double tolerance = s->tolerance, mean[3] = {0}, squares = 0;
+    double counted = 0;
+    int on = 0, beneath = 0;
+    for (int i = 0; i < s->count; i++) {
+        const double *at = s->position[i];
+        double off = orl_plane_height(plane, at);
+        beneath += off < -BENEATH * tolerance;
+        if (fabs(off) > tolerance)
+            continue;
+        counted += (1 - off * off / (tolerance * tolerance)) *
+                   (orl_dot3(s->normal[i], plane) > ALIGNED_COSINE ? ALIGNED_COUNTS : 1);
+        on++;
+        squares += orl_dot3(at, at);
+        for (int k = 0; k < 3; k++)
+            mean[k] += at[k];
+    }
+    double extent2 = on ? squares / on - orl_dot3(mean, mean) / ((double)on * on) : 0;
+    if (beneath > BENEATH_MOST * s->count || extent2 < EXTENT * EXTENT * height * height)
+        return -1;
+    return (counted - BENEATH_COUNTS * beneath) / s->count;
+}
+
+// A plane through point i: along its normal, or through another point and along the
+// photographs' path, since the foot of a facade may be all that is known of the ground.
+static bool candidate(const struct sample *s, int i, int pair, double plane[4])
+{
+    const double *at = s->position[i];
+    for (int k = 0; k < 3; k++)
+        plane[k] = s->normal[i][k];
+    if (pair > 0) {
+        // Multiplicative hashing: partners spread evenly over the points.
+        uint32_t other = ((uint32_t)i * PAIRS + (uint32_t)pair) * 2654435761u;
+        const double *b = s->position[((uint64_t)other * (uint64_t)s->count) >> 32];
+        const double to[3] = {b[0] - at[0], b[1] - at[1], b[2] - at[2]};
+        orl_cross3(s->along, to, plane);
+    }
+    double length = orl_normalize3(plane);
+    plane[3] = -orl_dot3(plane, at);
+    return length > 0 && isfinite(length);
+}
+
+enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scene *scene,
+                                struct orl_ground *ground)
+{
+    *ground = (struct orl_ground){.known = true};
+    struct sample s = {0};
+    enum orl_result result = take_sample(log, scene, &s);
+    if (result != ORL_OK || s.photo_count < 3)
+        goto finish;
+    double best = SCORE_LEAST;
+    for (int i = 0; i < s.count; i++)
+        for (int pair = 0; pair <= PAIRS; pair++) {
+            double plane[4], height;
+            if (!candidate(&s, i, pair, plane) || (height = stood_height(&s, plane)) == 0)
+                continue;
+            double here = score(&s, plane, height);
+            if (!(here > best)) // nor a NaN
+                continue;
+            best = here;
+            ground->height = height;
+            for (int k = 0; k < 4; k++)
+                ground->plane[k] = plane[k];
+        }
+finish:
+    free(s.position);
+    free(s.normal);
+    return result;
+}
+
+bool orl_ground_along_rays(const struct orl_ground *ground, const struct orl_view *view,
+                           double inverse[3])
+{
+    const struct orl_pose *pose = &view->cam_from_world;
+    double eye[3];
+    orl_pose_centre(pose, eye);
+    double height = orl_plane_height(ground->plane, eye);
+    if (!(ground->height > 0 && height > 0))
+        return false;
+    for (int k = 0; k < 3; k++)
+        inverse[k] = -orl_dot3(pose->r[k], ground->plane) / height;
+    return true;
+}

@@ -1,0 +1,255 @@
+#include "scene/point_radii.h"
+
+#include <flann/flann.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+
+enum { CHUNK = 1 << 15 }; // points between two looks at progress and cancellation
+
+struct search {
+    const struct orl_log *log;
+    struct orl_points *points;
+    const double (*viewers)[3];
+    size_t viewer_count;
+    int neighbours; // without the point itself
+    float overlap;
+    struct FLANNParameters flann;
+    flann_index_t index;
+    int *found;   // CHUNK * (neighbours + 1)
+    float *dist2; // the same
+};
+
+// Eigenvector of the smallest eigenvalue of a symmetric matrix, by Jacobi
+// rotations (Golub and Van Loan 8.5).
+static void smallest_axis(double m[3][3], double axis[3])
+{
+    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int sweep = 0; sweep < 12; sweep++) {
+        for (int p = 0; p < 2; p++) {
+            for (int q = p + 1; q < 3; q++) {
+                if (fabs(m[p][q]) < 1e-300)
+                    continue;
+                double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+                double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+                double c = 1 / sqrt(t * t + 1), s = t * c;
+                for (int k = 0; k < 3; k++) {
+                    double a = m[k][p], b = m[k][q];
+                    m[k][p] = c * a - s * b, m[k][q] = s * a + c * b;
+                }
+                for (int k = 0; k < 3; k++) {
+                    double a = m[p][k], b = m[q][k];
+                    m[p][k] = c * a - s * b, m[q][k] = s * a + c * b;
+                    double va = v[k][p], vb = v[k][q];
+                    v[k][p] = c * va - s * vb, v[k][q] = s * va + c * vb;
+                }
+            }
+        }
+    }
+    int least = m[1][1] < m[0][0];
+    if (m[2][2] < m[least][least])
+        least = 2;
+    for (int k = 0; k < 3; k++)
+        axis[k] = v[k][least];
+}
+
+static size_t nearest_viewer(const struct search *s, const float p[3], double *distance)
+{
+    size_t best = 0;
+    double best2 = INFINITY;
+    for (size_t i = 0; i < s->viewer_count; i++) {
+        double d2 = 0;
+        for (int k = 0; k < 3; k++)
+            d2 += (s->viewers[i][k] - (double)p[k]) * (s->viewers[i][k] - (double)p[k]);
+        if (d2 < best2)
+            best = i, best2 = d2;
+    }
+    *distance = sqrt(best2);
+    return best;
+}
+
+// Plane through the point and its neighbours, by principal components.
+static void fit_normal(const struct search *s, size_t i, const int *found)
+{
+    const float *p = s->points->position[i];
+    double mean[3] = {0}, m[3][3] = {{0}}, axis[3];
+    int count = s->neighbours + 1;
+    for (int j = 0; j < count; j++)
+        for (int k = 0; k < 3; k++)
+            mean[k] += ((double)s->points->position[found[j]][k] - (double)p[k]) / count;
+    for (int j = 0; j < count; j++) {
+        double d[3];
+        for (int k = 0; k < 3; k++)
+            d[k] = (double)s->points->position[found[j]][k] - (double)p[k] - mean[k];
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++)
+                m[a][b] += d[a] * d[b];
+    }
+    smallest_axis(m, axis);
+    double sign = 1;
+    if (s->viewer_count) {
+        double distance, facing = 0;
+        const double *viewer = s->viewers[nearest_viewer(s, p, &distance)];
+        for (int k = 0; k < 3; k++)
+            facing += axis[k] * (viewer[k] - (double)p[k]);
+        sign = facing < 0 ? -1 : 1;
+    }
+    for (int k = 0; k < 3; k++)
+        s->points->normal[i][k] = (float)(sign * axis[k]);
+}
+
+static enum orl_result search_open(struct search *s)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    s->flann = DEFAULT_FLANN_PARAMETERS;
+    s->flann.algorithm = FLANN_INDEX_KDTREE_SINGLE;
+    s->flann.checks = FLANN_CHECKS_UNLIMITED; // exact
+    s->flann.sorted = 1;
+    s->flann.leaf_max_size = 10;
+    s->flann.log_level = FLANN_LOG_NONE;
+    s->flann.cores = cores > 0 && cores < 256 ? (int)cores : 2;
+    float speedup;
+    s->index = flann_build_index(&s->points->position[0][0], (int)s->points->count, 3, &speedup,
+                                 &s->flann);
+    if (!s->index)
+        return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot index %zu points",
+                        s->points->count);
+    s->found = orl_array(s->log, (size_t)CHUNK * ((size_t)s->neighbours + 1), sizeof *s->found);
+    s->dist2 = orl_array(s->log, (size_t)CHUNK * ((size_t)s->neighbours + 1), sizeof *s->dist2);
+    return s->found && s->dist2 ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+static void search_close(struct search *s)
+{
+    if (s->index)
+        flann_free_index(s->index, &s->flann);
+    free(s->found);
+    free(s->dist2);
+}
+
+static enum orl_result search_chunk(struct search *s, size_t first, size_t count)
+{
+    size_t columns = (size_t)s->neighbours + 1;
+    if (flann_find_nearest_neighbors_index(s->index, s->points->position[first], (int)count,
+                                           s->found, s->dist2, (int)columns, &s->flann) != 0)
+        return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
+    for (size_t i = 0; i < count; i++) {
+        // The point itself is among them at distance zero, so the last one is the k-th.
+        s->points->radius[first + i] =
+            s->overlap * sqrtf(s->dist2[i * columns + columns - 1]);
+        const float *n = s->points->normal[first + i];
+        if (n[0] == 0 && n[1] == 0 && n[2] == 0)
+            fit_normal(s, first + i, s->found + i * columns);
+    }
+    return ORL_OK;
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static bool usable(float radius)
+{
+    return radius > 0 && isfinite(radius);
+}
+
+// Radii for points that coincide with all their neighbours.
+static enum orl_result fill_radii(struct search *s)
+{
+    struct orl_points *points = s->points;
+    size_t known = 0;
+    float *sorted = orl_array(s->log, points->count, sizeof *sorted);
+    if (!sorted)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < points->count; i++)
+        if (usable(points->radius[i]))
+            sorted[known++] = points->radius[i];
+    qsort(sorted, known, sizeof *sorted, compare_floats);
+    double distance = 1; // nothing to go by: a hundredth of the way to the viewer
+    if (!known && s->viewer_count)
+        nearest_viewer(s, points->position[0], &distance);
+    float median = known ? sorted[known / 2] : (float)(0.01 * (distance > 0 ? distance : 1));
+    for (size_t i = 0; i < points->count; i++)
+        if (!usable(points->radius[i]))
+            points->radius[i] = median;
+    free(sorted);
+    return ORL_OK;
+}
+
+enum orl_result orl_points_set_radii(const struct orl_log *log,
+                                     const struct orl_progress *progress,
+                                     const struct orl_radii_params *params,
+                                     const double (*viewers)[3], size_t viewer_count,
+                                     struct orl_points *points)
+{
+    ORL_REQUIRE(log, params->neighbours >= 1 && params->neighbours <= 64);
+    ORL_REQUIRE(log, params->overlap > 0 && params->overlap <= 8);
+    if (points->count == 0)
+        return ORL_OK;
+    if (points->count > INT_MAX / 64)
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are more than FLANN can index",
+                        points->count);
+    size_t others = points->count - 1;
+    struct search s = {
+        .log = log, .points = points, .viewers = viewers, .viewer_count = viewer_count,
+        .neighbours = others < (size_t)params->neighbours ? (int)others : params->neighbours,
+        .overlap = params->overlap};
+    enum orl_result result = search_open(&s);
+    for (size_t first = 0; result == ORL_OK && first < points->count; first += CHUNK) {
+        orl_progress_report(progress, "radii", (double)first, (double)points->count, NULL);
+        size_t count = points->count - first < CHUNK ? points->count - first : CHUNK;
+        result = orl_progress_cancelled(progress) ? ORL_ERR_CANCELLED
+                                                  : search_chunk(&s, first, count);
+    }
+    if (result == ORL_OK)
+        result = fill_radii(&s);
+    if (result == ORL_OK)
+        orl_progress_report(progress, "radii", (double)points->count, (double)points->count,
+                            NULL);
+    search_close(&s);
+    return result;
+}
+
+// Pixels per scene unit at the point in the photograph that draws it largest; 0 when
+// it is in no photograph's frame.
+static double finest_scale(const struct orl_view *views, size_t view_count, const float p[3])
+{
+    const double world[3] = {(double)p[0], (double)p[1], (double)p[2]};
+    double finest = 0;
+    for (size_t i = 0; i < view_count; i++) {
+        const struct orl_camera *camera = &views[i].camera;
+        double pixel[2], depth;
+        if (orl_view_project(&views[i], world, pixel, &depth) && pixel[0] >= 0 && pixel[1] >= 0 &&
+            pixel[0] < camera->width && pixel[1] < camera->height)
+            finest = fmax(finest, camera->fx / depth);
+    }
+    return finest;
+}
+
+enum orl_result orl_points_limit_radii(const struct orl_log *log,
+                                       const struct orl_radii_limits *limits,
+                                       const struct orl_view *views, size_t view_count,
+                                       struct orl_points *points)
+{
+    ORL_REQUIRE(log, limits->largest_px > 0 && limits->isolated_px >= limits->largest_px);
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        double scale = finest_scale(views, view_count, points->position[i]);
+        double size_px = scale * (double)points->radius[i];
+        if (size_px > (double)limits->isolated_px)
+            continue;
+        if (size_px > (double)limits->largest_px)
+            points->radius[i] = (float)((double)limits->largest_px / scale);
+        orl_points_copy(points, i, points, kept++);
+    }
+    if (kept < points->count)
+        orl_logf(log, ORL_LOG_INFO, "%zu of %zu points stand alone: dropped",
+                 points->count - kept, points->count);
+    points->count = kept;
+    return ORL_OK;
+}

@@ -1,0 +1,42 @@
+// Splat radii and missing normals from nearest neighbours (FLANN).
+#ifndef ORL_SCENE_POINT_RADII_H
+#define ORL_SCENE_POINT_RADII_H
+
+#include "core/progress.h"
+#include "scene/camera.h"
+#include "scene/points.h"
+
+struct orl_radii_params {
+    int neighbours;   // k, [1, 64]
+    float overlap;    // radius = overlap * distance to the k-th neighbour, (0, 8]
+};
+#define ORL_RADII_DEFAULTS .neighbours = 6, .overlap = 1.0f
+
+// Sets the radius of every point from the distance to its k nearest neighbours,
+// so that discs of neighbouring points overlap (Airieau 2012, section 3), and a
+// normal, by plane fit to them, where it is 0 0 0, turned towards the nearest of
+// `viewer_count` camera centres. Points whose neighbours all coincide get the
+// median radius.
+enum orl_result orl_points_set_radii(const struct orl_log *log,
+                                     const struct orl_progress *progress,
+                                     const struct orl_radii_params *params,
+                                     const double (*viewers)[3], size_t viewer_count,
+                                     struct orl_points *points) ORL_CHECK_RESULT;
+
+struct orl_radii_limits {
+    float largest_px;  // radii are cut to this size in the photograph that sees most detail
+    float isolated_px; // points with larger radii stand alone: dropped
+};
+#define ORL_RADII_LIMITS_DEFAULTS .largest_px = 9.0f, .isolated_px = 16.0f
+
+// Cuts radii that a fused cloud's sampling does not account for. Stereo gives some
+// points in mid-air; with the distance to their neighbours as radius a single one may
+// hide a whole picture. A disc's size in pixels is taken in the photograph, of those
+// whose frame holds the point, that would draw it largest. Points in no frame are
+// kept as they are.
+enum orl_result orl_points_limit_radii(const struct orl_log *log,
+                                       const struct orl_radii_limits *limits,
+                                       const struct orl_view *views, size_t view_count,
+                                       struct orl_points *points) ORL_CHECK_RESULT;
+
+#endif
