@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/output.h"
+#include "cli/command_output.h"
 #include "eval/bench.h"
 
 enum { SIZES_MAX = 8, POINTS_MAX = 16 };

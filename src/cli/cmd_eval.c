@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/output.h"
+#include "cli/command_output.h"
 #include "core/memory.h"
 #include "eval/eval.h"
 #include "eval/stability.h"

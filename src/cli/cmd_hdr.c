@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/output.h"
+#include "cli/command_output.h"
 #include "core/memory.h"
 #include "eval/choice.h"
 #include "hdr/hdr.h"

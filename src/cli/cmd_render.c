@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/output.h"
+#include "cli/command_output.h"
 #include "eval/choice.h"
 #include "render/sequence.h"
 #include "scene/view_choice.h"

@@ -1,4 +1,4 @@
-#include "cli/output.h"
+#include "cli/command_output.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // What several commands write: frames as files, reports.
-#ifndef ORL_CLI_OUTPUT_H
-#define ORL_CLI_OUTPUT_H
+#ifndef ORL_CLI_COMMAND_OUTPUT_H
+#define ORL_CLI_COMMAND_OUTPUT_H
 
 #include "cli/args.h"
 #include "render/output.h"
