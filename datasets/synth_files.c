@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "datasets/synth.h"
+#include "datasets/synth_files.h"
 #include "io/exr.h"
 #include "io/picture.h"
 #include "scene/colmap.h"
@@ -235,7 +236,7 @@ static enum orl_result write_cameras(const struct job *job)
 
 // --- folders ---
 
-static enum orl_result check_free(const struct orl_log *log, const char *path)
+enum orl_result orl_synth_check_free(const struct orl_log *log, const char *path)
 {
     if (orl_path_is_file(path))
         return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", path);
@@ -266,7 +267,8 @@ static enum orl_result make_folders(const struct job *job)
     return result;
 }
 
-static enum orl_result move_folder(const struct orl_log *log, const char *from, const char *to)
+enum orl_result orl_synth_move_folder(const struct orl_log *log, const char *from,
+                                      const char *to)
 {
     if (rename(from, to) == 0)
         return ORL_OK;
@@ -301,9 +303,9 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
     struct orl_view *views = NULL;
     enum orl_result result = orl_synth_check(job.log, params);
     if (result == ORL_OK)
-        result = check_free(job.log, photos);
+        result = orl_synth_check_free(job.log, photos);
     if (result == ORL_OK)
-        result = check_free(job.log, truth);
+        result = orl_synth_check_free(job.log, truth);
     if (result != ORL_OK)
         return result;
     views = orl_array(job.log, (size_t)params->count, sizeof *views);
@@ -321,9 +323,9 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
     if (result == ORL_OK)
         result = draw_all(gpu, progress, &job);
     if (result == ORL_OK)
-        result = move_folder(job.log, job.truth, truth);
+        result = orl_synth_move_folder(job.log, job.truth, truth);
     if (result == ORL_OK)
-        result = move_folder(job.log, job.photos, photos);
+        result = orl_synth_move_folder(job.log, job.photos, photos);
 end:
     if (result != ORL_OK && job.photos && job.truth &&
         (orl_dir_remove(job.log, job.photos) != ORL_OK ||

@@ -362,6 +362,17 @@ enum orl_result orl_stages_run(struct orl_job *job)
     return result;
 }
 
+enum orl_result orl_stages_run_points(struct orl_job *job)
+{
+    bool current[ORL_STAGE_COUNT] = {0};
+    enum orl_result result = ORL_OK;
+    for (int i = ORL_STAGE_DENSIFY; result == ORL_OK && i < ORL_STAGE_COUNT; i++)
+        result = orl_progress_cancelled(job->progress)
+                     ? ORL_ERR_CANCELLED
+                     : redo_stage(job, (enum orl_stage_id)i, NULL, current);
+    return result;
+}
+
 enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
 {
     enum orl_result result = set_keys(job);

@@ -12,5 +12,8 @@ enum orl_result orl_stages_begin(struct orl_job *job, double wall_s) ORL_CHECK_R
 // Runs the stages after collect whose key or result is not there. Before anything of a stage
 // changes scene.json goes, and so do the records of all that builds on it.
 enum orl_result orl_stages_run(struct orl_job *job) ORL_CHECK_RESULT;
+// Runs densify and all that follows, of a folder whose undistorted photographs and sparse model
+// did not come from the stages before.
+enum orl_result orl_stages_run_points(struct orl_job *job) ORL_CHECK_RESULT;
 
 #endif

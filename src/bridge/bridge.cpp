@@ -65,6 +65,25 @@ void anchor_white(cv::Mat &rgb)
         cv::min(rgb * (1 / *at), cv::Scalar::all(1), rgb);
 }
 
+// Sets pixels of `value` to its opposite where they form a connected piece of less than `least`.
+void flip_small(cv::Mat &mask, uchar value, int least, int connectivity)
+{
+    cv::Mat labels, stats, centroids;
+    int count = cv::connectedComponentsWithStats(mask == value, labels, stats, centroids,
+                                                 connectivity);
+    for (int y = 0; y < mask.rows; y++)
+        for (int x = 0; x < mask.cols; x++) {
+            int label = labels.at<int>(y, x);
+            if (label > 0 && label < count && stats.at<int>(label, cv::CC_STAT_AREA) < least)
+                mask.at<uchar>(y, x) = static_cast<uchar>(255 - value);
+        }
+}
+
+cv::Mat disc(int diameter)
+{
+    return cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(diameter, diameter));
+}
+
 } // namespace
 
 enum orl_result orl_bridge_blur(const struct orl_log *log, const struct orl_image *image, int taps,
@@ -155,5 +174,27 @@ enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_ima
     return run(log, image, remapped, [&](const cv::Mat &source, cv::Mat &target) {
         cv::remap(source, target, as_mat(map), cv::noArray(), cv::INTER_LINEAR,
                   cv::BORDER_CONSTANT, cv::Scalar());
+    });
+}
+
+enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct orl_image *mask,
+                                      const struct orl_mask_cleaning *cleaning,
+                                      struct orl_image *cleaned)
+{
+    *cleaned = orl_image();
+    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
+    enum orl_result result =
+        orl_image_init(log, cleaned, mask->width, mask->height, 1, ORL_PIXEL_U8);
+    if (result != ORL_OK)
+        return result;
+    return run(log, mask, cleaned, [&](const cv::Mat &source, cv::Mat &target) {
+        source.copyTo(target);
+        if (cleaning->open_px > 1)
+            cv::morphologyEx(target, target, cv::MORPH_OPEN, disc(cleaning->open_px));
+        if (cleaning->close_px > 1)
+            cv::morphologyEx(target, target, cv::MORPH_CLOSE, disc(cleaning->close_px));
+        // Pieces touch at corners too, so holes may not: else a diagonal would part both.
+        flip_small(target, 255, cleaning->least_px, 8);
+        flip_small(target, 0, cleaning->hole_px, 4);
     });
 }

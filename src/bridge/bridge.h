@@ -19,7 +19,6 @@ enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_im
                                   int width, int height,
                                   struct orl_image *resized) ORL_CHECK_RESULT;
 
-
 // Tone mapping operators that depend on the whole picture, with OpenCV's defaults. The brightest
 // hundredth of Mantiuk's result is clipped.
 enum orl_tonemap { ORL_TONEMAP_DRAGO, ORL_TONEMAP_MANTIUK };
@@ -32,6 +31,16 @@ enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_i
 enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_image *image,
                                  const struct orl_image *map,
                                  struct orl_image *remapped) ORL_CHECK_RESULT;
+
+// Clean-up of a mask: U8 x1, 0 or 255.
+struct orl_mask_cleaning {
+    int open_px, close_px; // diameters of the discs that it is opened and closed with; 0: not
+    int least_px;          // smaller pieces of the subject are removed, pixels
+    int hole_px;           // smaller holes in it are filled, pixels
+};
+enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct orl_image *mask,
+                                      const struct orl_mask_cleaning *cleaning,
+                                      struct orl_image *cleaned) ORL_CHECK_RESULT;
 
 #ifdef __cplusplus
 }

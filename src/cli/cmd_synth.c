@@ -1,4 +1,4 @@
-// oriel synth: photographs of a synthetic monument, with ground truth.
+// oriel synth: synthetic sets with ground truth, a monument or a moving figure.
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "core/memory.h"
+#include "datasets/figures.h"
 #include "datasets/synth.h"
 
 static enum orl_result parse_exposures(const struct orl_log *log, const struct orl_names *names,
@@ -59,10 +60,45 @@ static enum orl_result run(struct terminal *terminal, const struct arg_common *c
     return result;
 }
 
+// Each set has options of its own, which the other refuses.
+static enum orl_result check_options(const struct orl_log *log,
+                                     const struct orl_synth_params *monument,
+                                     const struct orl_figures_params *figures, bool is_figures)
+{
+    const struct orl_synth_params m = {ORL_SYNTH_DEFAULTS};
+    const struct orl_figures_params f = {ORL_FIGURES_DEFAULTS};
+    bool of_monument = monument->count != m.count || monument->seed != m.seed ||
+                       monument->exposure_count || monument->contrast_ev > 0 ||
+                       monument->noise > 0 || monument->response != m.response ||
+                       monument->vignette > 0 || monument->drift_ev > 0;
+    bool of_figures = figures->cameras != f.cameras || figures->frames != f.frames;
+    if (is_figures && of_monument)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "synth figures: takes --cameras, --frames and "
+                        "--size; the other options are the monument's");
+    if (!is_figures && of_figures)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "synth %s: --cameras and --frames are those of "
+                        "figures", monument->name);
+    return ORL_OK;
+}
+
+static enum orl_result run_figures(struct terminal *terminal,
+                                   const struct orl_figures_params *params, const char *out)
+{
+    char *dir = sibling(&terminal->log, out, "");
+    enum orl_result result = dir ? orl_figures_run(&terminal->log, &terminal->progress, params, dir)
+                                 : ORL_ERR_MEMORY;
+    terminal_finish(terminal);
+    if (result == ORL_OK)
+        printf("%d cameras, %d moments in %s\n", params->cameras, params->frames, dir);
+    free(dir);
+    return result;
+}
+
 int cmd_synth(int argc, char **argv)
 {
     struct orl_synth_params params = {ORL_SYNTH_DEFAULTS};
-    struct arg_size size = {params.width, params.height};
+    struct orl_figures_params figures = {ORL_FIGURES_DEFAULTS};
+    struct arg_size size = {0, 0};
     struct orl_names exposures = {0};
     const char *out = NULL, *truth = NULL;
     struct arg_enum response = {orl_synth_response_names(), 0};
@@ -70,7 +106,7 @@ int cmd_synth(int argc, char **argv)
     const struct arg_option options[] = {
         {"out", ARG_STRING, &out, "DIR", "photographs go here: a new or empty folder", 0, 0},
         {"truth", ARG_STRING, &truth, "DIR", "cameras, depth, normals, radiance (DIR-truth)", 0, 0},
-        {"size", ARG_SIZE, &size, "WxH", "size of a photograph (768x512)", 0, 0},
+        {"size", ARG_SIZE, &size, "WxH", "size of a photograph (768x512; figures 640x480)", 0, 0},
         {"count", ARG_INT, &params.count, "N", "photographs (24)", 2, ORL_SYNTH_COUNT_MAX},
         {"seed", ARG_INT, &seed, "N", "another set of cameras and stones (1)", 0, INT32_MAX},
         {"exposures", ARG_LIST, &exposures, "EV,..",
@@ -83,11 +119,16 @@ int cmd_synth(int argc, char **argv)
          0, 0},
         {"vignette", ARG_NUMBER, &params.vignette, "SHARE",
          "light lost in the corners, from 0 to 0.9 (0)", 0, 0.9},
+        {"cameras", ARG_INT, &figures.cameras, "N", "figures: cameras around (8)", 2,
+         ORL_FIGURES_CAMERAS_MAX},
+        {"frames", ARG_INT, &figures.frames, "N", "figures: moments, 25 to a second (1)", 1,
+         ORL_FIGURES_FRAMES_MAX},
         {"drift", ARG_NUMBER, &params.drift_ev, "EV",
          "exposure and colour wander by up to this, untold by EXIF, from 0 to 2 (0)", 0, 2},
         {0},
     };
-    char summary[512] = "Photographs of a synthetic monument with ground truth. NAME is one of:";
+    char summary[512] = "Synthetic photographs with ground truth. NAME is one of:\n"
+                        "  figures      a walking figure in a room, seen by fixed cameras";
     for (const char *const *name = orl_synth_names(); *name; name++) {
         size_t length = strlen(summary);
         snprintf(summary + length, sizeof summary - length, "\n  %-12s %s", *name,
@@ -103,15 +144,21 @@ int cmd_synth(int argc, char **argv)
     if (command_begin(&command, argc, argv, &common, &terminal, positionals, &positional_count,
                       &status)) {
         params.name = positionals[0];
-        params.width = size.width;
-        params.height = size.height;
+        bool is_figures = strcmp(positionals[0], "figures") == 0;
+        if (size.width) {
+            params.width = figures.width = size.width;
+            params.height = figures.height = size.height;
+        }
         params.seed = (uint32_t)seed;
         enum orl_result result = parse_exposures(&terminal.log, &exposures, &params);
         params.response = (enum orl_synth_response)response.value;
         if (result == ORL_OK && !out)
             result = orl_fail(&terminal.log, ORL_ERR_ARGUMENT, "synth: --out DIR is needed");
         if (result == ORL_OK)
-            result = run(&terminal, &common, &params, out, truth);
+            result = check_options(&terminal.log, &params, &figures, is_figures);
+        if (result == ORL_OK)
+            result = is_figures ? run_figures(&terminal, &figures, out)
+                                : run(&terminal, &common, &params, out, truth);
         terminal_finish(&terminal);
         status = command_status(result);
     }

@@ -16,6 +16,7 @@ int cmd_densify(int argc, char **argv);
 int cmd_hdr(int argc, char **argv);
 int cmd_bench(int argc, char **argv);
 int cmd_chart(int argc, char **argv);
+int cmd_import(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_methods(int argc, char **argv);
 int cmd_render(int argc, char **argv);

@@ -9,11 +9,12 @@ static const struct command commands[] = {
     {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},
     {"hdr", "radiance views from photographs of several exposures", cmd_hdr},
+    {"import", "make a scene from known cameras, silhouettes, sequences", cmd_import},
     {"info", "say what is in a scene", cmd_info},
     {"methods", "list the methods of rendering and their options", cmd_methods},
     {"prepare", "make a scene from photographs", cmd_prepare},
     {"render", "render new views", cmd_render},
-    {"synth", "photographs of a synthetic monument with ground truth", cmd_synth},
+    {"synth", "synthetic photographs with ground truth", cmd_synth},
     {"tune", "fit a method's options to a scene", cmd_tune},
     {0},
 };

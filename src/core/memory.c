@@ -45,16 +45,23 @@ char *orl_strdup(const struct orl_log *log, const char *text)
     return copy;
 }
 
-char *orl_format(const struct orl_log *log, const char *format, ...)
+char *orl_vformat(const struct orl_log *log, const char *format, va_list args)
 {
-    va_list args, again;
-    va_start(args, format);
+    va_list again;
     va_copy(again, args);
     int length = vsnprintf(NULL, 0, format, args);
     char *text = length < 0 ? NULL : orl_array(log, (size_t)length + 1, 1);
     if (text)
         vsnprintf(text, (size_t)length + 1, format, again);
     va_end(again);
+    return text;
+}
+
+char *orl_format(const struct orl_log *log, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    char *text = orl_vformat(log, format, args);
     va_end(args);
     return text;
 }

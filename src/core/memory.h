@@ -2,6 +2,8 @@
 #ifndef ORL_CORE_MEMORY_H
 #define ORL_CORE_MEMORY_H
 
+#include <stdarg.h>
+
 #include "core/log.h"
 
 // Zeroed array of count * size bytes, released with free(). NULL, logged, when
@@ -16,5 +18,6 @@ enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capaci
 // Copies, released with free(); NULL, logged, when memory runs out.
 char *orl_strdup(const struct orl_log *log, const char *text);
 char *orl_format(const struct orl_log *log, const char *format, ...) ORL_PRINTF(2, 3);
+char *orl_vformat(const struct orl_log *log, const char *format, va_list args) ORL_PRINTF(2, 0);
 
 #endif

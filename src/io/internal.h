@@ -32,6 +32,12 @@ enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, con
                                 size_t size, int channels, struct orl_image *image);
 enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                size_t size, int channels, struct orl_image *image);
+// Binary Netpbm files (P4, P5, P6) of 8 bits, by their first bytes.
+bool orl_pnm_is(const uint8_t *data, size_t size);
+enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path, FILE *stream,
+                                    struct orl_picture_header *header);
+enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
+                               size_t size, int channels, struct orl_image *image);
 // F32 x3, linear light, from 8 or 16 bits: sRGB unless its gamma says linear.
 enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
                                       const uint8_t *data, size_t size,

@@ -13,7 +13,8 @@
 #include "io/exr.h"
 #include "io/internal.h"
 
-enum format { FORMAT_UNKNOWN, FORMAT_JPEG, FORMAT_PNG, FORMAT_TIFF, FORMAT_EXR, FORMAT_RAW };
+enum format { FORMAT_UNKNOWN, FORMAT_JPEG, FORMAT_PNG, FORMAT_TIFF, FORMAT_EXR, FORMAT_RAW,
+              FORMAT_PNM };
 
 static const size_t max_file_bytes = (size_t)1 << 30;
 
@@ -46,6 +47,8 @@ static enum format format_of(const char *path, const uint8_t *data, size_t size)
     for (size_t i = 0; i < ORL_COUNT(known) && format == FORMAT_UNKNOWN; i++)
         if (size >= known[i].size && memcmp(data, known[i].magic, known[i].size) == 0)
             format = known[i].format;
+    if (format == FORMAT_UNKNOWN && orl_pnm_is(data, size))
+        format = FORMAT_PNM;
     bool may_be_raw = format == FORMAT_UNKNOWN || format == FORMAT_TIFF;
     return may_be_raw && size && orl_picture_is_raw(path) ? FORMAT_RAW : format;
 }
@@ -53,7 +56,7 @@ static enum format format_of(const char *path, const uint8_t *data, size_t size)
 static enum orl_result fail_unknown(const struct orl_log *log, const char *path)
 {
     return orl_fail(log, ORL_ERR_FORMAT, "%s: not a picture of a known kind "
-                    "(JPEG, PNG, TIFF, EXR, RAW)", path);
+                    "(JPEG, PNG, PNM, TIFF, EXR, RAW)", path);
 }
 
 enum orl_result orl_picture_check_size(const struct orl_log *log, const char *path,
@@ -91,12 +94,14 @@ static bool has_exif_head(const struct orl_picture_header *header)
 }
 
 static enum orl_result read_stream_header(const struct orl_log *log, const char *path,
-                                          FILE *stream, bool jpeg, struct orl_picture_info *info,
-                                          struct orl_exif *exif)
+                                          FILE *stream, enum format format,
+                                          struct orl_picture_info *info, struct orl_exif *exif)
 {
     struct orl_picture_header header = {0};
-    enum orl_result result = jpeg ? orl_jpeg_read_header(log, path, stream, &header)
-                                  : orl_png_read_header(log, path, stream, &header);
+    enum orl_result result =
+        format == FORMAT_JPEG  ? orl_jpeg_read_header(log, path, stream, &header)
+        : format == FORMAT_PNG ? orl_png_read_header(log, path, stream, &header)
+                               : orl_pnm_read_header(log, path, stream, &header);
     if (result == ORL_OK)
         *info = (struct orl_picture_info){.width = header.width, .height = header.height,
                                           .bits = header.bits};
@@ -119,7 +124,8 @@ static enum orl_result read_header(const struct orl_log *log, const char *path,
     switch (format) {
     case FORMAT_JPEG:
     case FORMAT_PNG:
-        result = read_stream_header(log, path, stream, format == FORMAT_JPEG, info, exif);
+    case FORMAT_PNM:
+        result = read_stream_header(log, path, stream, format, info, exif);
         break;
     case FORMAT_TIFF:
         result = orl_tiff_inspect(log, path, info, exif ? exif : &unused);
@@ -213,6 +219,8 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
     enum orl_result result = orl_file_read(log, path, max_file_bytes, &data, &size);
     if (result == ORL_OK && format == FORMAT_PNG)
         result = orl_png_decode_linear(log, path, data, size, image);
+    else if (result == ORL_OK && format == FORMAT_PNM)
+        result = orl_pnm_decode(log, path, data, size, 3, &eight);
     else if (result == ORL_OK)
         result = orl_jpeg_decode(log, path, data, size, 3, &eight);
     if (result == ORL_OK && eight.data)
@@ -272,12 +280,14 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     if (result != ORL_OK)
         return result;
     fclose(stream);
-    if (format == FORMAT_JPEG || format == FORMAT_PNG)
+    if (format == FORMAT_JPEG || format == FORMAT_PNG || format == FORMAT_PNM)
         result = orl_file_read(log, path, max_file_bytes, &data, &size);
     if (result == ORL_OK && format == FORMAT_JPEG)
         result = orl_jpeg_decode(log, path, data, size, channels, image);
     else if (result == ORL_OK && format == FORMAT_PNG)
         result = orl_png_decode(log, path, data, size, channels, image);
+    else if (result == ORL_OK && format == FORMAT_PNM)
+        result = orl_pnm_decode(log, path, data, size, channels, image);
     else if (result == ORL_OK)
         result = orl_picture_read_linear(log, path, &linear);
     if (result == ORL_OK && linear.data)

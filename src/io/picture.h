@@ -1,5 +1,5 @@
-// Photographs and pictures as files. JPEG, PNG, TIFF and EXR are known by content, camera
-// RAW files by their extension, as many begin like TIFF.
+// Photographs and pictures as files. JPEG, PNG, binary PNM of 8 bits, TIFF and EXR are known by
+// content, camera RAW files by their extension, as many begin like TIFF.
 #ifndef ORL_IO_PICTURE_H
 #define ORL_IO_PICTURE_H
 

@@ -31,11 +31,13 @@ enum orl_result orl_undistort(const struct orl_log *log, const struct orl_colmap
     if (image->width != size->width || image->height != size->height)
         return orl_fail(log, ORL_ERR_DATA, "a picture of %dx%d pixels, but its camera has %dx%d",
                         image->width, image->height, size->width, size->height);
-    struct orl_camera full = orl_camera_resized(to, size->width, size->height);
+    // Where nothing shrinks one resampling is enough.
+    bool shrinks = to->fx < 0.999 * size->fx || to->fy < 0.999 * size->fy;
+    struct orl_camera full = shrinks ? orl_camera_resized(to, size->width, size->height) : *to;
     enum orl_result result = make_map(log, from, &full, &map);
     if (result == ORL_OK)
         result = orl_bridge_remap(log, image, &map, &warped);
-    if (result == ORL_OK && (to->width != size->width || to->height != size->height))
+    if (result == ORL_OK && (to->width != full.width || to->height != full.height))
         result = orl_bridge_resize(log, &warped, to->width, to->height, undistorted);
     else if (result == ORL_OK) {
         *undistorted = warped;

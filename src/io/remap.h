@@ -6,8 +6,8 @@
 #include "scene/colmap.h"
 
 // What camera `to` would have seen from the same place, of any pixel type. `image` has the
-// size of camera `from`. As COLMAP does: resampled bilinearly at the size of `from`, then
-// brought to the size of `to`; black where `from` saw nothing.
+// size of camera `from`. Resampled bilinearly, black where `from` saw nothing; where `to` is
+// coarser as COLMAP does: at the size of `from`, then brought to the size of `to`.
 enum orl_result orl_undistort(const struct orl_log *log, const struct orl_colmap_camera *from,
                               const struct orl_camera *to, const struct orl_image *image,
                               struct orl_image *undistorted) ORL_CHECK_RESULT;

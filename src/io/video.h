@@ -1,4 +1,4 @@
-// Frames to video through ffmpeg.
+// Frames to video and back, through ffmpeg.
 #ifndef ORL_IO_VIDEO_H
 #define ORL_IO_VIDEO_H
 
@@ -10,5 +10,15 @@
 enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_progress *progress,
                                  const char *frames_dir, double fps,
                                  const char *path) ORL_CHECK_RESULT;
+
+// Which frames of a clip: `first`, first + step, ..., at most `count` of them (0: to its end).
+struct orl_frame_range {
+    int first, count, step; // from 0; from 0; from 1
+};
+// Decodes them to FRAMES_DIR/%05d.ppm, from 00000.ppm on, pixels as stored. FRAMES_DIR is there.
+// ORL_ERR_DATA: the clip has none of them. ORL_ERR_NOT_FOUND when ffmpeg is not installed.
+enum orl_result orl_video_decode(const struct orl_log *log, const struct orl_progress *progress,
+                                 const char *path, const struct orl_frame_range *range,
+                                 const char *frames_dir) ORL_CHECK_RESULT;
 
 #endif

@@ -11,6 +11,12 @@ struct fill;
 struct soften;
 struct edges;
 
+// Extent of the scene's points, world.
+struct scene_extent {
+    double low[3], high[3]; // bounding box; 0 without points
+    double centroid[3];     // mean of the points
+};
+
 // The state that every pass gets. Passes keep data that outlives a frame in their own structs.
 struct frame {
     struct orl_gpu *gpu;
@@ -30,9 +36,10 @@ struct frame {
     struct edges *edges;
     // Indices of the photographs that this frame asks, ascending; memory of the renderer.
     size_t *chosen;
-    float *chosen_weight;      // weight of each photograph by the selection
+    float (*selected)[4];      // by the selection: weight of each; x y z its own use
     size_t chosen_count;
-    const double *centre;      // centre of the points' bounding box, world
+    size_t chosen_extra;       // princ: photographs before this one were chosen by direction
+    const struct scene_extent *extent;
     // Pixels as in shaders/shared/pixel.glsl, finished at the end. Half floats if the painter
     // finishes pixels.
     struct orl_tex *picture;

@@ -127,7 +127,7 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
     const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth->params;
     for (size_t i = 0; i < count; i++) {
         describe_photo(frame, frame->chosen[first + i], &g->list[i]);
-        g->list[i].selected[0] = frame->chosen_weight[first + i];
+        memcpy(g->list[i].selected, frame->selected[first + i], sizeof g->list[i].selected);
     }
     orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
     struct gather_block block = {

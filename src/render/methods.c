@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "render/gather.h"
 #include "render/method.h"
+#include "render/princ.h"
 #include "render/proxy.h"
 #include "render/select.h"
 #include "render/tiled.h"
@@ -43,6 +44,10 @@ const struct orl_method orl_methods[] = {
      "Orzan 2005, 4.5",
      {DEFAULTS .select = "nearest", .nearest = 5, .visibility = "shadow", .weight = "normal",
       .combine = "sigma", .median = ORL_MEDIAN_HOLES, .border_px = 0}},
+    {"princ", "one photograph a pixel, of the nearest six and some more, without shadow maps",
+     "Princ 2014, 2.3",
+     {DEFAULTS .select = "princ", .nearest = 6, .visibility = "none", .weight = "princ",
+      .combine = "best", .border_px = 0}},
     {"points", "the splats' own colour: the baseline", "-",
      {DEFAULTS .paint = "points", .front_layer = 0.01f, .min_support = 8}},
     {0},
@@ -51,7 +56,7 @@ const struct orl_method orl_methods[] = {
 // --- what the names stand for ---
 
 static const struct selection *const selections[] = {&orl_select_all, &orl_select_nearest,
-                                                    &orl_select_preselect};
+                                                    &orl_select_preselect, &orl_select_princ};
 static const struct painter *const painters[] = {&orl_paint_gather, &orl_paint_tiled,
                                                  &orl_paint_points};
 static const struct proxy_kind *const proxies[] = {&orl_proxy_splats};
@@ -59,6 +64,7 @@ static const struct combine combines[] = {
     {"mean", .sweeps = 1},
     {"top", .sweeps = 2, .states = 2},
     {"sigma", .sweeps = 2, .states = 2},
+    {"best", .sweeps = 1},
     {"robust", .sweeps = 0},
 };
 

@@ -23,7 +23,8 @@
         "of the splats.") \
     SLOT(select, "all", "paint=gather paint=tiled", \
         "The photographs that a frame may use: all of them, the `nearest` by their direction " \
-        "from the scene's centre, or the 48 that can paint the view best (`preselect`).") \
+        "from the scene's centre, the 48 that can paint the view best (`preselect`), or the " \
+        "nearest and some more for what they see too obliquely (`princ`).") \
     SLOT(visibility, "hard", "paint=gather paint=tiled", \
         "Which photographs see a surface point: all (`none`), those whose own depth map agrees, " \
         "with a `hard` or a `soft` limit, those and the ones without depth there (`lenient`), " \
@@ -33,7 +34,7 @@
         "How much a photograph counts that sees a surface point.") \
     SLOT(combine, "mean", "paint=gather paint=tiled", \
         "How the samples of a pixel become one colour: their weighted mean, the mean of the " \
-        "four of greatest weight (`top`), the mean of those that pass a test of their standard " \
+        "four of greatest weight (`top`), the one of greatest weight (`best`), the mean of those that pass a test of their standard " \
         "deviation (`sigma`), or a mean that is robust against outliers.") \
     CHOICE(fill, orl_fill, "none color depth ground", ORL_FILL_COLOR, "", \
         "What pixels without a surface show: black, the colours of their neighbours, " \
@@ -51,8 +52,10 @@
     CHOICE(median, orl_median, "off holes all", ORL_MEDIAN_OFF, "paint=gather", \
         "A median filter of the painted picture, over 3x3 pixels of it all, or over the 5x5 " \
         "neighbours of surfaces that no photograph painted (`holes`).") \
-    NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest", ORL_NO_TRIES, \
+    NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest select=princ", ORL_NO_TRIES, \
         "How many photographs a frame uses.") \
+    NUMBER(extras, 3, 0, 8, "photographs", "select=princ", ORL_NO_TRIES, \
+        "How many more it uses for surfaces that those see too obliquely.") \
     NUMBER(sigma, 1.17f, 0, 100, "standard deviations", "combine=sigma", ORL_NO_TRIES, \
         "A sample that lies farther from the mean in any channel is left out, where three " \
         "photographs or more see the point.") \

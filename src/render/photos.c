@@ -225,6 +225,7 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
     orl_tex_destroy(gpu, &photos->depth);
     orl_tex_destroy(gpu, &photos->loading);
     free(photos->states);
+    free(photos->aspects);
     memset(photos, 0, sizeof *photos);
 }
 

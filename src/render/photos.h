@@ -18,6 +18,12 @@ struct photo_state {
     struct orl_camera color_camera, depth_camera; // at the resident size, pixels of level 0
 };
 
+// What a photograph shows of the scene's points (Princ 2014, 2.3.2).
+struct photo_aspect {
+    double direction[3]; // world, unit length: through the middle of their convex hull
+    double share;        // of the picture that the hull covers, [0, 1]
+};
+
 struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
@@ -27,6 +33,7 @@ struct photos {
     struct orl_tex *depth;      // z; < 0: estimated in a hole, 0: none
     int slot_count, divide;     // divide: photographs are loaded at 1/divide of their size
     unsigned clock;
+    struct photo_aspect *aspects; // owned; NULL until princ.c needs them
     bool radiance;              // see struct orl_renderer_params
     struct orl_sensor sensor;
     float ev_darkest, ev_brightest; // of the photographs in use

@@ -26,8 +26,8 @@ struct orl_renderer {
     struct gather gather;
     struct orl_tex *picture, *trusted, *states[2]; // textures of struct frame
     size_t *chosen;           // memory of struct frame's list
-    float *chosen_weight;
-    double centre[3];         // centre of the points' bounding box
+    float (*selected)[4];
+    struct scene_extent extent;
     struct orl_image staging; // for read_back.h
 };
 
@@ -54,16 +54,22 @@ static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
     return budget;
 }
 
-static void find_centre(const struct orl_points *points, double centre[3])
+static void find_extent(const struct orl_points *points, struct scene_extent *extent)
 {
+    memset(extent, 0, sizeof *extent);
     for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
+        double low = INFINITY, high = -INFINITY, sum = 0;
         for (size_t i = 0; i < points->count; i++) {
             double x = (double)points->position[i][k];
             low = x < low ? x : low;
             high = x > high ? x : high;
+            sum += x;
         }
-        centre[k] = low <= high ? 0.5 * (low + high) : 0;
+        if (!(low <= high))
+            continue;
+        extent->low[k] = low;
+        extent->high[k] = high;
+        extent->centroid[k] = sum / (double)points->count;
     }
 }
 
@@ -81,9 +87,9 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     r->gpu = gpu;
     r->scene = scene;
     r->chosen = orl_array(log, scene->photo_count, sizeof *r->chosen);
-    r->chosen_weight = orl_array(log, scene->photo_count, sizeof *r->chosen_weight);
-    enum orl_result result = r->chosen && r->chosen_weight ? ORL_OK : ORL_ERR_MEMORY;
-    find_centre(&scene->points, r->centre);
+    r->selected = orl_array(log, scene->photo_count, sizeof *r->selected);
+    enum orl_result result = r->chosen && r->selected ? ORL_OK : ORL_ERR_MEMORY;
+    find_extent(&scene->points, &r->extent);
     if (result == ORL_OK)
         result = orl_proxy_create(gpu, scene, &orl_proxy_splats, &r->proxy);
     if (result == ORL_OK)
@@ -115,7 +121,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_tex_destroy(r->gpu, &r->states[0]);
     orl_tex_destroy(r->gpu, &r->states[1]);
     free(r->chosen);
-    free(r->chosen_weight);
+    free(r->selected);
     free(r);
     *renderer = NULL;
 }
@@ -193,7 +199,7 @@ static struct frame start_frame(struct orl_renderer *r, const struct orl_view *v
         .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
         .proxy = &r->proxy, .proxy_key = orl_proxy_key(&r->proxy, params), .photos = &r->photos,
         .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges,
-        .chosen = r->chosen, .chosen_weight = r->chosen_weight, .centre = r->centre};
+        .chosen = r->chosen, .selected = r->selected, .extent = &r->extent};
 }
 
 void orl_frame_finish(struct orl_frame *frame)

@@ -22,7 +22,7 @@ static enum orl_result choose_all(struct frame *frame, size_t most)
     for (size_t i = 0; i < frame->scene->photo_count; i++) {
         if (!may_use(frame, i))
             continue;
-        frame->chosen_weight[frame->chosen_count] = 1;
+        frame->selected[frame->chosen_count][0] = 1;
         frame->chosen[frame->chosen_count++] = i;
     }
     return ORL_OK;
@@ -39,7 +39,8 @@ static double deviation(const struct frame *frame, size_t photo)
     orl_pose_centre(&frame->view->cam_from_world, eye);
     orl_pose_centre(&frame->scene->photos[photo].view.cam_from_world, other);
     for (int k = 0; k < 3; k++) {
-        double u = eye[k] - frame->centre[k], v = other[k] - frame->centre[k];
+        double centre = 0.5 * (frame->extent->low[k] + frame->extent->high[k]);
+        double u = eye[k] - centre, v = other[k] - centre;
         uu += u * u;
         vv += v * v;
         uv += u * v;
@@ -88,7 +89,7 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
         // As in oriel, a trace of weight lets photographs that tie with the first left out paint.
         double weight = threshold > 0 ? 1.00001 - all[i].penalty / threshold : 1;
         frame->chosen[i] = all[i].photo;
-        frame->chosen_weight[i] = (float)weight;
+        frame->selected[i][0] = (float)weight;
     }
     frame->chosen_count = kept;
     free(all);
@@ -230,7 +231,7 @@ static enum orl_result choose_best(struct frame *frame, size_t most)
     }
     for (size_t i = 0; i < usable; i++) {
         frame->chosen[i] = candidates[i].photo;
-        frame->chosen_weight[i] = 1;
+        frame->selected[i][0] = 1;
     }
     frame->chosen_count = usable;
 end:

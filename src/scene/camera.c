@@ -35,6 +35,42 @@ bool orl_pose_from_quat(const double quat_wxyz[4], const double t[3], struct orl
     return true;
 }
 
+bool orl_pose_valid(const struct orl_pose *pose)
+{
+    double cross[3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (!(fabs(orl_dot3(pose->r[i], pose->r[j]) - (i == j)) <= 1e-3))
+                return false;
+    orl_cross3(pose->r[0], pose->r[1], cross);
+    return orl_dot3(cross, pose->r[2]) > 0 && isfinite(pose->t[0] + pose->t[1] + pose->t[2]);
+}
+
+bool orl_pose_from_axes(double world_from_cam[3][3], const double centre[3],
+                        struct orl_pose *pose)
+{
+    for (int i = 0; i < 3; i++) {
+        pose->t[i] = 0;
+        for (int j = 0; j < 3; j++) {
+            pose->r[i][j] = world_from_cam[j][i];
+            pose->t[i] -= world_from_cam[j][i] * centre[j];
+        }
+    }
+    return orl_pose_valid(pose);
+}
+
+bool orl_pose_from_opengl(const double m[16], struct orl_pose *pose)
+{
+    double axes[3][3], centre[3];
+    for (int i = 0; i < 3; i++) {
+        axes[i][0] = m[4 * i];
+        axes[i][1] = -m[4 * i + 1];
+        axes[i][2] = -m[4 * i + 2];
+        centre[i] = m[4 * i + 3];
+    }
+    return orl_pose_from_axes(axes, centre, pose);
+}
+
 void orl_pose_to_quat(const struct orl_pose *pose, double q[4])
 {
     // Shepperd: divide by the largest component for accuracy.
@@ -158,4 +194,31 @@ void orl_view_unproject(const struct orl_view *view, double u, double v, double 
         for (int j = 0; j < 3; j++)
             world[k] += pose->r[j][k] * (cam[j] - pose->t[j]);
     }
+}
+
+void orl_ray_meeting_add(struct orl_ray_meeting *meeting, const double eye[3], const double ray[3])
+{
+    double d[3] = {ray[0], ray[1], ray[2]};
+    orl_normalize3(d);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            double across = (r == c) - d[r] * d[c];
+            meeting->a[r][c] += across;
+            meeting->b[r] += across * eye[c];
+        }
+}
+
+// Cramer's rule.
+bool orl_ray_meeting_point(const struct orl_ray_meeting *meeting, double point[3])
+{
+    const double (*a)[3] = meeting->a, *b = meeting->b;
+    double rows[3][3], scale = a[0][0] + a[1][1] + a[2][2];
+    for (int k = 0; k < 3; k++)
+        orl_cross3(a[(k + 1) % 3], a[(k + 2) % 3], rows[k]);
+    double det = orl_dot3(a[0], rows[0]);
+    if (!(fabs(det) > 1e-9 * scale * scale * scale))
+        return false;
+    for (int i = 0; i < 3; i++)
+        point[i] = (rows[0][i] * b[0] + rows[1][i] * b[1] + rows[2][i] * b[2]) / det;
+    return true;
 }

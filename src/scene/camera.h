@@ -30,6 +30,14 @@ struct orl_camera orl_camera_resized(const struct orl_camera *camera, int width,
 // From a quaternion w x y z (normalised here) and translation. False when the
 // quaternion is zero or anything is not finite.
 bool orl_pose_from_quat(const double quat_wxyz[3 + 1], const double t[3], struct orl_pose *pose);
+// A rotation, to within 1e-3, and a finite translation?
+bool orl_pose_valid(const struct orl_pose *pose);
+// From a world_from_cam rotation, whose columns are the camera's axes, and its centre. False when
+// they are no pose.
+bool orl_pose_from_axes(double world_from_cam[3][3], const double centre[3],
+                        struct orl_pose *pose);
+// From a world_from_cam matrix, row by row, of a camera with OpenGL's axes (y up, z backward).
+bool orl_pose_from_opengl(const double world_from_cam[16], struct orl_pose *pose);
 // w >= 0.
 void orl_pose_to_quat(const struct orl_pose *pose, double quat_wxyz[3 + 1]);
 // Camera centre in world space: -r^T t.
@@ -46,5 +54,15 @@ bool orl_view_project(const struct orl_view *view, const double world[3], double
 // Its inverse: what lies at `depth` along the camera's z axis behind pixel coordinates u, v.
 void orl_view_unproject(const struct orl_view *view, double u, double v, double depth,
                         double world[3]);
+
+// The point nearest to several rays, by least squares. Zeroed before the first ray.
+struct orl_ray_meeting {
+    double a[3][3], b[3];
+};
+// From `eye` in the direction of `ray`, of any length above 0.
+void orl_ray_meeting_add(struct orl_ray_meeting *meeting, const double eye[3],
+                         const double ray[3]);
+// False when the rays are too parallel to say.
+bool orl_ray_meeting_point(const struct orl_ray_meeting *meeting, double point[3]);
 
 #endif

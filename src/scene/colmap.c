@@ -114,8 +114,8 @@ static int compare_images(const void *a, const void *b)
                   ((const struct orl_colmap_image *)b)->name);
 }
 
-static enum orl_result check_model(const struct orl_log *log, const char *dir,
-                                   struct orl_colmap_model *model)
+enum orl_result orl_colmap_check(const struct orl_log *log, const char *dir,
+                                 struct orl_colmap_model *model)
 {
     for (size_t i = 0; i < model->camera_count; i++)
         if (orl_colmap_camera_by_id(model, model->cameras[i].id) != &model->cameras[i])
@@ -161,7 +161,7 @@ enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
     enum orl_result result = kind ? orl_colmap_read_binary(log, dir, model)
                                   : orl_colmap_read_text(log, dir, model);
     if (result == ORL_OK)
-        result = check_model(log, dir, model);
+        result = orl_colmap_check(log, dir, model);
     if (result != ORL_OK)
         orl_colmap_finish(model);
     return result;

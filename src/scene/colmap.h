@@ -47,6 +47,10 @@ struct orl_colmap_model {
 enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
                                 struct orl_colmap_model *model) ORL_CHECK_RESULT;
 void orl_colmap_finish(struct orl_colmap_model *model);
+// Writes cameras.bin, images.bin and points3D.bin into `dir`, which is there. Observations lie
+// where their points project.
+enum orl_result orl_colmap_write(const struct orl_log *log, const char *dir,
+                                 const struct orl_colmap_model *model) ORL_CHECK_RESULT;
 // NULL when there is none of that id.
 const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
                                                         uint32_t id);

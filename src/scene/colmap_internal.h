@@ -24,6 +24,10 @@ int64_t orl_colmap_point_index(const struct orl_colmap_model *model, uint64_t id
 enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *path,
                                         struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
+// Sorts images by name; ids and names must be unique and cameras there. `file` is for messages.
+enum orl_result orl_colmap_check(const struct orl_log *log, const char *file,
+                                 struct orl_colmap_model *model) ORL_CHECK_RESULT;
+
 // Each reads one file; points before images, since images refer to points.
 enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,
                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "scene/json_views.h"
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
 
@@ -45,43 +46,6 @@ void orl_path_finish(struct orl_path *path)
 {
     free(path->views);
     memset(path, 0, sizeof *path);
-}
-
-static bool read_rows(const json_t *array, size_t rows, size_t columns, double *out)
-{
-    if (!json_is_array(array) || json_array_size(array) != rows)
-        return false;
-    for (size_t i = 0; i < rows; i++)
-        if (!orl_json_read_numbers(json_array_get(array, i), columns, out + i * columns))
-            return false;
-    return true;
-}
-
-static bool is_rotation(const struct orl_pose *pose)
-{
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            double dot = 0;
-            for (int k = 0; k < 3; k++)
-                dot += pose->r[i][k] * pose->r[j][k];
-            if (fabs(dot - (i == j)) > 1e-3)
-                return false;
-        }
-    return true;
-}
-
-// From a camera-to-world rotation (columns are the camera's axes) and centre.
-static bool pose_from_world_axes(double world_from_cam[3][3], const double centre[3],
-                                 struct orl_pose *pose)
-{
-    for (int i = 0; i < 3; i++) {
-        pose->t[i] = 0;
-        for (int j = 0; j < 3; j++) {
-            pose->r[i][j] = world_from_cam[j][i];
-            pose->t[i] -= world_from_cam[j][i] * centre[j];
-        }
-    }
-    return is_rotation(pose);
 }
 
 // --- interpolation ---
@@ -156,13 +120,13 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             return false;
         *view = scene->photos[index].view;
     } else if (matrix) {
-        if (!read_rows(matrix, 3, 4, &rows[0][0]))
+        if (!orl_json_rows(matrix, 3, 4, &rows[0][0]))
             return false;
         for (int i = 0; i < 3; i++) {
             memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
             view->cam_from_world.t[i] = rows[i][3];
         }
-        if (!is_rotation(&view->cam_from_world))
+        if (!orl_pose_valid(&view->cam_from_world))
             return false;
     } else {
         const json_t *up_json = json_object_get(key, "up");
@@ -211,40 +175,18 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
 
 // --- other programs' formats ---
 
-// nerfstudio: camera_to_world row-major, OpenGL axes (y up, z backwards), fov vertical.
+// nerfstudio: camera_to_world row-major, fov vertical.
 static bool read_nerfstudio_view(const json_t *entry, int width, int height, struct orl_view *view)
 {
-    double m[16], axes[3][3], centre[3];
+    double m[16];
     double fov = json_number_value(json_object_get(entry, "fov"));
     if (!orl_json_read_numbers(json_object_get(entry, "camera_to_world"), 16, m) ||
         !(fov > 0.1 && fov < 170))
         return false;
-    for (int i = 0; i < 3; i++) {
-        axes[i][0] = m[4 * i];
-        axes[i][1] = -m[4 * i + 1];
-        axes[i][2] = -m[4 * i + 2];
-        centre[i] = m[4 * i + 3];
-    }
     view->camera = (struct orl_camera){.width = width, .height = height,
                                        .cx = 0.5 * width, .cy = 0.5 * height};
     set_fov_y(&view->camera, fov * pi / 180);
-    return pose_from_world_axes(axes, centre, &view->cam_from_world);
-}
-
-// Inria: position is the centre, the columns of rotation are the camera's axes.
-static bool read_inria_view(const json_t *entry, struct orl_view *view)
-{
-    double axes[3][3], centre[3];
-    int width = (int)json_integer_value(json_object_get(entry, "width"));
-    int height = (int)json_integer_value(json_object_get(entry, "height"));
-    view->camera = (struct orl_camera){
-        .width = width, .height = height, .cx = 0.5 * width, .cy = 0.5 * height,
-        .fx = json_number_value(json_object_get(entry, "fx")),
-        .fy = json_number_value(json_object_get(entry, "fy"))};
-    return read_rows(json_object_get(entry, "rotation"), 3, 3, &axes[0][0]) &&
-           orl_json_read_numbers(json_object_get(entry, "position"), 3, centre) &&
-           orl_camera_valid(&view->camera) &&
-           pose_from_world_axes(axes, centre, &view->cam_from_world);
+    return orl_pose_from_opengl(m, &view->cam_from_world);
 }
 
 static enum orl_result read_json(const struct orl_log *log, const struct orl_scene *scene,
@@ -267,7 +209,7 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
     for (size_t i = 0; result == ORL_OK && i < path->count; i++) {
         const json_t *entry = json_array_get(entries, i);
         bool ok = nerfstudio ? read_nerfstudio_view(entry, width, height, &path->views[i])
-                             : read_inria_view(entry, &path->views[i]);
+                             : orl_json_inria_view(entry, &path->views[i]);
         if (!ok)
             result = orl_fail(log, ORL_ERR_FORMAT, "%s: camera %zu is not usable", file, i);
     }

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,7 +40,7 @@ static enum orl_result check_photo_files(const struct orl_log *log, struct orl_s
                                                     "%s: this photograph is missing", path);
         free(path);
         path = orl_scene_linear_path(log, scene, i);
-        scene->photos[i].linear = path && orl_path_is_file(path);
+        scene->photos[i].linear = scene->frame < 0 && path && orl_path_is_file(path);
         if (!path)
             result = ORL_ERR_MEMORY;
         free(path);
@@ -47,6 +48,34 @@ static enum orl_result check_photo_files(const struct orl_log *log, struct orl_s
             return result;
     }
     return ORL_OK;
+}
+
+enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene, int frame)
+{
+    int before = scene->frame;
+    if (frame < -1 || (frame >= 0 && (size_t)frame >= scene->frame_count))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: no moment %d: there are %zu", scene->dir, frame,
+                        scene->frame_count);
+    scene->frame = frame;
+    enum orl_result result = check_photo_files(log, scene);
+    if (result != ORL_OK) {
+        scene->frame = before;
+        if (check_photo_files(NULL, scene) != ORL_OK) // for `linear`
+            return result;
+    }
+    return result;
+}
+
+// Moments are numbered from 0 without gaps; others are not counted.
+static size_t count_frames(const char *dir)
+{
+    size_t count = 0;
+    for (bool there = true; there; count += there) {
+        char *path = orl_format(NULL, "%s/frames/%05zu", dir, count);
+        there = path && orl_path_is_dir(path);
+        free(path);
+    }
+    return count;
 }
 
 static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *scene,
@@ -109,6 +138,26 @@ static size_t sample_distances(const struct orl_scene *scene, double *values, si
     return count;
 }
 
+// Without points: distances to the place that the photographs look at.
+static size_t middle_distances(const struct orl_scene *scene, double *values)
+{
+    struct orl_ray_meeting meeting = {0};
+    double eye[3], middle[3];
+    size_t count = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const struct orl_pose *pose = &scene->photos[i].view.cam_from_world;
+        orl_pose_centre(pose, eye);
+        orl_ray_meeting_add(&meeting, eye, pose->r[2]);
+    }
+    if (!orl_ray_meeting_point(&meeting, middle))
+        return 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        orl_pose_centre(&scene->photos[i].view.cam_from_world, eye);
+        values[count++] = distance(eye, middle);
+    }
+    return count;
+}
+
 static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_scene *scene,
                                           const struct orl_colmap_model *model)
 {
@@ -129,6 +178,8 @@ static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_
     }
     if (!count)
         count = sample_distances(scene, values, SAMPLES);
+    if (!count)
+        count = middle_distances(scene, values);
     scene->photo_distance = count ? median(values, count) : 1;
     free(values);
     return ORL_OK;
@@ -175,10 +226,11 @@ static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene
 }
 
 static enum orl_result read_points(const struct orl_log *log, struct orl_scene *scene,
-                                   const char *path)
+                                   const char *path, bool may_be_empty)
 {
     enum orl_result result = orl_points_read(log, path, &scene->points);
-    if (result != ORL_OK)
+    // A manifest's scene may have none: silhouettes do without.
+    if (result != ORL_OK || (may_be_empty && !scene->points.count))
         return result;
     size_t known = 0;
     for (size_t i = 0; i < scene->points.count; i++)
@@ -237,9 +289,10 @@ static enum orl_result look(const struct orl_log *log, const char *dir, struct f
 
 // With the photographs and their splits known.
 static enum orl_result add_points(const struct orl_log *log, struct orl_scene *scene,
-                                  const struct orl_colmap_model *model, const char *path)
+                                  const struct orl_colmap_model *model, const char *path,
+                                  bool may_be_empty)
 {
-    enum orl_result result = read_points(log, scene, path);
+    enum orl_result result = read_points(log, scene, path, may_be_empty);
     if (result == ORL_OK)
         result = set_photo_distance(log, scene, model);
     if (result == ORL_OK && !scene->ground.known)
@@ -257,15 +310,19 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
     if (folder->manifest &&
         (result = orl_manifest_read(log, folder->manifest, scene)) != ORL_OK)
         return result;
-    return add_points(log, scene, model, folder->manifest ? folder->points : folder->fused);
+    return add_points(log, scene, model, folder->manifest ? folder->points : folder->fused,
+                      folder->manifest != NULL);
 }
 
 static enum orl_result create(const struct orl_log *log, const char *dir, struct orl_scene **out)
 {
     *out = orl_array(log, 1, sizeof **out);
-    if (*out)
-        (*out)->dir = orl_strdup(log, dir);
-    return *out && (*out)->dir ? ORL_OK : ORL_ERR_MEMORY;
+    if (!*out)
+        return ORL_ERR_MEMORY;
+    (*out)->dir = orl_strdup(log, dir);
+    (*out)->frame = -1;
+    (*out)->frame_count = count_frames(dir);
+    return (*out)->dir ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 enum orl_result orl_scene_open(const struct orl_log *log, const char *dir, struct orl_scene **out)
@@ -297,7 +354,7 @@ enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char 
     for (size_t i = 0; result == ORL_OK && i < (*out)->photo_count; i++)
         (*out)->photos[i].test = test && orl_names_contain(test, (*out)->photos[i].name);
     if (result == ORL_OK)
-        result = add_points(log, *out, model, points);
+        result = add_points(log, *out, model, points, true);
     free(points);
     if (result != ORL_OK)
         orl_scene_destroy(out);
@@ -338,17 +395,39 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name)
     return -1;
 }
 
+// "SCENE/" or "SCENE/frames/<number>/", then folder, name and ending.
+static char *moment_path(const struct orl_log *log, const struct orl_scene *scene,
+                         const char *folder, size_t photo, const char *ending)
+{
+    char frame[32] = "";
+    if (scene->frame >= 0)
+        snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
+    return orl_format(log, "%s/%s%s/%s%s", scene->dir, frame, folder, scene->photos[photo].name,
+                      ending);
+}
+
 char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
 {
-    return orl_format(log, "%s/images/%s", scene->dir, scene->photos[photo].name);
+    return moment_path(log, scene, "images", photo, "");
+}
+
+char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+{
+    return moment_path(log, scene, "masks", photo, ".png");
+}
+
+char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,
+                                size_t photo)
+{
+    return orl_format(log, "%s/background/%s.png", scene->dir, scene->photos[photo].name);
+}
+
+char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene)
+{
+    return orl_path_join(log, scene->dir, "mesh.ply");
 }
 
 char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
 {
     return orl_format(log, "%s/images_linear/%s.exr", scene->dir, scene->photos[photo].name);
-}
-
-char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
-{
-    return orl_format(log, "%s/masks/%s.png", scene->dir, scene->photos[photo].name);
 }

@@ -51,6 +51,8 @@ struct orl_scene {
     size_t response_count;
     struct orl_tuned *tuned;
     size_t tuned_count;
+    size_t frame_count;    // moments of a sequence; 0: a still scene
+    int frame;             // the moment that its photographs show, -1: SCENE/images
     double photo_distance; // median distance from training photographs to points they see
     struct orl_ground ground;
 };
@@ -70,14 +72,26 @@ enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char 
 void orl_scene_destroy(struct orl_scene **scene);
 // Index of the photograph of this name (with or without extension), -1 if none.
 int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
-// "SCENE/images/<name>", released with free().
+// Photographs and silhouettes are those of moment `frame` from now on; cameras and all else stay.
+// -1: those of the scene itself. ORL_ERR_ARGUMENT: there is no such moment; ORL_ERR_NOT_FOUND: a
+// photograph of it is missing. Then the scene stays as it was.
+enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene,
+                                    int frame) ORL_CHECK_RESULT;
+// "SCENE/images/<name>", or of the chosen moment "SCENE/frames/<number>/images/<name>"; released
+// with free().
 char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene,
                            size_t photo);
+// Its mask or silhouette (silhouette.h), "SCENE/masks/<name>.png" or of the chosen moment "SCENE/
+// frames/<number>/masks/<name>.png": as large as the photograph, 0 where it does not show the
+// subject. There when photo->masked.
+char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
+// The place without the subject: "SCENE/background/<name>.png", there or not.
+char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,
+                                size_t photo);
+// "SCENE/mesh.ply", there or not.
+char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene);
 // "SCENE/images_linear/<name>.exr", there or not.
 char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene,
                             size_t photo);
-// "SCENE/masks/<name>.png": as large as the photograph, 0 where it does not show the subject.
-// There when photo->masked.
-char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
 
 #endif

@@ -79,7 +79,7 @@ static void few_photographs_paint_too(void **state)
 static void turns_change_nothing(void **state)
 {
     (void)state;
-    static const char *const methods[] = {"airieau", "ulr", "orzan-surface"};
+    static const char *const methods[] = {"airieau", "ulr", "orzan-surface", "princ"};
     struct fixture f;
     setup(&f, true);
     struct orl_view view = look_from(0.1, 0, 0, SIDE, 40);

@@ -92,7 +92,7 @@ static void refuses_bad_headers(void **state)
         {"ply\nformat ascii 1.0\nend_header\n", "no vertices"},
         {"ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
          "end_header\n", "lack x, y or z"},
-        {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n",
+        {"ply\nformat ascii 1.0\nelement vertex 1\nproperty list uchar int x\nend_header\n1 5\n",
          "lists are not supported"},
         {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float x\n",
          "given twice"},
@@ -100,10 +100,10 @@ static void refuses_bad_headers(void **state)
         {"ply\nformat ascii 1.0\nelement vertex 1\nproperty quaternion x\n", "unknown type"},
         {"ply\nformat ascii 1.0\nelement vertex 1152921504606846976\nproperty float x\n"
          "property float y\nproperty float z\nend_header\n1 2 3\n",
-         "claims 1152921504606846976 points"},
+         "claims 1152921504606846976 records of vertex"},
         {"ply\nformat binary_little_endian 1.0\nelement vertex 1152921504606846976\n"
          "property float x\nproperty float y\nproperty float z\nend_header\n123456789012",
-         "claims 1152921504606846976 points"},
+         "claims 1152921504606846976 records of vertex"},
         {"ply\nformat binary_little_endian 1.0\nelement a 18446744073709551615\n"
          "property double q\nelement vertex 1\nproperty float x\nproperty float y\n"
          "property float z\nend_header\n123456789012", "an element is larger than the file"},

@@ -1,0 +1,69 @@
+// A moving figure in a room, seen by fixed cameras: photographs, silhouettes, backgrounds, depth
+// and meshes that are known exactly. World: metres, y up, the floor at y = 0.
+#ifndef ORL_DATASETS_FIGURES_H
+#define ORL_DATASETS_FIGURES_H
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "scene/camera.h"
+#include "scene/mesh.h"
+
+enum {
+    ORL_FIGURES_CAMERAS_MAX = 99,
+    ORL_FIGURES_FRAMES_MAX = 99999,
+    ORL_FIGURES_SIDE_MIN = 32,
+    ORL_FIGURES_SIDE_MAX = 4096,
+};
+
+struct orl_figures_params {
+    int cameras;       // [2, ORL_FIGURES_CAMERAS_MAX], on a ring around the figure
+    int frames;        // moments, [1, ORL_FIGURES_FRAMES_MAX]; 25 to a second
+    int width, height; // pixels, [ORL_FIGURES_SIDE_MIN, ORL_FIGURES_SIDE_MAX]
+};
+#define ORL_FIGURES_DEFAULTS .cameras = 8, .frames = 1, .width = 640, .height = 480
+
+// ORL_ERR_ARGUMENT, logged, for a value out of range.
+enum orl_result orl_figures_check(const struct orl_log *log,
+                                  const struct orl_figures_params *params) ORL_CHECK_RESULT;
+// params->cameras views.
+void orl_figures_views(const struct orl_figures_params *params, struct orl_view *views);
+
+// --- one moment ---
+
+// A part of the body: all points within `radius` of the segment from a to b.
+struct orl_figure_part {
+    double a[3], b[3], radius;
+    double color[2][3]; // linear light reflected, of its two kinds of stripes
+};
+enum { ORL_FIGURE_PARTS = 14 };
+struct orl_figure {
+    struct orl_figure_part parts[ORL_FIGURE_PARTS];
+};
+// The figure at a moment: it walks on a small circle.
+void orl_figure_pose(int frame, struct orl_figure *figure);
+// Distance to its surface, negative inside. *part takes the nearest one; may be NULL.
+double orl_figure_distance(const struct orl_figure *figure, const double at[3], int *part);
+// Its surface, vertices on it to within 1e-5 m, with normals and colours; `spacing` of the grid
+// that it is found on, metres.
+enum orl_result orl_figure_mesh(const struct orl_log *log, const struct orl_figure *figure,
+                                double spacing, struct orl_mesh *mesh) ORL_CHECK_RESULT;
+
+struct orl_figures_picture {
+    struct orl_image photo; // U8 x3, sRGB: mean of 4 x 4 rays a pixel
+    struct orl_image mask;  // U8 x1: 255 where the ray through the pixel's centre meets the figure
+    struct orl_image depth; // F32 x1: z in camera space at the pixel's centre
+};
+// What a camera sees. figure NULL: the empty room, which has no mask.
+enum orl_result orl_figures_draw(const struct orl_log *log, const struct orl_figure *figure,
+                                 const struct orl_view *view,
+                                 struct orl_figures_picture *picture) ORL_CHECK_RESULT;
+void orl_figures_picture_finish(struct orl_figures_picture *picture);
+
+// --- all of them, as files ---
+
+// Fills OUT, a new or empty folder, which appears only when whole (docs/synth.md).
+enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_progress *progress,
+                                const struct orl_figures_params *params,
+                                const char *out) ORL_CHECK_RESULT;
+
+#endif

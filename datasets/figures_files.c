@@ -1,0 +1,203 @@
+// The figures as files.
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "datasets/figures.h"
+#include "datasets/synth_files.h"
+#include "io/exr.h"
+#include "io/picture.h"
+
+// Of the grid that meshes are found on, metres.
+static const double MESH_SPACING = 0.015;
+
+struct job {
+    const struct orl_log *log;
+    const struct orl_progress *progress;
+    const struct orl_figures_params *params;
+    const struct orl_view *views; // params->cameras
+    char *dir;                    // being filled, owned
+};
+
+// "DIR/<folder>/camNN<ending>", or of a sequence "DIR/<folder>/camNN/NNNNN<ending>".
+static char *view_path(const struct job *job, const char *folder, int camera, int frame,
+                       const char *ending)
+{
+    if (job->params->frames == 1 || frame < 0)
+        return orl_format(job->log, "%s/%s/cam%02d%s", job->dir, folder, camera, ending);
+    return orl_format(job->log, "%s/%s/cam%02d/%05d%s", job->dir, folder, camera, frame, ending);
+}
+
+static enum orl_result write_png(const struct job *job, const char *folder, int camera, int frame,
+                                 const struct orl_image *image)
+{
+    char *path = view_path(job, folder, camera, frame, ".png");
+    enum orl_result result = path ? orl_png_write(job->log, path, image) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static enum orl_result write_depth(const struct job *job, int camera, int frame,
+                                   const struct orl_image *depth)
+{
+    struct orl_exr_params exr = {
+        .width = depth->width, .height = depth->height, .channel_count = 1,
+        .channels = {{.name = "depth.Z", .data = depth->f32, .stride = 1}},
+        .attributes = {.view = &job->views[camera]}};
+    char *path = view_path(job, "depth", camera, frame, ".exr");
+    enum orl_result result = path ? orl_exr_write(job->log, path, &exr) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static json_t *rows_json(const double *values, int rows, int columns)
+{
+    json_t *list = json_array();
+    for (int r = 0; r < rows; r++) {
+        json_t *row = json_array();
+        for (int c = 0; c < columns; c++)
+            json_array_append_new(row, json_real(values[r * columns + c]));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
+static enum orl_result write_cameras(const struct job *job)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < job->params->cameras; i++) {
+        const struct orl_camera *c = &job->views[i].camera;
+        const struct orl_pose *pose = &job->views[i].cam_from_world;
+        const double k[9] = {c->fx, 0, c->cx, 0, c->fy, c->cy, 0, 0, 1};
+        json_array_append_new(
+            list, json_pack("{s:o, s:i, s:i, s:o, s:o, s:[fff], s:[]}", "name",
+                            json_sprintf("cam%02d", i), "width", c->width, "height", c->height,
+                            "K", rows_json(k, 3, 3), "R", rows_json(&pose->r[0][0], 3, 3), "t",
+                            pose->t[0], pose->t[1], pose->t[2], "dist"));
+    }
+    json_t *root = json_pack("{s:f, s:o}", "pixel_centre", 0.5, "cameras", list);
+    char *path = orl_path_join(job->log, job->dir, "cameras.json");
+    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
+    enum orl_result result = path && text ? orl_file_write(job->log, path, text, strlen(text))
+                                          : ORL_ERR_MEMORY;
+    free(text);
+    free(path);
+    json_decref(root);
+    return result;
+}
+
+static enum orl_result make_folders(const struct job *job)
+{
+    static const char *const folders[] = {"images", "masks", "depth", "background", "mesh"};
+    bool sequence = job->params->frames > 1;
+    enum orl_result result = orl_dir_remove(job->log, job->dir);
+    if (result == ORL_OK)
+        result = orl_dir_make(job->log, job->dir);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
+        // Backgrounds are one a camera, meshes one a moment.
+        bool per_camera = sequence && i < 3;
+        for (int c = 0; result == ORL_OK && c < (per_camera ? job->params->cameras : 1); c++) {
+            char *path = per_camera ? view_path(job, folders[i], c, -1, "")
+                                    : orl_path_join(job->log, job->dir, folders[i]);
+            result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
+            free(path);
+        }
+    }
+    return result;
+}
+
+static enum orl_result write_backgrounds(const struct job *job)
+{
+    enum orl_result result = ORL_OK;
+    for (int c = 0; result == ORL_OK && c < job->params->cameras; c++) {
+        struct orl_figures_picture picture;
+        result = orl_figures_draw(job->log, NULL, &job->views[c], &picture);
+        if (result == ORL_OK)
+            result = write_png(job, "background", c, -1, &picture.photo);
+        orl_figures_picture_finish(&picture);
+    }
+    return result;
+}
+
+static enum orl_result write_mesh(const struct job *job, const struct orl_figure *figure,
+                                  int frame)
+{
+    struct orl_mesh mesh;
+    char *path = orl_format(job->log, "%s/mesh/%05d.ply", job->dir, frame);
+    enum orl_result result = path ? orl_figure_mesh(job->log, figure, MESH_SPACING, &mesh)
+                                  : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        result = orl_mesh_write(job->log, path, &mesh);
+        orl_mesh_finish(&mesh);
+    }
+    free(path);
+    return result;
+}
+
+static enum orl_result write_moment(const struct job *job, int frame)
+{
+    struct orl_figure figure;
+    orl_figure_pose(frame, &figure);
+    enum orl_result result = write_mesh(job, &figure, frame);
+    for (int c = 0; result == ORL_OK && c < job->params->cameras; c++) {
+        struct orl_figures_picture picture;
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        result = orl_figures_draw(job->log, &figure, &job->views[c], &picture);
+        if (result == ORL_OK)
+            result = write_png(job, "images", c, frame, &picture.photo);
+        if (result == ORL_OK)
+            result = write_png(job, "masks", c, frame, &picture.mask);
+        if (result == ORL_OK)
+            result = write_depth(job, c, frame, &picture.depth);
+        orl_figures_picture_finish(&picture);
+    }
+    return result;
+}
+
+static enum orl_result write_all(const struct job *job)
+{
+    enum orl_result result = make_folders(job);
+    if (result == ORL_OK)
+        result = write_cameras(job);
+    if (result == ORL_OK)
+        result = write_backgrounds(job);
+    for (int f = 0; result == ORL_OK && f < job->params->frames; f++) {
+        orl_progress_report(job->progress, "figures", f, job->params->frames, NULL);
+        result = write_moment(job, f);
+    }
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "figures", 1, 1, NULL);
+    return result;
+}
+
+enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_progress *progress,
+                                const struct orl_figures_params *params, const char *out)
+{
+    struct job job = {.log = log, .progress = progress, .params = params};
+    enum orl_result result = orl_figures_check(log, params);
+    if (result == ORL_OK)
+        result = orl_synth_check_free(log, out);
+    if (result != ORL_OK)
+        return result;
+    struct orl_view *views = orl_array(log, (size_t)params->cameras, sizeof *views);
+    job.dir = orl_format(log, "%s.part", out);
+    if (!views || !job.dir) {
+        result = ORL_ERR_MEMORY;
+        goto end;
+    }
+    orl_figures_views(params, views);
+    job.views = views;
+    result = write_all(&job);
+    if (result == ORL_OK)
+        result = orl_synth_move_folder(log, job.dir, out);
+    if (result != ORL_OK && orl_dir_remove(log, job.dir) != ORL_OK)
+        orl_logf(log, ORL_LOG_WARNING, "%s is left over", job.dir);
+end:
+    free(job.dir);
+    free(views);
+    return result;
+}

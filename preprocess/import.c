@@ -1,0 +1,119 @@
+#include "preprocess/import.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "preprocess/import/import_internal.h"
+#include "preprocess/import_densify.h"
+#include "scene/hull.h"
+
+static enum orl_result check_params(const struct orl_log *log, const struct orl_import_params *p)
+{
+    ORL_REQUIRE(log, p->cameras && p->out && *p->out);
+    ORL_REQUIRE(log, p->test_every >= 0 && p->max_size >= 0 && p->dark_threshold < 255);
+    ORL_REQUIRE(log, p->frames.first >= 0 && p->frames.count >= 0 && p->frames.step >= 1);
+    if ((p->silhouettes == ORL_SILHOUETTES_GIVEN) != (p->masks_dir != NULL))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "silhouettes are either given (--masks) or found");
+    if (p->silhouettes == ORL_SILHOUETTES_BACKGROUND && !p->background)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "silhouettes by difference need --background");
+    ORL_REQUIRE(log, (p->points == ORL_IMPORT_CLOUD) == (p->points_file != NULL));
+    if (p->hull_side && p->mesh)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "the mesh is either a file or the hull");
+    if (p->hull_side && p->silhouettes == ORL_SILHOUETTES_NONE)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "a hull needs silhouettes: --masks, --silhouettes "
+                        "dark or --background");
+    if (p->hull_side && (p->hull_side < ORL_HULL_SIDE_MIN || p->hull_side > ORL_HULL_SIDE_MAX))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "a hull of %d voxels each way: must be from %d to %d",
+                        p->hull_side, ORL_HULL_SIDE_MIN, ORL_HULL_SIDE_MAX);
+    return ORL_OK;
+}
+
+// The folder appears under its name only when it is whole.
+static enum orl_result begin(struct import_job *job)
+{
+    const char *out = job->params->out;
+    size_t length = strlen(out);
+    struct orl_names names = {0};
+    enum orl_result result = ORL_OK;
+    while (length > 1 && out[length - 1] == '/')
+        length--;
+    if (orl_path_is_file(out))
+        return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: is a file", out);
+    if (orl_path_is_dir(out))
+        result = orl_dir_list(job->log, out, &names);
+    if (result == ORL_OK && names.count)
+        result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: not empty; choose another folder", out);
+    orl_names_finish(&names);
+    if (result != ORL_OK)
+        return result;
+    job->dir = orl_format(job->log, "%.*s.part", (int)length, out);
+    if (!job->dir)
+        return ORL_ERR_MEMORY;
+    // What an interrupted import left.
+    result = orl_dir_remove(job->log, job->dir);
+    return result == ORL_OK ? orl_dir_make(job->log, job->dir) : result;
+}
+
+static enum orl_result fill_points(struct import_job *job, size_t *count)
+{
+    const struct import_points known = {&job->known.model, false};
+    enum orl_result result = orl_import_write_model(job, "sparse", false, &known);
+    if (result != ORL_OK || job->params->points == ORL_IMPORT_DENSIFY)
+        return result == ORL_OK ? orl_import_densify(job) : result;
+    return orl_import_write_points(job, count);
+}
+
+static enum orl_result fill(struct import_job *job)
+{
+    size_t points = 0, triangles = 0;
+    enum orl_result result = orl_import_pictures(job);
+    // A hull that cannot be made is found out before the long work.
+    if (result == ORL_OK)
+        result = orl_import_write_mesh(job, &triangles);
+    if (result == ORL_OK)
+        result = fill_points(job, &points);
+    if (result == ORL_OK)
+        result = job->params->points == ORL_IMPORT_DENSIFY
+                     ? orl_import_complete_manifest(job, triangles)
+                     : orl_import_write_manifest(job, points, triangles);
+    if (result == ORL_OK && rename(job->dir, job->params->out) != 0)
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", job->params->out, strerror(errno));
+    return result;
+}
+
+static void finish(struct import_job *job)
+{
+    for (size_t i = 0; job->views && i < job->known.model.image_count; i++) {
+        free(job->views[i].name);
+        orl_import_found_finish(&job->views[i].picture);
+        orl_import_found_finish(&job->views[i].mask);
+        orl_import_found_finish(&job->views[i].background);
+    }
+    free(job->views);
+    free(job->targets);
+    free(job->dir);
+    orl_known_cameras_finish(&job->known);
+}
+
+enum orl_result orl_import(const struct orl_log *log, const struct orl_import_params *params,
+                           const struct orl_progress *progress)
+{
+    struct import_job job = {.log = log, .progress = progress, .params = params};
+    enum orl_result result = check_params(log, params);
+    if (result == ORL_OK)
+        result = orl_known_cameras_read(log, params->cameras, params->pixel_centre, &job.known);
+    if (result == ORL_OK)
+        result = orl_import_find_all(&job);
+    if (result == ORL_OK)
+        result = begin(&job);
+    if (result == ORL_OK)
+        result = fill(&job);
+    if (result != ORL_OK && job.dir && orl_dir_remove(log, job.dir) != ORL_OK)
+        orl_logf(log, ORL_LOG_WARNING, "%s is left over", job.dir);
+    finish(&job);
+    return result;
+}

@@ -1,0 +1,359 @@
+// Which files belong to which camera.
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/memory.h"
+#include "io/picture.h"
+#include "preprocess/import/import_internal.h"
+
+static bool has_extension(const char *name, const char *const *known)
+{
+    const char *dot = strrchr(name, '.');
+    for (; dot && *known; known++)
+        if (strcasecmp(dot + 1, *known) == 0)
+            return true;
+    return false;
+}
+
+static bool is_picture(const char *name)
+{
+    static const char *const known[] = {"jpg", "jpeg", "png", "tif", "tiff", "exr", "pbm", "pgm",
+                                        "ppm", "pnm", NULL};
+    return has_extension(name, known) || orl_picture_is_raw(name);
+}
+
+static bool is_clip(const char *name)
+{
+    static const char *const known[] = {"avi", "mp4", "mov", "mkv", "webm", "m4v", "mpg", "mpeg",
+                                        "wmv", NULL};
+    return has_extension(name, known);
+}
+
+// Length without the extension, if that is one of a picture or clip: names may have dots.
+static size_t stem_length(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && (is_picture(name) || is_clip(name)) ? (size_t)(dot - name) : strlen(name);
+}
+
+static bool same_text(const char *a, size_t a_length, const char *b, size_t b_length)
+{
+    return a_length == b_length && strncmp(a, b, a_length) == 0;
+}
+
+// "0001.png" and "0001.jpg.png" belong to the camera "0001.jpg" or "0001".
+static bool belongs(const char *file, const char *name)
+{
+    size_t stem = stem_length(file);
+    return same_text(file, stem, name, strlen(name)) ||
+           same_text(file, stem, name, stem_length(name));
+}
+
+// The camera's name stands in the file's, between characters that are not of names.
+static bool contains(const char *file, const char *name)
+{
+    size_t length = stem_length(name), stem = stem_length(file);
+    for (size_t i = 0; i + length <= stem; i++)
+        if (strncmp(file + i, name, length) == 0 &&
+            (i == 0 || !isalnum((unsigned char)file[i - 1])) &&
+            (i + length == stem || !isalnum((unsigned char)file[i + length])))
+            return true;
+    return false;
+}
+
+void orl_import_found_finish(struct import_found *found)
+{
+    free(found->path);
+    *found = (struct import_found){0};
+}
+
+static enum orl_result set(const struct orl_log *log, const char *dir, const char *name,
+                           enum import_kind kind, struct import_found *found)
+{
+    orl_import_found_finish(found);
+    found->path = orl_path_join(log, dir, name);
+    found->kind = found->path ? kind : IMPORT_NOTHING;
+    return found->path ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+enum orl_result orl_import_list_pictures(const struct orl_log *log, const char *dir,
+                                         struct orl_names *names)
+{
+    struct orl_names all = {0};
+    memset(names, 0, sizeof *names);
+    enum orl_result result = orl_dir_list(log, dir, &all);
+    for (size_t i = 0; result == ORL_OK && i < all.count; i++)
+        if (is_picture(all.items[i]))
+            result = orl_names_add(log, names, all.items[i]);
+    orl_names_finish(&all);
+    if (result != ORL_OK)
+        orl_names_finish(names);
+    return result;
+}
+
+// A camera's own folder: a clip named after the role, else its pictures, else its one clip.
+static enum orl_result look_inside(const struct orl_log *log, const char *dir, const char *role,
+                                   struct import_found *found)
+{
+    struct orl_names names = {0};
+    size_t pictures = 0, clips = 0;
+    const char *clip = NULL;
+    bool named = false;
+    enum orl_result result = orl_dir_list(log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        const char *name = names.items[i];
+        pictures += is_picture(name);
+        if (!is_clip(name))
+            continue;
+        bool this_one = same_text(name, stem_length(name), role, strlen(role));
+        if (!named)
+            clip = name;
+        named = named || this_one;
+        clips++;
+    }
+    if (result == ORL_OK && clip && (named || !pictures)) {
+        if (!named && clips > 1)
+            result = orl_fail(log, ORL_ERR_DATA, "%s: several clips, none of them named %s", dir,
+                              role);
+        else
+            result = set(log, dir, clip, IMPORT_CLIP, found);
+    } else if (result == ORL_OK && pictures) {
+        found->path = orl_strdup(log, dir);
+        found->kind = IMPORT_FOLDER;
+        result = found->path ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    orl_names_finish(&names);
+    return result;
+}
+
+static enum orl_result look_loosely(const struct orl_log *log, const char *dir, const char *name,
+                                    const struct orl_names *names, struct import_found *found)
+{
+    const char *only = NULL;
+    for (size_t i = 0; i < names->count; i++) {
+        if (!is_picture(names->items[i]) || !contains(names->items[i], name))
+            continue;
+        if (only)
+            return orl_fail(log, ORL_ERR_DATA, "%s: both %s and %s may belong to %s", dir, only,
+                            names->items[i], name);
+        only = names->items[i];
+    }
+    return only ? set(log, dir, only, IMPORT_PICTURE, found) : ORL_OK;
+}
+
+enum orl_result orl_import_find(const struct orl_log *log, const char *dir, const char *name,
+                                const char *role, bool loosely, struct import_found *found)
+{
+    struct orl_names names = {0};
+    orl_import_found_finish(found);
+    char *exact = orl_path_join(log, dir, name);
+    if (!exact)
+        return ORL_ERR_MEMORY;
+    bool there = orl_path_is_file(exact) && is_picture(name);
+    free(exact);
+    if (there)
+        return set(log, dir, name, IMPORT_PICTURE, found);
+    enum orl_result result = orl_dir_list(log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && found->kind == IMPORT_NOTHING && i < names.count; i++) {
+        const char *file = names.items[i];
+        if (!belongs(file, name))
+            continue;
+        char *path = orl_path_join(log, dir, file);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (orl_path_is_dir(path))
+            result = look_inside(log, path, role, found);
+        else if (is_picture(file) || is_clip(file))
+            result = set(log, dir, file, is_clip(file) ? IMPORT_CLIP : IMPORT_PICTURE, found);
+        free(path);
+    }
+    if (result == ORL_OK && loosely && found->kind == IMPORT_NOTHING)
+        result = look_loosely(log, dir, name, &names, found);
+    orl_names_finish(&names);
+    if (result != ORL_OK)
+        orl_import_found_finish(found);
+    return result;
+}
+
+// --- all cameras ---
+
+// Where pictures are: as told, else images/ beside the cameras, else beside them.
+static enum orl_result choose_folder(const struct import_job *job, char **dir)
+{
+    const char *told = job->params->images_dir;
+    *dir = told ? orl_strdup(job->log, told) : orl_path_join(job->log, job->known.folder, "images");
+    if (*dir && !told && !orl_path_is_dir(*dir)) {
+        free(*dir);
+        *dir = orl_strdup(job->log, job->known.folder);
+    }
+    if (!*dir)
+        return ORL_ERR_MEMORY;
+    return orl_path_is_dir(*dir) ? ORL_OK
+                                 : orl_fail(job->log, ORL_ERR_NOT_FOUND,
+                                            "--images %s: no such folder", *dir);
+}
+
+// By its name; else where the file of cameras says that it is.
+static enum orl_result find_picture(const struct import_job *job, const char *dir,
+                                    const struct orl_colmap_image *image,
+                                    struct import_found *found)
+{
+    const struct orl_known_cameras *known = &job->known;
+    enum orl_result result = orl_import_find(job->log, dir, image->name, "video", false, found);
+    const char *told = image->id >= 1 && image->id <= known->path_count
+                           ? known->paths[image->id - 1] : NULL;
+    if (result != ORL_OK || found->kind != IMPORT_NOTHING || !told || !strchr(told, '/'))
+        return result;
+    char *beside = orl_format(job->log, "%s%s%.*s", *told == '/' ? "" : known->folder,
+                              *told == '/' ? "" : "/", (int)(orl_path_name(told) - told), told);
+    if (!beside)
+        return ORL_ERR_MEMORY;
+    if (orl_path_is_dir(beside))
+        result = orl_import_find(job->log, beside, image->name, "video", false, found);
+    free(beside);
+    return result;
+}
+
+static size_t camera_index(const struct orl_colmap_model *model, uint32_t id)
+{
+    return (size_t)(orl_colmap_camera_by_id(model, id) - model->cameras);
+}
+
+static enum orl_result find_pictures(struct import_job *job, const char *dir)
+{
+    const struct orl_colmap_model *model = &job->known.model;
+    enum orl_result result = ORL_OK;
+    size_t missing = 0;
+    const char *missed = NULL;
+    job->views = orl_array(job->log, model->image_count, sizeof *job->views);
+    if (!job->views)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+        struct import_view *view = &job->views[job->view_count];
+        *view = (struct import_view){.image = &model->images[i],
+                                     .camera = camera_index(model, model->images[i].camera_id)};
+        result = find_picture(job, dir, view->image, &view->picture);
+        if (view->picture.kind == IMPORT_NOTHING) {
+            missed = view->image->name;
+            missing++;
+        } else {
+            job->view_count++;
+        }
+    }
+    if (result == ORL_OK && job->view_count < 2)
+        result = orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s: pictures of %zu of %zu cameras are here "
+                          "(%s is not); two are needed; --images names their folder", dir,
+                          job->view_count, model->image_count, missed ? missed : "none");
+    else if (result == ORL_OK && missing)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: no picture for %zu of %zu cameras, as %s: left "
+                 "out", dir, missing, model->image_count, missed);
+    return result;
+}
+
+// A photograph keeps its name if it is a JPEG or PNG, which every COLMAP tool reads.
+static enum orl_result name_view(const struct import_job *job, struct import_view *view)
+{
+    static const char *const kept[] = {"jpg", "jpeg", "png", NULL};
+    const char *name = view->image->name;
+    const char *file = orl_path_name(view->picture.path);
+    const char *base = orl_path_name(name);
+    bool keep = view->picture.kind == IMPORT_PICTURE && has_extension(file, kept);
+    // Folders in a name stay; its extension is the file's.
+    view->name = keep ? orl_format(job->log, "%.*s%s", (int)(base - name), name, file)
+                      : orl_format(job->log, "%.*s%.*s.jpg", (int)(base - name), name,
+                                   (int)stem_length(base), base);
+    return view->name ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+static int compare_views(const void *a, const void *b)
+{
+    return strcmp(((const struct import_view *)a)->name, ((const struct import_view *)b)->name);
+}
+
+static enum orl_result name_views(struct import_job *job)
+{
+    enum orl_result result = ORL_OK;
+    job->sequence = job->views[0].picture.kind != IMPORT_PICTURE;
+    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+        struct import_view *view = &job->views[i];
+        if ((view->picture.kind != IMPORT_PICTURE) != job->sequence)
+            return orl_fail(job->log, ORL_ERR_DATA, "%s is %s, but %s is %s", view->picture.path,
+                            job->sequence ? "one picture" : "a sequence",
+                            job->views[0].picture.path, job->sequence ? "a sequence" : "one");
+        result = name_view(job, view);
+    }
+    if (result != ORL_OK)
+        return result;
+    qsort(job->views, job->view_count, sizeof *job->views, compare_views);
+    for (size_t i = 1; i < job->view_count; i++)
+        if (strcmp(job->views[i].name, job->views[i - 1].name) == 0)
+            return orl_fail(job->log, ORL_ERR_DATA, "two cameras have the picture %s",
+                            job->views[i].name);
+    return ORL_OK;
+}
+
+static enum orl_result hold_out(struct import_job *job)
+{
+    const struct orl_import_params *params = job->params;
+    size_t test = 0;
+    for (size_t i = 0; params->test_every && i < job->view_count; i += (size_t)params->test_every)
+        job->views[i].test = true;
+    for (size_t n = 0; params->test_list && n < params->test_list->count; n++) {
+        const char *given = params->test_list->items[n];
+        bool found = false;
+        for (size_t i = 0; i < job->view_count; i++)
+            if (strcmp(job->views[i].name, given) == 0 || belongs(job->views[i].name, given))
+                found = job->views[i].test = true;
+        if (!found)
+            return orl_fail(job->log, ORL_ERR_ARGUMENT, "--test-list %s: no photograph of this "
+                            "name", given);
+    }
+    for (size_t i = 0; i < job->view_count; i++)
+        test += job->views[i].test;
+    return job->view_count - test >= 2
+               ? ORL_OK
+               : orl_fail(job->log, ORL_ERR_ARGUMENT, "%zu of %zu photographs held out: at least "
+                          "two must remain", test, job->view_count);
+}
+
+// Masks or backgrounds: every camera must have one.
+static enum orl_result find_companions(struct import_job *job, const char *option,
+                                       const char *dir, const char *role)
+{
+    enum orl_result result = ORL_OK;
+    if (!orl_path_is_dir(dir))
+        return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: no such folder", option, dir);
+    bool masks = strcmp(option, "masks") == 0;
+    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+        struct import_view *view = &job->views[i];
+        struct import_found *found = masks ? &view->mask : &view->background;
+        result = orl_import_find(job->log, dir, orl_path_name(view->image->name), role, true, found);
+        if (result == ORL_OK && found->kind == IMPORT_NOTHING)
+            result = orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: nothing here for the camera "
+                              "%s", option, dir, view->image->name);
+        if (result == ORL_OK && masks && job->sequence == (found->kind == IMPORT_PICTURE))
+            result = orl_fail(job->log, ORL_ERR_DATA, "%s: a sequence needs a sequence of masks, "
+                              "and a picture one", found->path);
+    }
+    return result;
+}
+
+enum orl_result orl_import_find_all(struct import_job *job)
+{
+    char *dir = NULL;
+    enum orl_result result = choose_folder(job, &dir);
+    if (result == ORL_OK)
+        result = find_pictures(job, dir);
+    if (result == ORL_OK)
+        result = name_views(job);
+    if (result == ORL_OK)
+        result = hold_out(job);
+    if (result == ORL_OK && job->params->masks_dir)
+        result = find_companions(job, "masks", job->params->masks_dir, "masks");
+    if (result == ORL_OK && job->params->background)
+        result = find_companions(job, "background", job->params->background, "background");
+    free(dir);
+    return result;
+}

@@ -1,0 +1,368 @@
+// Undistorted photographs, silhouettes and backgrounds, of one moment or many.
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/memory.h"
+#include "io/linear.h"
+#include "io/picture.h"
+#include "io/remap.h"
+#include "preprocess/import/import_internal.h"
+#include "scene/silhouette.h"
+
+enum { JPEG_QUALITY = 97 };
+
+static const struct orl_colmap_camera *camera_of(const struct import_job *job,
+                                                 const struct import_view *view)
+{
+    return &job->known.model.cameras[view->camera];
+}
+
+static enum orl_result make_parent(const struct orl_log *log, const char *path)
+{
+    char *dir = orl_format(log, "%.*s", (int)(orl_path_name(path) - path), path);
+    enum orl_result result = dir ? orl_dir_make(log, dir) : ORL_ERR_MEMORY;
+    free(dir);
+    return result;
+}
+
+// "images/NAME" or "frames/NNNNN/images/NAME", with its folder made; frame -1: the scene's own.
+static enum orl_result output_path(const struct import_job *job, const char *folder, int frame,
+                                   const char *name, const char *ending, char **path)
+{
+    *path = frame < 0 ? orl_import_path(job, "%s/%s%s", folder, name, ending)
+                      : orl_import_path(job, "frames/%05d/%s/%s%s", frame, folder, name, ending);
+    return *path ? make_parent(job->log, *path) : ORL_ERR_MEMORY;
+}
+
+// --- writing ---
+
+static enum orl_result undistort(const struct import_job *job, const struct import_view *view,
+                                 const char *path, const struct orl_image *image,
+                                 struct orl_image *out)
+{
+    const struct orl_colmap_camera *from = camera_of(job, view);
+    if (image->width != from->pinhole.width || image->height != from->pinhole.height)
+        return orl_fail(job->log, ORL_ERR_DATA, "%s: %dx%d pixels, but its camera has %dx%d", path,
+                        image->width, image->height, from->pinhole.width, from->pinhole.height);
+    return orl_undistort(job->log, from, &job->targets[view->camera], image, out);
+}
+
+static bool is_png(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && strcasecmp(dot, ".png") == 0;
+}
+
+// A picture that needs no change is copied byte by byte, so that nothing of it is lost.
+static bool may_copy(const struct import_job *job, const struct import_view *view)
+{
+    return view->picture.kind == IMPORT_PICTURE &&
+           strcmp(orl_path_name(view->picture.path), orl_path_name(view->name)) == 0 &&
+           orl_import_is_same(camera_of(job, view), &job->targets[view->camera]);
+}
+
+static enum orl_result copy_file(const struct orl_log *log, const char *from, const char *to)
+{
+    uint8_t *data;
+    size_t size;
+    enum orl_result result = orl_file_read(log, from, SIZE_MAX / 2, &data, &size);
+    if (result == ORL_OK)
+        result = orl_file_write(log, to, data, size);
+    free(data);
+    return result;
+}
+
+static enum orl_result write_photo(const struct import_job *job, const struct import_view *view,
+                                   int frame, const char *path, const struct orl_image *picture)
+{
+    struct orl_image image = {0};
+    char *out = NULL;
+    enum orl_result result = output_path(job, "images", frame, view->name, "", &out);
+    if (result == ORL_OK && may_copy(job, view)) {
+        result = copy_file(job->log, path, out);
+    } else if (result == ORL_OK) {
+        result = undistort(job, view, path, picture, &image);
+        if (result == ORL_OK)
+            result = is_png(view->name) ? orl_png_write(job->log, out, &image)
+                                        : orl_jpeg_write(job->log, out, &image, JPEG_QUALITY, NULL);
+    }
+    orl_image_finish(&image);
+    free(out);
+    return result;
+}
+
+// Linear light of a photograph with more than 8 bits a sample, beside its 8-bit twin.
+static enum orl_result write_linear(const struct import_job *job, const struct import_view *view)
+{
+    struct orl_picture_info info;
+    struct orl_image light = {0}, image = {0};
+    char *out = NULL;
+    const char *path = view->picture.path;
+    enum orl_result result = orl_picture_inspect(job->log, path, &info);
+    if (result != ORL_OK || info.bits <= 8)
+        return result;
+    result = output_path(job, "images_linear", -1, view->name, ".exr", &out);
+    if (result == ORL_OK)
+        result = orl_picture_read_linear(job->log, path, &light);
+    if (result == ORL_OK)
+        result = undistort(job, view, path, &light, &image);
+    if (result == ORL_OK)
+        result = orl_linear_write(job->log, out, &image);
+    orl_image_finish(&light);
+    orl_image_finish(&image);
+    free(out);
+    return result;
+}
+
+// The mask, 0 or not, of the picture as given.
+static enum orl_result write_mask(const struct import_job *job, const struct import_view *view,
+                                  int frame, const char *path, const struct orl_image *mask)
+{
+    struct orl_image image = {0};
+    char *out = NULL;
+    enum orl_result result = output_path(job, "masks", frame, view->name, ".png", &out);
+    if (result == ORL_OK)
+        result = undistort(job, view, path, mask, &image);
+    size_t count = result == ORL_OK ? orl_image_bytes(&image) : 0;
+    for (size_t i = 0; i < count; i++) // resampling leaves greys
+        image.u8[i] = image.u8[i] >= 128;
+    if (result == ORL_OK) {
+        orl_silhouette_mark_edges(&image);
+        result = orl_png_write(job->log, out, &image);
+    }
+    orl_image_finish(&image);
+    free(out);
+    return result;
+}
+
+// --- backgrounds ---
+
+static enum orl_result add_background(const struct import_job *job, const char *path,
+                                      struct orl_background *background)
+{
+    struct orl_image picture;
+    enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
+    if (result == ORL_OK)
+        result = orl_background_add(job->log, background, &picture);
+    orl_image_finish(&picture);
+    return result;
+}
+
+static enum orl_result learn_background(const struct import_job *job,
+                                        const struct import_view *view,
+                                        struct orl_background *background)
+{
+    // All of a folder or clip, whatever part of the sequence is wanted.
+    const struct orl_frame_range all = {0, 0, 1};
+    struct import_frames frames;
+    if (view->background.kind == IMPORT_PICTURE)
+        return add_background(job, view->background.path, background);
+    enum orl_result result = orl_import_frames_open(job, &view->background, &all, &frames);
+    for (size_t i = 0; result == ORL_OK && i < frames.count; i++) {
+        char *path = orl_import_frames_path(job->log, &frames, i);
+        result = path ? add_background(job, path, background) : ORL_ERR_MEMORY;
+        free(path);
+        if (orl_progress_cancelled(job->progress))
+            result = ORL_ERR_CANCELLED;
+    }
+    orl_import_frames_close(job, &frames);
+    return result;
+}
+
+static enum orl_result write_background(const struct import_job *job,
+                                        const struct import_view *view,
+                                        const struct orl_background *background)
+{
+    struct orl_image mean = {0}, image = {0};
+    char *out = NULL;
+    const struct orl_image *from = &background->mean;
+    enum orl_result result = output_path(job, "background", -1, view->name, ".png", &out);
+    if (result == ORL_OK)
+        result = orl_image_init(job->log, &mean, from->width, from->height, 3, ORL_PIXEL_U8);
+    size_t count = result == ORL_OK ? orl_image_bytes(&mean) : 0;
+    for (size_t i = 0; i < count; i++)
+        mean.u8[i] = (uint8_t)(from->f32[i] + 0.5f);
+    if (result == ORL_OK)
+        result = undistort(job, view, view->background.path, &mean, &image);
+    if (result == ORL_OK)
+        result = orl_png_write(job->log, out, &image);
+    orl_image_finish(&mean);
+    orl_image_finish(&image);
+    free(out);
+    return result;
+}
+
+// --- one picture ---
+
+static enum orl_result make_mask(const struct import_job *job, const char *path,
+                                 const char *mask_path, const struct orl_background *background,
+                                 const struct orl_image *picture, struct orl_image *mask)
+{
+    const struct orl_difference_params difference = {ORL_DIFFERENCE_DEFAULTS};
+    int threshold;
+    enum orl_result result;
+    switch (job->params->silhouettes) {
+    case ORL_SILHOUETTES_GIVEN:
+        return orl_picture_read(job->log, mask_path, 1, mask);
+    case ORL_SILHOUETTES_DARK:
+        result = orl_silhouette_dark(job->log, picture, job->params->dark_threshold, &threshold,
+                                     mask);
+        if (result == ORL_OK && job->params->dark_threshold < 0)
+            orl_logf(job->log, ORL_LOG_DEBUG, "%s: the subject is above %d", path, threshold);
+        return result;
+    default:
+        return orl_silhouette_difference(job->log, background, &difference, picture, mask);
+    }
+}
+
+static enum orl_result import_picture(const struct import_job *job,
+                                      const struct import_view *view, int frame, const char *path,
+                                      const char *mask_path,
+                                      const struct orl_background *background)
+{
+    struct orl_image picture = {0}, mask = {0};
+    enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
+    if (result == ORL_OK)
+        result = write_photo(job, view, frame, path, &picture);
+    // What shows a sequence before a moment is chosen is its first.
+    if (result == ORL_OK && frame == 0)
+        result = write_photo(job, view, -1, path, &picture);
+    if (result == ORL_OK && job->params->silhouettes != ORL_SILHOUETTES_NONE) {
+        result = make_mask(job, path, mask_path, background, &picture, &mask);
+        if (result == ORL_OK)
+            result = write_mask(job, view, frame, mask_path ? mask_path : path, &mask);
+        if (result == ORL_OK && frame == 0)
+            result = write_mask(job, view, -1, mask_path ? mask_path : path, &mask);
+    }
+    orl_image_finish(&picture);
+    orl_image_finish(&mask);
+    return result;
+}
+
+// --- one camera ---
+
+static enum orl_result settle_camera(struct import_job *job, struct import_view *view,
+                                     const char *path)
+{
+    int width, height;
+    struct orl_camera *target = &job->targets[view->camera];
+    enum orl_result result = orl_picture_size(job->log, path, &width, &height);
+    if (result != ORL_OK || target->width) // by an earlier picture of the same camera
+        return result;
+    result = orl_known_camera_settle(job->log, &job->known, view->camera, path, width, height);
+    if (result == ORL_OK)
+        *target = orl_import_target(camera_of(job, view), job->params->max_size);
+    return result;
+}
+
+static enum orl_result import_moments(struct import_job *job, struct import_view *view,
+                                      const struct import_frames *frames,
+                                      const struct import_frames *masks,
+                                      const struct orl_background *background)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < frames->count; i++) {
+        orl_progress_report(job->progress, "import",
+                            (double)(view - job->views) + (double)i / (double)frames->count,
+                            (double)job->view_count, view->name);
+        char *path = orl_import_frames_path(job->log, frames, i);
+        char *mask = masks->count > i ? orl_import_frames_path(job->log, masks, i) : NULL;
+        if (orl_progress_cancelled(job->progress))
+            result = ORL_ERR_CANCELLED;
+        else if (!path || (masks->count > i && !mask))
+            result = ORL_ERR_MEMORY;
+        else if (i == 0)
+            result = settle_camera(job, view, path);
+        if (result == ORL_OK)
+            result = import_picture(job, view, (int)i, path, mask, background);
+        free(path);
+        free(mask);
+    }
+    return result;
+}
+
+static enum orl_result import_sequence(struct import_job *job, struct import_view *view,
+                                       const struct orl_background *background)
+{
+    struct import_frames frames = {0}, masks = {0};
+    const struct orl_frame_range *range = &job->params->frames;
+    // Masks of a clip would be decoded into the pictures' folder.
+    if (view->mask.kind == IMPORT_CLIP)
+        return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: masks of a sequence must be folders of "
+                        "pictures, as a clip's coding blurs them", view->mask.path);
+    enum orl_result result = orl_import_frames_open(job, &view->picture, range, &frames);
+    if (result == ORL_OK && view->mask.kind == IMPORT_FOLDER)
+        result = orl_import_frames_open(job, &view->mask, range, &masks);
+    if (result == ORL_OK && masks.count && masks.count != frames.count)
+        result = orl_fail(job->log, ORL_ERR_DATA, "%s: %zu masks, but %zu pictures",
+                          view->mask.path, masks.count, frames.count);
+    if (result == ORL_OK)
+        result = import_moments(job, view, &frames, &masks, background);
+    if (result == ORL_OK && job->frame_count && frames.count != job->frame_count)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: %zu pictures, but other cameras have %zu: what "
+                 "not all have is left out", view->picture.path, frames.count, job->frame_count);
+    if (!job->frame_count || frames.count < job->frame_count)
+        job->frame_count = frames.count;
+    orl_import_frames_close(job, &masks);
+    orl_import_frames_close(job, &frames);
+    return result;
+}
+
+static enum orl_result import_view(struct import_job *job, struct import_view *view)
+{
+    struct orl_background background = {0};
+    enum orl_result result = ORL_OK;
+    if (view->background.kind != IMPORT_NOTHING)
+        result = learn_background(job, view, &background);
+    if (result == ORL_OK && job->sequence)
+        result = import_sequence(job, view, &background);
+    else if (result == ORL_OK) {
+        result = settle_camera(job, view, view->picture.path);
+        if (result == ORL_OK)
+            result = import_picture(job, view, -1, view->picture.path, view->mask.path,
+                                    &background);
+        if (result == ORL_OK)
+            result = write_linear(job, view);
+    }
+    if (result == ORL_OK && background.count)
+        result = write_background(job, view, &background);
+    orl_background_finish(&background);
+    return result;
+}
+
+// Moments that some cameras lack.
+static enum orl_result drop_surplus(const struct import_job *job)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = job->frame_count; result == ORL_OK; i++) {
+        char *path = orl_import_path(job, "frames/%05zu", i);
+        bool there = path && orl_path_is_dir(path);
+        if (there)
+            result = orl_dir_remove(job->log, path);
+        free(path);
+        if (!there)
+            break;
+    }
+    return result;
+}
+
+enum orl_result orl_import_pictures(struct import_job *job)
+{
+    enum orl_result result = ORL_OK;
+    job->targets = orl_array(job->log, job->known.model.camera_count, sizeof *job->targets);
+    if (!job->targets)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        orl_progress_report(job->progress, "import", (double)i, (double)job->view_count,
+                            job->views[i].name);
+        result = import_view(job, &job->views[i]);
+    }
+    if (result == ORL_OK && job->sequence)
+        result = drop_surplus(job);
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "import", 1, 1, NULL);
+    return result;
+}

@@ -1,0 +1,304 @@
+// The scene around the photographs: sparse model, points, mesh, manifest.
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/json.h"
+#include "core/memory.h"
+#include "io/picture.h"
+#include "preprocess/import/import_internal.h"
+#include "scene/colmap_internal.h"
+#include "scene/hull.h"
+#include "scene/manifest.h"
+#include "scene/points.h"
+#include "scene/point_radii.h"
+
+char *orl_import_path(const struct import_job *job, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    char *name = orl_vformat(job->log, format, args);
+    va_end(args);
+    char *path = name ? orl_path_join(job->log, job->dir, name) : NULL;
+    free(name);
+    return path;
+}
+
+// --- sparse/ ---
+
+static struct orl_colmap_camera pinhole_camera(uint32_t id, const struct orl_camera *c)
+{
+    return (struct orl_colmap_camera){.id = id, .model = 1, .pinhole = *c,
+                                      .params = {c->fx, c->fy, c->cx, c->cy}, .param_count = 4};
+}
+
+// Which points a photograph sees, of a model that may not have it.
+static void set_points(const struct import_points *points, const char *known_name,
+                       struct orl_colmap_image *image)
+{
+    const char *name = points->renamed ? image->name : known_name;
+    image->points = NULL;
+    image->point_count = 0;
+    for (size_t i = 0; i < points->model->image_count; i++) {
+        const struct orl_colmap_image *from = &points->model->images[i];
+        if (strcmp(from->name, name) == 0) {
+            image->points = from->points;
+            image->point_count = from->point_count;
+        }
+    }
+}
+
+enum orl_result orl_import_write_model(const struct import_job *job, const char *name, bool train_only,
+                                       const struct import_points *points)
+{
+    const struct orl_colmap_model *known = &job->known.model;
+    struct orl_colmap_model model = {.points = points->model->points,
+                                     .point_count = points->model->point_count};
+    model.cameras = orl_array(job->log, known->camera_count, sizeof *model.cameras);
+    model.images = orl_array(job->log, job->view_count, sizeof *model.images);
+    char *dir = orl_import_path(job, "%s", name);
+    enum orl_result result = model.cameras && model.images && dir ? orl_dir_make(job->log, dir)
+                                                                  : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < known->camera_count; i++)
+        if (job->targets[i].width) // a picture was there
+            model.cameras[model.camera_count++] =
+                pinhole_camera(known->cameras[i].id, &job->targets[i]);
+    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+        const struct import_view *view = &job->views[i];
+        if (train_only && view->test)
+            continue;
+        struct orl_colmap_image *image = &model.images[model.image_count];
+        *image = *view->image;
+        image->name = view->name;
+        image->id = (uint32_t)++model.image_count; // by name, as COLMAP's database numbers them
+        set_points(points, view->image->name, image);
+    }
+    if (result == ORL_OK)
+        result = orl_colmap_write(job->log, dir, &model);
+    free(model.cameras);
+    free(model.images);
+    free(dir);
+    return result;
+}
+
+// --- points.ply ---
+
+static struct orl_view view_of(const struct import_job *job, size_t i)
+{
+    return (struct orl_view){job->targets[job->views[i].camera],
+                             job->views[i].image->cam_from_world};
+}
+
+// Radii and normals where the file has none.
+static enum orl_result complete_points(const struct import_job *job, struct orl_points *points)
+{
+    const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
+    const struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
+    size_t count = 0, known = 0;
+    for (size_t i = 0; i < points->count; i++)
+        known += points->radius[i] > 0;
+    if (known)
+        return ORL_OK;
+    double (*eyes)[3] = orl_array(job->log, job->view_count, sizeof *eyes);
+    struct orl_view *views = orl_array(job->log, job->view_count, sizeof *views);
+    enum orl_result result = eyes && views ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+        if (job->views[i].test)
+            continue;
+        views[count] = view_of(job, i);
+        orl_pose_centre(&views[count].cam_from_world, eyes[count]);
+        count++;
+    }
+    if (result == ORL_OK)
+        result = orl_points_set_radii(job->log, job->progress, &radii, (const double (*)[3])eyes,
+                                      count, points);
+    if (result == ORL_OK)
+        result = orl_points_limit_radii(job->log, &limits, views, count, points);
+    free(eyes);
+    free(views);
+    return result;
+}
+
+enum orl_result orl_import_write_points(const struct import_job *job, size_t *count)
+{
+    struct orl_points points;
+    char *path = orl_import_path(job, "points.ply");
+    enum orl_result result = !path ? ORL_ERR_MEMORY
+                             : job->params->points_file
+                                 ? orl_points_read(job->log, job->params->points_file, &points)
+                                 : orl_points_init(job->log, &points, 0);
+    if (result == ORL_OK) {
+        if (job->params->points_file && !points.count)
+            result = orl_fail(job->log, ORL_ERR_DATA, "%s: no usable points",
+                              job->params->points_file);
+        else if (points.count)
+            result = complete_points(job, &points);
+        if (result == ORL_OK)
+            result = orl_points_write(job->log, path, &points);
+        *count = points.count;
+        orl_points_finish(&points);
+    }
+    free(path);
+    return result;
+}
+
+// --- mesh.ply ---
+
+static enum orl_result read_silhouettes(const struct import_job *job,
+                                        struct orl_silhouette *silhouettes, size_t *count)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+        if (job->views[i].test)
+            continue;
+        struct orl_silhouette *one = &silhouettes[*count];
+        char *path = orl_import_path(job, "masks/%s.png", job->views[i].name);
+        one->view = view_of(job, i);
+        result = path ? orl_picture_read(job->log, path, 1, &one->mask) : ORL_ERR_MEMORY;
+        *count += result == ORL_OK;
+        free(path);
+    }
+    return result;
+}
+
+static enum orl_result carve_mesh(const struct import_job *job, struct orl_mesh *mesh)
+{
+    struct orl_hull hull = {0};
+    size_t count = 0;
+    struct orl_silhouette *silhouettes =
+        orl_array(job->log, job->view_count, sizeof *silhouettes);
+    enum orl_result result = silhouettes ? read_silhouettes(job, silhouettes, &count)
+                                         : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_hull_make(job->log, silhouettes, count, job->params->hull_side, 1, &hull);
+    if (result == ORL_OK)
+        result = orl_hull_mesh(job->log, &hull, (size_t)job->params->hull_triangles, mesh);
+    for (size_t i = 0; i < count; i++)
+        orl_image_finish(&silhouettes[i].mask);
+    free(silhouettes);
+    orl_hull_finish(&hull);
+    return result;
+}
+
+enum orl_result orl_import_write_mesh(const struct import_job *job, size_t *triangles)
+{
+    struct orl_mesh mesh = {0};
+    *triangles = 0;
+    if (!job->params->mesh && !job->params->hull_side)
+        return ORL_OK;
+    enum orl_result result = job->params->mesh ? orl_mesh_read(job->log, job->params->mesh, &mesh)
+                                               : carve_mesh(job, &mesh);
+    if (result == ORL_OK && !mesh.normal)
+        result = orl_mesh_set_normals(job->log, &mesh);
+    char *path = result == ORL_OK ? orl_import_path(job, "mesh.ply") : NULL;
+    if (result == ORL_OK)
+        result = path ? orl_mesh_write(job->log, path, &mesh) : ORL_ERR_MEMORY;
+    *triangles = mesh.triangle_count;
+    free(path);
+    orl_mesh_finish(&mesh);
+    return result;
+}
+
+// --- scene.json ---
+
+static json_t *photographs(const struct import_job *job)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < job->view_count; i++)
+        json_array_append_new(
+            list, json_pack("{s:s, s:s, s:n, s:i, s:[i,i,i], s:b}", "name", job->views[i].name,
+                            "split", job->views[i].test ? "test" : "train", "exposure_ev",
+                            "series", 0, "gain", 1, 1, 1, "mask",
+                            job->params->silhouettes != ORL_SILHOUETTES_NONE));
+    return list;
+}
+
+static json_t *left_out(const struct import_job *job)
+{
+    const struct orl_colmap_model *known = &job->known.model;
+    json_t *list = json_array();
+    for (size_t i = 0; i < known->image_count; i++) {
+        bool used = false;
+        for (size_t k = 0; k < job->view_count && !used; k++)
+            used = job->views[k].image == &known->images[i];
+        if (!used)
+            json_array_append_new(list, json_pack("{s:s, s:s}", "name", known->images[i].name,
+                                                  "why", "no picture"));
+    }
+    return list;
+}
+
+static json_t *counts(const struct import_job *job, size_t points, size_t triangles)
+{
+    json_int_t used = (json_int_t)job->view_count, test = 0;
+    json_int_t given = (json_int_t)job->known.model.image_count;
+    for (size_t i = 0; i < job->view_count; i++)
+        test += job->views[i].test;
+    return json_pack("{s:I, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "given", given,
+                     "skipped", 0, "used", used, "registered", used, "train", used - test, "test",
+                     test, "left_out", given - used, "sparse_points",
+                     (json_int_t)job->known.model.point_count, "points", (json_int_t)points,
+                     "triangles", (json_int_t)triangles, "frames", (json_int_t)job->frame_count);
+}
+
+static json_t *settings(const struct import_job *job)
+{
+    static const char *const silhouettes[] = {
+        [ORL_SILHOUETTES_NONE] = "none", [ORL_SILHOUETTES_GIVEN] = "given",
+        [ORL_SILHOUETTES_DARK] = "dark", [ORL_SILHOUETTES_BACKGROUND] = "background"};
+    static const char *const points[] = {[ORL_IMPORT_NO_POINTS] = "none",
+                                         [ORL_IMPORT_CLOUD] = "file",
+                                         [ORL_IMPORT_DENSIFY] = "densify"};
+    const struct orl_import_params *p = job->params;
+    return json_pack("{s:s, s:s, s:s, s:i, s:i}", "cameras", orl_path_name(p->cameras),
+                     "silhouettes", silhouettes[p->silhouettes], "points",
+                     points[p->points], "max_size", p->max_size, "hull", p->hull_side);
+}
+
+enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
+                                          size_t triangles)
+{
+    uint64_t hash = 0;
+    char *path = orl_import_path(job, "scene.json"), *cloud = orl_import_path(job, "points.ply");
+    enum orl_result result = path && cloud ? orl_file_hash(job->log, cloud, &hash)
+                                           : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        json_t *sums = json_pack("{s:o}", "points.ply", json_sprintf("xxh3:%016" PRIx64, hash));
+        json_t *root = json_pack(
+            "{s:s, s:i, s:s, s:o, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
+            ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "import", settings(job),
+            "counts", counts(job, points, triangles), "photographs", photographs(job), "left_out",
+            left_out(job), "stages", "checksums", sums);
+        result = root ? orl_json_write(job->log, path, root)
+                      : orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+        json_decref(root);
+    }
+    free(path);
+    free(cloud);
+    return result;
+}
+
+enum orl_result orl_import_complete_manifest(const struct import_job *job, size_t triangles)
+{
+    json_t *root = NULL, *missing = left_out(job);
+    char *path = orl_import_path(job, "scene.json");
+    enum orl_result result = path ? orl_json_read(job->log, path, &root) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        json_t *numbers = json_object_get(root, "counts");
+        json_object_set_new(root, "import", settings(job));
+        json_object_set_new(root, "left_out", json_incref(missing));
+        json_object_set_new(numbers, "given",
+                            json_integer((json_int_t)job->known.model.image_count));
+        json_object_set_new(numbers, "left_out",
+                            json_integer((json_int_t)json_array_size(missing)));
+        json_object_set_new(numbers, "triangles", json_integer((json_int_t)triangles));
+        json_object_set_new(numbers, "frames", json_integer((json_int_t)job->frame_count));
+        result = orl_json_write(job->log, path, root);
+    }
+    json_decref(missing);
+    json_decref(root);
+    free(path);
+    return result;
+}

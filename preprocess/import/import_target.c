@@ -1,0 +1,88 @@
+// The camera that undistorted pictures are made for.
+#include <math.h>
+
+#include "preprocess/import/import_internal.h"
+#include "scene/colmap_internal.h"
+
+// What the picture covers to the left, top, right and bottom of the axis, as tangents.
+struct extent {
+    double side[4];
+};
+
+static bool in_picture(const struct orl_colmap_camera *camera, const double ray[2])
+{
+    double pixel[2];
+    orl_colmap_camera_project(camera, ray, pixel);
+    // Half a pixel of the border may be repeated: its centre is in the picture.
+    return pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] <= camera->pinhole.width &&
+           pixel[1] <= camera->pinhole.height;
+}
+
+// Along one direction from the axis, while pixels move outward and stay in the picture.
+static double reach(const struct orl_colmap_camera *camera, const double direction[2])
+{
+    // COLMAP lets a picture grow to twice its size at most.
+    const struct orl_camera *c = &camera->pinhole;
+    double room = fabs(direction[0]) * (direction[0] < 0 ? c->cx : c->width - c->cx) / c->fx +
+                  fabs(direction[1]) * (direction[1] < 0 ? c->cy : c->height - c->cy) / c->fy;
+    double last = -INFINITY, at = 0, step = fmax(room, 1e-6) / 500;
+    while (at < 2 * room) {
+        double next = at + step, pixel[2];
+        orl_colmap_camera_project(camera, (double[2]){next * direction[0], next * direction[1]},
+                                  pixel);
+        double along = pixel[0] * direction[0] + pixel[1] * direction[1];
+        if (!(along > last) || pixel[0] < 0 || pixel[1] < 0 || pixel[0] > c->width ||
+            pixel[1] > c->height)
+            break;
+        last = along;
+        at = next;
+    }
+    return at;
+}
+
+// Does the distorted picture cover the whole border of the rectangle?
+static bool covered(const struct orl_colmap_camera *camera, const struct extent *e)
+{
+    enum { SAMPLES = 64 };
+    for (int i = 0; i <= SAMPLES; i++) {
+        double t = (double)i / SAMPLES;
+        double x = -e->side[0] + t * (e->side[0] + e->side[2]);
+        double y = -e->side[1] + t * (e->side[1] + e->side[3]);
+        const double border[4][2] = {
+            {x, -e->side[1]}, {x, e->side[3]}, {-e->side[0], y}, {e->side[2], y}};
+        for (int k = 0; k < 4; k++)
+            if (!in_picture(camera, border[k]))
+                return false;
+    }
+    return true;
+}
+
+bool orl_import_is_same(const struct orl_colmap_camera *from, const struct orl_camera *to)
+{
+    return from->model <= 1 && from->pinhole.width == to->width &&
+           from->pinhole.height == to->height;
+}
+
+struct orl_camera orl_import_target(const struct orl_colmap_camera *from, int max_size)
+{
+    static const double directions[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
+    const double shrink = 0.995, least = 0.2; // COLMAP's least scale
+    struct orl_camera to = from->pinhole;
+    struct extent e;
+    for (int k = 0; k < 4; k++)
+        e.side[k] = reach(from, directions[k]);
+    for (double scale = 1; from->model > 1 && scale > least && !covered(from, &e); scale *= shrink)
+        for (int k = 0; k < 4; k++)
+            e.side[k] *= shrink;
+    if (from->model > 1) {
+        to.width = (int)fmax(1, floor((e.side[0] + e.side[2]) * to.fx));
+        to.height = (int)fmax(1, floor((e.side[1] + e.side[3]) * to.fy));
+        to.cx = e.side[0] * to.fx;
+        to.cy = e.side[1] * to.fy;
+    }
+    int larger = to.width > to.height ? to.width : to.height;
+    if (max_size && larger > max_size)
+        to = orl_camera_resized(&to, (int)lrint((double)to.width * max_size / larger),
+                                (int)lrint((double)to.height * max_size / larger));
+    return to;
+}

@@ -1,0 +1,186 @@
+#include "preprocess/import_densify.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "preprocess/job/colmap_run.h"
+#include "preprocess/scene_json.h"
+#include "preprocess/stages.h"
+
+// --- a job of prepare whose photographs are there already ---
+
+static enum orl_result add_source(struct orl_job *job, const struct import_job *import,
+                                  const struct import_view *view)
+{
+    struct orl_source *source = &job->sources[job->source_count++];
+    const struct orl_camera *size = &import->targets[view->camera];
+    *source = (struct orl_source){.name = orl_strdup(job->log, view->name),
+                                  .given = orl_strdup(job->log, view->name),
+                                  .path = orl_job_path(job, "images/%s", view->name),
+                                  .width = size->width, .height = size->height,
+                                  .test = view->test};
+    if (job->params->masks_dir)
+        source->mask = orl_job_path(job, "masks/%s.png", view->name);
+    if (!source->name || !source->given || !source->path ||
+        (job->params->masks_dir && !source->mask))
+        return ORL_ERR_MEMORY;
+    // A frame of a clip says nothing.
+    return view->picture.kind == IMPORT_PICTURE
+               ? orl_exif_read(job->log, view->picture.path, &source->exif)
+               : ORL_OK;
+}
+
+static enum orl_result begin(struct orl_job *job, const struct import_job *import,
+                             const struct orl_prepare_params *params)
+{
+    static const char *const dirs[] = {".oriel", "logs"};
+    *job = (struct orl_job){.log = import->log, .progress = import->progress, .params = params,
+                            .lock_fd = -1, .linear_scale = 1, .given = import->view_count,
+                            .skipped = json_array(), .dir = realpath(import->dir, NULL)};
+    if (!job->dir)
+        return orl_fail(job->log, ORL_ERR_IO, "%s: %s", import->dir, strerror(errno));
+    job->sources = orl_array(job->log, import->view_count, sizeof *job->sources);
+    enum orl_result result = job->sources && job->skipped ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < import->view_count; i++)
+        result = add_source(job, import, &import->views[i]);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++) {
+        char *path = orl_job_path(job, "%s", dirs[i]);
+        result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    if (result == ORL_OK)
+        result = orl_stages_load(job);
+    return result == ORL_OK ? orl_stages_begin(job, 0) : result;
+}
+
+// --- sparse points ---
+
+// Paths that COLMAP's commands need.
+struct paths {
+    char *database, *images, *list, *in, *out; // owned
+};
+
+static enum orl_result find_features(struct orl_job *job, const struct paths *paths)
+{
+    struct orl_colmap_args args = {0};
+    orl_colmap_arg(&args, "--database_path", "%s", paths->database);
+    orl_colmap_arg(&args, "--image_path", "%s", paths->images);
+    orl_colmap_arg(&args, "--image_list_path", "%s", paths->list);
+    orl_colmap_arg(&args, "--ImageReader.camera_model", "PINHOLE");
+    orl_colmap_arg(&args, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda);
+    // Its database numbers photographs as they are finished, and the triangulation asks that the
+    // known cameras have the same numbers: with one thread both are in order of name.
+    orl_colmap_arg(&args, "--SiftExtraction.num_threads", "1");
+    return orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "feature_extractor", .step = "features", .share = 1, .total = 1}, &args);
+}
+
+static enum orl_result match(struct orl_job *job, const struct paths *paths)
+{
+    struct orl_colmap_args args = {0};
+    orl_colmap_arg(&args, "--database_path", "%s", paths->database);
+    orl_colmap_arg(&args, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
+    return orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "exhaustive_matcher", .step = "matching", .share = 1, .total = 1}, &args);
+}
+
+static enum orl_result triangulate(struct orl_job *job, const struct paths *paths)
+{
+    struct orl_colmap_args args = {0};
+    orl_colmap_arg(&args, "--database_path", "%s", paths->database);
+    orl_colmap_arg(&args, "--image_path", "%s", paths->images);
+    orl_colmap_arg(&args, "--input_path", "%s", paths->in);
+    orl_colmap_arg(&args, "--output_path", "%s", paths->out);
+    // It stops like this where there is not one point, which take_points says better.
+    return orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "point_triangulator", .step = "triangulate", .share = 1, .total = 1,
+        .tolerated = "bundle_adjuster.Solve"}, &args);
+}
+
+static enum orl_result write_train_list(const struct orl_job *job, const char *path)
+{
+    struct orl_names names = {0};
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
+        if (!job->sources[i].test)
+            result = orl_names_add(job->log, &names, job->sources[i].name);
+    if (result == ORL_OK)
+        result = orl_job_write_list(job, path, &names);
+    orl_names_finish(&names);
+    return result;
+}
+
+// Poses stay as they are: only the points are taken over.
+static enum orl_result take_points(const struct import_job *import, const struct paths *paths)
+{
+    struct orl_colmap_model model = {0};
+    struct orl_names written = {0};
+    enum orl_result result = orl_dir_list(import->log, paths->out, &written);
+    if (result == ORL_OK && written.count)
+        result = orl_colmap_read(import->log, paths->out, &model);
+    orl_names_finish(&written);
+    if (result == ORL_OK && model.point_count < 3)
+        result = orl_fail(import->log, ORL_ERR_DATA, "the photographs have only %zu points in "
+                          "common: are the cameras those of these photographs?",
+                          model.point_count);
+    if (result == ORL_OK)
+        result = orl_import_write_model(import, "sparse", false,
+                                        &(struct import_points){&model, true});
+    orl_colmap_finish(&model);
+    return result;
+}
+
+static enum orl_result make_sparse_points(struct orl_job *job, const struct import_job *import)
+{
+    const struct import_points known = {&import->known.model, false};
+    struct paths paths = {
+        orl_job_path(job, ".oriel/known.db"), orl_job_path(job, "images"),
+        orl_job_path(job, ".oriel/train.txt"), orl_job_path(job, ".oriel/known"),
+        orl_job_path(job, ".oriel/triangulated")};
+    bool have = paths.database && paths.images && paths.list && paths.in && paths.out;
+    enum orl_result result = have ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = write_train_list(job, paths.list);
+    if (result == ORL_OK)
+        result = orl_import_write_model(import, ".oriel/known", true, &known);
+    if (result == ORL_OK)
+        result = orl_dir_make(job->log, paths.out);
+    if (result == ORL_OK)
+        result = find_features(job, &paths);
+    if (result == ORL_OK)
+        result = match(job, &paths);
+    if (result == ORL_OK)
+        result = triangulate(job, &paths);
+    if (result == ORL_OK)
+        result = take_points(import, &paths);
+    free(paths.database);
+    free(paths.images);
+    free(paths.list);
+    free(paths.in);
+    free(paths.out);
+    return result;
+}
+
+enum orl_result orl_import_densify(struct import_job *import)
+{
+    struct orl_job job;
+    struct orl_prepare_params params = import->params->densify;
+    params.max_size = import->params->max_size;
+    params.masks_dir = import->params->silhouettes == ORL_SILHOUETTES_NONE ? NULL : "masks";
+    enum orl_result result = begin(&job, import, &params);
+    if (result == ORL_OK && !import->known.model.point_count)
+        result = make_sparse_points(&job, import);
+    if (result == ORL_OK)
+        result = orl_stages_run_points(&job);
+    if (result == ORL_OK)
+        result = orl_scene_json_write(&job);
+    if (result == ORL_OK && params.keep == ORL_KEEP_MINIMAL)
+        result = orl_job_remove(&job, "stereo");
+    // There is nothing to resume.
+    if (result == ORL_OK)
+        result = orl_job_remove(&job, ".oriel");
+    orl_job_close(&job);
+    return result;
+}

@@ -1,0 +1,330 @@
+#include "scene/hull.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scene/isosurface.h"
+
+enum orl_result orl_hull_init(const struct orl_log *log, struct orl_hull *hull, int side,
+                              const double origin[3], double size)
+{
+    memset(hull, 0, sizeof *hull);
+    ORL_REQUIRE(log, side >= ORL_HULL_SIDE_MIN && side <= ORL_HULL_SIDE_MAX && size > 0);
+    size_t count = (size_t)side * (size_t)side * (size_t)side;
+    *hull = (struct orl_hull){.side = side, .voxel = size / side,
+                              .inside = orl_array(log, count, 1)};
+    if (!hull->inside)
+        return ORL_ERR_MEMORY;
+    memcpy(hull->origin, origin, sizeof hull->origin);
+    memset(hull->inside, 1, count);
+    return ORL_OK;
+}
+
+void orl_hull_finish(struct orl_hull *hull)
+{
+    if (!hull)
+        return;
+    free(hull->inside);
+    memset(hull, 0, sizeof *hull);
+}
+
+// --- one silhouette ---
+
+// Sums of the mask above and to the left, so that any box is asked with four of them.
+struct table {
+    int width, height;
+    uint32_t *sum; // (width + 1) x (height + 1)
+    bool open;     // the silhouette touches the border
+};
+
+static enum orl_result table_init(const struct orl_log *log, const struct orl_image *mask,
+                                  struct table *table)
+{
+    int w = mask->width, h = mask->height;
+    *table = (struct table){.width = w, .height = h};
+    table->sum = orl_array(log, (size_t)(w + 1) * (size_t)(h + 1), sizeof *table->sum);
+    if (!table->sum)
+        return ORL_ERR_MEMORY;
+    for (int y = 0; y < h; y++) {
+        uint32_t row = 0;
+        const uint32_t *above = table->sum + (size_t)y * (size_t)(w + 1);
+        uint32_t *here = table->sum + (size_t)(y + 1) * (size_t)(w + 1);
+        for (int x = 0; x < w; x++) {
+            bool set = mask->u8[(size_t)y * (size_t)w + (size_t)x] != 0;
+            row += set;
+            here[x + 1] = above[x + 1] + row;
+            table->open |= set && (x == 0 || y == 0 || x == w - 1 || y == h - 1);
+        }
+    }
+    return ORL_OK;
+}
+
+static double clamped(double v, int end)
+{
+    return v < 0 ? 0 : v > end ? end : v;
+}
+
+// Does any pixel of the box, in pixel coordinates, belong to the subject, or may it, outside?
+static bool any_inside(const struct table *t, const double low[2], const double high[2])
+{
+    bool outside = low[0] < 0 || low[1] < 0 || high[0] >= t->width || high[1] >= t->height;
+    if (outside && t->open)
+        return true;
+    int x0 = (int)clamped(floor(low[0]), t->width), x1 = (int)clamped(floor(high[0]) + 1, t->width);
+    int y0 = (int)clamped(floor(low[1]), t->height);
+    int y1 = (int)clamped(floor(high[1]) + 1, t->height);
+    const uint32_t *top = t->sum + (size_t)y0 * (size_t)(t->width + 1);
+    const uint32_t *bottom = t->sum + (size_t)y1 * (size_t)(t->width + 1);
+    return bottom[x1] - bottom[x0] - top[x1] + top[x0] != 0;
+}
+
+// Does the silhouette leave room for the ball around a point?
+static bool leaves_room(const struct table *t, const struct orl_view *view, const double world[3],
+                        double radius)
+{
+    const struct orl_camera *c = &view->camera;
+    double cam[3], low[2], high[2];
+    orl_pose_apply(&view->cam_from_world, world, cam);
+    if (cam[2] <= radius) // the camera may be in it; all that lies behind is not seen
+        return cam[2] > -radius;
+    const double focal[2] = {c->fx, c->fy}, centre[2] = {c->cx, c->cy};
+    for (int k = 0; k < 2; k++) {
+        // |(x + dx) / (z + dz) - x / z| <= (1 + |x / z|) r / (z - r) for |d| <= r.
+        double at = cam[k] / cam[2], off = (1 + fabs(at)) * radius / (cam[2] - radius);
+        low[k] = focal[k] * (at - off) + centre[k];
+        high[k] = focal[k] * (at + off) + centre[k];
+    }
+    return any_inside(t, low, high);
+}
+
+enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silhouette *silhouette,
+                               double reach, struct orl_hull *hull)
+{
+    const struct orl_image *mask = &silhouette->mask;
+    struct table table;
+    ORL_REQUIRE(log, mask->type == ORL_PIXEL_U8 && mask->channels == 1 &&
+                         mask->width == silhouette->view.camera.width &&
+                         mask->height == silhouette->view.camera.height);
+    enum orl_result result = table_init(log, mask, &table);
+    double radius = reach * 0.5 * sqrt(3.0) * hull->voxel;
+    uint8_t *at = hull->inside;
+    for (int z = 0; result == ORL_OK && z < hull->side; z++)
+        for (int y = 0; y < hull->side; y++)
+            for (int x = 0; x < hull->side; x++, at++) {
+                const double centre[3] = {hull->origin[0] + (x + 0.5) * hull->voxel,
+                                          hull->origin[1] + (y + 0.5) * hull->voxel,
+                                          hull->origin[2] + (z + 0.5) * hull->voxel};
+                *at = *at && leaves_room(&table, &silhouette->view, centre, radius);
+            }
+    free(table.sum);
+    return result;
+}
+
+// --- where it is ---
+
+// The middle of a silhouette and half the diagonal of its box, in pixels.
+struct blob {
+    double centre[2], reach_px;
+};
+
+static bool find_blob(const struct orl_image *mask, struct blob *blob)
+{
+    int low[2] = {mask->width, mask->height}, high[2] = {-1, -1};
+    const uint8_t *at = mask->u8;
+    for (int y = 0; y < mask->height; y++)
+        for (int x = 0; x < mask->width; x++, at++) {
+            const int here[2] = {x, y};
+            for (int k = 0; *at && k < 2; k++) {
+                low[k] = here[k] < low[k] ? here[k] : low[k];
+                high[k] = here[k] > high[k] ? here[k] : high[k];
+            }
+        }
+    for (int k = 0; k < 2; k++)
+        blob->centre[k] = 0.5 * (low[k] + high[k] + 1);
+    blob->reach_px = 0.5 * hypot(high[0] - low[0] + 1, high[1] - low[1] + 1);
+    return high[0] >= 0;
+}
+
+// The point nearest to the rays through the silhouettes' middles.
+static bool find_centre(const struct orl_silhouette *silhouettes, const struct blob *blobs,
+                        size_t count, double centre[3])
+{
+    struct orl_ray_meeting meeting = {0};
+    for (size_t i = 0; i < count; i++) {
+        double eye[3], ray[3];
+        orl_pose_centre(&silhouettes[i].view.cam_from_world, eye);
+        orl_view_unproject(&silhouettes[i].view, blobs[i].centre[0], blobs[i].centre[1], 1, ray);
+        for (int k = 0; k < 3; k++)
+            ray[k] -= eye[k];
+        orl_ray_meeting_add(&meeting, eye, ray);
+    }
+    return orl_ray_meeting_point(&meeting, centre);
+}
+
+// How far from the centre the silhouettes reach, by the one that says most.
+static double find_reach(const struct orl_silhouette *silhouettes, const struct blob *blobs,
+                         size_t count, const double centre[3])
+{
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        double pixel[2], depth;
+        const struct orl_view *view = &silhouettes[i].view;
+        if (!orl_view_project(view, centre, pixel, &depth))
+            continue;
+        double px = blobs[i].reach_px + hypot(pixel[0] - blobs[i].centre[0],
+                                              pixel[1] - blobs[i].centre[1]);
+        most = fmax(most, px * depth / fmin(view->camera.fx, view->camera.fy));
+    }
+    return most;
+}
+
+// Voxels of the hull: their box, in voxels. False: there are none.
+static bool occupied(const struct orl_hull *hull, int low[3], int high[3])
+{
+    const uint8_t *at = hull->inside;
+    for (int k = 0; k < 3; k++)
+        low[k] = hull->side, high[k] = -1;
+    for (int z = 0; z < hull->side; z++)
+        for (int y = 0; y < hull->side; y++)
+            for (int x = 0; x < hull->side; x++, at++) {
+                const int here[3] = {x, y, z};
+                for (int k = 0; *at && k < 3; k++) {
+                    low[k] = here[k] < low[k] ? here[k] : low[k];
+                    high[k] = here[k] > high[k] ? here[k] : high[k];
+                }
+            }
+    return high[0] >= 0;
+}
+
+static enum orl_result carve_all(const struct orl_log *log,
+                                 const struct orl_silhouette *silhouettes, size_t count,
+                                 double reach, struct orl_hull *hull)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        result = orl_hull_carve(log, &silhouettes[i], reach, hull);
+    return result;
+}
+
+// Carves a coarse cube around the centre, larger ones while the hull reaches its faces, then takes
+// the box of what is left with a voxel around it.
+static enum orl_result search_bounds(const struct orl_log *log,
+                                     const struct orl_silhouette *silhouettes, size_t count,
+                                     const double centre[3], double reach, double origin[3],
+                                     double *size)
+{
+    enum { COARSE = 48, ROUNDS = 4 };
+    for (int round = 0; round < ROUNDS; round++, reach *= 2) {
+        struct orl_hull hull;
+        int low[3], high[3], most = 0;
+        bool cut = false;
+        const double start[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach};
+        enum orl_result result = orl_hull_init(log, &hull, COARSE, start, 2 * reach);
+        if (result == ORL_OK)
+            result = carve_all(log, silhouettes, count, 1, &hull);
+        bool any = result == ORL_OK && occupied(&hull, low, high);
+        orl_hull_finish(&hull);
+        if (result != ORL_OK)
+            return result;
+        if (!any)
+            return orl_fail(log, ORL_ERR_DATA, "the silhouettes have no place in common: are "
+                            "cameras and masks of the same moment?");
+        for (int k = 0; k < 3; k++) {
+            cut = cut || low[k] == 0 || high[k] == COARSE - 1;
+            most = high[k] - low[k] + 3 > most ? high[k] - low[k] + 3 : most;
+        }
+        if (cut && round + 1 < ROUNDS)
+            continue;
+        double voxel = 2 * reach / COARSE;
+        *size = most * voxel;
+        for (int k = 0; k < 3; k++)
+            origin[k] = start[k] + 0.5 * (low[k] + high[k] + 1 - most) * voxel;
+        if (cut)
+            orl_logf(log, ORL_LOG_WARNING, "the silhouettes leave room without end; the hull is "
+                     "cut off %g around the middle", reach);
+        break;
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_hull_bounds(const struct orl_log *log, const struct orl_silhouette *silhouettes,
+                                size_t count, double origin[3], double *size)
+{
+    double centre[3];
+    struct blob *blobs = orl_array(log, count, sizeof *blobs);
+    enum orl_result result = blobs ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        if (!find_blob(&silhouettes[i].mask, &blobs[i]))
+            result = orl_fail(log, ORL_ERR_DATA, "silhouette %zu of %zu is empty", i + 1, count);
+    if (result == ORL_OK && (count < 2 || !find_centre(silhouettes, blobs, count, centre)))
+        result = orl_fail(log, ORL_ERR_DATA, "a hull needs silhouettes from two places or more");
+    double reach = result == ORL_OK ? find_reach(silhouettes, blobs, count, centre) : 0;
+    if (result == ORL_OK && !(reach > 0))
+        result = orl_fail(log, ORL_ERR_DATA, "no camera faces what the silhouettes have in common");
+    if (result == ORL_OK)
+        result = search_bounds(log, silhouettes, count, centre, reach, origin, size);
+    free(blobs);
+    return result;
+}
+
+enum orl_result orl_hull_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
+                              size_t count, int side, double reach, struct orl_hull *hull)
+{
+    double origin[3], size;
+    memset(hull, 0, sizeof *hull);
+    enum orl_result result = orl_hull_bounds(log, silhouettes, count, origin, &size);
+    if (result == ORL_OK)
+        result = orl_hull_init(log, hull, side, origin, size);
+    if (result == ORL_OK)
+        result = carve_all(log, silhouettes, count, reach, hull);
+    if (result != ORL_OK)
+        orl_hull_finish(hull);
+    return result;
+}
+
+// --- what it is ---
+
+double orl_hull_volume(const struct orl_hull *hull)
+{
+    size_t count = (size_t)hull->side * (size_t)hull->side * (size_t)hull->side, inside = 0;
+    for (size_t i = 0; i < count; i++)
+        inside += hull->inside[i];
+    return (double)inside * hull->voxel * hull->voxel * hull->voxel;
+}
+
+enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *hull,
+                              size_t triangles, struct orl_mesh *mesh)
+{
+    // Samples are the voxels' centres, with empty ones around.
+    int n = hull->side + 2;
+    memset(mesh, 0, sizeof *mesh);
+    float *value = orl_array(log, (size_t)n * (size_t)n * (size_t)n, sizeof *value);
+    if (!value)
+        return ORL_ERR_MEMORY;
+    for (int z = 0; z < n; z++)
+        for (int y = 0; y < n; y++)
+            for (int x = 0; x < n; x++) {
+                bool edge = x == 0 || y == 0 || z == 0 || x > hull->side || y > hull->side ||
+                            z > hull->side;
+                size_t side = (size_t)hull->side;
+                bool in = !edge && hull->inside[(size_t)(x - 1) + side * ((size_t)(y - 1) +
+                                                               side * (size_t)(z - 1))];
+                value[(size_t)x + (size_t)n * ((size_t)y + (size_t)n * (size_t)z)] = in ? -1 : 1;
+            }
+    struct orl_grid grid = {.size = {n, n, n}, .spacing = hull->voxel, .value = value};
+    for (int k = 0; k < 3; k++)
+        grid.origin[k] = hull->origin[k] - 0.5 * hull->voxel;
+    enum orl_result result = orl_isosurface(log, &grid, mesh);
+    free(value);
+    if (result == ORL_OK && !mesh->triangle_count)
+        result = orl_fail(log, ORL_ERR_DATA, "the hull is empty");
+    if (result == ORL_OK && triangles)
+        result = orl_mesh_decimate(log, triangles, mesh);
+    if (result == ORL_OK)
+        result = orl_mesh_set_normals(log, mesh);
+    if (result != ORL_OK)
+        orl_mesh_finish(mesh);
+    return result;
+}

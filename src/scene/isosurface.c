@@ -1,0 +1,130 @@
+#include "scene/isosurface.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scene/mesh_internal.h"
+
+struct nets {
+    const struct orl_log *log;
+    const struct orl_grid *grid;
+    uint32_t *vertex_of; // of each cell, by its first sample; UINT32_MAX: none
+    struct orl_mesh_builder builder;
+};
+
+static size_t sample_index(const struct orl_grid *grid, const int at[3])
+{
+    return (size_t)at[0] +
+           (size_t)grid->size[0] * ((size_t)at[1] + (size_t)grid->size[1] * (size_t)at[2]);
+}
+
+// Mean of the crossings of the cell's 12 edges, in cells from its first corner. False: none.
+static bool cell_vertex(const float corner[8], double mean[3])
+{
+    int crossings = 0;
+    double sum[3] = {0};
+    for (int a = 0; a < 8; a++)
+        for (int axis = 0; axis < 3; axis++) {
+            int b = a | 1 << axis;
+            if (b == a || (corner[a] < 0) == (corner[b] < 0))
+                continue;
+            double t = (double)corner[a] / ((double)corner[a] - (double)corner[b]);
+            for (int k = 0; k < 3; k++)
+                sum[k] += k == axis ? t : a >> k & 1;
+            crossings++;
+        }
+    for (int k = 0; k < 3; k++)
+        mean[k] = crossings ? sum[k] / crossings : 0;
+    return crossings > 0;
+}
+
+static enum orl_result add_vertex(struct nets *n, const int at[3])
+{
+    const struct orl_grid *grid = n->grid;
+    struct orl_mesh *mesh = &n->builder.mesh;
+    float corner[8];
+    double mean[3];
+    for (int c = 0; c < 8; c++) {
+        const int sample[3] = {at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)};
+        corner[c] = grid->value[sample_index(grid, sample)];
+    }
+    if (!cell_vertex(corner, mean))
+        return ORL_OK;
+    enum orl_result result =
+        orl_grow(n->log, (void **)&mesh->position, &n->builder.vertex_capacity,
+                 mesh->vertex_count + 1, sizeof *mesh->position);
+    if (result != ORL_OK)
+        return result;
+    for (int k = 0; k < 3; k++)
+        mesh->position[mesh->vertex_count][k] =
+            (float)(grid->origin[k] + (at[k] + mean[k]) * grid->spacing);
+    n->vertex_of[sample_index(grid, at)] = (uint32_t)mesh->vertex_count++;
+    return ORL_OK;
+}
+
+// The quad around the edge from sample `at` along `axis`, if the surface crosses it.
+static enum orl_result add_quad(struct nets *n, const int at[3], int axis)
+{
+    const struct orl_grid *grid = n->grid;
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    int next[3] = {at[0], at[1], at[2]};
+    next[axis]++;
+    bool inside = grid->value[sample_index(grid, at)] < 0;
+    if (next[axis] == grid->size[axis] ||
+        inside == (grid->value[sample_index(grid, next)] < 0))
+        return ORL_OK;
+    // On an outer face of the grid there are no cells around the edge.
+    if (at[u] < 1 || at[v] < 1 || at[u] + 1 >= grid->size[u] || at[v] + 1 >= grid->size[v])
+        return orl_fail(n->log, ORL_ERR_DATA, "a surface reaches the end of its grid");
+    uint32_t corners[4];
+    for (int c = 0; c < 4; c++) {
+        int cell[3] = {at[0], at[1], at[2]};
+        cell[u] -= c == 1 || c == 2;
+        cell[v] -= c >= 2;
+        corners[c] = n->vertex_of[sample_index(grid, cell)];
+    }
+    if (!inside) { // it faces the other way
+        uint32_t other = corners[1];
+        corners[1] = corners[3];
+        corners[3] = other;
+    }
+    return orl_mesh_add_polygon(n->log, &n->builder, corners, 4);
+}
+
+static enum orl_result add_all(struct nets *n)
+{
+    const int *size = n->grid->size;
+    enum orl_result result = ORL_OK;
+    int at[3];
+    for (at[2] = 0; at[2] < size[2] - 1; at[2]++)
+        for (at[1] = 0; at[1] < size[1] - 1; at[1]++)
+            for (at[0] = 0; result == ORL_OK && at[0] < size[0] - 1; at[0]++)
+                result = add_vertex(n, at);
+    for (at[2] = 0; at[2] < size[2]; at[2]++)
+        for (at[1] = 0; at[1] < size[1]; at[1]++)
+            for (at[0] = 0; result == ORL_OK && at[0] < size[0]; at[0]++)
+                for (int axis = 0; result == ORL_OK && axis < 3; axis++)
+                    result = add_quad(n, at, axis);
+    return result;
+}
+
+enum orl_result orl_isosurface(const struct orl_log *log, const struct orl_grid *grid,
+                               struct orl_mesh *mesh)
+{
+    struct nets n = {.log = log, .grid = grid};
+    memset(mesh, 0, sizeof *mesh);
+    ORL_REQUIRE(log, grid->size[0] >= 2 && grid->size[1] >= 2 && grid->size[2] >= 2);
+    size_t count = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    ORL_REQUIRE(log, count < UINT32_MAX);
+    n.vertex_of = orl_array(log, count, sizeof *n.vertex_of);
+    if (!n.vertex_of)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = add_all(&n);
+    free(n.vertex_of);
+    if (result == ORL_OK)
+        *mesh = n.builder.mesh;
+    else
+        orl_mesh_finish(&n.builder.mesh);
+    return result;
+}

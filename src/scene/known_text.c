@@ -1,0 +1,226 @@
+// Cameras as text: Bundler's bundle.out and Middlebury's NAME_par.txt.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/known_internal.h"
+#include "scene/text_lines.h"
+
+// --- Middlebury: a count, then lines NAME K R t, row by row ---
+
+static enum orl_result read_par(struct orl_text_lines *l, double shift,
+                                struct orl_known_cameras *known)
+{
+    double k[9], *r;
+    struct orl_known_camera camera = {.gap.size = true};
+    size_t length = strcspn(l->at, " \t");
+    char *name = orl_format(l->log, "%.*s", (int)length, l->at);
+    if (!name)
+        return ORL_ERR_MEMORY;
+    l->at += length;
+    camera.path = name;
+    r = &camera.pose.r[0][0];
+    enum orl_result result = ORL_OK;
+    char place[64];
+    snprintf(place, sizeof place, "line %zu", l->number);
+    if (!orl_text_numbers(l, k, 9) || !orl_text_numbers(l, r, 9) ||
+        !orl_text_numbers(l, camera.pose.t, 3))
+        result = orl_text_bad(l, "a camera needs a name and 21 numbers: K, R and t");
+    else if (k[1] != 0)
+        result = orl_text_bad(l, "its K has a skew, which is not supported");
+    if (result == ORL_OK) {
+        orl_known_set_opencv(&camera, (double[]){k[0], k[4], k[2] + shift, k[5] + shift}, NULL, 0);
+        result = orl_known_add(l->log, l->path, place, &camera, known);
+    }
+    free(name);
+    return result;
+}
+
+enum orl_result orl_known_read_middlebury(const struct orl_log *log, const char *path,
+                                          double pixel_centre, struct orl_known_cameras *known)
+{
+    struct orl_text_lines l;
+    uint64_t count = 0;
+    double shift = 0.5 - (pixel_centre >= 0 ? pixel_centre : 0);
+    enum orl_result result = orl_text_open(log, path, &l);
+    if (result != ORL_OK)
+        return result;
+    if (!orl_text_next(&l) || !orl_text_id(&l, 1000000, &count) || *l.at)
+        result = orl_text_bad(&l, "the first line is not the number of cameras");
+    while (result == ORL_OK && known->model.image_count < count && orl_text_next(&l))
+        result = read_par(&l, shift, known);
+    if (result == ORL_OK && known->model.image_count < count)
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: line %zu: the file ends after %zu cameras of "
+                          "%llu", path, l.number, known->model.image_count,
+                          (unsigned long long)count);
+    orl_text_close(&l);
+    return result;
+}
+
+// --- Bundler (bundle.out v0.3): cameras f k1 k2, R, t with OpenGL's axes; points ---
+
+struct bundler {
+    struct orl_text_lines l;
+    struct orl_names pictures; // from list.txt
+    uint64_t camera_count, point_count;
+    // Index into the model's images of each camera, -1: not registered.
+    int64_t *image_of; // owned
+    size_t *capacity;  // owned; of each image's list of points
+};
+
+// The list of pictures: one a line, what follows the name is not needed.
+static enum orl_result read_list(const struct orl_log *log, const char *folder,
+                                 struct orl_names *pictures)
+{
+    static const char *const known[] = {"list.txt", "bundle/list.txt", "../list.txt"};
+    struct orl_text_lines l = {0};
+    enum orl_result result = ORL_OK;
+    bool found = false;
+    for (size_t i = 0; i < ORL_COUNT(known) && !found; i++) {
+        char *path = orl_path_join(log, folder, known[i]);
+        if (!path)
+            return ORL_ERR_MEMORY;
+        found = orl_path_is_file(path);
+        if (found)
+            result = orl_text_open(log, path, &l);
+        free(path);
+    }
+    if (!found)
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: Bundler's cameras need list.txt, the names of "
+                        "their pictures, beside them", folder);
+    while (result == ORL_OK && orl_text_next(&l)) {
+        l.at[strcspn(l.at, " \t")] = '\0';
+        result = orl_names_add(log, pictures, l.at);
+    }
+    orl_text_close(&l);
+    return result;
+}
+
+static enum orl_result next_numbers(struct orl_text_lines *l, double *values, size_t count,
+                                    const char *what)
+{
+    if (!orl_text_next(l) || !orl_text_numbers(l, values, count) || *l->at)
+        return orl_text_bad(l, what);
+    return ORL_OK;
+}
+
+static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
+                                           struct orl_known_cameras *known)
+{
+    double f_k[3], r[3][3], t[3];
+    struct orl_known_camera camera = {.path = b->pictures.items[index],
+                                      .gap = {.size = true, .centre = true}};
+    char place[64];
+    enum orl_result result = next_numbers(&b->l, f_k, 3, "a camera needs f k1 k2");
+    snprintf(place, sizeof place, "line %zu: camera %zu", b->l.number, index);
+    for (int i = 0; result == ORL_OK && i < 3; i++)
+        result = next_numbers(&b->l, r[i], 3, "a row of R needs 3 numbers");
+    if (result == ORL_OK)
+        result = next_numbers(&b->l, t, 3, "t needs 3 numbers");
+    b->image_of[index] = -1;
+    if (result != ORL_OK || f_k[0] == 0) // not registered
+        return result;
+    // From y up, z backward.
+    for (int i = 0; i < 3; i++) {
+        double sign = i == 0 ? 1 : -1;
+        for (int j = 0; j < 3; j++)
+            camera.pose.r[i][j] = sign * r[i][j];
+        camera.pose.t[i] = sign * t[i];
+    }
+    // Radial distortion of p / -p.z has the same sign in both frames.
+    camera.model = ORL_COLMAP_RADIAL;
+    camera.params[0] = f_k[0];
+    camera.params[3] = f_k[1];
+    camera.params[4] = f_k[2];
+    b->image_of[index] = (int64_t)known->model.image_count;
+    return orl_known_add(b->l.log, b->l.path, place, &camera, known);
+}
+
+static enum orl_result read_views(struct bundler *b, uint32_t point,
+                                  struct orl_colmap_model *model)
+{
+    uint64_t count, camera, key;
+    double xy[2];
+    if (!orl_text_next(&b->l) || !orl_text_id(&b->l, b->camera_count, &count))
+        return orl_text_bad(&b->l, "a point needs the list of its views");
+    for (uint64_t i = 0; i < count; i++) {
+        if (!orl_text_id(&b->l, UINT32_MAX, &camera) || !orl_text_id(&b->l, UINT32_MAX, &key) ||
+            !orl_text_numbers(&b->l, xy, 2) || camera >= b->camera_count)
+            return orl_text_bad(&b->l, "a view needs a camera that is there, key, x and y");
+        int64_t image = b->image_of[camera];
+        if (image < 0)
+            continue;
+        struct orl_colmap_image *seen_by = &model->images[image];
+        enum orl_result result = orl_grow(b->l.log, (void **)&seen_by->points,
+                                          &b->capacity[image], seen_by->point_count + 1,
+                                          sizeof *seen_by->points);
+        if (result != ORL_OK)
+            return result;
+        seen_by->points[seen_by->point_count++] = point;
+        model->points[point].track_length++;
+    }
+    return ORL_OK;
+}
+
+static enum orl_result read_point(struct bundler *b, uint32_t index,
+                                  struct orl_colmap_model *model)
+{
+    double rgb[3];
+    struct orl_colmap_point *point = &model->points[index];
+    point->id = index + 1;
+    enum orl_result result =
+        next_numbers(&b->l, point->position, 3, "a point's position needs 3 numbers");
+    if (result == ORL_OK)
+        result = next_numbers(&b->l, rgb, 3, "a point's colour needs 3 numbers");
+    for (int c = 0; result == ORL_OK && c < 3; c++)
+        point->rgb[c] = (uint8_t)(rgb[c] >= 255 ? 255 : rgb[c] > 0 ? rgb[c] : 0);
+    return result == ORL_OK ? read_views(b, index, model) : result;
+}
+
+static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *known)
+{
+    struct orl_text_lines *l = &b->l;
+    struct orl_colmap_model *model = &known->model;
+    size_t left = (size_t)(l->end - l->next);
+    if (!orl_text_next(l) || !orl_text_id(l, 1000000, &b->camera_count) ||
+        !orl_text_id(l, UINT32_MAX - 1, &b->point_count) || *l->at)
+        return orl_text_bad(l, "not the numbers of cameras and points");
+    // A camera takes 30 bytes at least, a point 14.
+    if (b->camera_count > left / 30 || b->point_count > left / 14)
+        return orl_text_bad(l, "more cameras or points than the file has room for");
+    if (b->pictures.count != b->camera_count)
+        return orl_fail(l->log, ORL_ERR_DATA, "%s: line %zu: %llu cameras, but list.txt names %zu "
+                        "pictures", l->path, l->number, (unsigned long long)b->camera_count,
+                        b->pictures.count);
+    b->image_of = orl_array(l->log, b->camera_count, sizeof *b->image_of);
+    b->capacity = orl_array(l->log, b->camera_count, sizeof *b->capacity);
+    model->points = orl_array(l->log, b->point_count, sizeof *model->points);
+    if (!b->image_of || !b->capacity || !model->points)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < b->camera_count; i++)
+        result = read_bundler_camera(b, i, known);
+    model->point_count = b->point_count;
+    for (uint32_t i = 0; result == ORL_OK && i < b->point_count; i++)
+        result = read_point(b, i, model);
+    return result;
+}
+
+enum orl_result orl_known_read_bundler(const struct orl_log *log, const char *path,
+                                       double pixel_centre, struct orl_known_cameras *known)
+{
+    (void)pixel_centre; // its principal point is the picture's centre, wherever pixels have theirs
+    struct bundler b = {0};
+    enum orl_result result = orl_text_open(log, path, &b.l);
+    if (result == ORL_OK)
+        result = read_list(log, known->folder, &b.pictures);
+    if (result == ORL_OK)
+        result = read_bundle(&b, known);
+    orl_text_close(&b.l);
+    orl_names_finish(&b.pictures);
+    free(b.image_of);
+    free(b.capacity);
+    return result;
+}

@@ -1,0 +1,234 @@
+#include "scene/mesh.h"
+
+#include <math.h>
+#include <meshoptimizer.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/mesh_internal.h"
+
+enum orl_result orl_mesh_init(const struct orl_log *log, struct orl_mesh *mesh,
+                              size_t vertex_count, size_t triangle_count)
+{
+    memset(mesh, 0, sizeof *mesh);
+    ORL_REQUIRE(log, vertex_count <= UINT32_MAX);
+    mesh->position = orl_array(log, vertex_count, sizeof *mesh->position);
+    mesh->triangle = orl_array(log, triangle_count, sizeof *mesh->triangle);
+    if (!mesh->position || !mesh->triangle) {
+        orl_mesh_finish(mesh);
+        return ORL_ERR_MEMORY;
+    }
+    mesh->vertex_count = vertex_count;
+    mesh->triangle_count = triangle_count;
+    return ORL_OK;
+}
+
+void orl_mesh_finish(struct orl_mesh *mesh)
+{
+    if (!mesh)
+        return;
+    free(mesh->position);
+    free(mesh->normal);
+    free(mesh->color);
+    free(mesh->triangle);
+    memset(mesh, 0, sizeof *mesh);
+}
+
+// --- reading ---
+
+enum orl_result orl_mesh_add_polygon(const struct orl_log *log, struct orl_mesh_builder *builder,
+                                     const uint32_t *corners, size_t count)
+{
+    struct orl_mesh *mesh = &builder->mesh;
+    if (count < 3)
+        return ORL_OK;
+    enum orl_result result =
+        orl_grow(log, (void **)&mesh->triangle, &builder->triangle_capacity,
+                 mesh->triangle_count + count - 2, sizeof *mesh->triangle);
+    for (size_t i = 2; result == ORL_OK && i < count; i++) {
+        uint32_t *triangle = mesh->triangle[mesh->triangle_count++];
+        triangle[0] = corners[0];
+        triangle[1] = corners[i - 1];
+        triangle[2] = corners[i];
+    }
+    return result;
+}
+
+static enum orl_result check(const struct orl_log *log, const char *path,
+                             const struct orl_mesh *mesh)
+{
+    if (!mesh->triangle_count)
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: no faces", path);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!isfinite(mesh->position[i][k]))
+                return orl_fail(log, ORL_ERR_FORMAT, "%s: vertex %zu is not finite", path, i);
+    return ORL_OK;
+}
+
+enum orl_result orl_mesh_read(const struct orl_log *log, const char *path, struct orl_mesh *mesh)
+{
+    struct orl_mesh_builder builder = {0};
+    char magic[4] = "";
+    memset(mesh, 0, sizeof *mesh);
+    FILE *stream = fopen(path, "rb");
+    size_t got = stream ? fread(magic, 1, 3, stream) : 0;
+    if (stream)
+        fclose(stream);
+    enum orl_result result = got == 3 && strcmp(magic, "ply") == 0
+                                 ? orl_mesh_read_ply(log, path, &builder)
+                                 : orl_mesh_read_obj(log, path, &builder);
+    if (result == ORL_OK)
+        result = check(log, path, &builder.mesh);
+    if (result == ORL_OK)
+        *mesh = builder.mesh;
+    else
+        orl_mesh_finish(&builder.mesh);
+    return result;
+}
+
+// --- writing ---
+
+static uint8_t *put(uint8_t *at, const void *data, size_t size)
+{
+    memcpy(at, data, size);
+    return at + size;
+}
+
+enum orl_result orl_mesh_write(const struct orl_log *log, const char *path,
+                               const struct orl_mesh *mesh)
+{
+    enum { HEADER_MAX = 512, FACE_SIZE = 13 };
+    size_t vertex_size = 12 + (mesh->normal ? 12u : 0) + (mesh->color ? 3u : 0);
+    uint8_t *data = orl_array(log, HEADER_MAX + mesh->vertex_count * vertex_size +
+                                       mesh->triangle_count * FACE_SIZE, 1);
+    if (!data)
+        return ORL_ERR_MEMORY;
+    int length = snprintf(
+        (char *)data, HEADER_MAX,
+        "ply\nformat binary_little_endian 1.0\nelement vertex %zu\nproperty float x\n"
+        "property float y\nproperty float z\n%s%selement face %zu\n"
+        "property list uchar int vertex_indices\nend_header\n", mesh->vertex_count,
+        mesh->normal ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+        mesh->color ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "",
+        mesh->triangle_count);
+    uint8_t *at = data + length;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        at = put(at, mesh->position[i], 12);
+        if (mesh->normal)
+            at = put(at, mesh->normal[i], 12);
+        if (mesh->color)
+            at = put(at, mesh->color[i], 3);
+    }
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        *at++ = 3;
+        at = put(at, mesh->triangle[i], 12);
+    }
+    enum orl_result result = orl_file_write(log, path, data, (size_t)(at - data));
+    free(data);
+    return result;
+}
+
+// --- geometry ---
+
+// Normal of a triangle, its length twice the area.
+static void face_normal(const struct orl_mesh *mesh, size_t i, double normal[3])
+{
+    const uint32_t *t = mesh->triangle[i];
+    double a[3], b[3];
+    for (int k = 0; k < 3; k++) {
+        a[k] = (double)mesh->position[t[1]][k] - (double)mesh->position[t[0]][k];
+        b[k] = (double)mesh->position[t[2]][k] - (double)mesh->position[t[0]][k];
+    }
+    for (int k = 0; k < 3; k++)
+        normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+enum orl_result orl_mesh_set_normals(const struct orl_log *log, struct orl_mesh *mesh)
+{
+    double (*sum)[3] = orl_array(log, mesh->vertex_count, sizeof *sum);
+    float (*normal)[3] = orl_array(log, mesh->vertex_count, sizeof *normal);
+    if (!sum || !normal) {
+        free(sum);
+        free(normal);
+        return ORL_ERR_MEMORY;
+    }
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        double face[3];
+        face_normal(mesh, i, face);
+        for (int corner = 0; corner < 3; corner++)
+            for (int k = 0; k < 3; k++)
+                sum[mesh->triangle[i][corner]][k] += face[k];
+    }
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        double length = sqrt(sum[i][0] * sum[i][0] + sum[i][1] * sum[i][1] +
+                             sum[i][2] * sum[i][2]);
+        for (int k = 0; k < 3; k++)
+            normal[i][k] = length > 0 ? (float)(sum[i][k] / length) : 0;
+    }
+    free(sum);
+    free(mesh->normal);
+    mesh->normal = normal;
+    return ORL_OK;
+}
+
+double orl_mesh_volume(const struct orl_mesh *mesh)
+{
+    double sum = 0;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        double normal[3];
+        face_normal(mesh, i, normal);
+        for (int k = 0; k < 3; k++)
+            sum += normal[k] * (double)mesh->position[mesh->triangle[i][0]][k];
+    }
+    return sum / 6;
+}
+
+// Keeps only the vertices that triangles use, in their order.
+static enum orl_result drop_unused(const struct orl_log *log, struct orl_mesh *mesh)
+{
+    uint32_t *to = orl_array(log, mesh->vertex_count, sizeof *to);
+    if (!to)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            to[mesh->triangle[i][k]] = 1;
+    uint32_t kept = 0;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        if (!to[i])
+            continue;
+        memmove(mesh->position[kept], mesh->position[i], sizeof *mesh->position);
+        if (mesh->normal)
+            memmove(mesh->normal[kept], mesh->normal[i], sizeof *mesh->normal);
+        if (mesh->color)
+            memmove(mesh->color[kept], mesh->color[i], sizeof *mesh->color);
+        to[i] = kept++;
+    }
+    mesh->vertex_count = kept;
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            mesh->triangle[i][k] = to[mesh->triangle[i][k]];
+    free(to);
+    return ORL_OK;
+}
+
+enum orl_result orl_mesh_decimate(const struct orl_log *log, size_t target, struct orl_mesh *mesh)
+{
+    if (mesh->triangle_count <= target)
+        return ORL_OK;
+    uint32_t (*triangle)[3] = orl_array(log, mesh->triangle_count, sizeof *triangle);
+    if (!triangle)
+        return ORL_ERR_MEMORY;
+    // No limit of error: what is asked for is a number of triangles.
+    size_t count = meshopt_simplify(&triangle[0][0], &mesh->triangle[0][0],
+                                    3 * mesh->triangle_count, &mesh->position[0][0],
+                                    mesh->vertex_count, sizeof *mesh->position, 3 * target,
+                                    1.0f, 0, NULL);
+    free(mesh->triangle);
+    mesh->triangle = triangle;
+    mesh->triangle_count = count / 3;
+    return drop_unused(log, mesh);
+}

@@ -1,0 +1,69 @@
+// PLY files (Turk 1994), ascii or binary little endian: the header, and records of any element.
+#ifndef ORL_SCENE_PLY_H
+#define ORL_SCENE_PLY_H
+
+#include "core/log.h"
+
+enum orl_ply_type {
+    ORL_PLY_INT8, ORL_PLY_UINT8, ORL_PLY_INT16, ORL_PLY_UINT16, ORL_PLY_INT32, ORL_PLY_UINT32,
+    ORL_PLY_FLOAT32, ORL_PLY_FLOAT64, ORL_PLY_TYPE_COUNT
+};
+
+struct orl_ply_property {
+    char name[64];
+    enum orl_ply_type type;       // of a list: of its items
+    enum orl_ply_type count_type; // of a list
+    bool list;
+};
+
+enum { ORL_PLY_ELEMENTS_MAX = 16, ORL_PLY_PROPERTIES_MAX = 256 };
+struct orl_ply_element {
+    char name[64];
+    uint64_t count;
+    size_t least; // bytes of a record: all of them, or with lists the least, those being empty
+    bool lists;
+    int property_count;
+    struct orl_ply_property *properties; // owned
+};
+
+struct orl_ply {
+    const struct orl_log *log;
+    char *path;       // owned
+    uint8_t *data;    // owned; a zero byte follows
+    size_t size, at;  // at: next byte to read
+    bool ascii;
+    int element_count, next; // next: the element that `at` is ahead of
+    struct orl_ply_element elements[ORL_PLY_ELEMENTS_MAX];
+};
+
+// Reads the file and its header.
+enum orl_result orl_ply_open(const struct orl_log *log, const char *path,
+                             struct orl_ply *ply) ORL_CHECK_RESULT;
+void orl_ply_close(struct orl_ply *ply);
+// ORL_ERR_FORMAT, saying at which byte the reader stands and `what` is wrong there.
+enum orl_result orl_ply_bad(const struct orl_ply *ply, const char *what);
+
+// Goes ahead of the records of the element of this name, past those before it, and checks that
+// the file has room for them. Where there is none the error says `missing`.
+enum orl_result orl_ply_seek(struct orl_ply *ply, const char *name, const char *missing,
+                             const struct orl_ply_element **element) ORL_CHECK_RESULT;
+// Items of one list.
+struct orl_ply_list {
+    double *items; // owned
+    size_t count, capacity;
+};
+// Reads one record: values[i] is property i, of a list its length. Items of property `list` (-1:
+// none) go to *items.
+enum orl_result orl_ply_record(struct orl_ply *ply, const struct orl_ply_element *element,
+                               double *values, int list,
+                               struct orl_ply_list *items) ORL_CHECK_RESULT;
+// Index of a property by its name; -1: none.
+int orl_ply_property_index(const struct orl_ply_element *element, const char *name);
+
+// As a float colour runs from 0 to 1, those of such a property must be multiplied by 255.
+static inline bool orl_ply_is_float(const struct orl_ply_element *element, int property)
+{
+    return element->properties[property].type >= ORL_PLY_FLOAT32;
+}
+
+#endif

@@ -1,0 +1,144 @@
+// The method of Princ 2014 against answers found by hand.
+#include <math.h>
+
+#include "scene/points.h"
+#include "wall_scene.h"
+
+enum { SIDE = 48, MIDDLE = SIDE / 2, GRID = 60 };
+
+static struct orl_gpu *gpu;
+
+// A wall at z = 4 and a floor at y = 1 before it, 4 units each way.
+static void setup_corner(struct fixture *f)
+{
+    setup_empty(f, 4);
+    struct orl_points *points = &f->scene.points;
+    assert_int_equal(orl_points_init(NULL, points, 2 * GRID * GRID), ORL_OK);
+    set_square(points, 0, GRID, 4, 0, 4, red);
+    for (size_t i = 0; i < GRID * GRID; i++) {
+        size_t to = GRID * GRID + i;
+        points->position[to][0] = points->position[i][0];
+        points->position[to][1] = 1;
+        points->position[to][2] = 3 + points->position[i][1] / 2;
+        points->normal[to][1] = -1;
+        points->radius[to] = points->radius[i];
+    }
+}
+
+// Looks straight down from above.
+static struct orl_view from_above(void)
+{
+    struct orl_view view = look_from(0, 0, 0, SIDE, 20);
+    view.cam_from_world = (struct orl_pose){.r = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
+                                            .t = {0, 3, 3}};
+    return view;
+}
+
+static struct orl_frame draw_with(struct fixture *f, const char *const *settings, size_t count)
+{
+    struct orl_render_params params = orl_method_find(NULL, "princ")->params;
+    assert_int_equal(orl_render_params_assign(NULL, &params, settings, count), ORL_OK);
+    return draw(gpu, f, look_from(0, 0, 0, SIDE, 40), &params, 0);
+}
+
+// No pixel mixes photographs.
+static void one_photograph_paints_a_pixel(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, true);
+    for (int i = 0; i < 5; i++)
+        add_photo(&f, look_from(0.5 * i - 1, 0.2 * i, 0, SIDE, 40), i % 2 ? red : green);
+    struct orl_frame frame = draw_with(&f, NULL, 0);
+    int painted[2] = {0};
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float *c = &frame.color.f32[3 * i];
+        if (frame.coverage.f32[i] == 0)
+            continue;
+        assert_true((c[0] > 0.99f && c[1] < 0.01f) || (c[0] < 0.01f && c[1] > 0.99f));
+        painted[c[1] > 0.5f]++;
+    }
+    assert_true(painted[0] + painted[1] > SIDE * SIDE / 2);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// What the nearest photograph sees along its surface is left to one that looks down on it, and to
+// nobody without extras. Pixel (24, 44) sees the floor, (24, 24) the wall.
+static void extras_paint_oblique_surfaces(void **state)
+{
+    (void)state;
+    static const char *const without[] = {"nearest=1", "extras=0", "fill=none"};
+    static const char *const with[] = {"nearest=1", "extras=1", "fill=none"};
+    struct fixture f;
+    setup_corner(&f);
+    add_photo(&f, look_from(0, 0, -0.1, SIDE, 40), red);
+    add_photo(&f, from_above(), green);
+    struct orl_frame few = draw_with(&f, without, 3), more = draw_with(&f, with, 3);
+    size_t floor = 44 * SIDE + 24, wall = 24 * SIDE + 24;
+    assert_true(few.depth.f32[floor] > 0);
+    assert_float_equal(few.coverage.f32[floor], 0, 0);
+    assert_float_equal(more.coverage.f32[floor], 1, 0);
+    assert_float_equal(more.color.f32[3 * floor + 1], 1, 1e-3);
+    assert_float_equal(few.color.f32[3 * wall], 1, 1e-3);
+    assert_float_equal(more.color.f32[3 * wall], 1, 1e-3);
+    orl_frame_finish(&few);
+    orl_frame_finish(&more);
+    teardown(&f);
+}
+
+// Equation 2.8: 4.04 for a frontal photograph, 3.04 at 70 degrees. By the mean of all, the shares of
+// two photographs in a pixel are their weights; both show the whole wall in as large a part.
+static void weights_are_those_of_the_equation(void **state)
+{
+    (void)state;
+    static const char *const mean[] = {"combine=mean", "extras=0"};
+    const double angle = 60 * 3.141592653589793 / 180, c = cos(angle), s = sin(angle);
+    struct fixture f;
+    setup(&f, false);
+    add_photo(&f, look_from(0, 0, -8, SIDE, 40), red);
+    // From the side at as far from the wall's middle, looking at it.
+    struct orl_view side = look_from(0, 0, 0, SIDE, 40);
+    side.cam_from_world = (struct orl_pose){.r = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}},
+                                            .t = {-4 * s, 0, 12 - 4 * c}};
+    add_photo(&f, side, green);
+    struct orl_frame frame = draw_with(&f, mean, 2);
+    const float *middle = color_at(&frame, MIDDLE, MIDDLE);
+    const double limit = 1 - cos(70 * 3.141592653589793 / 180);
+    double front = (1 + 1) / limit + 1;
+    assert_float_equal(front, 4.04, 0.005);
+    assert_float_equal((1 + cos(70 * 3.141592653589793 / 180)) / limit + 1, 3.04, 0.005);
+    // The wall is 6 x 6 units, 12 away: 20 x 20 pixels from the front; from the side its outline is
+    // a trapezium, whose area projective geometry gives.
+    double area = 0, middle_x = 0, corners[4][2];
+    static const double at[4][2] = {{-3, -3}, {3, -3}, {3, 3}, {-3, 3}};
+    for (int i = 0; i < 4; i++) {
+        double x = at[i][0] * c, z = 12 - at[i][0] * s;
+        corners[i][0] = 40 * x / z;
+        corners[i][1] = 40 * at[i][1] / z;
+        middle_x += corners[i][0] / 4 / 40;
+    }
+    for (int i = 0; i < 4; i++)
+        area += 0.5 * (corners[i][0] * corners[(i + 1) % 4][1] -
+                       corners[(i + 1) % 4][0] * corners[i][1]);
+    // Its direction is that to the middle of the corners, as it shows them.
+    double agrees = (middle_x * s + c) / hypot(middle_x, 1);
+    double oblique = agrees * ((1 + agrees) / limit + 1);
+    double expected = oblique * area / (front * 400);
+    assert_float_equal(middle[1] / middle[0], expected, 0.03 * expected);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_photograph_paints_a_pixel),
+        cmocka_unit_test(extras_paint_oblique_surfaces),
+        cmocka_unit_test(weights_are_those_of_the_equation),
+    };
+    int failed = cmocka_run_group_tests_name("Princ", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}

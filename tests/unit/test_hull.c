@@ -1,0 +1,234 @@
+// Voxel hulls of shapes whose silhouettes are known by formula.
+#include <math.h>
+#include <string.h>
+
+#include "scene/hull.h"
+#include "test.h"
+
+enum { CAMERAS = 24, SIDE = 240 };
+static const double RADIUS = 0.5, CENTRE[3] = {0.3, -0.2, 0.1};
+static const double pi = 3.14159265358979323846;
+
+// A sphere's silhouettes from all around, every pixel that it touches.
+struct scene {
+    struct orl_silhouette all[CAMERAS];
+};
+
+static bool touches(const struct orl_view *view, const double eye[3], int x, int y)
+{
+    // The ray through any of 3 x 3 places of the pixel meets the sphere.
+    for (int s = 0; s < 9; s++) {
+        double at[3], d[3], to[3], dd = 0, dt = 0, tt = 0;
+        orl_view_unproject(view, x + 0.5 * (s % 3), y + 0.5 * (s / 3), 1, at);
+        for (int k = 0; k < 3; k++) {
+            d[k] = at[k] - eye[k];
+            to[k] = CENTRE[k] - eye[k];
+            dd += d[k] * d[k];
+            dt += d[k] * to[k];
+            tt += to[k] * to[k];
+        }
+        if (tt - dt * dt / dd <= RADIUS * RADIUS)
+            return true;
+    }
+    return false;
+}
+
+static void draw(struct orl_silhouette *silhouette)
+{
+    double eye[3];
+    orl_pose_centre(&silhouette->view.cam_from_world, eye);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            silhouette->mask.u8[y * SIDE + x] = touches(&silhouette->view, eye, x, y) ? 255 : 0;
+}
+
+static void scene_init(struct scene *scene)
+{
+    for (int i = 0; i < CAMERAS; i++) {
+        // Evenly on a sphere (a golden spiral).
+        double z = 1 - (2 * i + 1.0) / CAMERAS, angle = 2.39996322972865 * i;
+        double r = sqrt(1 - z * z);
+        const double eye[3] = {CENTRE[0] + 4 * r * cos(angle), CENTRE[1] + 4 * r * sin(angle),
+                               CENTRE[2] + 4 * z};
+        const double up[3] = {0.1, 0.2, 1};
+        struct orl_silhouette *s = &scene->all[i];
+        s->view = (struct orl_view){
+            {SIDE, SIDE, 700, 710, 121.5, 118},
+            orl_pose_look_at(eye, CENTRE, up)};
+        assert_int_equal(orl_image_init(NULL, &s->mask, SIDE, SIDE, 1, ORL_PIXEL_U8), ORL_OK);
+        draw(s);
+    }
+}
+
+static int set_up(void **state)
+{
+    struct scene *scene = calloc(1, sizeof *scene);
+    *state = scene;
+    if (scene)
+        scene_init(scene);
+    return scene ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    struct scene *scene = *state;
+    for (int i = 0; i < CAMERAS; i++)
+        orl_image_finish(&scene->all[i].mask);
+    free(scene);
+    return 0;
+}
+
+static bool inside(const struct orl_hull *hull, const double at[3])
+{
+    int i[3];
+    for (int k = 0; k < 3; k++) {
+        i[k] = (int)floor((at[k] - hull->origin[k]) / hull->voxel);
+        if (i[k] < 0 || i[k] >= hull->side)
+            return false;
+    }
+    return hull->inside[i[0] + hull->side * (i[1] + hull->side * i[2])];
+}
+
+static void holds_the_sphere(void **state)
+{
+    struct scene *scene = *state;
+    const double volume = 4.0 / 3 * pi * RADIUS * RADIUS * RADIUS;
+    double last = INFINITY;
+    for (int side = 16; side <= 128; side *= 2) {
+        struct orl_hull hull;
+        assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, side, 1, &hull), ORL_OK);
+        for (int i = 0; i < 2000; i++) { // places all over the sphere's surface
+            double z = 1 - (2 * i + 1.0) / 2000, angle = 2.39996322972865 * i;
+            double r = sqrt(1 - z * z) * RADIUS;
+            const double at[3] = {CENTRE[0] + r * cos(angle), CENTRE[1] + r * sin(angle),
+                                  CENTRE[2] + RADIUS * z};
+            assert_true(inside(&hull, at));
+        }
+        double here = orl_hull_volume(&hull);
+        assert_true(here > volume && here < last);
+        last = here;
+        orl_hull_finish(&hull);
+    }
+    // 24 silhouettes of 240 pixels leave some room around the sphere, voxels of 1/128 a little.
+    assert_true(last < 1.20 * volume);
+}
+
+// By voxels' centres the volume converges too, from either side.
+static void centres_converge(void **state)
+{
+    struct scene *scene = *state;
+    double volumes[3];
+    int side = 32;
+    for (int i = 0; i < 3; i++, side *= 2) {
+        struct orl_hull hull;
+        assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, side, 0, &hull), ORL_OK);
+        volumes[i] = orl_hull_volume(&hull);
+        orl_hull_finish(&hull);
+    }
+    assert_true(fabs(volumes[2] - volumes[1]) < 0.02 * volumes[2]);
+    const double volume = 4.0 / 3 * pi * RADIUS * RADIUS * RADIUS;
+    assert_true(volumes[2] > volume && volumes[2] < 1.12 * volume);
+}
+
+// The hull is the AND of partial hulls, in any order.
+static void is_an_and(void **state)
+{
+    struct scene *scene = *state;
+    enum { N = 24, COUNT = N * N * N };
+    const double origin[3] = {CENTRE[0] - 1, CENTRE[1] - 1, CENTRE[2] - 1};
+    struct orl_hull all, one;
+    uint8_t product[COUNT];
+    memset(product, 1, sizeof product);
+    assert_int_equal(orl_hull_init(NULL, &all, N, origin, 2), ORL_OK);
+    for (int i = CAMERAS - 1; i >= 0; i--) {
+        assert_int_equal(orl_hull_carve(NULL, &scene->all[i], 1, &all), ORL_OK);
+        assert_int_equal(orl_hull_init(NULL, &one, N, origin, 2), ORL_OK);
+        assert_int_equal(orl_hull_carve(NULL, &scene->all[i], 1, &one), ORL_OK);
+        for (int k = 0; k < COUNT; k++)
+            product[k] = product[k] && one.inside[k];
+        orl_hull_finish(&one);
+    }
+    assert_memory_equal(product, all.inside, COUNT);
+    orl_hull_finish(&all);
+}
+
+static void makes_a_mesh(void **state)
+{
+    struct scene *scene = *state;
+    struct orl_hull hull;
+    struct orl_mesh mesh, fewer;
+    assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, 48, 1, &hull), ORL_OK);
+    assert_int_equal(orl_hull_mesh(NULL, &hull, 0, &mesh), ORL_OK);
+    assert_int_equal(orl_hull_mesh(NULL, &hull, 500, &fewer), ORL_OK);
+    // The surface runs half way between voxels' centres: through their faces, corners cut.
+    double volume = orl_hull_volume(&hull);
+    assert_float_equal(orl_mesh_volume(&mesh), volume, 0.03 * volume);
+    assert_float_equal(orl_mesh_volume(&fewer), volume, 0.05 * volume);
+    assert_true(fewer.triangle_count <= 500 && fewer.triangle_count > 400);
+    for (size_t i = 0; i < mesh.vertex_count; i++) {
+        double out = 0;
+        for (int k = 0; k < 3; k++)
+            out += (double)mesh.normal[i][k] * ((double)mesh.position[i][k] - CENTRE[k]);
+        assert_true(out > 0); // normals point outward
+    }
+    orl_mesh_finish(&mesh);
+    orl_mesh_finish(&fewer);
+    orl_hull_finish(&hull);
+}
+
+// What the picture's border cuts off is not carved away, else it is.
+static void keeps_what_borders_cut(void **state)
+{
+    (void)state;
+    struct orl_silhouette s = {.view = {{20, 20, 20, 20, 10, 10},
+                                        {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}}}};
+    const double origin[3] = {-4, -1, 3}; // left of the picture's border at depth 4: x < -2
+    assert_int_equal(orl_image_init(NULL, &s.mask, 20, 20, 1, ORL_PIXEL_U8), ORL_OK);
+    s.mask.u8[10 * 20 + 5] = 255;
+    struct orl_hull hull;
+    assert_int_equal(orl_hull_init(NULL, &hull, 2, origin, 2), ORL_OK);
+    assert_int_equal(orl_hull_carve(NULL, &s, 0, &hull), ORL_OK);
+    assert_float_equal(orl_hull_volume(&hull), 0, 0);
+    orl_hull_finish(&hull);
+    s.mask.u8[10 * 20] = 255;
+    assert_int_equal(orl_hull_init(NULL, &hull, 2, origin, 2), ORL_OK);
+    assert_int_equal(orl_hull_carve(NULL, &s, 0, &hull), ORL_OK);
+    assert_true(orl_hull_volume(&hull) > 0);
+    orl_hull_finish(&hull);
+    orl_image_finish(&s.mask);
+}
+
+static void refuses_what_has_no_hull(void **state)
+{
+    struct scene *scene = *state;
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_hull hull;
+    assert_int_equal(orl_hull_make(&log, scene->all, 1, 16, 1, &hull), ORL_ERR_DATA);
+    assert_non_null(strstr(said.text, "from two places"));
+    // Two cameras that see the sphere in places that do not meet.
+    struct orl_silhouette apart[3] = {scene->all[0], scene->all[10], scene->all[20]};
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(orl_image_init(NULL, &apart[i].mask, SIDE, SIDE, 1, ORL_PIXEL_U8),
+                         ORL_OK);
+        apart[i].mask.u8[(20 + 70 * i) * SIDE + 20 + 90 * (i == 1)] = 255;
+    }
+    assert_int_equal(orl_hull_make(&log, apart, 3, 16, 1, &hull), ORL_ERR_DATA);
+    assert_non_null(strstr(said.text, "no place in common"));
+    memset(apart[1].mask.u8, 0, SIDE * SIDE);
+    assert_int_equal(orl_hull_make(&log, apart, 3, 16, 1, &hull), ORL_ERR_DATA);
+    assert_non_null(strstr(said.text, "silhouette 2 of 3 is empty"));
+    assert_null(hull.inside);
+    for (int i = 0; i < 3; i++)
+        orl_image_finish(&apart[i].mask);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(holds_the_sphere), cmocka_unit_test(centres_converge),
+        cmocka_unit_test(is_an_and), cmocka_unit_test(makes_a_mesh),
+        cmocka_unit_test(keeps_what_borders_cut), cmocka_unit_test(refuses_what_has_no_hull),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
