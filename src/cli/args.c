@@ -61,6 +61,32 @@ static enum orl_result add_to_list(const struct orl_log *log, const struct arg_o
     return result;
 }
 
+// The names, separated by commas.
+static void list_names(const struct arg_enum *e, char text[256])
+{
+    text[0] = '\0';
+    for (int i = 0; e->names[i]; i++) {
+        size_t used = strlen(text);
+        snprintf(text + used, 256 - used, "%s%s", i ? ", " : "", e->names[i]);
+    }
+}
+
+static enum orl_result set_enum(const struct orl_log *log, const struct arg_option *option,
+                                const char *text)
+{
+    struct arg_enum *e = option->value;
+    char allowed[256];
+    for (int i = 0; e->names[i]; i++) {
+        if (strcmp(e->names[i], text) == 0) {
+            e->value = i;
+            return ORL_OK;
+        }
+    }
+    list_names(e, allowed);
+    return orl_fail(log, ORL_ERR_ARGUMENT, "--%s %s: must be one of %s", option->name, text,
+                    allowed);
+}
+
 static enum orl_result set_option(const struct orl_log *log, const struct arg_option *option,
                                   const char *text)
 {
@@ -78,6 +104,8 @@ static enum orl_result set_option(const struct orl_log *log, const struct arg_op
         return set_size(log, option, text);
     case ARG_LIST:
         return add_to_list(log, option, text);
+    case ARG_ENUM:
+        return set_enum(log, option, text);
     }
     return ORL_ERR_ARGUMENT;
 }
@@ -94,10 +122,16 @@ static const struct arg_option *find_option(const struct arg_option *options, co
 static void print_options(const struct arg_option *options)
 {
     for (; options->name; options++) {
-        char left[64];
+        char left[64], allowed[256] = "";
+        const struct arg_enum *e = options->type == ARG_ENUM ? options->value : NULL;
+        if (e)
+            list_names(e, allowed);
         snprintf(left, sizeof left, "--%s%s%s", options->name, options->meta ? " " : "",
                  options->meta ? options->meta : "");
-        printf("  %-28s %s\n", left, options->help);
+        printf("  %-28s %s%s%s", left, options->help, e ? ": " : "", allowed);
+        if (e && e->value >= 0)
+            printf("; default %s", e->names[e->value]);
+        printf("\n");
     }
 }
 

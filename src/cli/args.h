@@ -11,6 +11,13 @@ enum arg_type {
     ARG_NUMBER, // double, within [min, max]
     ARG_SIZE,   // struct arg_size: "WxH"
     ARG_LIST,   // struct orl_names: "A,B,C", or the option repeated
+    ARG_ENUM,   // struct arg_enum
+};
+
+// One of some names. The help and the error list them.
+struct arg_enum {
+    const char *const *names; // ended by NULL
+    int value;                // index; what it is before parsing is the default, -1: none
 };
 
 struct arg_size {

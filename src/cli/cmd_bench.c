@@ -4,14 +4,15 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "core/memory.h"
+#include "cli/command_output.h"
 #include "eval/bench.h"
 
 enum { SIZES_MAX = 8, POINTS_MAX = 16 };
 
 struct options {
     struct orl_names methods, sizes, points, settings;
-    const char *json, *trace, *out, *textures;
+    const char *json, *trace, *out;
+    struct arg_enum textures;
     double seconds;
     int frames, max_vram_mib;
     bool quick;
@@ -19,47 +20,11 @@ struct options {
 
 // What the options say, in the library's words.
 struct plan {
-    const char **names;
-    struct orl_render_params *render;
-    size_t method_count;
+    struct orl_choices choices;
     int sizes[SIZES_MAX][2];
     size_t size_count;
     size_t points[POINTS_MAX + 1];
 };
-
-static enum orl_result add_method(const struct orl_log *log, const struct options *o,
-                                  const struct orl_scene *scene, const struct orl_method *method,
-                                  struct plan *plan)
-{
-    struct orl_render_params *render = &plan->render[plan->method_count];
-    enum orl_result result = orl_render_params_tuned(log, method, scene, render);
-    for (size_t i = 0; result == ORL_OK && i < o->settings.count; i++)
-        result = orl_render_params_set(log, render, o->settings.items[i]);
-    plan->names[plan->method_count++] = method->name;
-    return result;
-}
-
-static enum orl_result plan_methods(const struct orl_log *log, const struct options *o,
-                                    const struct orl_scene *scene, struct plan *plan)
-{
-    size_t known = 0;
-    while (orl_methods[known].name)
-        known++;
-    size_t room = known + o->methods.count;
-    plan->names = orl_array(log, room, sizeof *plan->names);
-    plan->render = orl_array(log, room, sizeof *plan->render);
-    enum orl_result result = plan->names && plan->render ? ORL_OK : ORL_ERR_MEMORY;
-    bool all = orl_names_contain(&o->methods, "all");
-    if (result == ORL_OK && !all && o->methods.count == 0)
-        return add_method(log, o, scene, &orl_methods[0], plan);
-    for (size_t i = 0; result == ORL_OK && all && i < known; i++)
-        result = add_method(log, o, scene, &orl_methods[i], plan);
-    for (size_t i = 0; result == ORL_OK && !all && i < o->methods.count; i++) {
-        const struct orl_method *method = orl_method_find(log, o->methods.items[i]);
-        result = method ? add_method(log, o, scene, method, plan) : ORL_ERR_ARGUMENT;
-    }
-    return result;
-}
 
 static enum orl_result plan_sizes(const struct orl_log *log, const struct options *o,
                                   struct plan *plan)
@@ -104,18 +69,15 @@ static double mib(size_t bytes)
 
 static void print_memory(const struct orl_bench *bench)
 {
-    static const char *const owners[] = {"points", "photographs", "frame"};
     size_t all = 0;
     printf("\n%-14s %10s   %s\n", "memory", "MiB", "of");
-    for (size_t k = 0; k < ORL_COUNT(owners); k++) {
+    for (int owner = 0; owner < ORL_OWNER_COUNT; owner++) {
         size_t sum = 0;
         for (size_t i = 0; i < bench->memory_count; i++)
-            if (strcmp(orl_bench_owner(bench->memory[i].tag), owners[k]) == 0)
-                sum += bench->memory[i].bytes;
-        printf("%-14s %10.1f  ", owners[k], mib(sum));
+            sum += (int)bench->memory[i].owner == owner ? bench->memory[i].bytes : 0;
+        printf("%-14s %10.1f  ", orl_owner_names[owner], mib(sum));
         for (size_t i = 0, first = 1; i < bench->memory_count; i++)
-            if (strcmp(orl_bench_owner(bench->memory[i].tag), owners[k]) == 0 &&
-                bench->memory[i].bytes > 1 << 16) {
+            if ((int)bench->memory[i].owner == owner && bench->memory[i].bytes > 1 << 16) {
                 printf("%s %s %.1f", first ? "" : ",", bench->memory[i].tag,
                        mib(bench->memory[i].bytes));
                 first = 0;
@@ -129,11 +91,12 @@ static void print_memory(const struct orl_bench *bench)
 
 static void print_run(const struct orl_bench_run *run, const char *what)
 {
-    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, what, run->frame_ms,
-           run->slowest_ms, run->frame_ms > 0 ? 1e3 / run->frame_ms : 0.0, run->frames,
+    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, what, run->timing.median_ms,
+           run->timing.slowest_ms,
+           run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, run->timing.frames,
            mib(run->device_bytes));
-    for (size_t i = 0; i < run->pass_count; i++)
-        printf("%s %s %.2f", i ? "," : "", run->passes[i].name, run->passes[i].ms);
+    for (size_t i = 0; i < run->timing.pass_count; i++)
+        printf("%s %s %.2f", i ? "," : "", run->timing.passes[i].name, run->timing.passes[i].ms);
     if (run->psnr_db > 0)
         printf("; %.1f dB to full size", run->psnr_db);
     printf("\n");
@@ -192,18 +155,11 @@ static void print_tables(const struct orl_bench *bench)
 static enum orl_result report(const struct orl_log *log, const struct options *o,
                               const struct orl_bench *bench)
 {
-    bool to_stdout = o->json && strcmp(o->json, "-") == 0;
     enum orl_result result = ORL_OK;
-    if (!to_stdout)
+    if (!report_on_stdout(o->json))
         print_tables(bench);
-    char *text = o->json ? orl_bench_to_json(log, bench) : NULL;
-    if (o->json && !text)
-        result = ORL_ERR_MEMORY;
-    else if (to_stdout)
-        puts(text);
-    else if (o->json)
-        result = orl_file_write(log, o->json, text, strlen(text));
-    free(text);
+    if (o->json)
+        result = report_write(log, o->json, orl_bench_to_json(log, bench));
     if (result == ORL_OK && o->out)
         result = orl_bench_plot(log, bench, o->out);
     return result;
@@ -218,25 +174,24 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
     struct orl_bench bench = {0};
-    enum orl_textures textures = ORL_TEXTURES_AUTO;
-    enum orl_result result = orl_textures_find(log, o->textures, &textures);
-    if (result == ORL_OK)
-        result = plan_sizes(log, o, &plan);
+    enum orl_result result = plan_sizes(log, o, &plan);
     if (result == ORL_OK)
         result = plan_points(log, o, &plan);
     if (result == ORL_OK)
         result = orl_scene_open(log, dir, &scene);
     if (result == ORL_OK)
-        result = plan_methods(log, o, scene, &plan);
+        result = orl_choices_make(log, scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
+                                  &plan.choices);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
     const struct orl_bench_params params = {
-        .methods = plan.names, .render = plan.render, .method_count = plan.method_count,
+        .choices = plan.choices.items, .choice_count = plan.choices.count,
         .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
         .point_counts = o->points.count ? plan.points : NULL, .seconds = o->seconds,
         .frames_max = (size_t)o->frames, .growth = !o->quick,
-        .max_vram_bytes = (size_t)o->max_vram_mib << 20, .textures = textures,
+        .max_vram_bytes = (size_t)o->max_vram_mib << 20,
+        .textures = (enum orl_textures)o->textures.value,
         .image_dir = o->out, .trace = o->trace,
         .progress = &terminal->progress};
     if (result == ORL_OK)
@@ -246,14 +201,14 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     orl_bench_finish(&bench);
     orl_gpu_destroy(&gpu);
     orl_scene_destroy(&scene);
-    free(plan.names);
-    free(plan.render);
+    orl_choices_finish(&plan.choices);
     return result;
 }
 
 int cmd_bench(int argc, char **argv)
 {
-    struct options o = {.textures = "auto", .seconds = 1, .frames = 100};
+    struct options o = {.textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .seconds = 1,
+                        .frames = 100};
     const struct arg_option table[] = {
         {"method", ARG_LIST, &o.methods, "NAME", "methods, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the methods", 0, 0},
@@ -267,8 +222,7 @@ int cmd_bench(int argc, char **argv)
         {"trace", ARG_STRING, &o.trace, "FILE",
          "write a few frames for chrome://tracing or ui.perfetto.dev", 0, 0},
         {"out", ARG_STRING, &o.out, "DIR", "write plots (SVG) and pictures", 0, 0},
-        {"textures", ARG_STRING, &o.textures, "KIND",
-         "photographs on the device: auto (default), full, bc7, bc1", 0, 0},
+        {"textures", ARG_ENUM, &o.textures, "KIND", "photographs on the device", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

@@ -4,13 +4,15 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/walk.h"
+#include "cli/command_output.h"
 #include "core/memory.h"
 #include "eval/eval.h"
+#include "eval/stability.h"
 #include "hdr/hdr.h"
 
 struct options {
-    const char *method, *json, *images, *merge, *truth, *textures, *vary, *plot;
+    const char *method, *json, *images, *truth, *vary;
+    struct arg_enum merge, textures;
     struct orl_names settings;
     int max_vram_mib;
     int walk, divide; // frames of a walk in place of held-out photographs; 0: none
@@ -26,8 +28,8 @@ struct job {
     struct orl_renderer *renderer; // NULL with --merge
     struct orl_hdr *hdr;           // of the method at hand, with --merge
     struct orl_truth truth;
-    struct orl_names varied; // KEY=VALUE of --vary, each
-    struct orl_eval *evals;  // one per method and varied setting
+    struct orl_choices choices;
+    struct orl_eval *evals; // one per choice
     size_t count;
 };
 
@@ -36,9 +38,9 @@ struct job {
 static void print_figures(const struct orl_eval_view *view)
 {
     const struct orl_metrics *m = &view->metrics;
-    printf(" %7.2f %7.2f %7.2f  %.4f  %6.1f %6.1f  %.4f %9.1f\n", m->psnr_db, m->psnr_cc_db,
-           m->psnr_covered_db, m->ssim, 100 * m->coverage, 100 * m->completeness, m->ncc_error,
-           view->render_ms);
+    printf(" %7.2f %7.2f %7.2f  %.4f  %.4f  %6.1f %6.1f  %.4f %9.1f\n", m->psnr_db,
+           m->psnr_cc_db, m->psnr_covered_db, m->ssim, view->flip, 100 * m->coverage,
+           100 * m->completeness, m->ncc_error, view->render_ms);
 }
 
 static void print_radiance(const struct orl_eval *eval)
@@ -58,8 +60,8 @@ static void print_table(const struct orl_eval *eval)
 {
     printf("%s%s%s, %s\n", eval->method, eval->setting[0] ? " " : "", eval->setting,
            eval->device);
-    printf("%-24s %11s %7s %7s %7s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR",
-           "fitted", "covered", "SSIM", "cover%", "full%", "1-NCC", "ms");
+    printf("%-24s %11s %7s %7s %7s  %6s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR",
+           "fitted", "covered", "SSIM", "FLIP", "cover%", "full%", "1-NCC", "ms");
     for (size_t i = 0; i < eval->view_count; i++) {
         const struct orl_eval_view *view = &eval->views[i];
         char size[32];
@@ -80,38 +82,27 @@ static void print_passes(const struct orl_eval *eval)
         printf("%-24s %9.2f\n", eval->passes[i].name, eval->passes[i].ms);
 }
 
+static void print_walk_row(void *priv, const struct orl_stability *s)
+{
+    const struct orl_stability_step *all = &s->all;
+    char block[64], jump[64];
+    bool *first = priv;
+    if (*first)
+        printf("walk of %zu frames of %dx%d, %s; differences of one frame, warped, to the next, "
+               "in 8-bit values\n%-14s %8s %7s %7s %7s  %7s %22s  %15s %9s\n", s->step_count + 1,
+               s->width, s->height, s->device, "method", "seen%", "mean", "floor", "p99",
+               "blocks", "worst block", "worst jump", "ms");
+    *first = false;
+    snprintf(block, sizeof block, "%.2f %zu:%d,%d", all->block_worst, s->worst_block_step + 1,
+             all->block_x, all->block_y);
+    snprintf(jump, sizeof jump, "%.2f %zu", all->jump, s->worst_jump_step + 1);
+    printf("%-14s %8.1f %7.3f %7.3f %7.2f  %7.3f %22s  %15s %9.1f\n", s->method,
+           100 * all->compared, all->mean, all->floor, all->p99, all->block_mean, block, jump,
+           s->render_ms);
+    fflush(stdout);
+}
+
 // --- the job ---
-
-// varied: one of --vary, or NULL.
-static enum orl_result apply_settings(const struct job *job, const char *varied,
-                                      struct orl_render_params *render)
-{
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < job->options->settings.count; i++)
-        result = orl_render_params_set(job->log, render, job->options->settings.items[i]);
-    return result == ORL_OK && varied ? orl_render_params_set(job->log, render, varied) : result;
-}
-
-// KEY=A,B,C as KEY=A, KEY=B and KEY=C.
-static enum orl_result list_varied(const struct orl_log *log, const char *text,
-                                   struct orl_names *varied)
-{
-    const char *equals = strchr(text, '=');
-    if (!equals)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--vary %s: must be KEY=VALUE,VALUE,..", text);
-    enum orl_result result = ORL_OK;
-    const char *value = equals + 1;
-    while (result == ORL_OK) {
-        int length = (int)strcspn(value, ",");
-        char *setting = orl_format(log, "%.*s=%.*s", (int)(equals - text), text, length, value);
-        result = setting ? orl_names_add(log, varied, setting) : ORL_ERR_MEMORY;
-        free(setting);
-        if (value[length] == '\0')
-            break;
-        value += length + 1;
-    }
-    return result;
-}
 
 static enum orl_result draw_radiance(void *priv, const struct orl_view *view,
                                      struct orl_frame *frame)
@@ -124,38 +115,31 @@ static enum orl_result start_hdr(struct job *job, const struct orl_render_params
     struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
     params.render = *render;
     params.max_vram_bytes = (size_t)job->options->max_vram_mib << 20;
-    enum orl_result result = orl_hdr_merge_find(job->log, job->options->merge, &params.merge);
-    return result == ORL_OK ? orl_hdr_create(job->gpu, job->scene, &params, &job->hdr) : result;
+    params.merge = (enum orl_hdr_merge)job->options->merge.value;
+    return orl_hdr_create(job->gpu, job->scene, &params, &job->hdr);
 }
 
-static enum orl_result evaluate(struct job *job, const struct orl_method *method,
-                                const char *varied)
+static enum orl_result evaluate(struct job *job, const struct orl_choice *choice)
 {
-    struct orl_render_params render;
-    enum orl_result result = orl_render_params_tuned(job->log, method, job->scene, &render);
-    if (result == ORL_OK)
-        result = apply_settings(job, varied, &render);
-    if (result != ORL_OK)
-        return result;
-    struct orl_eval_params params = {.method = method->name, .setting = varied,
-                                           .render = &render,
-                                           .image_dir = job->options->images,
-                                           .progress = job->progress,
-                                           .truth = job->options->truth ? &job->truth : NULL};
+    struct orl_eval_params params = {.method = choice->method->name, .setting = choice->setting,
+                                     .render = &choice->params,
+                                     .image_dir = job->options->images,
+                                     .progress = job->progress,
+                                     .truth = job->options->truth ? &job->truth : NULL};
     struct orl_eval *eval = &job->evals[job->count];
-    if (job->options->merge) {
-        result = start_hdr(job, &render);
+    if (job->options->merge.value >= 0) {
+        enum orl_result result = start_hdr(job, &choice->params);
         if (result != ORL_OK)
             return result;
         params.draw_radiance = draw_radiance;
         params.draw_priv = job->hdr;
     }
-    result = orl_eval_run(job->gpu, job->renderer, job->scene, &params, eval);
+    enum orl_result result = orl_eval_run(job->gpu, job->renderer, job->scene, &params, eval);
     orl_hdr_destroy(&job->hdr);
     if (result != ORL_OK)
         return result;
     job->count++;
-    if (job->options->json && strcmp(job->options->json, "-") == 0)
+    if (report_on_stdout(job->options->json))
         return ORL_OK;
     if (job->count > 1)
         printf("\n");
@@ -166,114 +150,102 @@ static enum orl_result evaluate(struct job *job, const struct orl_method *method
     return ORL_OK;
 }
 
-static enum orl_result write_json(const struct job *job, bool array)
+static enum orl_result measure_walk(struct job *job, bool array)
 {
-    const char *path = job->options->json;
-    char *text = orl_eval_to_json(job->log, job->evals, job->count, array);
-    if (!text)
+    const struct options *o = job->options;
+    bool first = true;
+    const struct orl_walk_params params = {
+        .choices = job->choices.items, .choice_count = job->choices.count, .frames = o->walk,
+        .divide = o->divide, .image_dir = o->images, .priv = &first,
+        .on_result = report_on_stdout(o->json) ? NULL : print_walk_row,
+        .progress = job->progress};
+    struct orl_stability *all = orl_array(job->log, job->choices.count, sizeof *all);
+    if (!all)
         return ORL_ERR_MEMORY;
-    enum orl_result result = ORL_OK;
-    if (strcmp(path, "-") == 0)
-        result = puts(text) < 0 || fflush(stdout) != 0
-                     ? orl_fail(job->log, ORL_ERR_IO, "standard output: cannot write")
-                     : ORL_OK;
-    else
-        result = orl_file_write(job->log, path, text, strlen(text));
-    free(text);
+    enum orl_result result =
+        orl_stability_walk_all(job->gpu, job->renderer, job->scene, &params, all);
+    if (result == ORL_OK && o->json)
+        result = report_write(job->log, o->json, orl_stability_to_json(
+            job->log, job->scene, all, job->choices.count, array));
+    for (size_t i = 0; result == ORL_OK && i < job->choices.count; i++)
+        orl_stability_finish(&all[i]);
+    free(all);
     return result;
 }
 
-// Every method, one after the other, by held-out photographs or along a walk.
-static enum orl_result measure(struct job *job, const struct orl_method *first, size_t methods,
-                               bool all)
+static enum orl_result measure_heldout(struct job *job, bool array)
 {
     const struct options *o = job->options;
-    if (o->walk) {
-        const struct walk_options walk = {.json = o->json, .images = o->images,
-                                          .settings = &o->settings, .frames = o->walk,
-                                          .divide = o->divide};
-        return walk_run(job->gpu, job->renderer, job->scene, first, methods, all, &walk,
-                        job->progress);
-    }
-    enum orl_result result = ORL_OK;
-    size_t values = job->varied.count;
-    for (size_t i = 0; i < methods && result == ORL_OK; i++) {
-        if (values == 0)
-            result = evaluate(job, &first[i], NULL);
-        for (size_t k = 0; k < values && result == ORL_OK; k++)
-            result = evaluate(job, &first[i], job->varied.items[k]);
-    }
+    job->evals = orl_array(job->log, job->choices.count, sizeof *job->evals);
+    enum orl_result result = job->evals ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; i < job->choices.count && result == ORL_OK; i++)
+        result = evaluate(job, &job->choices.items[i]);
     if (result == ORL_OK && o->json)
-        result = write_json(job, all || values > 0);
-    if (result == ORL_OK && o->plot)
-        result = orl_eval_plot(job->log, job->evals, job->count, o->plot);
+        result = report_write(job->log, o->json,
+                              orl_eval_to_json(job->log, job->evals, job->count, array));
     return result;
 }
 
 static enum orl_result check_together(const struct orl_log *log, const struct options *o)
 {
-    if (o->walk && (o->merge || o->truth))
+    if (o->walk && (o->merge.value >= 0 || o->truth))
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk compares frames with each other: "
                         "without --merge and --truth");
-    if (o->walk && (o->vary || o->plot))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary and --plot are of held-out "
-                        "photographs: without --walk");
+    if (o->walk && o->vary)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary is of held-out photographs: without "
+                        "--walk");
     if (o->vary && o->images)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary makes several pictures of one name: "
                         "without --images");
-    if (o->merge && strcmp(o->textures, "auto") != 0)
+    if (o->merge.value >= 0 && o->textures.value != ORL_TEXTURES_AUTO)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --merge keeps photographs as it needs them: "
                         "without --textures");
     return ORL_OK;
 }
 
+static enum orl_result choose(struct job *job, const struct orl_scene *scene)
+{
+    const struct options *o = job->options;
+    struct orl_names methods = {0};
+    enum orl_result result = orl_names_add(job->log, &methods, o->method);
+    orl_choices_finish(&job->choices);
+    if (result == ORL_OK)
+        result = orl_choices_make(job->log, scene,
+                                  o->merge.value < 0 ? ORL_SAMPLE_SRGB : ORL_SAMPLE_RADIANCE,
+                                  &methods, &o->settings, o->vary, &job->choices);
+    orl_names_finish(&methods);
+    return result;
+}
+
 static enum orl_result run(struct job *job, const char *scene_dir,
                            const struct arg_common *common)
 {
-    enum orl_result result = check_together(job->log, job->options);
-    if (result != ORL_OK)
-        return result;
-    bool all = strcmp(job->options->method, "all") == 0;
-    const struct orl_method *first =
-        all ? orl_methods : orl_method_find(job->log, job->options->method);
-    size_t methods = 1;
-    if (!first)
-        return ORL_ERR_ARGUMENT;
-    while (all && first[methods].name)
-        methods++;
-    if (job->options->vary)
-        result = list_varied(job->log, job->options->vary, &job->varied);
-    if (result != ORL_OK)
-        return result;
-    size_t values = job->varied.count ? job->varied.count : 1;
-    job->evals = orl_array(job->log, methods * values, sizeof *job->evals);
-    if (!job->evals)
-        return ORL_ERR_MEMORY;
-    struct orl_render_params tried = first->params; // wrong settings are found before the work
-    result = apply_settings(job, NULL, &tried);
-    for (size_t i = 0; result == ORL_OK && i < job->varied.count; i++)
-        result = orl_render_params_set(job->log, &tried, job->varied.items[i]);
-    struct orl_renderer_params limits = {
-        .max_vram_bytes = (size_t)job->options->max_vram_mib << 20};
-    if (result == ORL_OK)
-        result = orl_textures_find(job->log, job->options->textures, &limits.textures);
-    enum orl_hdr_merge merge;
-    if (result == ORL_OK && job->options->merge)
-        result = orl_hdr_merge_find(job->log, job->options->merge, &merge);
+    const struct options *o = job->options;
+    const struct orl_renderer_params limits = {
+        .max_vram_bytes = (size_t)o->max_vram_mib << 20,
+        .textures = (enum orl_textures)o->textures.value};
+    enum orl_result result = check_together(job->log, o);
+    if (result == ORL_OK) // wrong settings are found before the work
+        result = choose(job, NULL);
     if (result == ORL_OK)
         result = orl_scene_open(job->log, scene_dir, &job->scene);
-    if (result == ORL_OK && !job->options->walk)
+    if (result == ORL_OK)
+        result = choose(job, job->scene);
+    if (result == ORL_OK && !o->walk)
         result = orl_eval_check(job->log, job->scene);
-    if (result == ORL_OK && job->options->truth)
-        result = orl_truth_open(job->log, job->scene, job->options->truth, &job->truth);
+    if (result == ORL_OK && o->truth)
+        result = orl_truth_open(job->log, job->scene, o->truth, &job->truth);
     if (result == ORL_OK)
         result = orl_gpu_create(job->log,
                                 &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                          .debug = common->verbose},
                                 &job->gpu);
-    if (result == ORL_OK && !job->options->merge)
+    if (result == ORL_OK && o->merge.value < 0)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
-    return result == ORL_OK ? measure(job, first, methods, all) : result;
+    if (result != ORL_OK)
+        return result;
+    bool array = o->vary || strcmp(o->method, "all") == 0;
+    return o->walk ? measure_walk(job, array) : measure_heldout(job, array);
 }
 
 static void finish(struct job *job)
@@ -281,7 +253,7 @@ static void finish(struct job *job)
     for (size_t i = 0; i < job->count; i++)
         orl_eval_finish(&job->evals[i]);
     free(job->evals);
-    orl_names_finish(&job->varied);
+    orl_choices_finish(&job->choices);
     orl_hdr_destroy(&job->hdr);
     orl_truth_finish(&job->truth);
     orl_renderer_destroy(&job->renderer);
@@ -291,18 +263,16 @@ static void finish(struct job *job)
 
 int cmd_eval(int argc, char **argv)
 {
-    struct options o = {.method = orl_methods[0].name, .textures = "auto", .divide = 1};
+    struct options o = {.method = orl_methods[0].name, .merge = {orl_hdr_merge_names, -1},
+                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .divide = 1};
     const struct arg_option table[] = {
         {"method", ARG_STRING, &o.method, "NAME", "a method, or all; default: the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "once for each value of an option", 0, 0},
-        {"plot", ARG_STRING, &o.plot, "FILE", "write a chart of accuracy against time (SVG)", 0,
-         0},
         {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
         {"images", ARG_STRING, &o.images, "DIR", "write photographs, renderings, differences",
          0, 0},
-        {"merge", ARG_STRING, &o.merge, "NAME",
-         "blend as radiance, as oriel hdr does: fused or series", 0, 0},
+        {"merge", ARG_ENUM, &o.merge, "NAME", "blend as radiance, as oriel hdr does", 0, 0},
         {"truth", ARG_STRING, &o.truth, "DIR",
          "compare with true radiance too; DIR is what oriel synth wrote", 0, 0},
         {"walk", ARG_INT, &o.walk, "N",
@@ -310,8 +280,8 @@ int cmd_eval(int argc, char **argv)
          "each frame, warped, differs from the next", 2, 100000},
         {"divide", ARG_INT, &o.divide, "N", "of --walk: pictures at 1/N of their size; default 1",
          1, 64},
-        {"textures", ARG_STRING, &o.textures, "KIND",
-         "photographs on the device: auto (default), full, bc7, bc1; not with --merge", 0, 0},
+        {"textures", ARG_ENUM, &o.textures, "KIND",
+         "photographs on the device; not with --merge", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

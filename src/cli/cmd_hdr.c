@@ -5,14 +5,19 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "cli/views.h"
+#include "cli/command_output.h"
 #include "core/memory.h"
+#include "eval/choice.h"
 #include "hdr/hdr.h"
+#include "render/sequence.h"
+#include "scene/view_choice.h"
 
 struct options {
-    struct view_options views;
+    struct orl_view_choice views;
+    struct arg_size size;
     struct output_options output;
-    const char *out, *method, *merge;
+    const char *out, *method;
+    struct arg_enum merge;
     struct orl_names settings, exclude, position, up;
     struct arg_size panorama;
     int replace_series, samples, max_vram_mib;
@@ -39,69 +44,10 @@ static bool has_extension(const char *path, const char *extension)
 
 // --- output ---
 
-static enum orl_result write_frame(struct job *job, const struct orl_view *view,
-                                   const char *file, struct orl_frame *frame)
+static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_frame *frame)
 {
-    enum orl_result result = orl_frame_write(job->log, file, view, frame, &job->output);
-    orl_frame_finish(frame);
-    return result;
-}
-
-static enum orl_result draw_to(struct job *job, const struct orl_view *view, const char *file)
-{
-    struct orl_frame frame;
-    enum orl_result result = orl_hdr_draw(job->hdr, view, job->skip, &frame);
-    return result == ORL_OK ? write_frame(job, view, file, &frame) : result;
-}
-
-static enum orl_result draw_path(struct job *job, const char *dir)
-{
-    enum orl_result result = orl_dir_make(job->log, dir);
-    for (size_t i = 0; result == ORL_OK && i < job->path.count; i++) {
-        if (orl_progress_cancelled(job->progress))
-            return ORL_ERR_CANCELLED;
-        char *file = orl_format(job->log, "%s/%05zu.exr", dir, i);
-        result = file ? draw_to(job, &job->path.views[i], file) : ORL_ERR_MEMORY;
-        free(file);
-        orl_progress_report(job->progress, "hdr", (double)(i + 1), (double)job->path.count, NULL);
-    }
-    return result;
-}
-
-// Airieau 2012, section 4: each photograph of one series becomes what it would have been
-// with all the range of the scene.
-static enum orl_result replace_series(struct job *job, int series, const char *dir)
-{
-    const struct orl_scene *scene = job->scene;
-    size_t count = 0, done = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        count += scene->photos[i].series == series;
-    if (!count)
-        return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no series %d; see oriel info",
-                        scene->dir, series);
-    enum orl_result result = orl_dir_make(job->log, dir);
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        const struct orl_photo *photo = &scene->photos[i];
-        if (photo->series != series)
-            continue;
-        if (orl_progress_cancelled(job->progress))
-            return ORL_ERR_CANCELLED;
-        const char *dot = strrchr(photo->name, '.');
-        size_t stem = dot ? (size_t)(dot - photo->name) : strlen(photo->name);
-        char *file = orl_format(job->log, "%s/%.*s.exr", dir, (int)stem, photo->name);
-        char *slash = file ? strrchr(file, '/') : NULL;
-        // Photographs may lie in folders.
-        if (slash) {
-            *slash = '\0';
-            result = orl_dir_make(job->log, file);
-            *slash = '/';
-        }
-        if (result == ORL_OK)
-            result = file ? draw_to(job, &photo->view, file) : ORL_ERR_MEMORY;
-        free(file);
-        orl_progress_report(job->progress, "hdr", (double)++done, (double)count, photo->name);
-    }
-    return result;
+    struct job *job = priv;
+    return orl_hdr_draw(job->hdr, view, job->skip, frame);
 }
 
 // --- panorama ---
@@ -118,42 +64,24 @@ static enum orl_result parse_vector(const struct orl_log *log, const char *optio
     return ORL_OK;
 }
 
-static enum orl_result place_panorama(const struct options *options, struct job *job,
-                                      struct orl_panorama *p)
-{
-    enum orl_result result = ORL_OK;
-    orl_scene_up(job->scene, p->up);
-    if (options->views.at) {
-        int index = orl_scene_find_photo(job->scene, options->views.at);
-        if (index < 0)
-            return orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s has no photograph %s",
-                            job->scene->dir, options->views.at);
-        const struct orl_pose *pose = &job->scene->photos[index].view.cam_from_world;
-        orl_pose_centre(pose, p->position);
-        memcpy(p->forward, pose->r[2], sizeof p->forward);
-    } else {
-        for (size_t k = 0; k < job->scene->photo_count; k++)
-            for (int i = 0; i < 3; i++)
-                p->forward[i] += job->scene->photos[k].view.cam_from_world.r[2][i];
-        result = parse_vector(job->log, "position", &options->position, p->position);
-    }
-    if (result == ORL_OK && options->up.count)
-        result = parse_vector(job->log, "up", &options->up, p->up);
-    return result;
-}
-
 static enum orl_result draw_panorama(const struct options *options, struct job *job)
 {
     struct orl_panorama p = {.width = options->panorama.width, .height = options->panorama.height};
     struct orl_frame frame;
     struct orl_view view;
-    enum orl_result result = place_panorama(options, job, &p);
+    enum orl_result result = orl_panorama_place(job->log, job->scene, options->views.at, &p);
+    if (result == ORL_OK && !options->views.at)
+        result = parse_vector(job->log, "position", &options->position, p.position);
+    if (result == ORL_OK && options->up.count)
+        result = parse_vector(job->log, "up", &options->up, p.up);
     if (result == ORL_OK)
         result = orl_hdr_draw_panorama(job->hdr, &p, job->skip, &frame);
     if (result != ORL_OK)
         return result;
     job->output.attributes.latlong = orl_panorama_view(&p, &view);
-    return write_frame(job, &view, options->out, &frame);
+    result = orl_frame_write(job->log, options->out, &view, &frame, &job->output);
+    orl_frame_finish(&frame);
+    return result;
 }
 
 // --- the command ---
@@ -173,7 +101,7 @@ static enum orl_result check(const struct options *o, const struct orl_log *log)
                         "--path FILE, --replace-series N, --panorama WxH is needed");
     if (!panorama && (o->position.count || o->up.count))
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --position and --up are of --panorama");
-    if (panorama && o->views.size.width)
+    if (panorama && o->size.width)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --panorama has its own size");
     if (o->half && o->output.float_color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --half and --float exclude each other");
@@ -197,24 +125,29 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
 {
     const struct orl_log *log = job->log;
     enum orl_result result = check(o, log);
-    if (result == ORL_OK)
-        result = method_choose(log, NULL, o->method, &o->settings, &job->params.render);
-    if (result == ORL_OK)
-        result = orl_hdr_merge_find(log, o->merge, &job->params.merge);
+    struct orl_choice choice = {0};
+    struct orl_view_choice views = o->views;
+    views.width = o->size.width;
+    views.height = o->size.height;
+    if (result == ORL_OK) // wrong settings are found before the work
+        result = orl_choice_make(log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
     if (result == ORL_OK)
         result = output_choose(log, &o->output, true, &job->output);
     if (result == ORL_OK)
         default_layers(o, &job->output.layers);
+    job->params.merge = (enum orl_hdr_merge)o->merge.value;
     job->params.samples = o->samples;
     job->params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
     if (result == ORL_OK)
-        result = method_choose(log, job->scene, o->method, &o->settings, &job->params.render);
+        result = orl_choice_make(log, job->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings,
+                                 &choice);
+    job->params.render = choice.params;
     if (result == ORL_OK && !o->panorama.width && o->replace_series < 0)
-        result = views_choose(log, job->scene, &o->views, &job->path);
+        result = orl_views_choose(log, job->scene, &views, &job->path);
     if (result == ORL_OK)
-        result = views_exclude(log, job->scene, &o->exclude, &job->skip);
+        result = orl_photos_named(log, job->scene, &o->exclude, &job->skip);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose},
@@ -225,9 +158,13 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
         return result;
     if (o->panorama.width)
         return draw_panorama(o, job);
+    const struct orl_sequence all = {.views = job->path.views, .count = job->path.count,
+                                     .draw = draw, .priv = job, .output = &job->output,
+                                     .step = "hdr", .progress = job->progress};
     if (o->replace_series >= 0)
-        return replace_series(job, o->replace_series, o->out);
-    return o->views.path ? draw_path(job, o->out) : draw_to(job, &job->path.views[0], o->out);
+        return orl_sequence_write_series(log, &all, job->scene, o->replace_series, o->out);
+    return o->views.path ? orl_sequence_write_dir(log, &all, o->out, "exr")
+                         : orl_sequence_write_view(log, &all, &job->path.views[0], o->out);
 }
 
 static void finish(struct options *o, struct job *job)
@@ -246,9 +183,10 @@ static void finish(struct options *o, struct job *job)
 
 int cmd_hdr(int argc, char **argv)
 {
-    struct options o = {.views = {.frames = 120}, .output = {OUTPUT_OPTIONS_DEFAULTS},
-                        .method = orl_methods[0].name, .merge = "fused",
+    struct options o = {.views = {.frames = 120}, .method = orl_methods[0].name,
+                        .merge = {orl_hdr_merge_names, ORL_HDR_FUSED},
                         .replace_series = -1, .samples = 1};
+    output_options_init(&o.output);
     const struct arg_option table[] = {
         {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
@@ -262,11 +200,11 @@ int cmd_hdr(int argc, char **argv)
         {"up", ARG_LIST, &o.up, "X,Y,Z",
          "of the panorama; default: the photographs' mean upward direction", 0, 0},
         {"out", ARG_STRING, &o.out, "FILE|DIR", ".exr or .png; for several views a folder", 0, 0},
-        {"size", ARG_SIZE, &o.views.size, "WxH", "picture size; default: the camera's", 0, 0},
+        {"size", ARG_SIZE, &o.size, "WxH", "picture size; default: the camera's", 0, 0},
         {"samples", ARG_INT, &o.samples, "N", "N x N samples a pixel, from 1 to 4; default 1", 1,
          4},
-        {"merge", ARG_STRING, &o.merge, "NAME",
-         "fused (default): one gather in radiance; series: a picture of each series, merged", 0, 0},
+        {"merge", ARG_ENUM, &o.merge, "NAME",
+         "one gather in radiance, or a picture of each series, merged", 0, 0},
         {"method", ARG_STRING, &o.method, "NAME", "of rendering; default oriel", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},

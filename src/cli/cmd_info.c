@@ -4,28 +4,15 @@
 
 #include "cli/commands.h"
 #include "cli/summary.h"
-#include "core/json.h"
+#include "scene/info.h"
 #include "scene/manifest.h"
-
-static bool same_camera(const struct orl_camera *a, const struct orl_camera *b)
-{
-    return a->width == b->width && a->height == b->height && a->fx == b->fx && a->fy == b->fy &&
-           a->cx == b->cx && a->cy == b->cy;
-}
 
 static void print_cameras(const struct orl_scene *scene)
 {
     for (size_t i = 0; i < scene->photo_count; i++) {
         const struct orl_camera *camera = &scene->photos[i].view.camera;
-        size_t users = 0;
-        bool first = true;
-        for (size_t k = 0; k < scene->photo_count; k++) {
-            if (!same_camera(camera, &scene->photos[k].view.camera))
-                continue;
-            first = first && (users > 0 || k == i);
-            users++;
-        }
-        if (first)
+        size_t users = orl_scene_camera_users(scene, i);
+        if (users)
             printf("camera       %dx%d, focal length %.1f %.1f px, centre %.1f %.1f: %zu "
                    "photograph%s\n", camera->width, camera->height, camera->fx, camera->fy,
                    camera->cx, camera->cy, users, users == 1 ? "" : "s");
@@ -44,63 +31,15 @@ static void print_photos(const struct orl_scene *scene)
     }
 }
 
-static void bounds(const struct orl_points *points, double low[3], double high[3])
-{
-    for (int k = 0; k < 3; k++)
-        low[k] = high[k] = (double)points->position[0][k];
-    for (size_t i = 1; i < points->count; i++)
-        for (int k = 0; k < 3; k++) {
-            double v = (double)points->position[i][k];
-            low[k] = v < low[k] ? v : low[k];
-            high[k] = v > high[k] ? v : high[k];
-        }
-}
-
-static json_t *photo_json(const struct orl_photo *photo)
-{
-    const struct orl_camera *c = &photo->view.camera;
-    double centre[3];
-    orl_pose_centre(&photo->view.cam_from_world, centre);
-    return json_pack("{s:s, s:s, s:[i,i], s:[f,f], s:[f,f], s:[f,f,f], s:o, s:i}", "name",
-                     photo->name, "split", photo->test ? "test" : "train", "size", c->width,
-                     c->height, "focal_px", c->fx, c->fy, "centre_px", c->cx, c->cy, "position",
-                     centre[0], centre[1], centre[2], "exposure_ev",
-                     photo->has_exposure ? json_real(photo->exposure_ev) : json_null(), "series",
-                     photo->series);
-}
-
 static enum orl_result print_json(const struct orl_log *log, const struct orl_scene *scene)
 {
-    double low[3], high[3];
-    size_t test = 0;
-    json_t *photos = json_array(), *manifest = NULL;
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        test += scene->photos[i].test;
-        json_array_append_new(photos, photo_json(&scene->photos[i]));
-    }
-    bounds(&scene->points, low, high);
-    char *path = orl_path_join(log, scene->dir, "scene.json");
-    enum orl_result result = ORL_OK;
-    if (path && orl_path_is_file(path))
-        result = orl_json_read(log, path, &manifest);
-    json_t *root = json_pack(
-        "{s:s, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, s:o}",
-        "scene", scene->dir, "counts", "photographs", (json_int_t)scene->photo_count, "train",
-        (json_int_t)(scene->photo_count - test), "test", (json_int_t)test, "points",
-        (json_int_t)scene->points.count, "photo_distance", scene->photo_distance, "bounds",
-        low[0], low[1], low[2], high[0], high[1], high[2], "photographs", photos, "stages",
-        json_object_get(manifest, "stages"), "settings", json_object_get(manifest, "settings"),
-        "left_out", json_object_get(manifest, "left_out"), "tuned",
-        json_object_get(manifest, "tuned"), "ground", orl_manifest_ground(&scene->ground));
+    json_t *root = orl_scene_info(log, scene);
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
     if (text)
         printf("%s\n", text);
-    else
-        result = orl_fail(log, ORL_ERR_MEMORY, "no memory for the JSON text");
+    enum orl_result result = text ? ORL_OK : ORL_ERR_FORMAT;
     free(text);
-    free(path);
     json_decref(root);
-    json_decref(manifest);
     return result;
 }
 
@@ -116,7 +55,7 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
                scene->points.count);
     free(path);
     double low[3], high[3];
-    bounds(&scene->points, low, high);
+    orl_points_bounds(&scene->points, low, high);
     printf("bounds       %.4g %.4g %.4g to %.4g %.4g %.4g\n", low[0], low[1], low[2], high[0],
            high[1], high[2]);
     printf("distance     %.4g from photographs to what they see (median)\n",

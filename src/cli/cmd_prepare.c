@@ -8,44 +8,12 @@
 enum { INPUTS_MAX = 4096 };
 
 struct options {
-    const char *out, *quality, *sharing, *matching, *densifier, *keep, *masks, *exposures;
+    const char *out, *masks, *exposures;
+    struct arg_enum quality, sharing, matching, densifier, keep;
     int test_every, max_size, seed, max_vram_mib;
     struct orl_names test_list;
     bool resume;
 };
-
-// Index of `text` in `names`, which end with NULL; -1, logged with what is allowed, when it is not there.
-static int choose(const struct orl_log *log, const char *option, const char *text,
-                  const char *const *names)
-{
-    char all[256] = "";
-    for (size_t i = 0; names[i]; i++) {
-        if (strcmp(names[i], text) == 0)
-            return (int)i;
-        size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", names[i]);
-    }
-    orl_logf(log, ORL_LOG_ERROR, "--%s %s: must be one of %s", option, text, all);
-    return -1;
-}
-
-static bool choose_all(const struct orl_log *log, const struct options *o,
-                       struct orl_prepare_params *params)
-{
-    int quality = choose(log, "quality", o->quality, orl_quality_names);
-    int sharing = choose(log, "camera-sharing", o->sharing, orl_camera_sharing_names);
-    int matching = choose(log, "matching", o->matching, orl_matching_names);
-    int densifier = choose(log, "densifier", o->densifier, orl_densifier_names);
-    int keep = choose(log, "keep", o->keep, orl_keep_names);
-    if (quality < 0 || sharing < 0 || matching < 0 || densifier < 0 || keep < 0)
-        return false;
-    params->quality = (enum orl_quality)quality;
-    params->sharing = (enum orl_camera_sharing)sharing;
-    params->matching = (enum orl_matching)matching;
-    params->densifier = (enum orl_densifier)densifier;
-    params->keep = (enum orl_keep)keep;
-    return true;
-}
 
 static enum orl_result prepare(const struct terminal *terminal, const struct options *o,
                                const struct arg_common *common, const char *const *inputs,
@@ -54,7 +22,11 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
     struct orl_prepare_params params = {
         .inputs = inputs, .input_count = input_count, .out = o->out, .test_every = o->test_every,
         .test_list = &o->test_list, .max_size = o->max_size, .masks_dir = o->masks,
-        .exposures = o->exposures,
+        .exposures = o->exposures, .quality = (enum orl_quality)o->quality.value,
+        .sharing = (enum orl_camera_sharing)o->sharing.value,
+        .matching = (enum orl_matching)o->matching.value,
+        .densifier = (enum orl_densifier)o->densifier.value,
+        .keep = (enum orl_keep)o->keep.value,
         .resume = o->resume, .seed = (uint32_t)o->seed,
         .max_vram_bytes = (size_t)o->max_vram_mib << 20, .shader_dir = common->shader_dir};
     if (!o->out)
@@ -62,15 +34,16 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
     if (o->test_every && o->test_list.count)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
                         "prepare: --test-every and --test-list exclude each other");
-    if (!choose_all(&terminal->log, o, &params))
-        return ORL_ERR_ARGUMENT;
     return orl_prepare(&terminal->log, &params, &terminal->progress);
 }
 
 int cmd_prepare(int argc, char **argv)
 {
-    struct options o = {.quality = "standard", .sharing = "auto", .matching = "auto",
-                        .densifier = "auto", .keep = "minimal", .seed = 1};
+    struct options o = {.quality = {orl_quality_names, ORL_QUALITY_STANDARD},
+                        .sharing = {orl_camera_sharing_names, ORL_SHARING_AUTO},
+                        .matching = {orl_matching_names, ORL_MATCHING_AUTO},
+                        .densifier = {orl_densifier_names, ORL_DENSIFIER_AUTO},
+                        .keep = {orl_keep_names, ORL_KEEP_MINIMAL}, .seed = 1};
     const struct arg_option options[] = {
         {"out", ARG_STRING, &o.out, "SCENE", "the scene folder to make", 0, 0},
         {"test-every", ARG_INT, &o.test_every, "N", "hold out every N-th photograph by name",
@@ -78,19 +51,19 @@ int cmd_prepare(int argc, char **argv)
         {"test-list", ARG_LIST, &o.test_list, "A,B,..", "hold out these photographs", 0, 0},
         {"max-size", ARG_INT, &o.max_size, "PX",
          "larger side of photographs in the scene (by quality: 800, 1600, 3200)", 64, 16384},
-        {"quality", ARG_STRING, &o.quality, "NAME", "draft, standard or high", 0, 0},
+        {"quality", ARG_ENUM, &o.quality, "NAME", "sizes and effort", 0, 0},
         {"masks", ARG_STRING, &o.masks, "DIR", "NAME.png or NAME.EXT.png; black is ignored",
          0, 0},
         {"exposures", ARG_STRING, &o.exposures, "FILE",
          "exposures in place of EXIF's: lines NAME,TIME,APERTURE,ISO or NAME,EV", 0, 0},
-        {"camera-sharing", ARG_STRING, &o.sharing, "HOW",
-         "auto (by size and EXIF), single or each", 0, 0},
-        {"matching", ARG_STRING, &o.matching, "HOW",
-         "auto, exhaustive, or sequential (photographs in order of name)", 0, 0},
-        {"densifier", ARG_STRING, &o.densifier, "NAME",
-         "auto, gl (built in) or colmap (needs CUDA)", 0, 0},
-        {"keep", ARG_STRING, &o.keep, "WHAT",
-         "minimal (what commands read), or all: the stereo's maps too", 0, 0},
+        {"camera-sharing", ARG_ENUM, &o.sharing, "HOW",
+         "which photographs are of one camera; auto: by size and EXIF", 0, 0},
+        {"matching", ARG_ENUM, &o.matching, "HOW",
+         "which pairs are matched; sequential: photographs in order of name", 0, 0},
+        {"densifier", ARG_ENUM, &o.densifier, "NAME",
+         "gl is built in, colmap needs CUDA", 0, 0},
+        {"keep", ARG_ENUM, &o.keep, "WHAT",
+         "minimal is what commands read; all has the stereo's maps, too", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
          1 << 20},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},

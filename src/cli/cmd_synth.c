@@ -27,19 +27,6 @@ static enum orl_result parse_exposures(const struct orl_log *log, const struct o
     return ORL_OK;
 }
 
-static enum orl_result parse_response(const struct orl_log *log, const char *name,
-                                      struct orl_synth_params *params)
-{
-    const char *const *names = orl_synth_response_names();
-    for (int i = 0; names[i]; i++) {
-        if (strcmp(names[i], name) == 0) {
-            params->response = (enum orl_synth_response)i;
-            return ORL_OK;
-        }
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "--response %s: must be srgb or film", name);
-}
-
 // `path` without slashes at its end, and `suffix`.
 static char *sibling(const struct orl_log *log, const char *path, const char *suffix)
 {
@@ -113,7 +100,8 @@ int cmd_synth(int argc, char **argv)
     struct orl_figures_params figures = {ORL_FIGURES_DEFAULTS};
     struct arg_size size = {0, 0};
     struct orl_names exposures = {0};
-    const char *out = NULL, *truth = NULL, *response = "srgb";
+    const char *out = NULL, *truth = NULL;
+    struct arg_enum response = {orl_synth_response_names(), 0};
     int seed = (int)params.seed;
     const struct arg_option options[] = {
         {"out", ARG_STRING, &out, "DIR", "photographs go here: a new or empty folder", 0, 0},
@@ -127,8 +115,8 @@ int cmd_synth(int argc, char **argv)
          "deepens the shade by this many stops, and strengthens the sun, from 0 to 16 (0)", 0, 16},
         {"noise", ARG_NUMBER, &params.noise, "SIGMA",
          "sensor noise at white, linear, from 0 to 0.5 (0)", 0, 0.5},
-        {"response", ARG_STRING, &response, "NAME",
-         "the camera's curve: srgb, or film (more contrast)", 0, 0},
+        {"response", ARG_ENUM, &response, "NAME", "the camera's curve; film has more contrast",
+         0, 0},
         {"vignette", ARG_NUMBER, &params.vignette, "SHARE",
          "light lost in the corners, from 0 to 0.9 (0)", 0, 0.9},
         {"cameras", ARG_INT, &figures.cameras, "N", "figures: cameras around (8)", 2,
@@ -163,8 +151,7 @@ int cmd_synth(int argc, char **argv)
         }
         params.seed = (uint32_t)seed;
         enum orl_result result = parse_exposures(&terminal.log, &exposures, &params);
-        if (result == ORL_OK)
-            result = parse_response(&terminal.log, response, &params);
+        params.response = (enum orl_synth_response)response.value;
         if (result == ORL_OK && !out)
             result = orl_fail(&terminal.log, ORL_ERR_ARGUMENT, "synth: --out DIR is needed");
         if (result == ORL_OK)

@@ -1,14 +1,9 @@
 // oriel tune: a method's numbers fitted to a scene's training photographs.
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/commands.h"
-#include "cli/views.h"
-#include "core/json.h"
-#include "eval/tune.h"
-#include "scene/tuned_settings.h"
+#include "eval/choice.h"
+#include "eval/tune_json.h"
 
 struct options {
     const char *method, *json;
@@ -29,67 +24,11 @@ static void print_trial(void *priv, const struct orl_tune_trial *trial)
     fflush(stdout);
 }
 
-static double value_of(const struct orl_render_params *params,
-                       const struct orl_render_option *option)
-{
-    float value;
-    memcpy(&value, (const char *)params + option->offset, sizeof value);
-    return (double)value;
-}
-
-// What differs from the method's own numbers, of all that may be tuned.
-static json_t *settings_json(const struct orl_render_params *best,
-                             const struct orl_render_params *method)
-{
-    json_t *settings = json_object();
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-        double value = o->try_count ? value_of(best, o) : 0;
-        char text[32];
-        if (o->try_count == 0 || value == value_of(method, o))
-            continue;
-        snprintf(text, sizeof text, "%.6g", value); // 0.1, not the float next to it
-        json_object_set_new(settings, o->key, json_real(atof(text)));
-    }
-    return settings;
-}
-
-static json_t *record_json(const struct options *o, const struct orl_tune *tune, json_t *settings)
-{
-    return json_pack("{s:O, s:f, s:f, s:I, s:i, s:b}", "settings", settings, "before_psnr_db",
-                     tune->start_db, "psnr_db", tune->best_db, "photographs",
-                     (json_int_t)tune->views, "size_divide", o->size_divide, "complete",
-                     tune->complete);
-}
-
-static enum orl_result write_json(const struct orl_log *log, const struct options *o,
-                                  const struct orl_scene *scene, const char *device,
-                                  const struct orl_tune *tune, json_t *settings)
-{
-    json_t *root = record_json(o, tune, settings), *trials = json_array();
-    for (size_t i = 0; i < tune->trial_count; i++) {
-        const struct orl_tune_trial *t = &tune->trials[i];
-        json_array_append_new(trials, json_pack("{s:o, s:o, s:f, s:f, s:b}", "key",
-                                                t->key ? json_string(t->key) : json_null(),
-                                                "value", t->key ? json_real(t->value)
-                                                                : json_null(),
-                                                "psnr_db", t->psnr_db, "ssim", t->ssim, "kept",
-                                                t->kept));
-    }
-    json_object_set_new(root, "scene", json_string(scene->dir));
-    json_object_set_new(root, "method", json_string(o->method));
-    json_object_set_new(root, "device", json_string(device));
-    enum orl_result result = json_object_set_new(root, "trials", trials) == 0
-                                 ? orl_json_write(log, o->json, root)
-                                 : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for it", o->json);
-    json_decref(root);
-    return result;
-}
-
 static enum orl_result report(const struct orl_log *log, const struct options *o,
                               const struct orl_scene *scene, const char *device,
                               const struct orl_method *method, const struct orl_tune *tune)
 {
-    json_t *settings = settings_json(&tune->best, &method->params), *value;
+    json_t *settings = orl_tune_settings(&tune->best, &method->params), *value;
     const char *key;
     printf("%s: %.3f dB, was %.3f; %zu photographs at 1/%d, each rendered without itself%s\n",
            method->name, tune->best_db, tune->start_db, tune->views, o->size_divide,
@@ -98,20 +37,11 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
         printf("--set %s=%.6g\n", key, json_number_value(value));
     enum orl_result result = ORL_OK;
     if (o->json)
-        result = write_json(log, o, scene, device, tune, settings);
+        result = orl_tune_write_json(log, o->json, scene, method, device, o->size_divide, tune);
     if (result == ORL_OK && o->apply)
-        result = orl_tuned_write(log, scene->dir, method->name,
-                                          record_json(o, tune, settings));
+        result = orl_tune_apply(log, scene, method, o->size_divide, tune);
     json_decref(settings);
     return result;
-}
-
-// From the scene's tuned numbers on, or from the method's.
-static enum orl_result start_values(const struct orl_log *log, const struct options *o,
-                                    const struct orl_scene *scene,
-                                    struct orl_render_params *start)
-{
-    return method_choose(log, o->fresh ? NULL : scene, o->method, &o->settings, start);
 }
 
 static enum orl_result run(const struct terminal *terminal, const void *options,
@@ -119,15 +49,18 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 {
     const struct options *o = options;
     const struct orl_log *log = &terminal->log;
-    const struct orl_method *method = orl_method_find(log, o->method);
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
     struct orl_renderer *renderer = NULL;
-    struct orl_render_params start;
+    struct orl_choice start;
     struct orl_tune tune = {0};
-    enum orl_result result = method ? orl_scene_open(log, dir, &scene) : ORL_ERR_ARGUMENT;
+    enum orl_result result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, o->method,
+                                             &o->settings, &start);
     if (result == ORL_OK)
-        result = start_values(log, o, scene, &start);
+        result = orl_scene_open(log, dir, &scene);
+    if (result == ORL_OK && !o->fresh) // from the scene's tuned values on
+        result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings,
+                                 &start);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
@@ -135,7 +68,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_tune_params params = {
-        .method = o->method, .start = &start, .keys = &o->keys, .size_divide = o->size_divide,
+        .method = o->method, .start = &start.params, .keys = &o->keys, .size_divide = o->size_divide,
         .views = (size_t)o->views, .gain_db = o->gain_db, .budget_s = o->budget_s,
         .on_trial = common->quiet ? NULL : print_trial, .progress = &terminal->progress};
     if (result == ORL_OK && !common->quiet)
@@ -143,7 +76,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_tune_run(gpu, renderer, scene, &params, &tune);
     if (result == ORL_OK)
-        result = report(log, o, scene, orl_gpu_caps(gpu)->renderer, method, &tune);
+        result = report(log, o, scene, orl_gpu_caps(gpu)->renderer, start.method, &tune);
     orl_tune_finish(&tune);
     orl_renderer_destroy(&renderer);
     orl_gpu_destroy(&gpu);

@@ -15,8 +15,10 @@ int cmd_prepare(int argc, char **argv);
 int cmd_densify(int argc, char **argv);
 int cmd_hdr(int argc, char **argv);
 int cmd_bench(int argc, char **argv);
+int cmd_chart(int argc, char **argv);
 int cmd_import(int argc, char **argv);
 int cmd_info(int argc, char **argv);
+int cmd_methods(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_eval(int argc, char **argv);
 int cmd_synth(int argc, char **argv);
@@ -27,7 +29,7 @@ int cmd_tune(int argc, char **argv);
 bool command_begin(const struct arg_command *command, int argc, char **argv,
                    struct arg_common *common, struct terminal *terminal,
                    const char **positionals, size_t *positional_count, int *status);
-// What a command does with its one positional and its options.
+// What a command does with its one positional (NULL: not given) and its options.
 typedef enum orl_result command_run(const struct terminal *terminal, const void *options,
                                     const struct arg_common *common, const char *positional);
 // A whole command that takes one positional: parses, runs, returns the exit status,

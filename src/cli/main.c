@@ -5,11 +5,13 @@
 
 static const struct command commands[] = {
     {"bench", "time and memory of frames, pass by pass", cmd_bench},
+    {"chart", "accuracy against time and memory, all methods", cmd_chart},
     {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},
     {"hdr", "radiance views from photographs of several exposures", cmd_hdr},
     {"import", "make a scene from known cameras, silhouettes, sequences", cmd_import},
     {"info", "say what is in a scene", cmd_info},
+    {"methods", "list the methods of rendering and their options", cmd_methods},
     {"prepare", "make a scene from photographs", cmd_prepare},
     {"render", "render new views", cmd_render},
     {"synth", "synthetic photographs with ground truth", cmd_synth},
@@ -53,7 +55,7 @@ int command_main(const struct arg_command *command, int argc, char **argv, comma
 {
     struct arg_common common = {0};
     struct terminal terminal;
-    const char *positional;
+    const char *positional = NULL;
     size_t count;
     int status;
     if (command_begin(command, argc, argv, &common, &terminal, &positional, &count, &status)) {

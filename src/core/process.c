@@ -30,6 +30,13 @@ double orl_time_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+double orl_cpu_time_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 static void end_line(struct output *out, const struct orl_process_params *params)
 {
     out->line[out->length] = '\0';

@@ -30,5 +30,8 @@ enum orl_result orl_process_run(const struct orl_log *log, const struct orl_proc
 
 // Monotonic seconds.
 double orl_time_s(void);
+// Processor time of all threads of this process so far, seconds. Other work on the machine hardly
+// changes it: on a software renderer it is the frame's; with a GPU it is the driver's and ours.
+double orl_cpu_time_s(void);
 
 #endif

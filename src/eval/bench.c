@@ -13,13 +13,6 @@
 #include "eval/metrics.h"
 #include "io/picture.h"
 
-const char *orl_bench_owner(const char *tag)
-{
-    if (strncmp(tag, "point ", 6) == 0)
-        return "points";
-    return strncmp(tag, "photograph", 10) == 0 ? "photographs" : "frame";
-}
-
 // --- one configuration ---
 
 static enum orl_result add_run(struct bench_job *job, const struct orl_bench_run *run)
@@ -40,7 +33,7 @@ static void step(struct bench_job *job, const char *what)
 static struct orl_bench_run new_run(const struct bench_job *job, enum orl_bench_kind kind,
                                     size_t method, const int size[2])
 {
-    return (struct orl_bench_run){.kind = kind, .method = job->params->methods[method],
+    return (struct orl_bench_run){.kind = kind, .method = job->params->choices[method].method->name,
                                   .width = size[0], .height = size[1],
                                   .photographs = job->bench->photographs,
                                   .points = job->scene->points.count, .photo_divide = 1};
@@ -51,12 +44,12 @@ static enum orl_result measure_methods(struct bench_job *job, struct orl_rendere
                                        const struct orl_bench_run *like, const char *what)
 {
     enum orl_result result = ORL_OK;
-    for (size_t m = 0; result == ORL_OK && m < job->params->method_count; m++) {
+    for (size_t m = 0; result == ORL_OK && m < job->params->choice_count; m++) {
         struct orl_bench_run run = *like;
-        run.method = job->params->methods[m];
+        run.method = job->params->choices[m].method->name;
         run.psnr_db = m == 0 ? like->psnr_db : 0;
         step(job, what);
-        result = orl_bench_measure(job, renderer, &job->params->render[m], &run);
+        result = orl_bench_measure(job, renderer, &job->params->choices[m].params, &run);
         if (result == ORL_OK)
             result = add_run(job, &run);
     }
@@ -81,7 +74,7 @@ static enum orl_result measure_sizes(struct bench_job *job)
     if (job->bench->memory_count > ORL_BENCH_MEMORY_MAX)
         job->bench->memory_count = ORL_BENCH_MEMORY_MAX;
     if (result == ORL_OK && job->params->trace)
-        result = orl_bench_trace(job, renderer, &job->params->render[0]);
+        result = orl_bench_trace(job, renderer, &job->params->choices[0].params);
     orl_renderer_destroy(&renderer);
     return result;
 }
@@ -136,9 +129,9 @@ static enum orl_result add_raster(struct bench_job *job, const struct orl_points
 static double splat_ms(const struct orl_bench_run *run)
 {
     double sum = 0;
-    for (size_t i = 0; i < run->pass_count; i++)
-        if (strncmp(run->passes[i].name, "splat", 5) == 0)
-            sum += run->passes[i].ms;
+    for (size_t i = 0; i < run->timing.pass_count; i++)
+        if (strncmp(run->timing.passes[i].name, "splat", 5) == 0)
+            sum += run->timing.passes[i].ms;
     return sum;
 }
 
@@ -164,7 +157,7 @@ static enum orl_result measure_point_count(struct bench_job *job, size_t count)
         // The first method's: they all splat alike.
         const struct orl_bench *bench = job->bench;
         result = add_raster(job, &scene.points,
-                            splat_ms(&bench->runs[bench->run_count - job->params->method_count]));
+                            splat_ms(&bench->runs[bench->run_count - job->params->choice_count]));
     }
     orl_points_finish(&scene.points);
     return result;
@@ -208,7 +201,7 @@ static enum orl_result compare_resolution(struct bench_job *job, struct orl_rend
                                                  job->params->sizes[0][1]);
     char *path = NULL;
     enum orl_result result =
-        orl_renderer_draw(renderer, &view, &job->params->render[0], NULL, &frame);
+        orl_renderer_draw(renderer, &view, &job->params->choices[0].params, NULL, &frame);
     if (result == ORL_OK)
         result = orl_tone_srgb(job->log, &frame.color, &picture);
     if (result == ORL_OK && best->u8)
@@ -275,7 +268,7 @@ static void describe(struct bench_job *job)
 
 static double count_steps(const struct bench_job *job)
 {
-    double methods = (double)job->params->method_count;
+    double methods = (double)job->params->choice_count;
     double steps = methods * (double)job->params->size_count;
     if (!job->params->growth)
         return steps;
@@ -291,8 +284,8 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
 {
     struct bench_job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .scene = scene,
                             .params = params, .bench = bench};
-    ORL_REQUIRE(job.log, params->size_count > 0 && params->method_count > 0);
-    ORL_REQUIRE(job.log, params->frames_max >= BENCH_VIEWS_MAX);
+    ORL_REQUIRE(job.log, params->size_count > 0 && params->choice_count > 0);
+    ORL_REQUIRE(job.log, params->frames_max >= ORL_TIMING_FRAMES_MIN);
     memset(bench, 0, sizeof *bench);
     bench->scene = scene;
     describe(&job);

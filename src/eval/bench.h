@@ -4,9 +4,11 @@
 #define ORL_EVAL_BENCH_H
 
 #include "core/progress.h"
+#include "eval/choice.h"
+#include "eval/timing.h"
 #include "render/render.h"
 
-enum { ORL_BENCH_PASSES_MAX = 32, ORL_BENCH_MEMORY_MAX = 64 };
+enum { ORL_BENCH_MEMORY_MAX = 64 };
 
 enum orl_bench_kind {
     ORL_BENCH_SIZES,       // of the picture: table 2
@@ -16,23 +18,16 @@ enum orl_bench_kind {
     ORL_BENCH_KIND_COUNT
 };
 
-// One configuration. Times are medians over frames, in milliseconds.
+// One configuration.
 struct orl_bench_run {
     enum orl_bench_kind kind;
     const char *method;
     int width, height;          // of the picture
     size_t photographs, points;
     int photo_divide;           // photographs at 1/n of their size
-    size_t frames;              // behind each median
-    double frame_ms;            // from the call until the device is done, no reading back
-    double slowest_ms;          // of those frames
+    struct orl_timing timing;
     size_t device_bytes;
     double psnr_db;             // RESOLUTION, first method: against full size; else 0
-    struct {
-        const char *name;
-        double ms;
-    } passes[ORL_BENCH_PASSES_MAX]; // timed in frames of their own
-    size_t pass_count;
 };
 
 // Compute splatting beside the graphics pipeline's GL_POINTS with depth test.
@@ -43,9 +38,8 @@ struct orl_bench_raster {
 };
 
 struct orl_bench_params {
-    const char *const *methods; // names
-    const struct orl_render_params *render; // of each method
-    size_t method_count;
+    const struct orl_choice *choices;
+    size_t choice_count;
     const int (*sizes)[2]; // width, height; growth is measured at the first
     size_t size_count;
     const size_t *point_counts; // of the growth with points, ended by 0; NULL: an eighth, a
@@ -81,9 +75,6 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
                               const struct orl_bench_params *params,
                               struct orl_bench *bench) ORL_CHECK_RESULT;
 void orl_bench_finish(struct orl_bench *bench);
-
-// points, photographs or frame, by the object's tag.
-const char *orl_bench_owner(const char *tag);
 
 // The JSON of docs/performance.md, released with free().
 char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench);

@@ -41,7 +41,6 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
 // Draws some frames and writes job->params->trace.
 enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *renderer,
                                 const struct orl_render_params *render);
-double orl_bench_median(double *values, size_t count);
 
 // --- bench_trace.c ---
 

@@ -6,19 +6,22 @@
 static json_t *passes_json(const struct orl_bench_run *run)
 {
     json_t *passes = json_object();
-    for (size_t i = 0; i < run->pass_count; i++)
-        json_object_set_new(passes, run->passes[i].name, json_real(run->passes[i].ms));
+    for (size_t i = 0; i < run->timing.pass_count; i++) {
+        const struct orl_timing_pass *pass = &run->timing.passes[i];
+        json_object_set_new(passes, pass->name, json_real(pass->ms));
+    }
     return passes;
 }
 
 static json_t *run_json(const struct orl_bench_run *run)
 {
     json_t *object = json_pack(
-        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:I, s:o}", "method", run->method,
+        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:I, s:o}", "method", run->method,
         "size", run->width, run->height, "photographs", (json_int_t)run->photographs, "points",
         (json_int_t)run->points, "photo_divide", run->photo_divide, "frames",
-        (json_int_t)run->frames, "frame_ms", run->frame_ms, "slowest_ms", run->slowest_ms, "fps",
-        run->frame_ms > 0 ? 1e3 / run->frame_ms : 0.0, "device_bytes",
+        (json_int_t)run->timing.frames, "frame_ms", run->timing.median_ms, "slowest_ms",
+        run->timing.slowest_ms, "cpu_ms", run->timing.cpu_ms, "fps",
+        run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, "device_bytes",
         (json_int_t)run->device_bytes, "passes_ms", passes_json(run));
     if (run->psnr_db > 0)
         json_object_set_new(object, "psnr_db", json_real(run->psnr_db));
@@ -52,8 +55,8 @@ static json_t *memory_json(const struct orl_bench *bench)
     json_t *array = json_array();
     for (size_t i = 0; i < bench->memory_count; i++)
         json_array_append_new(array, json_pack(
-            "{s:s, s:s, s:I, s:I}", "owner", orl_bench_owner(bench->memory[i].tag), "tag",
-            bench->memory[i].tag, "bytes", (json_int_t)bench->memory[i].bytes, "objects",
+            "{s:s, s:s, s:I, s:I}", "owner", orl_owner_names[bench->memory[i].owner],
+            "tag", bench->memory[i].tag, "bytes", (json_int_t)bench->memory[i].bytes, "objects",
             (json_int_t)bench->memory[i].objects));
     return array;
 }

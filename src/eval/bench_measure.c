@@ -1,118 +1,49 @@
 // Medians of one configuration.
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/process.h"
 #include "eval/bench_internal.h"
 #include "gpu/point_raster.h"
 
-enum { WARM_UP = 2, FRAMES_MIN = 3, TRACE_FRAMES = 6, TRACE_SPANS = 1024 };
+enum { WARM_UP = 2, TRACE_FRAMES = 6, TRACE_SPANS = 1024 };
 
-static int compare_doubles(const void *a, const void *b)
+// The frames of one run.
+struct run_frames {
+    struct bench_job *job;
+    struct orl_renderer *renderer;
+    const struct orl_render_params *render;
+    int width, height;
+};
+
+static enum orl_result draw(void *priv, size_t number)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    const struct run_frames *f = priv;
+    struct orl_view view = orl_bench_resize_view(&f->job->views[number % f->job->view_count],
+                                                 f->width, f->height);
+    return orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
 }
 
-double orl_bench_median(double *values, size_t count)
+// As the benchmark's parameters have it; no warm-up, no passes.
+static struct orl_timing_params timing_params(const struct bench_job *job)
 {
-    qsort(values, count, sizeof *values, compare_doubles);
-    return count ? 0.5 * (values[(count - 1) / 2] + values[count / 2]) : 0;
-}
-
-// One frame of the run, the device drained.
-static enum orl_result draw(struct bench_job *job, struct orl_renderer *renderer,
-                            const struct orl_render_params *render,
-                            const struct orl_bench_run *run, size_t number, double *ms)
-{
-    struct orl_view view =
-        orl_bench_resize_view(&job->views[number % job->view_count], run->width, run->height);
-    if (orl_progress_cancelled(job->params->progress))
-        return ORL_ERR_CANCELLED;
-    double start = orl_time_s();
-    enum orl_result result = orl_renderer_draw(renderer, &view, render, NULL, NULL);
-    *ms = 1e3 * (orl_time_s() - start);
-    return result;
-}
-
-static bool enough(const struct bench_job *job, size_t frames, double start_s)
-{
-    // All views as often as each other.
-    return frames >= job->params->frames_max ||
-           (frames >= FRAMES_MIN && frames % job->view_count == 0 &&
-            orl_time_s() - start_s >= job->params->seconds);
-}
-
-static enum orl_result measure_frames(struct bench_job *job, struct orl_renderer *renderer,
-                                      const struct orl_render_params *render,
-                                      struct orl_bench_run *run, double *ms)
-{
-    enum orl_result result = ORL_OK;
-    double start = orl_time_s();
-    for (run->frames = 0; result == ORL_OK && !enough(job, run->frames, start); run->frames++)
-        result = draw(job, renderer, render, run, run->frames, &ms[run->frames]);
-    for (size_t i = 0; i < run->frames; i++)
-        run->slowest_ms = fmax(run->slowest_ms, ms[i]);
-    run->frame_ms = orl_bench_median(ms, run->frames);
-    return result;
-}
-
-// Adds one frame's passes to the columns; `names` grows.
-static void note_passes(struct bench_job *job, struct orl_bench_run *run, double *columns,
-                        size_t frame)
-{
-    struct orl_pass_time times[ORL_BENCH_PASSES_MAX];
-    size_t count = orl_gpu_take_times(job->gpu, times, ORL_BENCH_PASSES_MAX);
-    for (size_t i = 0; i < count && i < ORL_BENCH_PASSES_MAX; i++) {
-        size_t k = 0;
-        while (k < run->pass_count && strcmp(run->passes[k].name, times[i].name) != 0)
-            k++;
-        if (k == ORL_BENCH_PASSES_MAX)
-            continue;
-        if (k == run->pass_count)
-            run->passes[run->pass_count++].name = times[i].name;
-        columns[k * job->params->frames_max + frame] = times[i].ms;
-    }
-}
-
-static enum orl_result measure_passes(struct bench_job *job, struct orl_renderer *renderer,
-                                      const struct orl_render_params *render,
-                                      struct orl_bench_run *run)
-{
-    size_t rows = job->params->frames_max, frames = run->frames;
-    double unused, *columns = orl_array(job->log, rows * ORL_BENCH_PASSES_MAX, sizeof *columns);
-    if (!columns)
-        return ORL_ERR_MEMORY;
-    enum orl_result result = ORL_OK;
-    orl_gpu_take_times(job->gpu, NULL, 0);
-    orl_gpu_time_passes(job->gpu, true);
-    for (size_t i = 0; result == ORL_OK && i < frames; i++) {
-        result = draw(job, renderer, render, run, i, &unused);
-        note_passes(job, run, columns, i);
-    }
-    orl_gpu_time_passes(job->gpu, false);
-    for (size_t k = 0; k < run->pass_count; k++)
-        run->passes[k].ms = orl_bench_median(&columns[k * rows], frames);
-    free(columns);
-    return result;
+    return (struct orl_timing_params){.views = job->view_count, .seconds = job->params->seconds,
+                                      .frames_max = job->params->frames_max,
+                                      .progress = job->params->progress};
 }
 
 enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *renderer,
                                   const struct orl_render_params *render,
                                   struct orl_bench_run *run)
 {
-    double unused, *ms = orl_array(job->log, job->params->frames_max, sizeof *ms);
-    enum orl_result result = ms ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < WARM_UP * job->view_count; i++)
-        result = draw(job, renderer, render, run, i, &unused);
-    if (result == ORL_OK)
-        result = measure_frames(job, renderer, render, run, ms);
-    if (result == ORL_OK)
-        result = measure_passes(job, renderer, render, run);
+    struct run_frames frames = {job, renderer, render, run->width, run->height};
+    struct orl_timing_params params = timing_params(job);
+    params.draw = draw;
+    params.priv = &frames;
+    params.warm_up = WARM_UP;
+    params.pass_frames = params.frames_max;
+    enum orl_result result = orl_timing_take(job->gpu, &params, &run->timing);
     run->device_bytes = orl_gpu_bytes(job->gpu);
-    free(ms);
     return result;
 }
 
@@ -142,7 +73,8 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
                                          struct orl_bench_raster *raster)
 {
     struct orl_point_raster *drawer = NULL;
-    struct orl_pass_time times[ORL_BENCH_PASSES_MAX];
+    const struct orl_timing_params timing = timing_params(job);
+    struct orl_pass_time times[ORL_TIMING_PASSES_MAX];
     double start, *ms = orl_array(job->log, job->params->frames_max, sizeof *ms);
     enum orl_result result = ms ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
@@ -152,14 +84,15 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
     orl_gpu_take_times(job->gpu, NULL, 0);
     orl_gpu_time_passes(job->gpu, true);
     start = orl_time_s();
-    for (size_t i = 0; result == ORL_OK && !enough(job, raster->frames, start); i++) {
+    for (size_t i = 0;
+         result == ORL_OK && !orl_timing_enough(&timing, raster->frames, start); i++) {
         float matrix[16];
         struct orl_view view = orl_bench_resize_view(&job->views[i % job->view_count],
                                                      raster->width, raster->height);
         clip_matrix(&view, 1e-3 * job->scene->photo_distance, 1e3 * job->scene->photo_distance,
                     matrix);
         orl_point_raster_draw(drawer, matrix);
-        if (orl_gpu_take_times(job->gpu, times, ORL_BENCH_PASSES_MAX) == 0)
+        if (orl_gpu_take_times(job->gpu, times, ORL_TIMING_PASSES_MAX) == 0)
             result = ORL_ERR_GPU;
         else if (i >= job->view_count) // after one round to warm up
             ms[raster->frames++] = times[0].ms;
@@ -169,7 +102,7 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
     orl_gpu_time_passes(job->gpu, false);
     if (result == ORL_OK)
         result = orl_gpu_finish(job->gpu);
-    raster->raster_ms = orl_bench_median(ms, raster->frames);
+    raster->raster_ms = orl_median(ms, raster->frames);
     orl_point_raster_destroy(&drawer);
     free(ms);
     return result;
@@ -180,11 +113,10 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
 enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *renderer,
                                 const struct orl_render_params *render)
 {
-    const struct orl_bench_run run = {.width = job->params->sizes[0][0],
-                                      .height = job->params->sizes[0][1]};
+    struct run_frames run = {job, renderer, render, job->params->sizes[0][0],
+                             job->params->sizes[0][1]};
     struct bench_frame_span frames[TRACE_FRAMES];
     struct orl_pass_trace trace = {.capacity = TRACE_SPANS};
-    double unused;
     trace.spans = orl_array(job->log, TRACE_SPANS, sizeof *trace.spans);
     if (!trace.spans)
         return ORL_ERR_MEMORY;
@@ -193,7 +125,8 @@ enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *rend
     orl_gpu_trace_passes(job->gpu, &trace);
     for (size_t i = 0; result == ORL_OK && i < TRACE_FRAMES; i++) {
         frames[i].start_s = orl_time_s();
-        result = draw(job, renderer, render, &run, i, &unused);
+        result = orl_progress_cancelled(job->params->progress) ? ORL_ERR_CANCELLED
+                                                               : draw(&run, i);
         frames[i].end_s = orl_time_s();
     }
     orl_gpu_trace_passes(job->gpu, NULL);

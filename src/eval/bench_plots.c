@@ -53,10 +53,10 @@ static enum orl_result plot_passes(const struct orl_log *log, const struct orl_b
         const struct orl_bench_run *run = &bench->runs[i];
         if (run->kind != ORL_BENCH_SIZES)
             continue;
-        for (size_t k = 0; k < run->pass_count; k++) {
-            size_t part = part_of(run->passes[k].name, parts, &part_count);
+        for (size_t k = 0; k < run->timing.pass_count; k++) {
+            size_t part = part_of(run->timing.passes[k].name, parts, &part_count);
             if (part < PARTS_MAX)
-                table[row_count][part] = run->passes[k].ms;
+                table[row_count][part] = run->timing.passes[k].ms;
         }
         snprintf(names[row_count], NAME_MAX_BYTES, "%s, %dx%d", run->method, run->width,
                  run->height);
@@ -76,19 +76,20 @@ static enum orl_result plot_passes(const struct orl_log *log, const struct orl_b
 static enum orl_result plot_memory(const struct orl_log *log, const struct orl_bench *bench,
                                    const char *dir)
 {
-    static const char *const owners[] = {"points", "photographs", "frame"};
+    enum { PROCESS = ORL_OWNER_COUNT, OWNERS };
     static const char *const rows[] = {"device", "host, at most"};
-    static const char *const parts[] = {"points", "photographs", "frame", "process"};
-    double values[2][4] = {{0}};
+    const char *parts[OWNERS] = {[PROCESS] = "process"};
+    double values[2][OWNERS] = {{0}};
     char subtitle[256];
     for (size_t i = 0; i < bench->memory_count; i++)
-        for (size_t k = 0; k < ORL_COUNT(owners); k++)
-            if (strcmp(orl_bench_owner(bench->memory[i].tag), owners[k]) == 0)
-                values[0][k] += (double)bench->memory[i].bytes / (1 << 20);
-    values[1][3] = (double)bench->host_peak_bytes / (1 << 20);
+        values[0][bench->memory[i].owner] += (double)bench->memory[i].bytes / (1 << 20);
+    for (size_t k = 0; k < ORL_OWNER_COUNT; k++)
+        parts[k] = orl_owner_names[k];
+    values[1][PROCESS] = (double)bench->host_peak_bytes / (1 << 20);
     describe(bench, subtitle);
     const struct orl_bars bars = {.title = "Memory by owner", .subtitle = subtitle,
-                                  .x_label = "MiB", .parts = parts, .part_count = 4, .rows = rows,
+                                  .x_label = "MiB", .parts = parts, .part_count = OWNERS,
+                                  .rows = rows,
                                   .values = &values[0][0], .row_count = 2};
     return save(log, dir, "memory.svg", orl_bars_svg(log, &bars));
 }
@@ -144,7 +145,7 @@ static void collect(const struct orl_bench *bench, enum orl_bench_kind kind, str
         snprintf(label, sizeof label, "%.0f MiB", (double)run->device_bytes / (1 << 20));
         bool labelled = kind == ORL_BENCH_RESOLUTION && strcmp(run->method,
                                                                bench->runs[0].method) == 0;
-        add_dot(c, run->method, x_of(run), run->frame_ms, labelled ? label : NULL);
+        add_dot(c, run->method, x_of(run), run->timing.median_ms, labelled ? label : NULL);
     }
 }
 

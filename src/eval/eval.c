@@ -6,14 +6,13 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "core/process.h"
+#include "eval/flip.h"
+#include "eval/heldout.h"
 #include "eval/internal.h"
-#include "io/picture.h"
-#include "render/reexpose.h"
 
-// Timed draws of one view after a warm-up: a software renderer's are slow and
-// steady enough for one.
-enum { DRAWS_GPU = 3, DRAWS_SOFTWARE = 1 };
+// Timed frames of each view.
+static const double seconds = 0.2;
+enum { FRAMES_MAX = 30, PASS_FRAMES = 1 };
 
 struct job {
     const struct orl_log *log;
@@ -22,112 +21,73 @@ struct job {
     const struct orl_scene *scene;
     const struct orl_eval_params *params;
     struct orl_eval *eval;
-    size_t draws; // timed ones, of all views
 };
 
 // --- drawing and timing ---
 
-static int compare_doubles(const void *a, const void *b)
+// One view's frames.
+struct view_frames {
+    struct job *job;
+    const struct orl_view *view;
+    struct orl_render_params render;
+};
+
+static enum orl_result draw(const struct view_frames *f, struct orl_frame *frame)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    const struct orl_eval_params *params = f->job->params;
+    return params->draw_radiance
+               ? params->draw_radiance(params->draw_priv, f->view, frame)
+               : orl_renderer_draw(f->job->renderer, f->view, &f->render, NULL, frame);
 }
 
-static enum orl_result timed_draw(struct job *job, const struct orl_view *view,
-                                  struct orl_frame *frame, double *ms)
+static enum orl_result draw_again(void *priv, size_t number)
 {
-    double start = orl_time_s();
-    const struct orl_eval_params *params = job->params;
-    struct orl_render_params render = *params->render;
-    render.leave_out |= ORL_LAYER_NORMAL;
-    enum orl_result result =
-        params->draw_radiance
-            ? params->draw_radiance(params->draw_priv, view, frame)
-            : orl_renderer_draw(job->renderer, view, &render, NULL, frame);
-    *ms = 1e3 * (orl_time_s() - start); // drawing ends with reading back: the pipeline is empty
+    (void)number;
+    const struct view_frames *f = priv;
+    if (!f->job->params->draw_radiance)
+        return draw(f, NULL);
+    struct orl_frame frame = {0}; // merging several pictures is work with what was read back
+    enum orl_result result = draw(f, &frame);
+    orl_frame_finish(&frame);
     return result;
 }
 
-static void add_pass_times(struct job *job)
+static void add_pass_times(struct orl_eval *eval, const struct orl_timing *timing)
 {
-    struct orl_pass_time times[ORL_EVAL_PASSES_MAX];
-    struct orl_eval *eval = job->eval;
-    size_t count = orl_gpu_take_times(job->gpu, times, ORL_COUNT(times));
-    for (size_t i = 0; i < count && i < ORL_COUNT(times); i++) {
+    for (size_t i = 0; i < timing->pass_count; i++) {
+        const struct orl_timing_pass *pass = &timing->passes[i];
         size_t k = 0;
-        while (k < eval->pass_count && strcmp(eval->passes[k].name, times[i].name) != 0)
+        while (k < eval->pass_count && strcmp(eval->passes[k].name, pass->name) != 0)
             k++;
-        if (k == ORL_EVAL_PASSES_MAX)
+        if (k == ORL_TIMING_PASSES_MAX)
             continue;
         if (k == eval->pass_count)
-            eval->passes[eval->pass_count++].name = times[i].name;
-        eval->passes[k].ms += times[i].ms;
+            eval->passes[eval->pass_count++].name = pass->name;
+        eval->passes[k].ms += pass->ms / (double)eval->view_count;
     }
 }
 
-// The last of several draws stays in *frame.
-static enum orl_result draw(struct job *job, const struct orl_view *view, struct orl_frame *frame,
-                            double *median_ms)
+// The picture, drawn before the frames that are timed: they need no other to warm up.
+static enum orl_result draw_and_time(struct job *job, const struct orl_view *view,
+                                     struct orl_frame *frame, double *median_ms)
 {
-    double ms[DRAWS_GPU], warm_up_ms;
-    int draws = orl_gpu_caps(job->gpu)->software ? DRAWS_SOFTWARE : DRAWS_GPU;
-    orl_gpu_time_passes(job->gpu, false);
-    enum orl_result result = timed_draw(job, view, frame, &warm_up_ms);
-    orl_gpu_time_passes(job->gpu, true);
-    for (int i = 0; i < draws && result == ORL_OK; i++) {
-        orl_frame_finish(frame);
-        result = timed_draw(job, view, frame, &ms[i]);
-        job->draws++;
-    }
-    add_pass_times(job);
-    orl_gpu_time_passes(job->gpu, false);
+    struct view_frames frames = {job, view, *job->params->render};
+    frames.render.leave_out |= ORL_LAYER_NORMAL;
+    const struct orl_timing_params params = {
+        .draw = draw_again, .priv = &frames, .views = 1, .seconds = seconds,
+        .frames_max = FRAMES_MAX, .pass_frames = PASS_FRAMES, .progress = job->params->progress};
+    struct orl_timing timing;
+    enum orl_result result = draw(&frames, frame);
+    if (result == ORL_OK)
+        result = orl_timing_take(job->gpu, &params, &timing);
     if (result != ORL_OK)
         return result;
-    qsort(ms, (size_t)draws, sizeof *ms, compare_doubles);
-    *median_ms = ms[draws / 2];
+    add_pass_times(job->eval, &timing);
+    *median_ms = timing.median_ms;
     return ORL_OK;
 }
 
 // --- one view ---
-
-// Aligned photographs show the scene at its reference exposure. What this one would have
-// shown is the way back: by a gain guessed without its pixels (expose.h) and the vignetting
-// of its lens.
-static bool is_aligned(const struct orl_render_params *params, const struct orl_photo *photo)
-{
-    bool changed = false;
-    for (int c = 0; c < 3; c++)
-        changed = changed || photo->gain[c] != 1 || photo->vignette[c] != 0;
-    return changed && params->alignment == ORL_ALIGNMENT_ON &&
-           orl_render_option_read(orl_render_option_find("alignment"), params);
-}
-
-static enum orl_result read_photograph(const struct job *job, size_t photo,
-                                       struct orl_image *image)
-{
-    memset(image, 0, sizeof *image);
-    const struct orl_camera *camera = &job->scene->photos[photo].view.camera;
-    char *path = orl_scene_photo_path(job->log, job->scene, photo);
-    if (!path)
-        return ORL_ERR_MEMORY;
-    enum orl_result result = orl_picture_read(job->log, path, 3, image);
-    if (result == ORL_OK && (image->width != camera->width || image->height != camera->height))
-        result = orl_fail(job->log, ORL_ERR_DATA, "%s has %dx%d pixels, its camera %dx%d", path,
-                          image->width, image->height, camera->width, camera->height);
-    free(path);
-    return result;
-}
-
-static enum orl_result as_photograph(const struct job *job, size_t index,
-                                     struct orl_image *color, struct orl_image *rendered)
-{
-    if (job->params->draw_radiance)
-        return orl_photo_expose(job->log, job->scene, index, color, rendered);
-    const struct orl_photo *photo = &job->scene->photos[index];
-    if (is_aligned(job->params->render, photo))
-        orl_photo_unalign(photo, color);
-    return orl_tone_srgb(job->log, color, rendered);
-}
 
 static enum orl_result compare_radiance(const struct job *job, struct orl_eval_view *view,
                                         const struct orl_frame *frame)
@@ -143,27 +103,32 @@ static enum orl_result compare_radiance(const struct job *job, struct orl_eval_v
 
 static enum orl_result measure(struct job *job, struct orl_eval_view *view)
 {
-    const struct orl_photo *photo = &job->scene->photos[view->photo];
-    struct orl_image photograph, rendered = {0};
+    const struct orl_render_params *render =
+        job->params->draw_radiance ? NULL : job->params->render;
+    struct orl_heldout heldout;
+    struct orl_image rendered = {0};
     struct orl_frame frame = {0};
-    enum orl_result result = read_photograph(job, view->photo, &photograph);
-    view->width = photograph.width;
-    view->height = photograph.height;
+    enum orl_result result = orl_heldout_load(job->log, job->scene, view->photo, 1, &heldout);
+    view->width = heldout.picture.width;
+    view->height = heldout.picture.height;
     if (result == ORL_OK)
-        result = draw(job, &photo->view, &frame, &view->render_ms);
+        result = draw_and_time(job, &heldout.view, &frame, &view->render_ms);
     if (result == ORL_OK && job->params->truth)
         result = compare_radiance(job, view, &frame);
     if (result == ORL_OK)
-        result = as_photograph(job, view->photo, &frame.color, &rendered);
+        result = orl_heldout_expose(job->log, job->scene, view->photo, render, &frame.color,
+                                    &rendered);
     if (result == ORL_OK)
-        result = orl_metrics_compare(job->log, &rendered, &photograph, &frame.coverage,
+        result = orl_metrics_compare(job->log, &rendered, &heldout.picture, &frame.coverage,
                                      &view->metrics);
+    if (result == ORL_OK)
+        result = orl_flip_compare(job->log, &rendered, &heldout.picture, NULL, &view->flip);
     if (result == ORL_OK && job->params->image_dir)
         result = orl_eval_write_images(job->log, job->scene, job->params, view->photo, &rendered,
-                                       &photograph);
+                                       &heldout.picture);
     orl_frame_finish(&frame);
     orl_image_finish(&rendered);
-    orl_image_finish(&photograph);
+    orl_heldout_finish(&heldout);
     return result;
 }
 
@@ -182,6 +147,7 @@ static void take_means(struct orl_eval *eval)
         mean->metrics.coverage += m->coverage / n;
         mean->metrics.completeness += m->completeness / n;
         mean->metrics.ncc_error += m->ncc_error / n;
+        mean->flip += eval->views[i].flip / n;
         mean->radiance.pu21_psnr_db += eval->views[i].radiance.pu21_psnr_db / n;
         mean->radiance.mu_psnr_db += eval->views[i].radiance.mu_psnr_db / n;
         mean->radiance.log2_rmse += eval->views[i].radiance.log2_rmse / n;
@@ -256,8 +222,6 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
         orl_eval_finish(eval);
         return result;
     }
-    for (size_t i = 0; i < eval->pass_count; i++)
-        eval->passes[i].ms /= (double)job.draws;
     take_means(eval);
     return ORL_OK;
 }

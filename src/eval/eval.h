@@ -6,6 +6,7 @@
 #include "core/progress.h"
 #include "eval/metrics.h"
 #include "eval/radiance_metrics.h"
+#include "eval/timing.h"
 #include "eval/truth.h"
 #include "render/render.h"
 
@@ -14,15 +15,9 @@ struct orl_eval_view {
     int width, height;
     struct orl_metrics metrics;
     struct orl_radiance_metrics radiance; // only with a truth
-    double render_ms;
+    double render_ms; // median of frames, as timing.h takes them
+    double flip;      // flip.h
 };
-
-struct orl_eval_pass {
-    const char *name;
-    double ms; // per draw, mean over all timed draws
-};
-
-enum { ORL_EVAL_PASSES_MAX = 32 };
 
 struct orl_eval {
     const struct orl_scene *scene; // not owned
@@ -32,7 +27,7 @@ struct orl_eval {
     struct orl_eval_view *views; // owned
     size_t view_count;
     struct orl_eval_view mean; // arithmetic mean of each figure
-    struct orl_eval_pass passes[ORL_EVAL_PASSES_MAX];
+    struct orl_timing_pass passes[ORL_TIMING_PASSES_MAX]; // means over the views
     size_t pass_count;
     bool has_truth;
 };
@@ -70,9 +65,5 @@ void orl_eval_finish(struct orl_eval *eval);
 // array of `count` of them.
 char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
                        bool array);
-// Writes an SVG of accuracy against time: a dot for each evaluation, joined where the method is the
-// same, with the value of its setting. Those of a method lie one after the other; count > 0.
-enum orl_result orl_eval_plot(const struct orl_log *log, const struct orl_eval *evals,
-                              size_t count, const char *path) ORL_CHECK_RESULT;
 
 #endif

@@ -9,9 +9,7 @@
 
 enum { AMPLIFY = 4 };
 
-// The photograph's name as a file name: without its extension unless another
-// photograph differs by that alone, and without folders.
-static char *file_stem(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+char *orl_eval_file_stem(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
 {
     char *stem = orl_strdup(log, scene->photos[photo].name);
     if (!stem)
@@ -68,7 +66,7 @@ enum orl_result orl_eval_write_images(const struct orl_log *log, const struct or
                                       const struct orl_image *photograph)
 {
     struct orl_image panels = {0};
-    char *stem = file_stem(log, scene, photo);
+    char *stem = orl_eval_file_stem(log, scene, photo);
     enum orl_result result = stem ? beside(log, rendered, photograph, &panels) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = write_as(log, params->image_dir, stem, "photo", "", photograph);

@@ -393,3 +393,30 @@ void orl_stability_finish(struct orl_stability *stability)
     free(stability->steps);
     memset(stability, 0, sizeof *stability);
 }
+
+enum orl_result orl_stability_walk_all(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                                       const struct orl_scene *scene,
+                                       const struct orl_walk_params *params,
+                                       struct orl_stability *results)
+{
+    struct orl_path path = {0};
+    size_t done = 0;
+    enum orl_result result = orl_stability_walk(orl_gpu_log(gpu), scene, (size_t)params->frames,
+                                                params->divide, &path);
+    for (; result == ORL_OK && done < params->choice_count; done++) {
+        const struct orl_choice *choice = &params->choices[done];
+        const struct orl_stability_params one = {
+            .method = choice->method->name, .render = &choice->params, .views = path.views,
+            .view_count = path.count, .image_dir = params->image_dir,
+            .progress = params->progress};
+        result = orl_stability_run(gpu, renderer, &one, &results[done]);
+        if (result != ORL_OK)
+            break;
+        if (params->on_result)
+            params->on_result(params->priv, &results[done]);
+    }
+    for (size_t i = 0; result != ORL_OK && i < done; i++)
+        orl_stability_finish(&results[i]);
+    orl_path_finish(&path);
+    return result;
+}

@@ -4,6 +4,7 @@
 #define ORL_EVAL_STABILITY_H
 
 #include "core/progress.h"
+#include "eval/choice.h"
 #include "render/render.h"
 #include "scene/path.h"
 
@@ -60,6 +61,21 @@ enum orl_result orl_stability_run(struct orl_gpu *gpu, struct orl_renderer *rend
                                   const struct orl_stability_params *params,
                                   struct orl_stability *out) ORL_CHECK_RESULT;
 void orl_stability_finish(struct orl_stability *stability);
+
+struct orl_walk_params {
+    const struct orl_choice *choices;
+    size_t choice_count;
+    int frames, divide;    // of orl_stability_walk
+    const char *image_dir; // of struct orl_stability_params
+    void (*on_result)(void *priv, const struct orl_stability *one); // may be NULL
+    void *priv;
+    const struct orl_progress *progress;
+};
+// Each choice along the same walk, into results[choice_count]; each to be finished.
+enum orl_result orl_stability_walk_all(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                                       const struct orl_scene *scene,
+                                       const struct orl_walk_params *params,
+                                       struct orl_stability *results) ORL_CHECK_RESULT;
 
 // One picture of the walk.
 struct orl_stability_frame {

@@ -4,21 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/color.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/process.h"
+#include "eval/heldout.h"
 #include "eval/metrics.h"
-#include "io/picture.h"
 
-enum { ROUNDS_MAX = 8, METRIC_SIDE = 11 }; // SSIM's window
-
-// A training photograph to be compared with, at the size of the trials.
-struct target {
-    size_t photo;
-    struct orl_view view;
-    struct orl_image picture; // U8 x3
-};
+enum { ROUNDS_MAX = 8 };
 
 struct job {
     const struct orl_log *log;
@@ -26,7 +18,7 @@ struct job {
     const struct orl_scene *scene;
     const struct orl_tune_params *params;
     struct orl_tune *tune;
-    struct target *targets; // owned
+    struct orl_heldout *targets; // owned
     size_t target_count;
     bool *skip; // owned
     double start_s;
@@ -34,60 +26,6 @@ struct job {
 };
 
 // --- targets ---
-
-// Averages n x n pixels in linear light; the rest of a row or column is left out.
-static enum orl_result shrink(const struct orl_log *log, const struct orl_image *from, int n,
-                              struct orl_image *to)
-{
-    float linear[256];
-    enum orl_result result =
-        orl_image_init(log, to, from->width / n, from->height / n, 3, ORL_PIXEL_U8);
-    for (int i = 0; i < 256; i++)
-        linear[i] = orl_srgb_decode((float)i / 255);
-    for (int y = 0; result == ORL_OK && y < to->height; y++)
-        for (int x = 0; x < to->width; x++)
-            for (int c = 0; c < 3; c++) {
-                float sum = 0;
-                for (int k = 0; k < n * n; k++) {
-                    size_t row = (size_t)(y * n + k / n), column = (size_t)(x * n + k % n);
-                    sum += linear[from->u8[3 * (row * (size_t)from->width + column) + (size_t)c]];
-                }
-                to->u8[3 * ((size_t)y * (size_t)to->width + (size_t)x) + (size_t)c] =
-                    (uint8_t)(255 * orl_srgb_encode(sum / (float)(n * n)) + 0.5f);
-            }
-    return result;
-}
-
-// The camera of the picture that shrink() makes: what is cut off moves nothing.
-static struct orl_camera shrunk_camera(const struct orl_camera *c, int n)
-{
-    return (struct orl_camera){.width = c->width / n, .height = c->height / n, .fx = c->fx / n,
-                               .fy = c->fy / n, .cx = c->cx / n, .cy = c->cy / n};
-}
-
-static enum orl_result load_target(struct job *job, size_t photo)
-{
-    struct target *target = &job->targets[job->target_count];
-    const struct orl_view *view = &job->scene->photos[photo].view;
-    int n = job->params->size_divide;
-    while (n > 1 && (view->camera.width / n < METRIC_SIDE || view->camera.height / n < METRIC_SIDE))
-        n--;
-    struct orl_image full = {0};
-    char *path = orl_scene_photo_path(job->log, job->scene, photo);
-    enum orl_result result = path ? orl_picture_read(job->log, path, 3, &full) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && (full.width != view->camera.width || full.height != view->camera.height))
-        result = orl_fail(job->log, ORL_ERR_DATA, "%s has %dx%d pixels, its camera %dx%d", path,
-                          full.width, full.height, view->camera.width, view->camera.height);
-    if (result == ORL_OK)
-        result = shrink(job->log, &full, n, &target->picture);
-    target->photo = photo;
-    target->view = (struct orl_view){shrunk_camera(&view->camera, n), view->cam_from_world};
-    if (result == ORL_OK)
-        job->target_count++;
-    orl_image_finish(&full);
-    free(path);
-    return result;
-}
 
 static enum orl_result load_targets(struct job *job)
 {
@@ -107,7 +45,8 @@ static enum orl_result load_targets(struct job *job)
         if (scene->photos[i].test)
             continue;
         if ((at + 1) * wanted / train > at * wanted / train)
-            result = load_target(job, i);
+            result = orl_heldout_load(job->log, scene, i, job->params->size_divide,
+                                      &job->targets[job->target_count++]);
         at++;
     }
     job->tune->views = job->target_count;
@@ -116,7 +55,7 @@ static enum orl_result load_targets(struct job *job)
 
 // --- one trial ---
 
-static enum orl_result compare(struct job *job, const struct target *target,
+static enum orl_result compare(struct job *job, const struct orl_heldout *target,
                                const struct orl_render_params *render, struct orl_metrics *metrics)
 {
     struct orl_frame frame = {0};
@@ -125,13 +64,9 @@ static enum orl_result compare(struct job *job, const struct target *target,
     enum orl_result result =
         orl_renderer_draw(job->renderer, &target->view, render, job->skip, &frame);
     job->skip[target->photo] = false;
-    if (result == ORL_OK) {
-        const float *gain = job->scene->photos[target->photo].gain;
-        size_t pixels = (size_t)frame.color.width * (size_t)frame.color.height;
-        for (size_t i = 0; i < 3 * pixels; i++) // to this photograph's exposure
-            frame.color.f32[i] /= gain[i % 3];
-        result = orl_tone_srgb(job->log, &frame.color, &picture);
-    }
+    if (result == ORL_OK)
+        result = orl_heldout_expose(job->log, job->scene, target->photo, render, &frame.color,
+                                    &picture);
     if (result == ORL_OK)
         result = orl_metrics_compare(job->log, &picture, &target->picture, &frame.coverage,
                                      metrics);
@@ -284,7 +219,7 @@ static enum orl_result search(struct job *job)
 static void finish(struct job *job)
 {
     for (size_t i = 0; i < job->target_count; i++)
-        orl_image_finish(&job->targets[i].picture);
+        orl_heldout_finish(&job->targets[i]);
     free(job->targets);
     free(job->skip);
 }

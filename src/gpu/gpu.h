@@ -41,11 +41,23 @@ const struct orl_gpu_caps *orl_gpu_caps(const struct orl_gpu *gpu);
 const struct orl_log *orl_gpu_log(const struct orl_gpu *gpu);
 // Waits for the device. ORL_ERR_GPU if any GL error occurred since the last call.
 enum orl_result orl_gpu_finish(struct orl_gpu *gpu) ORL_CHECK_RESULT;
-// Total bytes of live buffers and textures.
+// What a buffer or texture holds, for accounts of device memory.
+enum orl_owner {
+    ORL_OWNER_FRAME, // targets, lists and all else that a frame needs
+    ORL_OWNER_POINTS,
+    ORL_OWNER_PHOTOGRAPHS,
+    ORL_OWNER_COUNT
+};
+// By enum orl_owner: "frame", "points", "photographs".
+extern const char *const orl_owner_names[ORL_OWNER_COUNT];
+// Bytes in live buffers and textures.
 size_t orl_gpu_bytes(const struct orl_gpu *gpu);
-// The same for each tag: fills up to `capacity` rows in order of first use and returns the number
-// of tags.
+// The same of one owner.
+size_t orl_gpu_owner_bytes(const struct orl_gpu *gpu, enum orl_owner owner);
+// The same by owner and tag: fills up to `capacity` rows in order of first use and returns how many
+// there are.
 struct orl_gpu_memory {
+    enum orl_owner owner;
     const char *tag;
     size_t bytes;
     unsigned objects;
@@ -57,11 +69,12 @@ size_t orl_gpu_memory(const struct orl_gpu *gpu, struct orl_gpu_memory *rows, si
 struct orl_buf {
     GLuint id;
     size_t size;
+    enum orl_owner owner;
     const char *tag; // string literal, for GL labels and messages
 };
-// data: initial contents; NULL: zeros.
-enum orl_result orl_buf_create(struct orl_gpu *gpu, const char *tag, size_t size,
-                               const void *data, struct orl_buf **out) ORL_CHECK_RESULT;
+// data may be NULL: zeroed.
+enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
+                               size_t size, const void *data, struct orl_buf **out) ORL_CHECK_RESULT;
 void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **buf);
 void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data);
 // Waits for the device.
@@ -77,6 +90,7 @@ struct orl_tex_params {
     int levels;      // mip levels; 0 counts as 1
     GLenum format;   // sized internal format, such as GL_RGBA32F
     bool linear;     // linear filtering (and between levels); false: nearest
+    enum orl_owner owner;
     const char *tag; // string literal
 };
 struct orl_tex {

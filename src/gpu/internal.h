@@ -72,8 +72,10 @@ void orl_gpu_free_raster(struct orl_gpu *gpu);
 // Logs every pending GL error as caused by `where`. True if there was none.
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);
 void orl_gpu_free_queries(struct orl_gpu *gpu);
-// Adds an object's bytes to its tag, or subtracts them.
-void orl_gpu_count_bytes(struct orl_gpu *gpu, const char *tag, size_t bytes);
-void orl_gpu_uncount_bytes(struct orl_gpu *gpu, const char *tag, size_t bytes);
+// Adds an object to its owner's and tag's bytes, and takes it away.
+void orl_gpu_count_bytes(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
+                         size_t bytes);
+void orl_gpu_uncount_bytes(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
+                           size_t bytes);
 
 #endif

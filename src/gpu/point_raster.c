@@ -31,8 +31,8 @@ static enum orl_result make_vertices(struct orl_point_raster *r, const float (*p
         memcpy(vertices[i].color, colors[i], sizeof colors[i]);
         vertices[i].color[3] = 255;
     }
-    enum orl_result result = orl_buf_create(r->gpu, "raster points", count * sizeof *vertices,
-                                            vertices, &r->vertices);
+    enum orl_result result = orl_buf_create(r->gpu, ORL_OWNER_POINTS, "raster points",
+                                            count * sizeof *vertices, vertices, &r->vertices);
     free(vertices);
     return result;
 }

@@ -5,20 +5,20 @@
 #include "gpu/bc7.h"
 #include "gpu/internal.h"
 
-enum orl_result orl_buf_create(struct orl_gpu *gpu, const char *tag, size_t size,
-                               const void *data, struct orl_buf **out)
+enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
+                               size_t size, const void *data, struct orl_buf **out)
 {
     *out = NULL;
     struct orl_buf *buf = orl_array(gpu->log, 1, sizeof *buf);
     if (!buf)
         return ORL_ERR_MEMORY;
-    *buf = (struct orl_buf){.size = size ? size : 4, .tag = tag};
+    *buf = (struct orl_buf){.size = size ? size : 4, .owner = owner, .tag = tag};
     glCreateBuffers(1, &buf->id);
     glNamedBufferStorage(buf->id, (GLsizeiptr)buf->size, size ? data : NULL,
                          GL_DYNAMIC_STORAGE_BIT);
     glObjectLabel(GL_BUFFER, buf->id, -1, tag);
     gpu->live_bufs++;
-    orl_gpu_count_bytes(gpu, tag, buf->size);
+    orl_gpu_count_bytes(gpu, owner, tag, buf->size);
     if (!orl_gpu_check_errors(gpu, tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no buffer of %zu bytes on the device", tag, size);
         orl_buf_destroy(gpu, &buf);
@@ -37,7 +37,7 @@ void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **handle)
         return;
     glDeleteBuffers(1, &buf->id);
     gpu->live_bufs--;
-    orl_gpu_uncount_bytes(gpu, buf->tag, buf->size);
+    orl_gpu_uncount_bytes(gpu, buf->owner, buf->tag, buf->size);
     free(buf);
     *handle = NULL;
 }
@@ -153,7 +153,7 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     set_sampling(tex->id, p->linear, p->levels);
     glObjectLabel(GL_TEXTURE, tex->id, -1, p->tag);
     gpu->live_texs++;
-    orl_gpu_count_bytes(gpu, tex->params.tag, tex->bytes);
+    orl_gpu_count_bytes(gpu, tex->params.owner, tex->params.tag, tex->bytes);
     if (!orl_gpu_check_errors(gpu, p->tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device",
                  p->tag, p->width, p->height, tex->bytes);
@@ -171,7 +171,7 @@ void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
         return;
     glDeleteTextures(1, &tex->id);
     gpu->live_texs--;
-    orl_gpu_uncount_bytes(gpu, tex->params.tag, tex->bytes);
+    orl_gpu_uncount_bytes(gpu, tex->params.owner, tex->params.tag, tex->bytes);
     free(tex);
     *handle = NULL;
 }
@@ -225,11 +225,13 @@ enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *b
         return ORL_ERR_MEMORY;
     size_t texels = buf->size / texel_bytes(format);
     tex->params = (struct orl_tex_params){.width = (int)texels, .height = 1, .levels = 1,
-                                          .format = format, .tag = buf->tag};
+                                          .format = format, .owner = buf->owner,
+                                          .tag = buf->tag};
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &tex->id);
     glTextureBuffer(tex->id, format, buf->id);
     glObjectLabel(GL_TEXTURE, tex->id, -1, buf->tag);
     gpu->live_texs++;
+    orl_gpu_count_bytes(gpu, buf->owner, buf->tag, tex->bytes); // an object without bytes
     if (!orl_gpu_check_errors(gpu, buf->tag) || texels > (size_t)gpu->caps.max_buffer_texels) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no view of %zu texels on the device", buf->tag,
                  texels);

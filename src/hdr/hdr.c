@@ -7,18 +7,7 @@
 #include "core/memory.h"
 #include "hdr/internal.h"
 
-enum orl_result orl_hdr_merge_find(const struct orl_log *log, const char *name,
-                                   enum orl_hdr_merge *merge)
-{
-    static const char *const names[ORL_HDR_MERGE_COUNT] = {"fused", "series"};
-    for (int i = 0; i < ORL_HDR_MERGE_COUNT; i++) {
-        if (strcmp(names[i], name) == 0) {
-            *merge = (enum orl_hdr_merge)i;
-            return ORL_OK;
-        }
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "merge %s is not known; there are: fused series", name);
-}
+const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1] = {"fused", "series"};
 
 // Range of exposures of the photographs in use, in stops.
 static double exposure_range(const struct orl_scene *scene, const bool *use)

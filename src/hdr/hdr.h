@@ -14,9 +14,8 @@ enum orl_hdr_merge {
     ORL_HDR_SERIES,
     ORL_HDR_MERGE_COUNT
 };
-// ORL_ERR_ARGUMENT for an unknown name; the log lists the known ones.
-enum orl_result orl_hdr_merge_find(const struct orl_log *log, const char *name,
-                                   enum orl_hdr_merge *merge) ORL_CHECK_RESULT;
+// By enum orl_hdr_merge, ended by NULL.
+extern const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1];
 
 struct orl_hdr_params {
     enum orl_hdr_merge merge;
@@ -48,11 +47,15 @@ struct orl_panorama {
     double up[3];          // world, not zero; see orl_scene_up
     int width, height;     // [8, 32768] each; equirectangular
 };
-// Draws all directions from a point as OpenEXR's latitude-longitude map: longitude +pi to -pi from
-// left to right, 0 (forward) in the middle, latitude +pi/2 (up) at the top. frame->depth is the
-// distance to the point. Normals are in the camera frame (x right, y down, z forward) of a view of
-// the centre. Directions that no photograph sees take their neighbours' colour, with coverage and
-// confidence 0.
+// Sets position and forward to those of the photograph `at`; NULL: forward to the photographs' mean,
+// position is left alone. And `up` as orl_scene_up. ORL_ERR_NOT_FOUND: there is none of this name.
+enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_scene *scene,
+                                   const char *at, struct orl_panorama *panorama) ORL_CHECK_RESULT;
+// All directions from a point: longitude +pi to -pi from left to right, 0 (forward) in the
+// middle, latitude +pi/2 (up) at the top: OpenEXR's latitude-longitude map. frame->depth is
+// the distance to the point; normals are in the frame of x right, y down, z forward, as if
+// looking at the centre. Directions that no photograph sees take their neighbours' colour,
+// with coverage and confidence 0.
 enum orl_result orl_hdr_draw_panorama(struct orl_hdr *hdr, const struct orl_panorama *panorama,
                                       const bool *skip, struct orl_frame *frame) ORL_CHECK_RESULT;
 // The panorama's position and orientation as a view of its centre, with a placeholder camera of its

@@ -77,6 +77,25 @@ void orl_scene_up(const struct orl_scene *scene, double up[3])
     }
 }
 
+enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_scene *scene,
+                                   const char *at, struct orl_panorama *p)
+{
+    orl_scene_up(scene, p->up);
+    memset(p->forward, 0, sizeof p->forward);
+    for (size_t k = 0; !at && k < scene->photo_count; k++)
+        for (int i = 0; i < 3; i++)
+            p->forward[i] += scene->photos[k].view.cam_from_world.r[2][i];
+    if (!at)
+        return ORL_OK;
+    int index = orl_scene_find_photo(scene, at);
+    if (index < 0)
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s has no photograph %s", scene->dir, at);
+    const struct orl_pose *pose = &scene->photos[index].view.cam_from_world;
+    orl_pose_centre(pose, p->position);
+    memcpy(p->forward, pose->r[2], sizeof p->forward);
+    return ORL_OK;
+}
+
 static void place(const struct orl_panorama *p, struct orl_pose *pose)
 {
     for (int i = 0; i < 3; i++)

@@ -210,11 +210,11 @@ static void put_y_axis(FILE *out, const struct axis *y, const char *label)
 
 // --- lines and dots ---
 
-static void put_series(FILE *out, const struct orl_plot_series *s, const struct axis *x,
-                       const struct axis *y, size_t number)
+static void put_joined(FILE *out, const struct orl_plot_series *s, const struct axis *x,
+                       const struct axis *y, const char *color)
 {
     bool first = true;
-    for (size_t i = 0; s->line && i < s->count; i++) {
+    for (size_t i = 0; i < s->count; i++) {
         if (!can_place(x, s->x[i]) || !can_place(y, s->y[i]))
             continue;
         fprintf(out, "%s%.1f,%.1f", first ? "<polyline points=\"" : " ", place(x, s->x[i]),
@@ -222,7 +222,14 @@ static void put_series(FILE *out, const struct orl_plot_series *s, const struct 
         first = false;
     }
     if (!first)
-        fprintf(out, "\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"/>\n", color_of(number));
+        fprintf(out, "\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"/>\n", color);
+}
+
+static void put_series(FILE *out, const struct orl_plot_series *s, const struct axis *x,
+                       const struct axis *y, size_t number)
+{
+    if (s->line)
+        put_joined(out, s, x, y, color_of(number));
     for (size_t i = 0; i < s->count; i++) {
         if (!can_place(x, s->x[i]) || !can_place(y, s->y[i]))
             continue;
@@ -273,6 +280,10 @@ char *orl_plot_svg(const struct orl_log *log, const struct orl_plot *plot)
     put_legend(out, names, named);
     put_x_axis(out, &x, TOP, TOP + PLOT_HEIGHT, plot->x_label);
     put_y_axis(out, &y, plot->y_label);
+    if (plot->behind) {
+        put_joined(out, plot->behind, &x, &y, "#999");
+        put_text(out, WIDTH - RIGHT, TOP - 6, "end", GREY, plot->behind->name);
+    }
     for (size_t i = 0; i < plot->series_count; i++)
         put_series(out, &plot->series[i], &x, &y, i);
     return finish(log, out, &text);

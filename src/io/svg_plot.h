@@ -18,6 +18,7 @@ struct orl_plot {
     bool y_fit;        // a linear y axis need not start at 0
     const struct orl_plot_series *series;
     size_t series_count;
+    const struct orl_plot_series *behind; // a grey line without dots, behind the others; or NULL
 };
 
 // Rows of bars, each of the same parts one after another.

@@ -267,7 +267,8 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
     };
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
-        result = orl_buf_create(gpu, rows[i].tag, rows[i].size, rows[i].data, rows[i].buf);
+        result = orl_buf_create(gpu, ORL_OWNER_POINTS, rows[i].tag, rows[i].size, rows[i].data,
+                                rows[i].buf);
         if (result == ORL_OK)
             result = orl_tex_view_buffer(gpu, *rows[i].buf, rows[i].format, rows[i].texels);
     }

@@ -21,8 +21,8 @@ enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int w
     // Room for every pixel, since the number of listed pixels is unknown.
     size_t bytes = 16 * (1 + (size_t)width * (size_t)height);
     size_t most = orl_gpu_caps(gpu)->max_storage_block;
-    enum orl_result result = orl_buf_create(gpu, "pixels at edges", bytes < most ? bytes : most,
-                                            NULL, &edges->list);
+    enum orl_result result = orl_buf_create(gpu, ORL_OWNER_FRAME, "pixels at edges",
+                                            bytes < most ? bytes : most, NULL, &edges->list);
     if (result != ORL_OK)
         return result;
     return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height,

@@ -36,7 +36,7 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct 
     gather->options = declare_options(log);
     enum orl_result result = gather->list && gather->options ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_buf_create(gpu, "photographs of a frame",
+        result = orl_buf_create(gpu, ORL_OWNER_FRAME, "photographs of a frame",
                                 photo_count * sizeof *gather->list, NULL, &gather->photos);
     if (result == ORL_OK)
         result = orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows);
@@ -196,7 +196,7 @@ enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes
     if (*buf && (*buf)->size >= bytes)
         return ORL_OK;
     orl_buf_destroy(gpu, buf);
-    return orl_buf_create(gpu, tag, bytes, NULL, buf);
+    return orl_buf_create(gpu, ORL_OWNER_FRAME, tag, bytes, NULL, buf);
 }
 
 // --- the generic painter ---

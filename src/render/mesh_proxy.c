@@ -55,10 +55,10 @@ static enum orl_result upload(struct orl_gpu *gpu, struct mesh_state *state)
             state->high[k] = fmaxf(state->high[k], mesh->position[i][k]);
         }
     enum orl_result result =
-        orl_buf_create(gpu, "mesh vertices", mesh->vertex_count * sizeof *mesh->position,
+        orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh vertices", mesh->vertex_count * sizeof *mesh->position,
                        mesh->position, &state->vertices);
     if (result == ORL_OK)
-        result = orl_buf_create(gpu, "mesh triangles",
+        result = orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh triangles",
                                 mesh->triangle_count * sizeof *mesh->triangle, mesh->triangle,
                                 &state->indices);
     return result;

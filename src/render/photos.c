@@ -200,14 +200,15 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
                                    .layers = photos->slot_count,
                                    .levels = mip_levels(size.width, size.height),
                                    .format = photos->format,
-                                   .linear = true, .tag = "photographs"};
+                                   .linear = true, .owner = ORL_OWNER_PHOTOGRAPHS,
+                                   .tag = "photographs"};
     struct orl_tex_params loading = color;
     loading.layers = 0;
     loading.format = GL_SRGB8_ALPHA8;
     loading.tag = "photograph being loaded";
     struct orl_tex_params depth = {.width = size.depth_width, .height = size.depth_height,
                                    .layers = photos->slot_count, .format = GL_R32F,
-                                   .tag = "photograph depth"};
+                                   .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph depth"};
     enum orl_result result = orl_tex_create(gpu, &color, &photos->color);
     if (result == ORL_OK)
         result = orl_tex_create(gpu, &depth, &photos->depth);
@@ -267,7 +268,8 @@ static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_imag
     struct orl_tex *full = NULL;
     struct orl_tex_params params = {.width = image->width, .height = image->height,
                                     .levels = mip_levels(image->width, image->height),
-                                    .format = to->params.format, .tag = "photograph"};
+                                    .format = to->params.format,
+                                    .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph"};
     enum orl_result result = orl_tex_create(gpu, &params, &full);
     if (result != ORL_OK)
         return result;

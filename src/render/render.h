@@ -120,9 +120,8 @@ enum orl_textures {
     ORL_TEXTURES_BC1,  // half a byte per pixel
     ORL_TEXTURES_COUNT
 };
-// ORL_ERR_ARGUMENT for an unknown name; the log lists the known ones: auto, full, bc7, bc1.
-enum orl_result orl_textures_find(const struct orl_log *log, const char *name,
-                                  enum orl_textures *textures) ORL_CHECK_RESULT;
+// By enum orl_textures, ended by NULL.
+extern const char *const orl_textures_names[ORL_TEXTURES_COUNT + 1];
 
 struct orl_renderer_params {
     const bool *use;       // per photograph: may it be used? NULL: all that are not held out

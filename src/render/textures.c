@@ -1,20 +1,7 @@
-// Texture formats of photographs on the device.
-#include <string.h>
-
+// How photographs are kept on the device.
 #include "render/photos.h"
 
-enum orl_result orl_textures_find(const struct orl_log *log, const char *name,
-                                  enum orl_textures *textures)
-{
-    static const char *const names[ORL_TEXTURES_COUNT] = {"auto", "full", "bc7", "bc1"};
-    for (int i = 0; i < ORL_TEXTURES_COUNT; i++) {
-        if (strcmp(name, names[i]) == 0) {
-            *textures = (enum orl_textures)i;
-            return ORL_OK;
-        }
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "textures \"%s\": must be auto, full, bc7 or bc1", name);
-}
+const char *const orl_textures_names[ORL_TEXTURES_COUNT + 1] = {"auto", "full", "bc7", "bc1"};
 
 GLenum orl_textures_format(const struct orl_gpu *gpu, bool radiance, enum orl_textures textures)
 {

@@ -20,21 +20,6 @@ const struct orl_tone_info orl_tones[ORL_TONE_COUNT] = {
 // Upper bound of light, so that the sun in a picture does not drive sums to infinity.
 static const float light_max = 1e6f;
 
-enum orl_result orl_tone_find(const struct orl_log *log, const char *name,
-                              enum orl_tone_curve *curve)
-{
-    char list[256] = "";
-    for (int i = 0; i < ORL_TONE_COUNT; i++) {
-        if (strcmp(orl_tones[i].name, name) == 0) {
-            *curve = (enum orl_tone_curve)i;
-            return ORL_OK;
-        }
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, " %s", orl_tones[i].name);
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "tone curve %s is not known; there are:%s", name, list);
-}
-
 // --- curves: linear light in and out, 1 is white ---
 
 // Reinhard, Stark, Shirley and Ferwerda 2002, equation 4.

@@ -21,9 +21,6 @@ struct orl_tone_info {
 };
 // Indexed by enum orl_tone_curve.
 extern const struct orl_tone_info orl_tones[ORL_TONE_COUNT];
-// ORL_ERR_ARGUMENT for an unknown name; the log lists the known ones.
-enum orl_result orl_tone_find(const struct orl_log *log, const char *name,
-                              enum orl_tone_curve *curve) ORL_CHECK_RESULT;
 
 struct orl_tone_params {
     enum orl_tone_curve curve;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cpu_time.h"
+#include "core/process.h"
 #include "hdr/hdr.h"
 
 static enum orl_result time_view(struct orl_hdr *const hdr[ORL_HDR_MERGE_COUNT],
@@ -15,9 +15,9 @@ static enum orl_result time_view(struct orl_hdr *const hdr[ORL_HDR_MERGE_COUNT],
     for (int i = 0; i <= rounds; i++)
         for (int m = 0; result == ORL_OK && m < ORL_HDR_MERGE_COUNT; m++) {
             struct orl_frame frame = {0};
-            double start = cpu_time_s();
+            double start = orl_cpu_time_s();
             result = orl_hdr_draw(hdr[m], view, NULL, &frame);
-            seconds[m] += i ? (cpu_time_s() - start) / rounds : 0;
+            seconds[m] += i ? (orl_cpu_time_s() - start) / rounds : 0;
             orl_frame_finish(&frame);
         }
     return result;

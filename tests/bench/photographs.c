@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "cpu_time.h"
+#include "core/process.h"
 #include "render/render.h"
 #include "scene/path.h"
 
@@ -17,9 +17,9 @@ enum { FEW = 20, ROUNDS = 7, STEPS = 12 };
 static enum orl_result draw(struct orl_renderer *renderer, const struct orl_view *view,
                             const struct orl_render_params *params, double *ms)
 {
-    double start = cpu_time_s();
+    double start = orl_cpu_time_s();
     enum orl_result result = orl_renderer_draw(renderer, view, params, NULL, NULL);
-    *ms = 1e3 * (cpu_time_s() - start);
+    *ms = 1e3 * (orl_cpu_time_s() - start);
     return result;
 }
 

@@ -24,7 +24,7 @@ for word in airieau points 64x48 32x32 5000 GL_POINTS photographs device host sp
 done
 for field in scene device driver software points photographs photo_size host_peak_bytes memory \
     sizes by_photographs by_points by_resolution gl_points method size photo_divide frames \
-    frame_ms slowest_ms fps device_bytes passes_ms splat_ms gl_points_ms owner tag bytes psnr_db; do
+    frame_ms slowest_ms cpu_ms fps device_bytes passes_ms splat_ms gl_points_ms owner tag bytes psnr_db; do
     grep -q "\"$field\"" out.json || fail "no field $field"
 done
 for field in frame_ms slowest_ms splat_ms gl_points_ms device_bytes host_peak_bytes fps; do

@@ -65,7 +65,7 @@ runs 2 "$oriel" hdr scene --path photos --out view.exr
 runs 2 "$oriel" hdr scene --at nobody --out view.exr
 grep -q nobody stderr.txt || fail "does not name the missing photograph"
 runs 2 "$oriel" hdr scene --at 0004 --out view.exr --merge added
-grep -q 'fused series' stderr.txt || fail "does not list the merges"
+grep -q 'fused, series' stderr.txt || fail "does not list the merges"
 runs 2 "$oriel" hdr scene --replace-series 3 --out replaced3
 grep -q 'no series 3' stderr.txt || fail "does not say that there is no series 3"
 [ -e replaced3 ] && fail "made a folder for nothing"

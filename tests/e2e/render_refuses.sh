@@ -49,8 +49,8 @@ refuses 2 'no photograph 7777' "$oriel" render ws --at 7777 --out out.png
 refuses 2 'no photograph 7777' "$oriel" render ws --at 0001 --out out.png --exclude 7777
 refuses 2 'png or .exr' "$oriel" render ws --at 0001 --out out.gif
 refuses 2 'depth, normal, coverage' "$oriel" render ws --at 0001 --out out.png --layers smell
-refuses 2 'velvia.*reinhard filmic' "$oriel" render ws --at 0001 --out out.png --tone velvia
-refuses 2 'zip or piz' "$oriel" render ws --at 0001 --out out.exr --compression jpeg
+refuses 2 'velvia.*reinhard, filmic' "$oriel" render ws --at 0001 --out out.png --tone velvia
+refuses 2 'zip, piz' "$oriel" render ws --at 0001 --out out.exr --compression jpeg
 refuses 2 'WxH' "$oriel" render ws --at 0001 --out out.png --size 0x9
 refuses 2 'folder or an .mp4' "$oriel" render ws --path photos --frames 2 --out out.png
 refuses 2 'missing.json' "$oriel" render ws --camera missing.json --out out.png

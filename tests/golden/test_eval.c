@@ -2,10 +2,12 @@
 #include "../gpu/gpu_test.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "eval/eval.h"
+#include "eval/tune.h"
 #include "io/picture.h"
 #include "tiny_scene.h"
 
@@ -69,6 +71,7 @@ static void known_scene(void **state)
     assert_true(photos.mean.metrics.psnr_db > 24);
     assert_true(photos.mean.metrics.ssim > 0.85);
     assert_true(photos.mean.metrics.coverage > 0.8);
+    assert_true(photos.mean.flip > 0.01 && photos.mean.flip < points.mean.flip);
     check_picture(images, "2.photo.png", TINY_WIDTH, TINY_HEIGHT);
     check_picture(images, "2.airieau.png", TINY_WIDTH, TINY_HEIGHT);
     check_picture(images, "2.airieau.diff.png", 3 * TINY_WIDTH, TINY_HEIGHT);
@@ -122,6 +125,52 @@ static void held_out_pixels_are_not_used(void **state)
     test_dir_remove(dir);
 }
 
+// oriel tune must seek what oriel eval reports: a photograph of an exposure of its own,
+// vignetted, rendered without itself, has one figure for both.
+static void tune_measures_what_eval_reports(void **state)
+{
+    (void)state;
+    static const enum orl_alignment_use uses[] = {ORL_ALIGNMENT_ON, ORL_ALIGNMENT_OFF};
+    char *dir = test_dir_make();
+    struct orl_scene scene;
+    tiny_scene_make(dir, &scene);
+    const size_t last = scene.photo_count - 1; // what tune compares with when it is to take one
+    for (size_t i = 0; i < scene.photo_count; i++)
+        scene.photos[i].gain[0] = 1 + 0.1f * (float)i;
+    scene.photos[last].gain[1] = 2;
+    scene.photos[last].vignette[0] = -0.3f;
+    double figures[2];
+    for (size_t k = 0; k < ORL_COUNT(uses); k++) {
+        struct orl_render_params render = orl_method_find(NULL, "oriel")->params;
+        render.alignment = uses[k];
+        const struct orl_eval_params eval_params = {.method = "oriel", .render = &render};
+        const struct orl_tune_params tune_params = {.method = "oriel", .start = &render,
+                                                    .size_divide = 1, .views = 1,
+                                                    .budget_s = 1e-6};
+        struct orl_renderer *renderer;
+        struct orl_eval eval;
+        struct orl_tune tune;
+        for (size_t i = 0; i < scene.photo_count; i++)
+            scene.photos[i].test = i == last;
+        assert_int_equal(orl_renderer_create(gpu, &scene, NULL, &renderer), ORL_OK);
+        assert_int_equal(orl_eval_run(gpu, renderer, &scene, &eval_params, &eval), ORL_OK);
+        orl_renderer_destroy(&renderer);
+        scene.photos[last].test = false;
+        assert_int_equal(orl_renderer_create(gpu, &scene, NULL, &renderer), ORL_OK);
+        assert_int_equal(orl_tune_run(gpu, renderer, &scene, &tune_params, &tune), ORL_OK);
+        orl_renderer_destroy(&renderer);
+        assert_int_equal(tune.trial_count, 1);
+        assert_float_equal(tune.start_db, eval.mean.metrics.psnr_db, 1e-3);
+        assert_float_equal(tune.trials[0].ssim, eval.mean.metrics.ssim, 1e-5);
+        figures[k] = tune.start_db;
+        orl_eval_finish(&eval);
+        orl_tune_finish(&tune);
+    }
+    assert_true(fabs(figures[0] - figures[1]) > 0.5); // the exposure is no trifle here
+    tiny_scene_finish(&scene);
+    test_dir_remove(dir);
+}
+
 static double number(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);
@@ -139,6 +188,7 @@ static void check_figures(const json_t *object, const struct orl_eval_view *view
     assert_float_equal(number(object, "coverage"), m->coverage, 1e-6);
     assert_float_equal(number(object, "completeness"), m->completeness, 1e-6);
     assert_float_equal(number(object, "ncc_error"), m->ncc_error, 1e-6);
+    assert_float_equal(number(object, "flip"), view->flip, 1e-6);
     assert_float_equal(number(object, "render_ms"), view->render_ms, 1e-3);
 }
 
@@ -149,8 +199,10 @@ static void report_has_the_agreed_fields(void **state)
                                   {.name = (char[]){"b.jpg"}, .test = true}};
     struct orl_scene scene = {.dir = (char[]){"some/scene"}, .photos = photos, .photo_count = 2};
     struct orl_eval_view views[2] = {
-        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125}, {33, 34, 0.25, 0.5}, 3.5},
-        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125}, {35, 36, 0.75, 1}, 1.5}};
+        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125}, {33, 34, 0.25, 0.5}, 3.5,
+         0.0625},
+        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125}, {35, 36, 0.75, 1}, 1.5,
+         0.03125}};
     struct orl_eval eval = {.scene = &scene, .method = "points", .device = "a device",
                             .views = views, .view_count = 2, .mean = views[1],
                             .passes = {{"splat", 0.5}}, .pass_count = 1};
@@ -216,6 +268,7 @@ int main(void)
         cmocka_unit_test(nothing_held_out),
         cmocka_unit_test(known_scene),
         cmocka_unit_test(held_out_pixels_are_not_used),
+        cmocka_unit_test(tune_measures_what_eval_reports),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -13,6 +13,7 @@ struct values {
     double number;
     struct arg_size size;
     struct orl_names list;
+    struct arg_enum color;
     struct arg_common common;
     const char *positionals[2];
     size_t positional_count;
@@ -28,10 +29,13 @@ static enum orl_result parse(struct values *v, ...)
         {"number", ARG_NUMBER, &v->number, "X", "a number", 0, 1},
         {"size", ARG_SIZE, &v->size, "WxH", "a size", 0, 0},
         {"list", ARG_LIST, &v->list, "A,B", "a list", 0, 0},
+        {"color", ARG_ENUM, &v->color, "NAME", "a colour", 0, 0},
         {0},
     };
     const struct arg_command command = {"try", "IN [OUT]", "Tries.", options, 1, 2};
+    static const char *const colors[] = {"red", "green", NULL};
     char *argv[9];
+    v->color.names = colors;
     int argc = 0;
     va_list words;
     va_start(words, v);
@@ -68,6 +72,19 @@ static void lists(void **state)
     assert_string_equal(v.list.items[1], "b");
     assert_string_equal(v.list.items[3], "d");
     orl_names_finish(&v.list);
+}
+
+static void enums(void **state)
+{
+    (void)state;
+    struct values v = {.color = {NULL, -1}};
+    assert_int_equal(parse(&v, "in", NULL), ORL_OK);
+    assert_int_equal(v.color.value, -1);
+    assert_int_equal(parse(&v, "in", "--color", "green", NULL), ORL_OK);
+    assert_int_equal(v.color.value, 1);
+    assert_int_equal(parse(&v, "in", "--color=gree", NULL), ORL_ERR_ARGUMENT);
+    assert_int_equal(parse(&v, "in", "--color=", NULL), ORL_ERR_ARGUMENT);
+    assert_int_equal(v.color.value, 1);
 }
 
 static void common_options(void **state)
@@ -136,7 +153,8 @@ static void help(void **state)
     size_t size;
     assert_int_equal(orl_file_read(NULL, path, 65536, &text, &size), ORL_OK);
     static const char *const words[] = {"oriel try IN [OUT]", "--flag", "--size WxH", "a list",
-                                        "--quiet", "--shader-dir"};
+                                        "a colour: red, green", "--quiet",
+                                        "--shader-dir"};
     for (size_t i = 0; i < ORL_COUNT(words); i++)
         assert_non_null(strstr((char *)text, words[i]));
     free(text);
@@ -149,6 +167,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_type),
         cmocka_unit_test(lists),
+        cmocka_unit_test(enums),
         cmocka_unit_test(common_options),
         cmocka_unit_test(double_dash_ends_options),
         cmocka_unit_test(wrong_usage),

@@ -107,6 +107,24 @@ static void draws_without_data(void **state)
     free(text);
 }
 
+// A line behind dots has neither dots nor a colour of its own.
+static void draws_a_line_behind(void **state)
+{
+    (void)state;
+    static const double x[] = {1, 2, 3}, y[] = {1, 4, 9};
+    const struct orl_plot_series dots = {"dots", x, y, NULL, 3, false};
+    const struct orl_plot_series line = {"the front", x, y, NULL, 3, true};
+    char *text = orl_plot_svg(NULL, &(struct orl_plot){.title = "T", .x_label = "x",
+                                                       .y_label = "y", .series = &dots,
+                                                       .series_count = 1, .behind = &line});
+    check_well_formed(text);
+    assert_int_equal(count(text, "<circle"), 3);
+    assert_int_equal(count(text, "<polyline"), 1);
+    assert_non_null(strstr(text, ">the front<"));
+    assert_true(strstr(text, "<polyline") < strstr(text, "<circle"));
+    free(text);
+}
+
 static void draws_bars(void **state)
 {
     (void)state;
@@ -142,6 +160,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(draws_lines),
         cmocka_unit_test(draws_without_data),
+        cmocka_unit_test(draws_a_line_behind),
         cmocka_unit_test(draws_bars),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

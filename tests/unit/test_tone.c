@@ -162,20 +162,6 @@ static void holes_stay_black(void **state)
     orl_image_finish(&linear);
 }
 
-static void names(void **state)
-{
-    (void)state;
-    enum orl_tone_curve curve;
-    for (int i = 0; i < ORL_TONE_COUNT; i++) {
-        assert_int_equal(orl_tone_find(NULL, orl_tones[i].name, &curve), ORL_OK);
-        assert_int_equal(curve, i);
-    }
-    struct said said;
-    struct orl_log log = log_to(&said);
-    assert_int_equal(orl_tone_find(&log, "velvia", &curve), ORL_ERR_ARGUMENT);
-    assert_non_null(strstr(said.text, "srgb reinhard filmic drago mantiuk"));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -187,7 +173,6 @@ int main(void)
         cmocka_unit_test(curves_rise_and_keep_range),
         cmocka_unit_test(nothing_breaks_whole_picture_curves),
         cmocka_unit_test(holes_stay_black),
-        cmocka_unit_test(names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,64 @@
+// oriel methods: what there is to render with, and what may be set.
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "render/render.h"
+
+static void print_list(void)
+{
+    for (const struct orl_method *m = orl_methods; m->name; m++)
+        printf("%-14s %s\n%-14s source: %s\n", m->name, m->description, "", m->source);
+    printf("\noriel methods NAME lists the options of one.\n");
+}
+
+// What an option is worth, and what it may be.
+static void print_option(const struct orl_render_option *option,
+                         const struct orl_render_params *params)
+{
+    char value[ORL_OPTION_NAME_BYTES], name[ORL_OPTION_NAME_BYTES], allowed[256] = "";
+    orl_render_option_print(option, params, value, sizeof value);
+    if (option->kind == ORL_OPTION_NUMBER)
+        snprintf(allowed, sizeof allowed, "%g to %g%s%s", option->least, option->most,
+                 option->unit[0] ? " " : "", option->unit);
+    for (size_t i = 0; option->kind != ORL_OPTION_NUMBER && orl_render_option_name(option, i, name);
+         i++) {
+        size_t used = strlen(allowed);
+        snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? ", " : "", name);
+    }
+    printf("%-18s %-12s %-30s %s\n", option->key, value, allowed, option->help);
+}
+
+static enum orl_result print_method(const struct orl_log *log, const char *name)
+{
+    const struct orl_method *method = orl_method_find(log, name);
+    if (!method)
+        return ORL_ERR_ARGUMENT;
+    printf("%s: %s\nsource: %s\n\n%-18s %-12s %-30s %s\n", method->name, method->description,
+           method->source, "option", "value", "allowed", "what it is");
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+        if (orl_render_option_read(o, &method->params))
+            print_option(o, &method->params);
+    return ORL_OK;
+}
+
+static enum orl_result run(const struct terminal *terminal, const void *options,
+                           const struct arg_common *common, const char *name)
+{
+    (void)options;
+    (void)common;
+    if (name)
+        return print_method(&terminal->log, name);
+    print_list();
+    return ORL_OK;
+}
+
+int cmd_methods(int argc, char **argv)
+{
+    const struct arg_option table[] = {{0}};
+    const struct arg_command command = {
+        "methods", "[NAME]",
+        "Lists the methods of rendering; of one, the options that it reads, with their values.",
+        table, 0, 1};
+    return command_main(&command, argc, argv, run, NULL);
+}

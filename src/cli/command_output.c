@@ -1,0 +1,67 @@
+#include "cli/command_output.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// By enum orl_exr_compression.
+static const char *const compression_names[] = {"zip", "piz", NULL};
+_Static_assert(ORL_EXR_ZIP == 0 && ORL_EXR_PIZ == 1, "names in this order");
+
+void output_options_init(struct output_options *o)
+{
+    *o = (struct output_options){.white = 8, .compression = {compression_names, ORL_EXR_ZIP}};
+    for (int i = 0; i < ORL_TONE_COUNT; i++)
+        o->tone_names[i] = orl_tones[i].name;
+    o->tone = (struct arg_enum){o->tone_names, ORL_TONE_SRGB};
+}
+
+static enum orl_result choose_layers(const struct orl_log *log, const struct orl_names *names,
+                                     bool confidence, struct orl_frame_layers *layers)
+{
+    for (size_t i = 0; i < names->count; i++) {
+        const char *name = names->items[i];
+        if (strcmp(name, "depth") == 0)
+            layers->depth = true;
+        else if (strcmp(name, "normal") == 0)
+            layers->normal = true;
+        else if (strcmp(name, "coverage") == 0)
+            layers->coverage = true;
+        else if (confidence && strcmp(name, "confidence") == 0)
+            layers->confidence = true;
+        else
+            return orl_fail(log, ORL_ERR_ARGUMENT,
+                            "--layers %s: must be of depth, normal, coverage%s", name,
+                            confidence ? ", confidence" : "");
+    }
+    return ORL_OK;
+}
+
+enum orl_result output_choose(const struct orl_log *log, const struct output_options *options,
+                              bool confidence, struct orl_frame_output *output)
+{
+    output->float_color = options->float_color;
+    output->tone.curve = (enum orl_tone_curve)options->tone.value;
+    output->tone.exposure_ev = options->exposure_ev;
+    output->tone.white = options->white;
+    output->compression = (enum orl_exr_compression)options->compression.value;
+    return choose_layers(log, &options->layers, confidence, &output->layers);
+}
+
+bool report_on_stdout(const char *path)
+{
+    return path && strcmp(path, "-") == 0;
+}
+
+enum orl_result report_write(const struct orl_log *log, const char *path, char *text)
+{
+    enum orl_result result = ORL_OK;
+    if (!text)
+        return ORL_ERR_MEMORY;
+    if (!report_on_stdout(path))
+        result = orl_file_write(log, path, text, strlen(text));
+    else if (puts(text) < 0 || fflush(stdout) != 0)
+        result = orl_fail(log, ORL_ERR_IO, "standard output: cannot write");
+    free(text);
+    return result;
+}

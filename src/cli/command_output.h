@@ -1,0 +1,39 @@
+// What several commands write: frames as files, reports.
+#ifndef ORL_CLI_COMMAND_OUTPUT_H
+#define ORL_CLI_COMMAND_OUTPUT_H
+
+#include "cli/args.h"
+#include "render/output.h"
+#include "render/render.h"
+
+struct output_options {
+    const char *tone_names[ORL_TONE_COUNT + 1];
+    struct arg_enum tone, compression;
+    double exposure_ev, white;
+    bool float_color;
+    struct orl_names layers;
+};
+// Sets the defaults, which point into *options.
+void output_options_init(struct output_options *options);
+// Rows of a command's table for `o`, a struct output_options; layers: what there is.
+#define OUTPUT_OPTION_ROWS(o, layers_help)                                                       \
+    {"layers", ARG_LIST, &(o)->layers, "A,B", layers_help, 0, 0},                                \
+    {"exposure", ARG_NUMBER, &(o)->exposure_ev, "EV", "of .png and .mp4, in stops; default 0",   \
+     -32, 32},                                                                                   \
+    {"tone", ARG_ENUM, &(o)->tone, "NAME", "of .png and .mp4", 0, 0},                            \
+    {"white", ARG_NUMBER, &(o)->white, "L",                                                      \
+     "of reinhard: the luminance that becomes white; default 8", 1e-3, 1e6},                     \
+    {"float", ARG_FLAG, &(o)->float_color, NULL, "of .exr: 32-bit colour; default: 16-bit",      \
+     0, 0},                                                                                      \
+    {"compression", ARG_ENUM, &(o)->compression, "NAME", "of .exr", 0, 0}
+// confidence: may it be asked for?
+enum orl_result output_choose(const struct orl_log *log, const struct output_options *options,
+                              bool confidence, struct orl_frame_output *output) ORL_CHECK_RESULT;
+
+// Writes a report (released; NULL: there was no memory for it) to a file, or "-": stdout.
+enum orl_result report_write(const struct orl_log *log, const char *path,
+                             char *text) ORL_CHECK_RESULT;
+// Does the report take stdout, so that no table may?
+bool report_on_stdout(const char *path);
+
+#endif

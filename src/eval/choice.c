@@ -1,0 +1,115 @@
+#include "eval/choice.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+// What all choices of a command share.
+struct wish {
+    const struct orl_log *log;
+    const struct orl_scene *scene; // NULL: nothing tuned
+    enum orl_sample sample;
+    const struct orl_names *settings;
+    const char *varied; // NULL: nothing
+};
+
+static enum orl_result make(const struct wish *wish, const struct orl_method *method,
+                            struct orl_choice *choice)
+{
+    enum orl_result result = ORL_OK;
+    *choice = (struct orl_choice){.method = method, .params = method->params};
+    if (wish->scene)
+        result = orl_render_params_tuned(wish->log, method, wish->scene, &choice->params);
+    choice->params.sample = wish->sample;
+    if (result == ORL_OK)
+        result = orl_render_params_assign(wish->log, &choice->params,
+                                          (const char *const *)wish->settings->items,
+                                          wish->settings->count);
+    return result;
+}
+
+enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scene *scene,
+                                enum orl_sample sample, const char *name,
+                                const struct orl_names *settings, struct orl_choice *choice)
+{
+    const struct wish wish = {log, scene, sample, settings, NULL};
+    const struct orl_method *method = orl_method_find(log, name);
+    return method ? make(&wish, method, choice) : ORL_ERR_ARGUMENT;
+}
+
+static enum orl_result add(const struct orl_log *log, const struct orl_choice *choice,
+                           struct orl_choices *choices)
+{
+    enum orl_result result = orl_grow(log, (void **)&choices->items, &choices->capacity,
+                                      choices->count + 1, sizeof *choices->items);
+    if (result == ORL_OK)
+        choices->items[choices->count++] = *choice;
+    return result;
+}
+
+// The choice once with each of the values in "KEY=A,B,..".
+static enum orl_result add_varied(const struct orl_log *log, const struct orl_choice *choice,
+                                  const char *varied, struct orl_choices *choices)
+{
+    const char *equals = strchr(varied, '=');
+    if (!equals)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--vary %s: must be KEY=VALUE,VALUE,..", varied);
+    enum orl_result result = ORL_OK;
+    const char *value = equals + 1;
+    while (result == ORL_OK) {
+        int length = (int)strcspn(value, ",");
+        struct orl_choice one = *choice;
+        int size = snprintf(one.setting, sizeof one.setting, "%.*s=%.*s", (int)(equals - varied),
+                            varied, length, value);
+        if (size >= (int)sizeof one.setting)
+            return orl_fail(log, ORL_ERR_ARGUMENT, "--vary %s: a value is too long", varied);
+        result = orl_render_params_set(log, &one.params, one.setting);
+        if (result == ORL_OK)
+            result = add(log, &one, choices);
+        if (value[length] == '\0')
+            break;
+        value += length + 1;
+    }
+    return result;
+}
+
+static enum orl_result add_method(const struct wish *wish, const struct orl_method *method,
+                                  struct orl_choices *choices)
+{
+    struct orl_choice choice;
+    enum orl_result result = make(wish, method, &choice);
+    if (result != ORL_OK)
+        return result;
+    return wish->varied ? add_varied(wish->log, &choice, wish->varied, choices)
+                        : add(wish->log, &choice, choices);
+}
+
+enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_scene *scene,
+                                 enum orl_sample sample, const struct orl_names *methods,
+                                 const struct orl_names *settings, const char *varied,
+                                 struct orl_choices *choices)
+{
+    const struct wish wish = {log, scene, sample, settings, varied};
+    bool all = orl_names_contain(methods, "all");
+    enum orl_result result = ORL_OK;
+    memset(choices, 0, sizeof *choices);
+    if (!all && !methods->count)
+        result = add_method(&wish, &orl_methods[0], choices);
+    for (const struct orl_method *m = orl_methods; result == ORL_OK && all && m->name; m++)
+        result = add_method(&wish, m, choices);
+    for (size_t i = 0; result == ORL_OK && !all && i < methods->count; i++) {
+        const struct orl_method *method = orl_method_find(log, methods->items[i]);
+        result = method ? add_method(&wish, method, choices) : ORL_ERR_ARGUMENT;
+    }
+    if (result != ORL_OK)
+        orl_choices_finish(choices);
+    return result;
+}
+
+void orl_choices_finish(struct orl_choices *choices)
+{
+    free(choices->items);
+    memset(choices, 0, sizeof *choices);
+}

@@ -1,0 +1,8 @@
+#include "eval/commit.h"
+
+#include "commit_id.h"
+
+const char *orl_commit(void)
+{
+    return ORL_COMMIT;
+}

@@ -1,0 +1,108 @@
+#include "eval/heldout.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/color.h"
+#include "io/picture.h"
+#include "render/reexpose.h"
+
+enum { METRIC_SIDE = 11 }; // SSIM's window
+
+// --- the photograph ---
+
+enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_image *from, int n,
+                                   struct orl_image *to)
+{
+    float linear[256];
+    enum orl_result result =
+        orl_image_init(log, to, from->width / n, from->height / n, 3, ORL_PIXEL_U8);
+    for (int i = 0; i < 256; i++)
+        linear[i] = orl_srgb_decode((float)i / 255);
+    for (int y = 0; result == ORL_OK && y < to->height; y++)
+        for (int x = 0; x < to->width; x++)
+            for (int c = 0; c < 3; c++) {
+                float sum = 0;
+                for (int k = 0; k < n * n; k++) {
+                    size_t row = (size_t)(y * n + k / n), column = (size_t)(x * n + k % n);
+                    sum += linear[from->u8[3 * (row * (size_t)from->width + column) + (size_t)c]];
+                }
+                to->u8[3 * ((size_t)y * (size_t)to->width + (size_t)x) + (size_t)c] =
+                    (uint8_t)(255 * orl_srgb_encode(sum / (float)(n * n)) + 0.5f);
+            }
+    return result;
+}
+
+// The camera of the picture that orl_heldout_shrink makes: what is cut off moves nothing.
+static struct orl_camera shrunk_camera(const struct orl_camera *c, int n)
+{
+    return (struct orl_camera){.width = c->width / n, .height = c->height / n, .fx = c->fx / n,
+                               .fy = c->fy / n, .cx = c->cx / n, .cy = c->cy / n};
+}
+
+static enum orl_result read_photograph(const struct orl_log *log, const struct orl_scene *scene,
+                                       size_t photo, struct orl_image *image)
+{
+    const struct orl_camera *camera = &scene->photos[photo].view.camera;
+    char *path = orl_scene_photo_path(log, scene, photo);
+    enum orl_result result = path ? orl_picture_read(log, path, 3, image) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && (image->width != camera->width || image->height != camera->height))
+        result = orl_fail(log, ORL_ERR_DATA, "%s has %dx%d pixels, its camera %dx%d", path,
+                          image->width, image->height, camera->width, camera->height);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_scene *scene,
+                                 size_t photo, int divide, struct orl_heldout *heldout)
+{
+    memset(heldout, 0, sizeof *heldout);
+    const struct orl_view *view = &scene->photos[photo].view;
+    struct orl_image full = {0};
+    int n = divide;
+    while (n > 1 && (view->camera.width / n < METRIC_SIDE || view->camera.height / n < METRIC_SIDE))
+        n--;
+    enum orl_result result = read_photograph(log, scene, photo, &full);
+    if (result == ORL_OK && n == 1) {
+        heldout->picture = full;
+        memset(&full, 0, sizeof full);
+    } else if (result == ORL_OK) {
+        result = orl_heldout_shrink(log, &full, n, &heldout->picture);
+    }
+    orl_image_finish(&full);
+    heldout->photo = photo;
+    heldout->divide = n;
+    heldout->view = (struct orl_view){shrunk_camera(&view->camera, n), view->cam_from_world};
+    return result;
+}
+
+void orl_heldout_finish(struct orl_heldout *heldout)
+{
+    orl_image_finish(&heldout->picture);
+    memset(heldout, 0, sizeof *heldout);
+}
+
+// --- the rendering ---
+
+// Aligned photographs show the scene at its reference exposure. What this one would have
+// shown is the way back: by a gain guessed without its pixels (expose.h) and the vignetting
+// of its lens.
+static bool is_aligned(const struct orl_render_params *render, const struct orl_photo *photo)
+{
+    bool changed = false;
+    for (int c = 0; c < 3; c++)
+        changed = changed || photo->gain[c] != 1 || photo->vignette[c] != 0;
+    return changed && render->alignment == ORL_ALIGNMENT_ON &&
+           orl_render_option_read(orl_render_option_find("alignment"), render);
+}
+
+enum orl_result orl_heldout_expose(const struct orl_log *log, const struct orl_scene *scene,
+                                   size_t photo, const struct orl_render_params *render,
+                                   struct orl_image *color, struct orl_image *picture)
+{
+    if (!render)
+        return orl_photo_expose(log, scene, photo, color, picture);
+    if (is_aligned(render, &scene->photos[photo]))
+        orl_photo_unalign(&scene->photos[photo], color);
+    return orl_tone_srgb(log, color, picture);
+}

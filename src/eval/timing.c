@@ -1,0 +1,112 @@
+#include "eval/timing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/process.h"
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double orl_median(double *values, size_t count)
+{
+    if (!count)
+        return 0;
+    qsort(values, count, sizeof *values, compare_doubles);
+    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+}
+
+bool orl_timing_enough(const struct orl_timing_params *params, size_t frames, double start_s)
+{
+    return frames >= params->frames_max ||
+           (frames >= ORL_TIMING_FRAMES_MIN && frames % params->views == 0 &&
+            orl_time_s() - start_s >= params->seconds);
+}
+
+static enum orl_result draw(const struct orl_timing_params *params, size_t number, double *ms,
+                            double *cpu_ms)
+{
+    if (orl_progress_cancelled(params->progress))
+        return ORL_ERR_CANCELLED;
+    double start = orl_time_s(), cpu_start = orl_cpu_time_s();
+    enum orl_result result = params->draw(params->priv, number);
+    *ms = 1e3 * (orl_time_s() - start);
+    *cpu_ms = 1e3 * (orl_cpu_time_s() - cpu_start);
+    return result;
+}
+
+static enum orl_result take_frames(const struct orl_timing_params *params, double *ms,
+                                   double *cpu_ms, struct orl_timing *timing)
+{
+    enum orl_result result = ORL_OK;
+    double start = orl_time_s();
+    for (; result == ORL_OK && !orl_timing_enough(params, timing->frames, start); timing->frames++)
+        result = draw(params, timing->frames, &ms[timing->frames], &cpu_ms[timing->frames]);
+    timing->median_ms = orl_median(ms, timing->frames); // sorts
+    timing->cpu_ms = orl_median(cpu_ms, timing->frames);
+    timing->slowest_ms = ms[timing->frames - 1];
+    timing->p95_ms = ms[(timing->frames * 95 + 99) / 100 - 1];
+    return result;
+}
+
+// Adds one frame's passes to the columns, which are `rows` long; passes grow.
+static void note_passes(struct orl_gpu *gpu, struct orl_timing *timing, double *columns,
+                        size_t rows, size_t frame)
+{
+    struct orl_pass_time times[ORL_TIMING_PASSES_MAX];
+    size_t count = orl_gpu_take_times(gpu, times, ORL_TIMING_PASSES_MAX);
+    for (size_t i = 0; i < count && i < ORL_TIMING_PASSES_MAX; i++) {
+        size_t k = 0;
+        while (k < timing->pass_count && strcmp(timing->passes[k].name, times[i].name) != 0)
+            k++;
+        if (k == ORL_TIMING_PASSES_MAX)
+            continue;
+        if (k == timing->pass_count)
+            timing->passes[timing->pass_count++].name = times[i].name;
+        columns[k * rows + frame] = times[i].ms;
+    }
+}
+
+static enum orl_result take_passes(struct orl_gpu *gpu, const struct orl_timing_params *params,
+                                   struct orl_timing *timing)
+{
+    size_t frames = params->pass_frames < timing->frames ? params->pass_frames : timing->frames;
+    double unused[2], *columns =
+        orl_array(orl_gpu_log(gpu), frames * ORL_TIMING_PASSES_MAX, sizeof *columns);
+    if (!columns)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    orl_gpu_take_times(gpu, NULL, 0);
+    orl_gpu_time_passes(gpu, true);
+    for (size_t i = 0; result == ORL_OK && i < frames; i++) {
+        result = draw(params, i, &unused[0], &unused[1]);
+        note_passes(gpu, timing, columns, frames, i);
+    }
+    orl_gpu_time_passes(gpu, false);
+    for (size_t k = 0; k < timing->pass_count; k++)
+        timing->passes[k].ms = orl_median(&columns[k * frames], frames);
+    free(columns);
+    return result;
+}
+
+enum orl_result orl_timing_take(struct orl_gpu *gpu, const struct orl_timing_params *params,
+                                struct orl_timing *timing)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    memset(timing, 0, sizeof *timing);
+    ORL_REQUIRE(log, params->views > 0 && params->frames_max >= ORL_TIMING_FRAMES_MIN);
+    double unused[2], *ms = orl_array(log, 2 * params->frames_max, sizeof *ms);
+    enum orl_result result = ms ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < params->warm_up * params->views; i++)
+        result = draw(params, i, &unused[0], &unused[1]);
+    if (result == ORL_OK)
+        result = take_frames(params, ms, ms + params->frames_max, timing);
+    if (result == ORL_OK && params->pass_frames)
+        result = take_passes(gpu, params, timing);
+    free(ms);
+    return result;
+}

@@ -1,0 +1,23 @@
+// Which views are asked for: one photograph's, one camera's, or a path.
+#ifndef ORL_SCENE_VIEW_CHOICE_H
+#define ORL_SCENE_VIEW_CHOICE_H
+
+#include "core/file.h"
+#include "scene/path.h"
+
+struct orl_view_choice {
+    const char *at;     // a photograph's name; or
+    const char *camera; // a file with one camera; or
+    const char *path;   // a file with cameras, or "photos": past all photographs
+    int frames;         // of "photos"
+    int width, height;  // of the pictures; 0 0: the cameras'
+};
+// At least one view. Errors name what is missing.
+enum orl_result orl_views_choose(const struct orl_log *log, const struct orl_scene *scene,
+                                 const struct orl_view_choice *choice,
+                                 struct orl_path *path) ORL_CHECK_RESULT;
+// One flag per photograph of the scene, true for those named; released with free().
+enum orl_result orl_photos_named(const struct orl_log *log, const struct orl_scene *scene,
+                                 const struct orl_names *names, bool **named) ORL_CHECK_RESULT;
+
+#endif
