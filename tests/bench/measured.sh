@@ -195,7 +195,7 @@ END
     local background="oriel eval SCENES/NAME --method airieau --set fill=depth --set front_layer=0.01
         --set min_support=8 --quiet --json -"
     for_scenes "$work/part.json" "$background" "${part_scenes[@]}"
-    command_block "$(tr -s ' \n' ' ' <<<"$background")"
+    command_block "$(echo $background)"
     print_table "$work/part.json" 'table(["scene", "PSNR", "SSIM"];
         .[] | [name, (.mean.psnr_db | fixed(2)), (.mean.ssim | fixed(3))])'
 }
@@ -228,7 +228,7 @@ page_frame() {
 Medians of wall time, without reading back. Compare figures of one table only: they were taken in turns in one
 process, and other work may have run beside it (the load average above tells).
 END
-    command_block "$(tr -s ' \n' ' ' <<<"$bench")"
+    command_block "$(echo $bench)"
     printf '**A frame, ms**\n\n'
     print_table "$work/frame.json" '
       [.[] | . as $b | .sizes[] | . + {scene: ($b | name), all: $b.photographs}]
@@ -252,7 +252,7 @@ page_growth() {
     for_scenes "$work/growth.json" "$bench" $(scene_names fountain)
     head_of "How time grows" "$work/growth.json"
     printf '\nMedians of wall time of a frame of 512x512, in ms.\n'
-    command_block "$(tr -s ' \n' ' ' <<<"$bench")"
+    command_block "$(echo $bench)"
     local by
     for by in photographs points; do
         printf '**By number of %s**\n\n' "$by"
@@ -432,7 +432,7 @@ commit=$(git -C "$source" describe --always \
 git -C "$source" diff --quiet HEAD -- "${parts[@]}" || commit=$commit+
 for section in "$@"; do
     load=$(cut -d ' ' -f 1 /proc/loadavg)
-    "page_$section" >"$work/$section.md"
+    "page_$section" | cat -s >"$work/$section.md"
     mv "$work/$section.md" "$pages/$section.md"
     echo "wrote docs/measured/$section.md" >&2
 done
