@@ -320,7 +320,7 @@ END
     print_table "$work/prepare.json" '
       def cell: if . == null then "-" else [.value | .wall_s, .cpu_s, ([.peak_rss_mib, .child_peak_rss_mib] | max)]
         | map(if . == null then "-" else fixed(0) end) | join(", ") end;
-      group_by(.scene) as $s | ["calibrate", "undistort", "densify", "fuse", "radii", "expose"] as $stages
+      group_by(.scene) as $s | ([$s[0][].key] - ["collect"]) as $stages
       | table(["scene"] + $stages; $s[] | . as $of
           | [.[0].scene] + [$stages[] as $k | [$of[] | select(.key == $k)][0] | cell])'
 }
@@ -361,7 +361,7 @@ page_radiance() {
     run "$cost" >"$work/merge_time.txt"
     local scene again
     scene=$(scene_names fountain)
-    again='tests/bench/reexpose.sh BUILD/oriel BUILD/tests/bench_reexpose SCENES/NAME WORK/reexposed'
+    again='tests/bench/reexpose.sh BUILD/oriel BUILD/tests/bench_reexpose_photos SCENES/NAME WORK/reexposed'
     run "${again//BUILD/$build}" "$scene" >&2
     jq -s '[.[0] + {row: "one exposure, not re-exposed"}, .[1] + {row: "three series, `fused`"},
             .[2] + {row: "three series, `series`"}]' "$work/reexposed/single.json" \
