@@ -225,8 +225,9 @@ page_frame() {
     head_of "Time of a frame" "$work/frame.json"
     cat <<'END'
 
-Medians of wall time, without reading back. Compare figures of one table only: they were taken in turns in one
-process, and other work may have run beside it (the load average above tells).
+Medians of wall time, without reading back. They mean something on a quiet machine alone: with a load average above
+about one at the start, figures of one table differ by a factor of two for no other reason. The passes, which are timed
+in frames of their own with the device drained around each, suffer in the same way.
 END
     command_block "$(echo $bench)"
     printf '**A frame, ms**\n\n'
@@ -237,8 +238,7 @@ END
           group_by([.scene, .size])[] | . as $runs
           | [.[0].scene, (.[0].all | tostring), (.[0].size | size)] +
             [$m[] as $one | $runs[] | select(.method == $one) | .frame_ms | fixed(0)])'
-    printf '**Passes of a frame of the first scene at 768x512, ms.** A pass is timed with the device drained\n'
-    printf 'around it, so that the passes add up to more than a frame.\n\n'
+    printf '**Passes of a frame of the first scene at 768x512, ms**\n\n'
     print_table "$work/frame.json" '
       [.[0].sizes[] | select(.size == [768, 512])] as $runs
       | table(["pass"] + [$runs[].method];
