@@ -61,7 +61,7 @@ void orl_figures_picture_finish(struct orl_figures_picture *picture);
 
 // --- all of them, as files ---
 
-// Fills OUT, a new or empty folder, which appears only when whole (docs/synth.md).
+// Fills OUT, a new or empty folder, which appears only when whole (docs/reference/synthetic.md).
 enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_progress *progress,
                                 const struct orl_figures_params *params,
                                 const char *out) ORL_CHECK_RESULT;

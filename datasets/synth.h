@@ -101,7 +101,7 @@ enum orl_result orl_synth_expose(const struct orl_log *log, const struct orl_ima
 // --- the whole set as files ---
 
 // Writes the photographs to the folder `photos` and their ground truth to `truth`
-// (docs/synth.md). Both folders must be new or empty, and appear only when complete.
+// (docs/reference/synthetic.md). Both folders must be new or empty, and appear only when complete.
 enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *progress,
                               const struct orl_synth_params *params, const char *photos,
                               const char *truth) ORL_CHECK_RESULT;

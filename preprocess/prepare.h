@@ -1,5 +1,5 @@
 // From a folder of photographs to a scene: the stages of preprocess/stages.c in their order
-// (docs/pipeline.md).
+// (docs/how/pipeline.md).
 #ifndef ORL_PREPROCESS_PREPARE_H
 #define ORL_PREPROCESS_PREPARE_H
 

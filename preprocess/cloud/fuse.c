@@ -139,7 +139,7 @@ static enum orl_result drop_strays(const struct orl_job *job, const struct orl_c
 }
 
 // What three photographs agree on is good; what only two do is noisier and strays more,
-// but it is all there is of places that few see (docs/pipeline.md).
+// but it is all there is of places that few see (docs/how/pipeline.md).
 static enum orl_result join_clouds(const struct orl_job *job, struct orl_points *pairs,
                                    struct orl_points *points)
 {

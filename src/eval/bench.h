@@ -76,7 +76,7 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
                               struct orl_bench *bench) ORL_CHECK_RESULT;
 void orl_bench_finish(struct orl_bench *bench);
 
-// The JSON of docs/performance.md, released with free().
+// The JSON of docs/reference/json.md, released with free().
 char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench);
 // Writes passes.svg, memory.svg and, with growth, photographs.svg, points.svg,
 // resolution.svg into `dir`, made if need be.

@@ -1,4 +1,4 @@
-// The benchmark's report (docs/performance.md). Field names are fixed.
+// The benchmark's report (docs/reference/json.md). Field names are fixed.
 #include <jansson.h>
 
 #include "eval/bench.h"

@@ -1,5 +1,5 @@
 // The held-out protocol: photographs that were kept aside, rendered from the others
-// and compared. docs/conventions.md defines every figure.
+// and compared. docs/reference/metrics.md defines every figure.
 #ifndef ORL_EVAL_EVAL_H
 #define ORL_EVAL_EVAL_H
 
@@ -61,7 +61,7 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              struct orl_eval *eval) ORL_CHECK_RESULT;
 void orl_eval_finish(struct orl_eval *eval);
 
-// The JSON of docs/conventions.md, released with free(): one object, or with `array` an
+// The JSON of docs/reference/metrics.md, released with free(): one object, or with `array` an
 // array of `count` of them.
 char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
                        bool array);

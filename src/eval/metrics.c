@@ -1,4 +1,4 @@
-// Definitions are in docs/conventions.md.
+// Definitions are in docs/reference/metrics.md.
 #include "eval/metrics.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 // How steady a method is while the viewer moves: each frame of a walk, warped to the next
-// viewpoint by the next frame's depth, should be the next frame. docs/conventions.md.
+// viewpoint by the next frame's depth, should be the next frame. docs/reference/metrics.md.
 #ifndef ORL_EVAL_STABILITY_H
 #define ORL_EVAL_STABILITY_H
 
@@ -94,7 +94,7 @@ enum orl_result orl_stability_compare(const struct orl_log *log,
                                       struct orl_stability_counts *counts,
                                       struct orl_stability_step *step) ORL_CHECK_RESULT;
 
-// The JSON of docs/conventions.md, released with free(): one object, or with `array` an
+// The JSON of docs/reference/metrics.md, released with free(): one object, or with `array` an
 // array of `count` of them.
 char *orl_stability_to_json(const struct orl_log *log, const struct orl_scene *scene,
                             const struct orl_stability *all, size_t count, bool array);

@@ -1,4 +1,4 @@
-// True radiance of synthetic photographs (docs/synth.md), as a scene sees it.
+// True radiance of synthetic photographs (docs/reference/synthetic.md), as a scene sees it.
 #ifndef ORL_EVAL_TRUTH_H
 #define ORL_EVAL_TRUTH_H
 

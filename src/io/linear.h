@@ -1,5 +1,5 @@
 // A scene's photographs as linear light, where they were given with more than 8 bits
-// (docs/formats.md, images_linear).
+// (docs/reference/files.md, images_linear).
 #ifndef ORL_IO_LINEAR_H
 #define ORL_IO_LINEAR_H
 

@@ -1,4 +1,4 @@
-// scene.json and .oriel/stages.json (docs/formats.md).
+// scene.json and .oriel/stages.json (docs/reference/files.md).
 #ifndef ORL_SCENE_MANIFEST_H
 #define ORL_SCENE_MANIFEST_H
 

@@ -1,4 +1,4 @@
-// A scene folder (docs/formats.md): photographs with cameras, and points.
+// A scene folder (docs/reference/files.md): photographs with cameras, and points.
 #ifndef ORL_SCENE_SCENE_H
 #define ORL_SCENE_SCENE_H
 

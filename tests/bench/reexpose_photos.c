@@ -1,5 +1,5 @@
 // reexpose FROM TO NOISE NAME=EV..: photographs as if taken at other exposures. Values are
-// made linear (sRGB), multiplied by 2^EV, given sensor noise (docs/synth.md), clipped,
+// made linear (sRGB), multiplied by 2^EV, given sensor noise (docs/reference/synthetic.md), clipped,
 // encoded and rounded again, with EXIF saying the exposure; others are copied.
 // FROM is a folder of photographs, or a scene: then TO becomes one, its scene.json saying
 // exposure, series and gain. Held-out photographs of a scene are copied, whatever is asked.

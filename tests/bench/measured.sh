@@ -1,0 +1,438 @@
+#!/usr/bin/env bash
+# Measures Oriel and writes the pages of docs/measured: tables alone, each below the command that
+# gave it, with the commit and the device.
+#     tests/bench/measured.sh BUILD SCENES DATASETS [SECTION]...
+# BUILD is a build folder, which is brought up to date first. SCENES holds prepared scenes, one
+# folder each. DATASETS holds the photographs; the section `scenes` prepares from them the scenes
+# that are missing. Without SECTION all sections are measured, which takes hours on two cores.
+# A section writes the page of its name. Work files lie in BUILD/measured. Needs jq.
+set -euo pipefail
+sections="scenes accuracy parts steadiness frame growth memory prepare stereo radiance response
+resampling"
+[ $# -ge 3 ] || { sed -n '2,9s/^# *//p' "$0"; echo "sections: "$sections; exit 2; }
+build=$(realpath "$1") scenes=$(realpath -m "$2") datasets=$(realpath -m "$3")
+shift 3
+[ $# -gt 0 ] || set -- $sections
+source=$(cd "$(dirname "$0")/../.." && pwd)
+pages=$source/docs/measured
+work=$build/measured
+export QT_QPA_PLATFORM=offscreen LC_ALL=C
+mkdir -p "$scenes" "$work" "$pages"
+
+# --- commands ---
+
+# run COMMAND [NAME]: runs the command as a page shows it: programs are those of the build, and the
+# words SCENES, DATASETS, WORK and NAME stand for folders and for a scene.
+run() {
+    local word words=()
+    for word in $1; do
+        word=${word//SCENES/$scenes}
+        word=${word//DATASETS/$datasets}
+        word=${word//WORK/$work}
+        words+=("${word//NAME/${2:-}}")
+    done
+    case ${words[0]} in
+    oriel) words[0]=$build/oriel ;;
+    bench_* | gpu_* | unit_*) words[0]=$build/tests/${words[0]} ;;
+    tests/*) words[0]=$source/${words[0]} ;;
+    esac
+    echo "measuring: ${words[*]}" >&2
+    "${words[@]}" </dev/null
+}
+
+# Prints the commands for the page.
+command_block() {
+    printf '\n'
+    printf '    %s\n' "$@"
+    printf '\n'
+}
+
+# Prepared scenes that hold photographs out; with arguments, those of them that are there.
+scene_names() {
+    local file name
+    for file in "$scenes"/*/scene.json; do
+        name=$(basename "$(dirname "$file")")
+        [ $# -eq 0 ] || [[ " $* " == *" $name "* ]] || continue
+        grep -q '"split": "test"' "$file" && echo "$name"
+    done
+    return 0
+}
+
+# for_scenes FILE COMMAND NAME...: one JSON array of what the command gives for each scene.
+for_scenes() {
+    local file=$1 command=$2 name
+    shift 2
+    for name in "$@"; do
+        run "$command" "$name" >"$work/one.json"
+        jq 'if type == "array" then .[] else . end' "$work/one.json"
+    done | jq -s . >"$file"
+}
+
+# --- tables ---
+
+tables='
+def fixed(d): (if . < 0 then "-" else "" end) as $sign
+  | (fabs * pow(10; d) | round | tostring) as $t
+  | (if ($t | length) <= d then ([range(d + 1 - ($t | length)) | "0"] | add) + $t else $t end) as $u
+  | if d == 0 then $sign + $u else $sign + $u[:-d] + "." + $u[-d:] end;
+def row: "| " + join(" | ") + " |";
+def table(head; rows): (head | row), ([head[] | "---"] | row), (rows | row);
+def name: .scene | split("/") | map(select(length > 0)) | last;
+def size: map(tostring) | join("x");
+# A row for each scene, a column for each method.
+def by_method(value; d): group_by(.scene) as $scenes
+  | table(["scene"] + [$scenes[0][].method];
+          $scenes[] | [(.[0] | name)] + [.[] | value | fixed(d)]);
+'
+print_table() { # FILE FILTER
+    jq -r "$tables $2" "$1"
+    printf '\n'
+}
+
+# --- pages ---
+
+# head TITLE JSON: the page's beginning. JSON: a report, which names the device; none: no device.
+head_of() {
+    local device=
+    [ $# -lt 2 ] ||
+        device=$(jq -r 'if type == "array" then .[0] else . end | "Device: " + .device + ". "' "$2")
+    printf '# %s\n\n' "$1"
+    printf 'Oriel %s, %s. %sProcessor: %s, %s cores, load average %s at the start.\n' \
+        "$commit" "$(date -u +%F)" "$device" "$(processor)" "$(nproc)" "$load"
+}
+
+processor() {
+    sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1
+}
+
+page_scenes() {
+    local name arguments
+    while read -r name arguments; do
+        [ -e "$scenes/$name/scene.json" ] && continue
+        [ "$name" != monument ] || [ -e "$work/monument" ] ||
+            run "oriel synth monument --out WORK/monument --size 576x384 --count 24 --quiet"
+        run "oriel prepare $arguments --out SCENES/NAME --max-size 768 --quiet" "$name"
+    done <<'END'
+fountain DATASETS/fountain-P11/images --test-list 0002.jpg,0005.jpg,0008.jpg
+herz DATASETS/Herz-Jesus-P8/images --test-list 0002.jpg,0005.jpg
+sceaux DATASETS/sceaux-castle/images --test-list 100_7103.JPG,100_7107.JPG
+sakharov DATASETS/sakharov/images --test-every 8
+sacre DATASETS/sacre-coeur/images --test-every 8
+bronze DATASETS/bronze-head/images --test-every 8 --masks DATASETS/bronze-head/masks
+dino DATASETS/dino-sparse-ring/images --test-every 8
+temple DATASETS/temple-sparse-ring/images --test-every 8
+monument WORK/monument --quality draft --test-list 0005.jpg,0012.jpg,0020.jpg
+END
+    for name in $(scene_names); do
+        jq --arg scene "$name" '. + {scene: $scene}' "$scenes/$name/scene.json"
+    done | jq -s . >"$work/scenes.json"
+    head_of "Scenes of the measurements"
+    cat <<'END'
+
+Every figure of these pages is of one of these scenes. `measured.sh` prepares those that are missing; its function
+`page_scenes` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others are
+photographs. *Held out* photographs take part in calibration alone. *Spread* is the robust standard deviation of what
+photographs show of one point, in stops, before and after their exposures are brought together. The commit above is of
+the program that wrote this page, the column *prepared by* names the one that made the scene.
+
+END
+    print_table "$work/scenes.json" '
+      table(["scene", "prepared by", "photographs", "registered", "held out", "larger side", "points",
+             "spread before", "spread after"];
+        .[] | [.scene, .made_by, (.counts.given | tostring), (.counts.registered | tostring),
+               (.counts.test | tostring), (.stages.undistort.largest | max | tostring),
+               (.counts.points | tostring)] +
+              [.stages.expose.spread_before_ev, .stages.expose.spread_after_ev
+               | if . == null then "-" else fixed(2) end])'
+}
+
+page_accuracy() {
+    local all='oriel eval SCENES/NAME --method all --quiet --json -'
+    for_scenes "$work/accuracy.json" "$all" $(scene_names)
+    head_of "Accuracy" "$work/accuracy.json"
+    cat <<'END'
+
+Held-out photographs, rendered from the others; means over the photographs of a scene. The
+[metrics](../reference/metrics.md) are over the whole picture, holes included, unless they say otherwise.
+END
+    command_block "$all"
+    printf '**PSNR in dB, whole pictures**\n\n'
+    print_table "$work/accuracy.json" 'by_method(.mean.psnr_db; 2)'
+    printf '**SSIM, whole pictures**\n\n'
+    print_table "$work/accuracy.json" 'by_method(.mean.ssim; 3)'
+    printf '**PSNR in dB, pixels that geometry and a photograph cover**\n\n'
+    print_table "$work/accuracy.json" 'by_method(.mean.psnr_covered_db; 2)'
+    printf '**Share of these pixels, in %%**\n\n'
+    print_table "$work/accuracy.json" 'by_method(100 * .mean.coverage; 0)'
+    printf '**PSNR in dB after an affine fit of colours, whole pictures**\n\n'
+    print_table "$work/accuracy.json" 'by_method(.mean.psnr_cc_db; 2)'
+}
+
+# One option of the default method: a row for each scene, a column for each value.
+vary() { # KEY=A,B,..
+    local command="oriel eval SCENES/NAME --vary $1 --quiet --json -"
+    for_scenes "$work/part.json" "$command" "${part_scenes[@]}"
+    command_block "$command"
+    print_table "$work/part.json" 'group_by(.scene) as $s
+      | table(["scene"] + [$s[0][].setting | "`" + . + "`"];
+              $s[] | [(.[0] | name)] + [.[] | .mean | (.psnr_db | fixed(2)) + ", " + (.ssim | fixed(3))])'
+}
+
+page_parts() {
+    local part_scenes=($(scene_names fountain herz sceaux sakharov)) option
+    run "oriel eval SCENES/${part_scenes[0]} --method points --quiet --json -" >"$work/device.json"
+    head_of "What each part is worth" "$work/device.json"
+    cat <<'END'
+
+Method `oriel` with one option changed, and method `airieau` with the depth and the background of `oriel`: PSNR in dB
+and SSIM of held-out photographs, whole pictures. [Options](../reference/options.md) says what each option does.
+END
+    for option in fill=none,color,depth,ground front_layer=0,0.01 min_support=0,8 silhouette=0,2 \
+        antialias=off,on alignment=off,on guess_blur=0,0.06 outliers=0,0.3 sharpness=1,3,6 \
+        candidates=1,3,6,8 sampling=bilinear,bicubic; do
+        vary "$option"
+    done
+    local background="oriel eval SCENES/NAME --method airieau --set fill=depth --set front_layer=0.01
+        --set min_support=8 --quiet --json -"
+    for_scenes "$work/part.json" "$background" "${part_scenes[@]}"
+    command_block "$(echo $background)"
+    print_table "$work/part.json" 'table(["scene", "PSNR", "SSIM"];
+        .[] | [name, (.mean.psnr_db | fixed(2)), (.mean.ssim | fixed(3))])'
+}
+
+page_steadiness() {
+    local walk='oriel eval SCENES/NAME --walk 60 --divide 2 --method all --quiet --json -'
+    for_scenes "$work/steadiness.json" "$walk" $(scene_names fountain herz sakharov)
+    head_of "Temporal stability" "$work/steadiness.json"
+    cat <<'END'
+
+A walk past the training photographs. Each frame is warped by its depth to the next one and compared with it, in
+8-bit values ([what is compared](../reference/metrics.md#walks)). Less is steadier; a blurred picture is steadier too.
+END
+    command_block "$walk"
+    printf '**Mean difference of pixels**\n\n'
+    print_table "$work/steadiness.json" 'by_method(.all.mean; 2)'
+    printf '**Mean difference of blocks of 16x16 pixels, which blur does not lower**\n\n'
+    print_table "$work/steadiness.json" 'by_method(.all.block_mean; 2)'
+    printf '**Largest difference of a block**\n\n'
+    print_table "$work/steadiness.json" 'by_method(.all.block_worst; 1)'
+}
+
+page_frame() {
+    local bench='oriel bench SCENES/NAME --method all --quick --size 512x512 --size 768x512
+        --size 1024x1024 --seconds 2 --quiet --json -'
+    for_scenes "$work/frame.json" "$bench" $(scene_names fountain herz sakharov)
+    head_of "Time of a frame" "$work/frame.json"
+    cat <<'END'
+
+Medians of wall time, without reading back. They mean something on a quiet machine alone: with a load average above
+about one at the start, figures of one table differ by a factor of two for no other reason. The passes, which are timed
+in frames of their own with the device drained around each, suffer in the same way.
+END
+    command_block "$(echo $bench)"
+    printf '**A frame, ms**\n\n'
+    print_table "$work/frame.json" '
+      [.[] | . as $b | .sizes[] | . + {scene: ($b | name), all: $b.photographs}]
+      | ([.[].method] | unique) as $m
+      | table(["scene", "photographs", "size"] + $m;
+          group_by([.scene, .size])[] | . as $runs
+          | [.[0].scene, (.[0].all | tostring), (.[0].size | size)] +
+            [$m[] as $one | $runs[] | select(.method == $one) | .frame_ms | fixed(0)])'
+    printf '**Passes of a frame of the first scene at 768x512, ms**\n\n'
+    print_table "$work/frame.json" '
+      [.[0].sizes[] | select(.size == [768, 512])] as $runs
+      | table(["pass"] + [$runs[].method];
+          ([$runs[].passes_ms | keys_unsorted[]] | reduce .[] as $k ([]; if index([$k]) then . else . + [$k] end))[]
+          | . as $pass | [$pass] + [$runs[] | .passes_ms[$pass] | if . == null then "-" else fixed(1) end])'
+}
+
+page_growth() {
+    local bench='oriel bench SCENES/NAME --method oriel --method oriel-fast --method airieau
+        --size 512x512 --points 1000000,8000000 --quiet --json -'
+    for_scenes "$work/growth.json" "$bench" $(scene_names fountain)
+    head_of "How time grows" "$work/growth.json"
+    printf '\nMedians of wall time of a frame of 512x512, in ms.\n'
+    command_block "$(echo $bench)"
+    local by
+    for by in photographs points; do
+        printf '**By number of %s**\n\n' "$by"
+        print_table "$work/growth.json" ".[0].by_$by | group_by(.$by) as \$g
+          | table([\"$by\"] + [\$g[0][].method]; \$g[] | [(.[0].$by | tostring)] + [.[].frame_ms | fixed(0)])"
+    done
+    printf '**By resolution of the photographs**, with PSNR to the picture from photographs at full size\n\n'
+    print_table "$work/growth.json" '.[0].by_resolution
+      | table(["method", "photographs at 1/n", "ms", "MiB on the device", "PSNR, dB"];
+          .[] | [.method, (.photo_divide | tostring), (.frame_ms | fixed(0)),
+                 (.device_bytes / 1048576 | fixed(0)),
+                 (if .psnr_db == null then "-" else .psnr_db | fixed(1) end)])'
+    printf '**Splatting in compute shaders beside `GL_POINTS` with a depth test**, ms\n\n'
+    print_table "$work/growth.json" '.[0].gl_points
+      | table(["points", "compute", "`GL_POINTS`"];
+          .[] | [(.points | tostring), (.splat_ms | fixed(1)), (.gl_points_ms | fixed(1))])'
+    local many='tests/bench/photographs.sh BUILD/oriel BUILD/tests/bench_photographs WORK/photographs 200 oriel oriel-fast'
+    run "${many//BUILD/$build}" >"$work/photographs.txt"
+    printf '**20 and 200 photographs of one synthetic place**, processor time in ms: standing still, along a walk\n'
+    printf 'the second time, and the first time, when photographs that come into question are read.\n'
+    command_block "$many"
+    printf '| method | still: 20 | 200 | ratio | walk: 20 | 200 | ratio | first walk: 20 | 200 | ratio |\n'
+    printf '|---|---|---|---|---|---|---|---|---|---|\n'
+    awk 'NR > 2 { for (i = 1; i <= NF; i++) printf "| %s ", $i; print "|" }' "$work/photographs.txt"
+}
+
+page_memory() {
+    local bench="oriel bench SCENES/NAME --quick --size 768x512 --seconds 1 --textures KIND --quiet --json -"
+    local eval="oriel eval SCENES/NAME --textures KIND --quiet --json -"
+    local kind name
+    name=$(scene_names fountain)
+    for kind in full bc7 bc1; do
+        run "${bench/KIND/$kind}" "$name" >"$work/memory_bench.json"
+        run "${eval/KIND/$kind}" "$name" >"$work/memory_eval.json"
+        jq -s --arg kind "$kind" '.[0] + {kind: $kind, mean: .[1].mean}' "$work/memory_bench.json" \
+            "$work/memory_eval.json"
+    done | jq -s . >"$work/memory.json"
+    head_of "Memory" "$work/memory.json"
+    printf '\nMemory on the device after frames of 768x512 of scene `%s`, in MiB, and what compressed photographs\n' \
+        "$name"
+    printf 'cost in accuracy and time.\n'
+    command_block "$bench" "$eval"
+    print_table "$work/memory.json" '
+      def owner($o): [.memory[] | select(.owner == $o) | .bytes] | add // 0 | . / 1048576 | fixed(1);
+      table(["textures", "points", "photographs", "frame", "whole process", "PSNR, dB", "SSIM", "frame, ms"];
+        .[] | [.kind, owner("points"), owner("photographs"), owner("frame"),
+               (.host_peak_bytes / 1048576 | fixed(0)), (.mean.psnr_db | fixed(2)),
+               (.mean.ssim | fixed(3)), (.sizes[0].frame_ms | fixed(0))])'
+}
+
+page_prepare() {
+    local name
+    for name in $(scene_names); do
+        jq --arg scene "$name" '[.stages | to_entries[] | . + {scene: $scene}]' "$scenes/$name/scene.json"
+    done | jq -s add >"$work/prepare.json"
+    head_of "Time of prepare"
+    cat <<'END'
+
+What each stage of `oriel prepare` took when the scenes were made, from their `scene.json` (`oriel info` prints the
+same): seconds of wall time, seconds of processor time with COLMAP's, and the largest memory of a process so far in
+MiB. [Scenes](scenes.md) says how many photographs there are and which program prepared them. Other work may have run
+beside it.
+END
+    command_block 'oriel info SCENES/NAME'
+    print_table "$work/prepare.json" '
+      def cell: if . == null then "-" else [.value | .wall_s, .cpu_s, ([.peak_rss_mib, .child_peak_rss_mib] | max)]
+        | map(if . == null then "-" else fixed(0) end) | join(", ") end;
+      group_by(.scene) as $s | ([$s[0][].key] - ["collect"]) as $stages
+      | table(["scene"] + $stages; $s[] | . as $of
+          | [.[0].scene] + [$stages[] as $k | [$of[] | select(.key == $k)][0] | cell])'
+}
+
+page_stereo() {
+    local truth='gpu_test_densify_truth full'
+    run "$truth" >"$work/stereo.txt" 2>&1
+    local compare='tests/bench/densify_compare.sh BUILD/oriel SCENES/fountain WORK/densify'
+    run "${compare//BUILD/$build}" >"$work/densify.txt"
+    head_of "Stereo"
+    printf '\nAgainst the truth of the 24 photographs of the synthetic monument, sparse points on the true surface:\n'
+    command_block "$truth"
+    sed -n 's/^\(.*within 1 %.*\)$/    \1/p' "$work/stereo.txt"
+    printf '\nBeside other densifiers that are installed here, fused alike, on one real scene:\n'
+    command_block "$compare"
+    sed 's/^/    /' "$work/densify.txt"
+}
+
+# Mean of the views of what bench_radiance_error prints.
+radiance_rows() {
+    awk '{ what = $2; for (i = 3; $i !~ /^[0-9.]+$/; i++) what = what " " $i
+           if (!(what in count)) order[++kinds] = what
+           count[what]++; rmse[what] += $i; median[what] += $(i + 2); most[what] += $(i + 4)
+           away[what] += $(i + 10) }
+         END { for (k = 1; k <= kinds; k++) { w = order[k]; n = count[w]
+               printf "| %s | %.2f | %.3f | %.2f | %.2f |\n", w, rmse[w] / n, median[w] / n, most[w] / n,
+                      away[w] / n } }' "$1"
+}
+
+page_radiance() {
+    local synth='oriel synth monument --out WORK/series --size 384x256 --count 24 --contrast 8 --exposures -3,0,3 --noise 0.01 --quiet'
+    local truth='bench_truth_scene WORK/series WORK/series-truth WORK/series-scene 1 5'
+    local error='bench_radiance_error WORK/series-scene WORK/series-truth --bound'
+    local cost='bench_merge_time WORK/series-scene'
+    [ -e "$work/series" ] || run "$synth"
+    [ -e "$work/series-scene" ] || run "$truth" >&2
+    run "$error" >"$work/radiance.txt"
+    run "$cost" >"$work/merge_time.txt"
+    local scene again
+    scene=$(scene_names fountain)
+    again='tests/bench/reexpose.sh BUILD/oriel BUILD/tests/bench_reexpose_photos SCENES/NAME WORK/reexposed'
+    run "${again//BUILD/$build}" "$scene" >&2
+    jq -s '[.[0] + {row: "one exposure, not re-exposed"}, .[1] + {row: "three series, `fused`"},
+            .[2] + {row: "three series, `series`"}]' "$work/reexposed/single.json" \
+        "$work/reexposed/fused.json" "$work/reexposed/series.json" >"$work/radiance.json"
+    head_of "Radiance" "$work/radiance.json"
+    cat <<'END'
+
+**Against true radiance.** A synthetic monument in three series, with true cameras and points. Errors are differences
+of log2, in stops, over covered pixels; means over the held-out views. Away from edges is more than 2 pixels from a
+step of one stop between neighbouring pixels of the truth. The rows that name the truth say how large the error of
+the true picture itself is when it is moved by a part of a pixel.
+END
+    command_block "$synth" "$truth" "$error"
+    printf '| picture | RMSE | median | 90 %% below | RMSE away from edges |\n|---|---|---|---|---|\n'
+    radiance_rows "$work/radiance.txt"
+    printf '\n**Time of both merges**, processor time of a view\n'
+    command_block "$cost"
+    sed 's/^/    /' "$work/merge_time.txt"
+    printf '\n**Real photographs** of scene `%s`, re-exposed by -2, 0 and +2 EV in turn with noise; held-out\n' "$scene"
+    printf 'photographs as they were.\n'
+    command_block "$again"
+    print_table "$work/radiance.json" 'table(["", "PSNR, dB", "covered PSNR, dB", "SSIM"];
+        .[] | [.row, (.mean.psnr_db | fixed(2)), (.mean.psnr_covered_db | fixed(2)), (.mean.ssim | fixed(3))])'
+}
+
+page_response() {
+    local test='unit_test_response'
+    ORL_DATASETS=$datasets run "$test" >"$work/response.txt" 2>&1
+    head_of "Response curves"
+    cat <<'END'
+
+Response curves beside those of OpenCV's calibrations from the same photographs of one place: RMS error of a made-up
+film's curve after scaling, between two values; the error of the ratio of light between neighbouring exposures of
+Debevec and Malik's church; and how far the curve lies from OpenCV's for each channel.
+END
+    command_block "ORL_DATASETS=DATASETS $test"
+    sed -n '/RMS\|ratio:/s/^/    /p' "$work/response.txt"
+}
+
+page_resampling() {
+    local measure='bench_half_pixel DATASETS/fountain-P11/images/NAME'
+    local name photos=()
+    for name in 0002.jpg 0005.jpg 0008.jpg; do
+        photos+=("$name")
+        run "$measure" "$name"
+    done >"$work/resampling.txt"
+    head_of "What resampling costs"
+    cat <<'END'
+
+A photograph at half its size beside another made from the same file whose pixels lie half a pixel aside, moved back
+bicubically. No depth, camera, light or noise differs: what is missing to a perfect figure is lost by resampling.
+END
+    command_block "$measure"
+    printf '| photograph | PSNR, dB | SSIM |\n|---|---|---|\n'
+    sed 's|.*/\([^/]*\): \(.*\) dB, SSIM \(.*\)|\| \1 \| \2 \| \3 \||' "$work/resampling.txt"
+}
+
+# --- all that is asked for ---
+
+for section in "$@"; do
+    declare -F "page_$section" >/dev/null || { echo "no section $section; there are:" $sections; exit 2; }
+done
+cmake --build "$build" >"$work/build.log" 2>&1 || { tail -n 20 "$work/build.log"; exit 1; }
+# The commit that last changed the program, and a plus if files differ from it.
+parts=(src shaders preprocess datasets cmake CMakeLists.txt)
+commit=$(git -C "$source" describe --always \
+    "$(git -C "$source" log -1 --format=%H -- "${parts[@]}")")
+git -C "$source" diff --quiet HEAD -- "${parts[@]}" || commit=$commit+
+for section in "$@"; do
+    load=$(cut -d ' ' -f 1 /proc/loadavg)
+    "page_$section" | cat -s >"$work/$section.md"
+    mv "$work/$section.md" "$pages/$section.md"
+    echo "wrote docs/measured/$section.md" >&2
+done
