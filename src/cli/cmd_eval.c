@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/walk.h"
 #include "core/memory.h"
+#include "core/text.h"
 #include "eval/eval.h"
 #include "hdr/hdr.h"
 
@@ -62,9 +63,10 @@ static void print_table(const struct orl_eval *eval)
            "fitted", "covered", "SSIM", "cover%", "full%", "1-NCC", "ms");
     for (size_t i = 0; i < eval->view_count; i++) {
         const struct orl_eval_view *view = &eval->views[i];
-        char size[32];
+        char size[32], shown[ORL_TEXT_SHOWN];
         snprintf(size, sizeof size, "%dx%d", view->width, view->height);
-        printf("%-24s %11s", eval->scene->photos[view->photo].name, size);
+        orl_text_escape(eval->scene->photos[view->photo].name, shown, sizeof shown);
+        printf("%-24s %11s", shown, size);
         print_figures(view);
     }
     printf("%-24s %11s", "mean", "");
