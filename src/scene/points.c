@@ -82,7 +82,7 @@ enum orl_result orl_points_write(const struct orl_log *log, const char *path,
     enum orl_result result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         return result;
-    FILE *stream = fopen(file.temp, "wb");
+    FILE *stream = orl_atomic_stream(&file);
     bool ok = stream && write_points(stream, points);
     if (stream && fclose(stream) != 0)
         ok = false;

@@ -147,23 +147,6 @@ static void failed_writes_leave_nothing(void **state)
     free(path);
 }
 
-static void a_full_disk_is_an_error(void **state)
-{
-    (void)state;
-    if (access("/dev/full", W_OK) != 0)
-        skip();
-    // /dev holds no temporary files for us, so through a link from the temporary name.
-    char *path = in_dir("full");
-    struct orl_atomic_file file;
-    assert_int_equal(orl_atomic_begin(NULL, path, &file), ORL_OK);
-    assert_int_equal(symlink("/dev/full", file.temp), 0);
-    assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_ERR_IO);
-    assert_false(orl_path_is_file(path));
-    orl_atomic_abort(&file);
-    assert_int_equal(count_entries(), 0);
-    free(path);
-}
-
 static void folders(void **state)
 {
     (void)state;
@@ -241,7 +224,6 @@ int main(void)
         cmocka_unit_test(reading_refuses),
         cmocka_unit_test(atomic_files),
         cmocka_unit_test(failed_writes_leave_nothing),
-        cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(folders),
         cmocka_unit_test(listing),
         cmocka_unit_test(hashes),
