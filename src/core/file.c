@@ -38,6 +38,18 @@ bool orl_path_is_dir(const char *path)
     return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
 }
 
+bool orl_path_is_inside(const char *dir, const char *path)
+{
+    char *real_dir = realpath(dir, NULL), *real_path = realpath(path, NULL);
+    size_t length = real_dir ? strlen(real_dir) : 0;
+    length -= length == 1; // "/"
+    bool inside = real_dir && real_path && strncmp(real_dir, real_path, length) == 0 &&
+                  (real_path[length] == '/' || real_path[length] == '\0');
+    free(real_dir);
+    free(real_path);
+    return inside;
+}
+
 static enum orl_result open_to_read(const struct orl_log *log, const char *path, int *fd,
                                     size_t *size)
 {
@@ -75,6 +87,7 @@ enum orl_result orl_file_open(const struct orl_log *log, const char *path, FILE 
 enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_t max_size,
                               uint8_t **data, size_t *size)
 {
+    const size_t large = 64 << 20;
     *data = NULL;
     *size = 0;
     int fd = -1;
@@ -88,11 +101,13 @@ enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_
                           total, max_size);
         goto end;
     }
-    bytes = orl_array(log, total + 1, 1);
-    if (!bytes) {
+    if (total > large && total > orl_memory_available()) // a sparse file claims any size
+        result = orl_fail(log, ORL_ERR_MEMORY, "%s: %zu bytes are more than the memory left", path,
+                          total);
+    else if (!(bytes = orl_array(log, total + 1, 1)))
         result = ORL_ERR_MEMORY;
+    if (result != ORL_OK)
         goto end;
-    }
     while (done < total) {
         ssize_t got = read(fd, bytes + done, total - done);
         if (got < 0 && errno == EINTR)

@@ -13,8 +13,13 @@ const char *orl_path_name(const char *path);
 bool orl_path_is_file(const char *path);
 bool orl_path_is_dir(const char *path);
 
+// Is what `path` leads to, all symbolic links followed, in this folder or below it? False when
+// either is not there.
+bool orl_path_is_inside(const char *dir, const char *path);
+
 // Reads a whole file. *data is owned by the caller (free) and followed by a
-// zero byte that *size does not count. Files above max_size are refused.
+// zero byte that *size does not count. Files above max_size are refused, and
+// those that are larger than the memory that is left.
 enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_t max_size,
                               uint8_t **data, size_t *size) ORL_CHECK_RESULT;
 // A stream to read a regular file from; anything else is refused without waiting for it.

@@ -24,6 +24,10 @@ int64_t orl_colmap_point_index(const struct orl_colmap_model *model, uint64_t id
 enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *path,
                                         struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
+// By id, so that they can be found; no two may have the same.
+enum orl_result orl_colmap_sort_cameras(const struct orl_log *log, const char *path,
+                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;
+
 // Each reads one file; points before images, since images refer to points.
 enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,
                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;

@@ -23,10 +23,10 @@ static enum orl_result bad(const struct lines *l, const char *what)
                     (size_t)(l->at - (char *)l->data), what);
 }
 
-static enum orl_result lines_open(const struct orl_log *log, const char *dir, const char *name,
-                                  struct lines *l)
+// Takes over `path`.
+static enum orl_result lines_open(const struct orl_log *log, char *path, struct lines *l)
 {
-    *l = (struct lines){.log = log, .path = orl_path_join(log, dir, name)};
+    *l = (struct lines){.log = log, .path = path};
     if (!l->path)
         return ORL_ERR_MEMORY;
     size_t size;
@@ -243,10 +243,41 @@ enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,
     enum orl_result result = ORL_OK;
     for (size_t i = 0; i < ORL_COUNT(files) && result == ORL_OK; i++) {
         struct lines l;
-        result = lines_open(log, dir, files[i].name, &l);
+        result = lines_open(log, orl_path_join(log, dir, files[i].name), &l);
         if (result == ORL_OK)
             result = files[i].read(&l, model);
         lines_close(&l);
     }
+    return result;
+}
+
+enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *path,
+                                      struct orl_colmap_model *model)
+{
+    memset(model, 0, sizeof *model);
+    struct lines l = {0};
+    int dir = (int)(orl_path_name(path) - path);
+    char *beside = orl_format(log, "%.*scameras.txt", dir, path), *images = orl_strdup(log, path);
+    enum orl_result result = beside && images ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(beside)) {
+        result = lines_open(log, beside, &l);
+        beside = NULL;
+        if (result == ORL_OK)
+            result = read_cameras(&l, model);
+        if (result == ORL_OK)
+            result = orl_colmap_sort_cameras(log, l.path, model);
+        lines_close(&l);
+    }
+    if (result == ORL_OK) {
+        result = lines_open(log, images, &l);
+        images = NULL;
+        if (result == ORL_OK)
+            result = read_images(&l, model);
+        lines_close(&l);
+    }
+    free(beside);
+    free(images);
+    if (result != ORL_OK)
+        orl_colmap_finish(model);
     return result;
 }

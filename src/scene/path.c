@@ -2,13 +2,14 @@
 
 #include <jansson.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
+#include "core/image.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "scene/colmap.h"
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
 
@@ -57,19 +58,6 @@ static bool read_rows(const json_t *array, size_t rows, size_t columns, double *
     return true;
 }
 
-static bool is_rotation(const struct orl_pose *pose)
-{
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            double dot = 0;
-            for (int k = 0; k < 3; k++)
-                dot += pose->r[i][k] * pose->r[j][k];
-            if (fabs(dot - (i == j)) > 1e-3)
-                return false;
-        }
-    return true;
-}
-
 // From a camera-to-world rotation (columns are the camera's axes) and centre.
 static bool pose_from_world_axes(double world_from_cam[3][3], const double centre[3],
                                  struct orl_pose *pose)
@@ -81,7 +69,7 @@ static bool pose_from_world_axes(double world_from_cam[3][3], const double centr
             pose->t[i] -= world_from_cam[j][i] * centre[j];
         }
     }
-    return is_rotation(pose);
+    return orl_pose_valid(pose);
 }
 
 // --- interpolation ---
@@ -162,8 +150,6 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
             view->cam_from_world.t[i] = rows[i][3];
         }
-        if (!is_rotation(&view->cam_from_world))
-            return false;
     } else {
         const json_t *up_json = json_object_get(key, "up");
         if (!orl_json_read_numbers(json_object_get(key, "position"), 3, eye) ||
@@ -172,6 +158,8 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             return false;
         view->cam_from_world = orl_pose_look_at(eye, target, up);
     }
+    if (!orl_pose_valid(&view->cam_from_world))
+        return false;
     if (fov) {
         double degrees = json_number_value(fov);
         if (!(degrees > 0.1 && degrees < 170))
@@ -211,6 +199,13 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
 
 // --- other programs' formats ---
 
+// A picture's width or height; 0 when it is none.
+static int read_side(const json_t *entry, const char *key)
+{
+    json_int_t side = json_integer_value(json_object_get(entry, key));
+    return side >= 1 && side <= ORL_IMAGE_MAX_SIDE ? (int)side : 0;
+}
+
 // nerfstudio: camera_to_world row-major, OpenGL axes (y up, z backwards), fov vertical.
 static bool read_nerfstudio_view(const json_t *entry, int width, int height, struct orl_view *view)
 {
@@ -228,15 +223,14 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
     view->camera = (struct orl_camera){.width = width, .height = height,
                                        .cx = 0.5 * width, .cy = 0.5 * height};
     set_fov_y(&view->camera, fov * pi / 180);
-    return pose_from_world_axes(axes, centre, &view->cam_from_world);
+    return orl_camera_valid(&view->camera) && pose_from_world_axes(axes, centre, &view->cam_from_world);
 }
 
 // Inria: position is the centre, the columns of rotation are the camera's axes.
 static bool read_inria_view(const json_t *entry, struct orl_view *view)
 {
     double axes[3][3], centre[3];
-    int width = (int)json_integer_value(json_object_get(entry, "width"));
-    int height = (int)json_integer_value(json_object_get(entry, "height"));
+    int width = read_side(entry, "width"), height = read_side(entry, "height");
     view->camera = (struct orl_camera){
         .width = width, .height = height, .cx = 0.5 * width, .cy = 0.5 * height,
         .fx = json_number_value(json_object_get(entry, "fx")),
@@ -258,9 +252,8 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
         return orl_fail(log, ORL_ERR_FORMAT,
                         "%s: neither keyframes, nor nerfstudio's camera_path, nor Inria's cameras",
                         file);
-    int width = (int)json_integer_value(json_object_get(root, "render_width"));
-    int height = (int)json_integer_value(json_object_get(root, "render_height"));
-    if (nerfstudio && (width < 1 || height < 1 || width > 16384 || height > 16384))
+    int width = read_side(root, "render_width"), height = read_side(root, "render_height");
+    if (nerfstudio && (!width || !height))
         return orl_fail(log, ORL_ERR_FORMAT, "%s: render_width and render_height are not usable",
                         file);
     enum orl_result result = allocate(log, json_array_size(entries), path);
@@ -274,94 +267,44 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// One line of cameras.txt: ID MODEL W H PARAMS; pinhole models only.
-static bool find_text_camera(const char *text, unsigned id, struct orl_camera *camera)
-{
-    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
-        line += *line == '\n';
-        unsigned line_id;
-        char model[32];
-        int width, height;
-        double p[4];
-        int got = sscanf(line, "%u %31s %d %d %lf %lf %lf %lf", &line_id, model, &width, &height,
-                         &p[0], &p[1], &p[2], &p[3]);
-        if (got >= 7 && line_id == id) {
-            bool simple = strcmp(model, "SIMPLE_PINHOLE") == 0;
-            if (!simple && (strcmp(model, "PINHOLE") != 0 || got != 8))
-                return false;
-            *camera = (struct orl_camera){.width = width, .height = height, .fx = p[0],
-                                          .fy = simple ? p[0] : p[1], .cx = simple ? p[1] : p[2],
-                                          .cy = simple ? p[2] : p[3]};
-            return orl_camera_valid(camera);
-        }
-    }
-    return false;
-}
-
 static enum orl_result read_colmap_text(const struct orl_log *log, const struct orl_scene *scene,
-                                        const char *file, const char *text, const char *cameras,
-                                        struct orl_path *path)
+                                        const char *file, struct orl_path *path)
 {
-    size_t lines = 1;
-    for (const char *c = text; *c; c++)
-        lines += *c == '\n';
-    enum orl_result result = allocate(log, lines, path);
-    if (result != ORL_OK)
-        return result;
-    path->count = 0;
-    bool is_pose = true; // lines come in pairs: pose, then observations
-    for (const char *line = text; line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL) {
-        if (*line == '#' || (is_pose && (*line == '\n' || !*line)))
-            continue;
-        if (is_pose) {
-            double q[4], t[3];
-            unsigned id, camera_id;
-            struct orl_view *view = &path->views[path->count];
-            view->camera = scene->photos[0].view.camera;
-            if (sscanf(line, "%u %lf %lf %lf %lf %lf %lf %lf %u", &id, &q[0], &q[1], &q[2], &q[3],
-                       &t[0], &t[1], &t[2], &camera_id) != 9 ||
-                !orl_pose_from_quat(q, t, &view->cam_from_world) ||
-                (cameras && !find_text_camera(cameras, camera_id, &view->camera)))
-                return orl_fail(log, ORL_ERR_FORMAT, "%s: image %zu, at byte %zu, is not usable",
-                                file, path->count, (size_t)(line - text));
-            path->count++;
-        }
-        is_pose = !is_pose;
+    struct orl_colmap_model model;
+    enum orl_result result = orl_colmap_read_poses(log, file, &model);
+    if (result == ORL_OK && !model.image_count)
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: no camera in it", file);
+    if (result == ORL_OK)
+        result = allocate(log, model.image_count, path);
+    for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
+        const struct orl_colmap_image *image = &model.images[i];
+        const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(&model, image->camera_id);
+        path->views[i] = (struct orl_view){scene->photos[0].view.camera, image->cam_from_world};
+        if (camera && camera->model <= 1)
+            path->views[i].camera = camera->pinhole;
+        else if (model.camera_count)
+            result = orl_fail(log, ORL_ERR_FORMAT,
+                              "%s: image %zu: its camera is not in cameras.txt or not PINHOLE",
+                              file, i);
     }
-    return path->count ? ORL_OK : orl_fail(log, ORL_ERR_FORMAT, "%s: no camera in it", file);
-}
-
-static enum orl_result read_beside(const struct orl_log *log, const char *file, uint8_t **cameras)
-{
-    size_t size;
-    *cameras = NULL;
-    char *path = orl_format(log, "%.*scameras.txt", (int)(orl_path_name(file) - file), file);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (path && orl_path_is_file(path))
-        result = orl_file_read(log, path, PATH_FILE_MAX, cameras, &size);
-    free(path);
+    orl_colmap_finish(&model);
     return result;
 }
 
 enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene *scene,
                               const char *file, struct orl_path *path)
 {
-    uint8_t *text = NULL, *cameras = NULL;
+    uint8_t *text = NULL;
     size_t size;
     json_t *root = NULL;
     memset(path, 0, sizeof *path);
     if (scene->photo_count < 1)
         return orl_fail(log, ORL_ERR_DATA, "%s: the scene has no photographs", scene->dir);
-    enum orl_result result = orl_file_read(log, file, PATH_FILE_MAX, &text, &size);
-    if (result != ORL_OK)
-        return result;
+    enum orl_result result = ORL_OK;
     const char *extension = strrchr(file, '.');
     if (extension && strcmp(extension, ".txt") == 0) {
-        result = read_beside(log, file, &cameras);
-        if (result == ORL_OK)
-            result = read_colmap_text(log, scene, file, (const char *)text,
-                                      (const char *)cameras, path);
-    } else {
+        result = read_colmap_text(log, scene, file, path);
+    } else if ((result = orl_file_read(log, file, PATH_FILE_MAX, &text, &size)) == ORL_OK) {
         result = orl_json_parse(log, file, text, size, &root);
         if (result == ORL_OK)
             result = read_json(log, scene, file, root, path);
@@ -369,7 +312,6 @@ enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene 
     if (result != ORL_OK)
         orl_path_finish(path);
     json_decref(root);
-    free(cameras);
     free(text);
     return result;
 }

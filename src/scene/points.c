@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "scene/camera.h"
 
 enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points, size_t count)
 {
@@ -44,6 +45,24 @@ void orl_points_copy(const struct orl_points *from, size_t i, struct orl_points 
     memmove(to->color[k], from->color[i], sizeof *to->color);
     to->radius[k] = from->radius[i];
     to->photographs[k] = from->photographs[i];
+}
+
+bool orl_point_usable(const float position[3])
+{
+    const float most = (float)ORL_WORLD_MAX;
+    return fabsf(position[0]) <= most && fabsf(position[1]) <= most && fabsf(position[2]) <= most;
+}
+
+void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *points)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++)
+        if (orl_point_usable(points->position[i]))
+            orl_points_copy(points, i, points, kept++);
+    if (kept < points->count)
+        orl_logf(log, ORL_LOG_WARNING, "%zu of %zu points are not finite or absurdly far: dropped",
+                 points->count - kept, points->count);
+    points->count = kept;
 }
 
 // As in the file: packed, 32 bytes.
