@@ -1,0 +1,48 @@
+// What developers and users type: options and shaders of their own.
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/file.h"
+#include "fuzz.h"
+#include "gpu/internal.h"
+#include "gpu/shader_table.h"
+#include "render/render.h"
+
+// A line for each --set.
+void fuzz_options(const uint8_t *data, size_t size)
+{
+    char *text = calloc(1, size + 1);
+    struct orl_render_params params = orl_methods[0].params;
+    memcpy(text, data, size);
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
+        if (orl_render_params_set(&fuzz_log, &params, line) != ORL_OK)
+            (void)orl_method_find(&fuzz_log, line);
+    free(text);
+}
+
+// The input stands for every shader, so includes find it again.
+void fuzz_shader(const uint8_t *data, size_t size)
+{
+    static char dir[128];
+    if (!*dir) {
+        snprintf(dir, sizeof dir, "%s", fuzz_path("shaders"));
+        for (const struct orl_shader_file *row = orl_shader_table; row->name; row++) {
+            char name[160];
+            snprintf(name, sizeof name, "shaders/%s", row->name);
+            *strrchr(name, '/') = '\0';
+            if (orl_dir_make(&fuzz_log, fuzz_path(name)) != ORL_OK)
+                abort();
+        }
+    }
+    struct orl_gpu gpu = {.log = &fuzz_log, .shader_dir = dir};
+    struct shader_source source;
+    for (int i = 0; i < 3; i++) {
+        char name[160];
+        snprintf(name, sizeof name, "shaders/%s", orl_shader_table[i].name);
+        fuzz_save(name, data, size);
+    }
+    if (orl_shader_source_load(&gpu, orl_shader_table[0].name, "A 1\nB", &source) == ORL_OK)
+        fuzz_require(strlen(source.text) <= source.length, "the source is whole");
+    orl_shader_source_finish(&source);
+}
