@@ -205,7 +205,7 @@ static enum orl_result read_image(struct lines *l, const struct orl_colmap_model
     image->id = (uint32_t)id;
     image->camera_id = (uint32_t)camera_id;
     if (!orl_pose_from_quat(quat, t, &image->cam_from_world))
-        return bad(l, "a picture's pose is zero or not finite");
+        return bad(l, "a picture's pose is zero, not finite or absurdly far");
     l->at += strspn(l->at, " \t");
     const char *problem = orl_colmap_name_problem(l->at);
     if (problem)
