@@ -56,5 +56,5 @@ grep -q 'leads out of the scene' stderr.txt || fail "a link out of the scene is 
 
 # Waiting for a writer that never comes is no way to read.
 mkfifo fifo.json
-runs 1 timeout 20 "$oriel" render ws --path fifo.json --out out.dir
+runs 1 timeout -s KILL 20 "$oriel" render ws --path fifo.json --out out.dir
 exit $failed
