@@ -9,15 +9,38 @@
 #include "gpu/shader_table.h"
 #include "render/render.h"
 
+// What was set prints, and sets the same again.
+static void print_all(const struct orl_render_params *params)
+{
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        struct orl_render_params again = *params;
+        char value[64], text[160];
+        orl_render_option_print(o, params, value, sizeof value);
+        snprintf(text, sizeof text, "%s=%s", o->key, value);
+        if (orl_render_option_read(o, params))
+            fuzz_require(orl_render_params_set(&fuzz_log, &again, text) == ORL_OK,
+                         "options survive their text");
+    }
+}
+
 // A line for each --set.
 void fuzz_options(const uint8_t *data, size_t size)
 {
+    enum { LINES_MAX = 16 };
     char *text = calloc(1, size + 1);
+    const char *lines[LINES_MAX];
+    size_t count = 0;
     struct orl_render_params params = orl_methods[0].params;
     memcpy(text, data, size);
-    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
-        if (orl_render_params_set(&fuzz_log, &params, line) != ORL_OK)
-            (void)orl_method_find(&fuzz_log, line);
+    for (char *line = strtok(text, "\n"); line && count < LINES_MAX; line = strtok(NULL, "\n"))
+        lines[count++] = line;
+    for (size_t i = 0; i < count; i++) {
+        struct orl_render_params one = orl_methods[0].params;
+        if (orl_render_params_set(&fuzz_log, &one, lines[i]) != ORL_OK)
+            (void)orl_method_find(&fuzz_log, lines[i]);
+    }
+    if (orl_render_params_assign(&fuzz_log, &params, lines, count) == ORL_OK)
+        print_all(&params);
     free(text);
 }
 
@@ -42,7 +65,8 @@ void fuzz_shader(const uint8_t *data, size_t size)
         snprintf(name, sizeof name, "shaders/%s", orl_shader_table[i].name);
         fuzz_save(name, data, size);
     }
-    if (orl_shader_source_load(&gpu, orl_shader_table[0].name, "A 1\nB", &source) == ORL_OK)
+    const struct orl_slot slots[] = {{"slot", orl_shader_table[1].name}, {0}};
+    if (orl_shader_source_load(&gpu, orl_shader_table[0].name, slots, "A 1\nB", &source) == ORL_OK)
         fuzz_require(strlen(source.text) <= source.length, "the source is whole");
     orl_shader_source_finish(&source);
 }
