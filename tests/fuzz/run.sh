@@ -49,6 +49,7 @@ run_target() {
         -artifact_prefix="$dir/failures/$name-" -print_final_stats=1 >"$dir/$name.log" 2>&1
     local status=$? runs
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log")
+    echo "$name ${runs:-0} $seconds" >>"$dir/tried.txt" # all runs of this build folder
     if [ $status -eq 0 ]; then
         echo "$name: ${runs:-0} inputs"
     else

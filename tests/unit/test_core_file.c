@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "core/memory.h"
 
 static char *dir;
 
@@ -93,6 +94,21 @@ static void reading_refuses(void **state)
     assert_int_equal(orl_file_read(NULL, "/nowhere/at/all", 10, &data, &size),
                      ORL_ERR_NOT_FOUND);
     assert_int_equal(orl_file_read(NULL, dir, 10, &data, &size), ORL_ERR_IO);
+    assert_int_equal(unlink(path), 0);
+    free(path);
+}
+
+// A file may claim any size without a byte on the disk.
+static void a_file_beyond_memory_is_refused(void **state)
+{
+    (void)state;
+    char *path = in_dir("sparse");
+    uint8_t *data;
+    size_t size;
+    assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_OK);
+    off_t length = (off_t)(orl_memory_available() / 2 * 3);
+    if (truncate(path, length) == 0)
+        assert_int_equal(orl_file_read(NULL, path, SIZE_MAX / 2, &data, &size), ORL_ERR_MEMORY);
     assert_int_equal(unlink(path), 0);
     free(path);
 }
@@ -222,6 +238,7 @@ int main(void)
         cmocka_unit_test(paths),
         cmocka_unit_test(write_and_read),
         cmocka_unit_test(reading_refuses),
+        cmocka_unit_test(a_file_beyond_memory_is_refused),
         cmocka_unit_test(atomic_files),
         cmocka_unit_test(failed_writes_leave_nothing),
         cmocka_unit_test(folders),
