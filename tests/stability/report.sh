@@ -8,6 +8,7 @@ set -eu
 source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1") seconds=$2
 fuzz=${FUZZ_DIR:-$source/build-fuzz} page=$source/docs/measured/robustness.md
 status=0
+mkdir -p "$source/docs/measured"
 "$source/tests/fuzz/run.sh" "$seconds" || status=1
 "$source/tests/stability/inject.sh" "$build/oriel" "$source" "$build/tests/libinject.so" all |
     tee "$fuzz/injected.txt" || status=1
