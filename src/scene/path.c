@@ -223,7 +223,8 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
     view->camera = (struct orl_camera){.width = width, .height = height,
                                        .cx = 0.5 * width, .cy = 0.5 * height};
     set_fov_y(&view->camera, fov * pi / 180);
-    return orl_camera_valid(&view->camera) && pose_from_world_axes(axes, centre, &view->cam_from_world);
+    return orl_camera_valid(&view->camera) &&
+           pose_from_world_axes(axes, centre, &view->cam_from_world);
 }
 
 // Inria: position is the centre, the columns of rotation are the camera's axes.

@@ -42,7 +42,8 @@ static enum orl_result check_inside(const struct orl_log *log, const struct orl_
 static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *scene, size_t i)
 {
     enum orl_result result = ORL_ERR_MEMORY;
-    char *path = orl_scene_photo_path(log, scene, i), *linear = orl_scene_linear_path(log, scene, i);
+    char *path = orl_scene_photo_path(log, scene, i);
+    char *linear = orl_scene_linear_path(log, scene, i);
     if (path && linear) {
         result = orl_path_is_file(path) ? check_inside(log, scene, path)
                                         : orl_fail(log, ORL_ERR_NOT_FOUND,

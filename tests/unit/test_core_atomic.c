@@ -30,31 +30,6 @@ static int tear_down(void **state)
     return 0;
 }
 
-static char *in_dir(const char *name)
-{
-    char *path = orl_path_join(NULL, dir, name);
-    assert_non_null(path);
-    return path;
-}
-
-static void expect_text(const char *path, const char *want)
-{
-    uint8_t *data;
-    size_t size;
-    assert_int_equal(orl_file_read(NULL, path, 1 << 20, &data, &size), ORL_OK);
-    assert_string_equal((char *)data, want);
-    free(data);
-}
-
-static size_t count_entries(void)
-{
-    struct orl_names names;
-    assert_int_equal(orl_dir_list(NULL, dir, &names), ORL_OK);
-    size_t count = names.count;
-    orl_names_finish(&names);
-    return count;
-}
-
 static mode_t mode_of(const char *path)
 {
     struct stat st;
@@ -65,8 +40,12 @@ static mode_t mode_of(const char *path)
 static void links_stay_links(void **state)
 {
     (void)state;
-    char *file = in_dir("file"), *link = in_dir("link"), *chain = in_dir("chain");
-    char *dangling = in_dir("dangling"), *fresh = in_dir("fresh"), *loop = in_dir("loop");
+    char *file = test_path(dir, "file");
+    char *link = test_path(dir, "link");
+    char *chain = test_path(dir, "chain");
+    char *dangling = test_path(dir, "dangling");
+    char *fresh = test_path(dir, "fresh");
+    char *loop = test_path(dir, "loop");
     assert_int_equal(orl_file_write(NULL, file, "old", 3), ORL_OK);
     assert_int_equal(symlink("file", link), 0);
     assert_int_equal(symlink(link, chain), 0);
@@ -74,23 +53,23 @@ static void links_stay_links(void **state)
     assert_int_equal(symlink("loop", loop), 0);
     assert_int_equal(orl_file_write(NULL, chain, "new", 3), ORL_OK);
     assert_true(S_ISLNK(mode_of(link)) && S_ISLNK(mode_of(chain)));
-    expect_text(file, "new");
+    test_expect_text(file, "new");
     assert_int_equal(orl_file_write(NULL, dangling, "first", 5), ORL_OK);
     assert_true(S_ISLNK(mode_of(dangling)));
-    expect_text(fresh, "first");
+    test_expect_text(fresh, "first");
     assert_int_equal(orl_file_write(NULL, loop, "x", 1), ORL_ERR_IO);
     char *const made[] = {file, link, chain, dangling, fresh, loop};
     for (size_t i = 0; i < ORL_COUNT(made); i++) {
         assert_int_equal(unlink(made[i]), 0);
         free(made[i]);
     }
-    assert_int_equal(count_entries(), 0);
+    assert_int_equal(test_count_entries(dir), 0);
 }
 
 static void fifos_are_written_to(void **state)
 {
     (void)state;
-    char *path = in_dir("fifo"), got[8] = "";
+    char *path = test_path(dir, "fifo"), got[8] = "";
     assert_int_equal(mkfifo(path, 0600), 0);
     int fd = open(path, O_RDONLY | O_NONBLOCK);
     assert_true(fd >= 0);
@@ -98,7 +77,7 @@ static void fifos_are_written_to(void **state)
     assert_int_equal(read(fd, got, sizeof got), 4);
     assert_string_equal(got, "word");
     assert_true(S_ISFIFO(mode_of(path)));
-    assert_int_equal(count_entries(), 1);
+    assert_int_equal(test_count_entries(dir), 1);
     close(fd);
     unlink(path);
     free(path);
@@ -108,7 +87,9 @@ static void devices_stay_devices(void **state)
 {
     (void)state;
     // Not /dev itself: a mistake here, as root, must not cost the machine its devices.
-    char *path = in_dir("link"), *full = in_dir("full"), *own = in_dir("own");
+    char *path = test_path(dir, "link");
+    char *full = test_path(dir, "full");
+    char *own = test_path(dir, "own");
     assert_int_equal(symlink("/dev/null", path), 0);
     assert_int_equal(symlink("/dev/full", full), 0);
     assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_OK);
@@ -130,7 +111,7 @@ static void devices_stay_devices(void **state)
 static void fifos_are_not_read(void **state)
 {
     (void)state;
-    char *path = in_dir("fifo");
+    char *path = test_path(dir, "fifo");
     uint8_t *data;
     size_t size;
     FILE *stream;
@@ -147,7 +128,7 @@ static void fifos_are_not_read(void **state)
 static void permissions_are_kept(void **state)
 {
     (void)state;
-    char *path = in_dir("private");
+    char *path = test_path(dir, "private");
     assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_OK);
     assert_int_equal(chmod(path, 0600), 0);
     assert_int_equal(orl_file_write(NULL, path, "y", 1), ORL_OK);
@@ -159,7 +140,7 @@ static void permissions_are_kept(void **state)
 static void temporary_names_differ(void **state)
 {
     (void)state;
-    char *path = in_dir("frame.exr");
+    char *path = test_path(dir, "frame.exr");
     struct orl_atomic_file a, b;
     assert_int_equal(orl_atomic_begin(NULL, path, &a), ORL_OK);
     assert_int_equal(orl_atomic_begin(NULL, path, &b), ORL_OK);
@@ -167,7 +148,7 @@ static void temporary_names_differ(void **state)
     assert_true(fcntl(a.fd, F_GETFD) & FD_CLOEXEC);
     orl_atomic_abort(&a);
     orl_atomic_abort(&b);
-    assert_int_equal(count_entries(), 0);
+    assert_int_equal(test_count_entries(dir), 0);
     free(path);
 }
 
@@ -177,9 +158,9 @@ static void the_longest_names_work(void **state)
     char name[256];
     memset(name, 'n', 255);
     memcpy(name + 251, ".png", 5);
-    char *path = in_dir(name);
+    char *path = test_path(dir, name);
     assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_OK);
-    expect_text(path, "x");
+    test_expect_text(path, "x");
     unlink(path);
     free(path);
 }
@@ -187,7 +168,7 @@ static void the_longest_names_work(void **state)
 static void a_cut_write_leaves_nothing(void **state)
 {
     (void)state;
-    char *path = in_dir("large"), *text = calloc(1, 1 << 16);
+    char *path = test_path(dir, "large"), *text = calloc(1, 1 << 16);
     struct rlimit before, tight;
     assert_int_equal(orl_file_write(NULL, path, "old", 3), ORL_OK);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -197,8 +178,8 @@ static void a_cut_write_leaves_nothing(void **state)
     enum orl_result result = orl_file_write(NULL, path, text, 1 << 16);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_int_equal(result, ORL_ERR_IO);
-    expect_text(path, "old");
-    assert_int_equal(count_entries(), 1);
+    test_expect_text(path, "old");
+    assert_int_equal(test_count_entries(dir), 1);
     unlink(path);
     free(path);
     free(text);
@@ -209,8 +190,9 @@ static void a_cut_write_leaves_nothing(void **state)
 static void sweeping(void **state)
 {
     (void)state;
-    char *stale = in_dir(".oriel-part-0000-a.png"), *young = in_dir(".oriel-part-0001-a.png");
-    char *link = in_dir(".oriel-part-0002-a.png"), *path = in_dir("a.png");
+    char *stale = test_path(dir, ".oriel-part-0000-a.png");
+    char *young = test_path(dir, ".oriel-part-0001-a.png");
+    char *link = test_path(dir, ".oriel-part-0002-a.png"), *path = test_path(dir, "a.png");
     struct timespec old[2] = {{.tv_sec = time(NULL) - 3600}, {.tv_sec = time(NULL) - 3600}};
     struct orl_atomic_file file;
     assert_int_equal(orl_file_write(NULL, stale, "x", 1), ORL_OK);
@@ -227,7 +209,7 @@ static void sweeping(void **state)
     orl_atomic_abort(&file);
     unlink(young);
     unlink(link);
-    assert_int_equal(count_entries(), 0);
+    assert_int_equal(test_count_entries(dir), 0);
     free(stale);
     free(young);
     free(link);
