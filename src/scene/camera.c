@@ -37,6 +37,15 @@ bool orl_pose_valid(const struct orl_pose *pose)
     return orl_dot3(across, pose->r[2]) > 0 && within_world(pose->t);
 }
 
+const char *orl_view_problem(const struct orl_view *view)
+{
+    if (!orl_camera_valid(&view->camera))
+        return "its size, focal length or principal point is absurd";
+    if (!within_world(view->cam_from_world.t))
+        return "its position is absurdly far";
+    return orl_pose_valid(&view->cam_from_world) ? NULL : "its axes are no rotation, or a mirror's";
+}
+
 struct orl_camera orl_camera_resized(const struct orl_camera *camera, int width, int height)
 {
     double sx = (double)width / camera->width, sy = (double)height / camera->height;

@@ -30,6 +30,8 @@ struct orl_view {
 bool orl_camera_valid(const struct orl_camera *camera);
 // A rotation (no mirror, no scale) and a centre within ORL_WORLD_MAX.
 bool orl_pose_valid(const struct orl_pose *pose);
+// What keeps a view from being one, in words; NULL: nothing.
+const char *orl_view_problem(const struct orl_view *view);
 // The same camera for a picture of another size: each axis scaled by itself.
 struct orl_camera orl_camera_resized(const struct orl_camera *camera, int width, int height);
 

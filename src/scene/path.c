@@ -59,7 +59,7 @@ static bool read_rows(const json_t *array, size_t rows, size_t columns, double *
 }
 
 // From a camera-to-world rotation (columns are the camera's axes) and centre.
-static bool pose_from_world_axes(double world_from_cam[3][3], const double centre[3],
+static void pose_from_world_axes(double world_from_cam[3][3], const double centre[3],
                                  struct orl_pose *pose)
 {
     for (int i = 0; i < 3; i++) {
@@ -69,7 +69,6 @@ static bool pose_from_world_axes(double world_from_cam[3][3], const double centr
             pose->t[i] -= world_from_cam[j][i] * centre[j];
         }
     }
-    return orl_pose_valid(pose);
 }
 
 // --- interpolation ---
@@ -130,6 +129,16 @@ enum orl_result orl_path_through_photos(const struct orl_log *log, const struct 
     return result;
 }
 
+static enum orl_result check_view(const struct orl_log *log, const char *file, const char *what,
+                                  size_t index, bool whole, const struct orl_view *view)
+{
+    const char *problem = whole ? orl_view_problem(view)
+                                : "a value is missing, not known or out of range";
+    return problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: %s %zu is not usable: %s", file, what,
+                              index, problem)
+                   : ORL_OK;
+}
+
 // --- Oriel keyframes ---
 
 static bool read_key(const struct orl_scene *scene, const json_t *key, struct orl_view *view)
@@ -158,8 +167,6 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             return false;
         view->cam_from_world = orl_pose_look_at(eye, target, up);
     }
-    if (!orl_pose_valid(&view->cam_from_world))
-        return false;
     if (fov) {
         double degrees = json_number_value(fov);
         if (!(degrees > 0.1 && degrees < 170))
@@ -178,8 +185,8 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
     enum orl_result result = allocate(log, json_array_size(keys), &read);
     for (size_t i = 0; result == ORL_OK && i < read.count; i++) {
         read.views[i].camera = scene->photos[0].view.camera;
-        if (!read_key(scene, json_array_get(keys, i), &read.views[i]))
-            result = orl_fail(log, ORL_ERR_FORMAT, "%s: keyframe %zu is not usable", file, i);
+        bool ok = read_key(scene, json_array_get(keys, i), &read.views[i]);
+        result = check_view(log, file, "keyframe", i, ok, &read.views[i]);
     }
     if (result == ORL_OK && frames) {
         json_int_t count = json_integer_value(frames);
@@ -189,6 +196,8 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
                               PATH_VIEWS_MAX);
         else
             result = spread_frames(log, &read, (size_t)count, path);
+        for (size_t i = 0; result == ORL_OK && i < path->count; i++) // a curve may swing out
+            result = check_view(log, file, "frame", i, true, &path->views[i]);
     } else if (result == ORL_OK) {
         *path = read;
         read = (struct orl_path){0};
@@ -223,8 +232,8 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
     view->camera = (struct orl_camera){.width = width, .height = height,
                                        .cx = 0.5 * width, .cy = 0.5 * height};
     set_fov_y(&view->camera, fov * pi / 180);
-    return orl_camera_valid(&view->camera) &&
-           pose_from_world_axes(axes, centre, &view->cam_from_world);
+    pose_from_world_axes(axes, centre, &view->cam_from_world);
+    return true;
 }
 
 // Inria: position is the centre, the columns of rotation are the camera's axes.
@@ -236,10 +245,11 @@ static bool read_inria_view(const json_t *entry, struct orl_view *view)
         .width = width, .height = height, .cx = 0.5 * width, .cy = 0.5 * height,
         .fx = json_number_value(json_object_get(entry, "fx")),
         .fy = json_number_value(json_object_get(entry, "fy"))};
-    return read_rows(json_object_get(entry, "rotation"), 3, 3, &axes[0][0]) &&
-           orl_json_read_numbers(json_object_get(entry, "position"), 3, centre) &&
-           orl_camera_valid(&view->camera) &&
-           pose_from_world_axes(axes, centre, &view->cam_from_world);
+    if (!read_rows(json_object_get(entry, "rotation"), 3, 3, &axes[0][0]) ||
+        !orl_json_read_numbers(json_object_get(entry, "position"), 3, centre))
+        return false;
+    pose_from_world_axes(axes, centre, &view->cam_from_world);
+    return true;
 }
 
 static enum orl_result read_json(const struct orl_log *log, const struct orl_scene *scene,
@@ -262,8 +272,7 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
         const json_t *entry = json_array_get(entries, i);
         bool ok = nerfstudio ? read_nerfstudio_view(entry, width, height, &path->views[i])
                              : read_inria_view(entry, &path->views[i]);
-        if (!ok)
-            result = orl_fail(log, ORL_ERR_FORMAT, "%s: camera %zu is not usable", file, i);
+        result = check_view(log, file, "camera", i, ok, &path->views[i]);
     }
     return result;
 }

@@ -191,6 +191,31 @@ static void damaged_paths_are_refused(void **state)
     assert_int_not_equal(read_text("bad.txt", "1 1 0 0 0 1e308 2 3 4 x.jpg\n\n", &path), ORL_OK);
 }
 
+static void refusals_say_why(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"{\"keyframes\": [{\"photo\": \"a\"}, {\"cam_from_world\": [[-1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}",
+         "bad.json: keyframe 1 is not usable: its axes are no rotation, or a mirror's"},
+        {"{\"keyframes\": [{\"cam_from_world\": [[1,0,0,1e308],[0,1,0,0],[0,0,1,0]]}]}",
+         "keyframe 0 is not usable: its position is absurdly far"},
+        {"[{\"width\": 64, \"height\": 64, \"position\": [0,0,0], \"fx\": 1e-300, \"fy\": 60,"
+         " \"rotation\": [[1,0,0],[0,1,0],[0,0,1]]}]",
+         "camera 0 is not usable: its size, focal length or principal point is absurd"},
+    };
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        struct said said;
+        struct orl_log log = log_to(&said);
+        struct orl_path path;
+        char *file = test_path(dir, "bad.json");
+        assert_int_equal(orl_file_write(NULL, file, cases[i][0], strlen(cases[i][0])), ORL_OK);
+        assert_int_equal(orl_path_read(&log, &scene, file, &path), ORL_ERR_FORMAT);
+        if (!strstr(said.text, cases[i][1]))
+            fail_msg("case %zu: %s", i, said.text);
+        free(file);
+    }
+}
+
 // Cameras and lines are looked at once, not once for every picture.
 static void a_hundred_thousand_poses_take_no_time(void **state)
 {
@@ -224,6 +249,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(colmap_text_takes_the_cameras_beside_it, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(damaged_paths_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(refusals_say_why, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_hundred_thousand_poses_take_no_time, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("path", tests, NULL, NULL);
