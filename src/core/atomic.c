@@ -78,6 +78,8 @@ static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_fi
     // The suffix keeps the extension last: writers may choose a format by it.
     const char *name = orl_path_name(file->path);
     size_t length = strlen(name), cut = length > NAME_TAIL_MAX ? length - NAME_TAIL_MAX : 0;
+    while (((unsigned char)name[cut] & 0xc0) == 0x80) // some drives take whole characters only
+        cut++;
     for (int tries = 0; tries < TRIES_MAX; tries++) {
         unsigned long long number;
         if (getrandom(&number, sizeof number, 0) != sizeof number)

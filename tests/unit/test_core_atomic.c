@@ -13,6 +13,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/text.h"
 
 static char *dir;
 
@@ -162,6 +163,15 @@ static void the_longest_names_work(void **state)
     assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_OK);
     test_expect_text(path, "x");
     unlink(path);
+    free(path);
+    for (size_t i = 0; i < 200; i += 2)
+        memcpy(name + i, "\xc3\xa9", 2);
+    memcpy(name + 200, "x.png", 6);
+    struct orl_atomic_file file;
+    path = test_path(dir, name);
+    assert_int_equal(orl_atomic_begin(NULL, path, &file), ORL_OK);
+    assert_true(orl_utf8_valid(file.temp));
+    orl_atomic_abort(&file);
     free(path);
 }
 
