@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes every reader of files with libFuzzer under AddressSanitizer and UBSan, then says how many
 # lines of each reader the inputs reach.
-# usage: tests/fuzz/run.sh SECONDS [TARGET]..      SECONDS for each target
+# usage: tests/fuzz/run.sh SECONDS [TARGET]..      SECONDS for each target; 0: none, only count
 # The build and the inputs found so far are kept in build-fuzz/ (FUZZ_DIR). FUZZ_JOBS targets run
 # at once. Inputs that fail are in build-fuzz/failures: mend the reader, then add them to
 # tests/fuzz/inputs/TARGET. Exit status 0 only when nothing failed.
@@ -58,17 +58,18 @@ run_target() {
     fi
 }
 
-# "LINES_REACHED LINES" of a source file by what a target's inputs reach.
-count_lines() {
-    llvm-cov export -summary-only -instr-profile="$dir/profiles/all" "$fuzz" "$1" 2>/dev/null |
-        grep -o '"lines":{"count":[0-9]*,"covered":[0-9]*' | head -n 1 |
-        sed -E 's/.*"count":([0-9]*),"covered":([0-9]*)/\2 \1/'
+# Lines "FILE LINES LINES_REACHED" of all source files, by what all inputs reach.
+summarise() {
+    llvm-cov export -summary-only -instr-profile="$dir/profiles/all" "$fuzz" |
+        sed 's/{"filename":"/\n/g' |
+        sed -nE 's/^([^"]*)".*[{,]"lines":\{"count":([0-9]+),"covered":([0-9]+).*/\1 \2 \3/p'
 }
 
 rm -f "$dir/failed"
 started=$SECONDS
 for row in "${readers[@]}"; do
     name=${row%% *}
+    [ "$seconds" -gt 0 ] || break
     [ "$wanted" = "  " ] || [[ $wanted == *" $name "* ]] || continue
     run_target "$name" &
     while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do wait -n; done
@@ -87,11 +88,12 @@ for row in "${readers[@]}"; do
         "$here/inputs/$name" -rss_limit_mb=3000 >/dev/null 2>&1
 done
 llvm-profdata merge -o "$dir/profiles/all" "$dir"/profiles/*.raw || exit 1
-source=$(cd "$here/../.." && pwd)
+summarise >"$dir/summary.txt"
 for row in "${readers[@]}"; do
+    # shellcheck disable=SC2086
     set -- $row
     for file in "${@:2}"; do
-        read -r reached lines <<<"$(count_lines "$source/$file")"
+        read -r _ lines reached <<<"$(grep "/$file " "$dir/summary.txt" | head -n 1)"
         echo "lines $1 $file ${reached:-0} ${lines:-0}"
     done
 done | sort -u -k3,3 | tee "$dir/lines.txt" |

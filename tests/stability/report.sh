@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # Writes docs/measured/robustness.md: fuzzes every reader, injects every fault, counts.
-# usage: tests/stability/report.sh BUILD SECONDS      SECONDS of fuzzing for each reader
-# BUILD is a build folder with the program and tests. Inputs tried add up over the runs of
+# usage: tests/stability/report.sh BUILD SECONDS [all]
+# SECONDS of fuzzing for each reader, 0: only the inputs that there are. all: every call fails in
+# turn, which takes an hour, instead of the first ones of a kind and then ever fewer. BUILD is a build folder with the program and tests. Inputs tried add up over the runs of
 # tests/fuzz/run.sh in build-fuzz.
 set -eu
-[ $# -eq 2 ] || { sed -n '2,5s/^# *//p' "$0"; exit 2; }
-source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1") seconds=$2
+[ $# -ge 2 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
+source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1") seconds=$2 all=${3:-}
 fuzz=${FUZZ_DIR:-$source/build-fuzz} page=$source/docs/measured/robustness.md
 status=0
 mkdir -p "$source/docs/measured"
 "$source/tests/fuzz/run.sh" "$seconds" || status=1
-"$source/tests/stability/inject.sh" "$build/oriel" "$source" "$build/tests/libinject.so" all |
+"$source/tests/stability/inject.sh" "$build/oriel" "$source" "$build/tests/libinject.so" $all |
     tee "$fuzz/injected.txt" || status=1
 
 failures() { find "$fuzz/failures" -type f | wc -l; }
@@ -46,7 +47,7 @@ END
     echo
     echo "## Faults injected"
     echo
-    echo "Each call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
+    echo "A call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
     echo "(PNG, EXR), \`hdr\` and \`synth\`. Afterwards a final name holds what it held before or the whole"
     echo "result, the exit status tells, and only a killed program leaves a temporary file."
     echo
