@@ -28,14 +28,14 @@ END
     echo
     echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
     echo
-    echo "| reader | inputs tried | seconds | failures left |"
+    echo "| reader | inputs tried | seconds of wall clock on one core | failures left |"
     echo "|---|--:|--:|--:|"
     awk '{ n[$1] += $2; s[$1] += $3 } END { for (k in n) print k, n[k], s[k] }' "$fuzz/tried.txt" |
         sort | while read -r name inputs time; do
         left=$(find "$fuzz/failures" -name "$name-*" | wc -l)
         printf '| %s | %s | %s | %s |\n' "$name" "$inputs" "$time" "$left"
     done
-    awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f CPU-hours) | ", n, s, s / 3600 }' \
+    awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | ", n, s, s / 3600 }' \
         "$fuzz/tried.txt"
     echo "$(failures) |"
     echo
