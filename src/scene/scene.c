@@ -39,21 +39,31 @@ static enum orl_result check_inside(const struct orl_log *log, const struct orl_
                           "there", path);
 }
 
+// Takes over `path`, which need not be there.
+static enum orl_result check_if_there(const struct orl_log *log, const struct orl_scene *scene,
+                                      char *path, bool *there)
+{
+    *there = path && orl_path_is_file(path);
+    enum orl_result result = !path    ? ORL_ERR_MEMORY
+                             : *there ? check_inside(log, scene, path)
+                                      : ORL_OK;
+    free(path);
+    return result;
+}
+
 static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *scene, size_t i)
 {
-    enum orl_result result = ORL_ERR_MEMORY;
-    char *path = orl_scene_photo_path(log, scene, i);
-    char *linear = orl_scene_linear_path(log, scene, i);
-    if (path && linear) {
-        result = orl_path_is_file(path) ? check_inside(log, scene, path)
-                                        : orl_fail(log, ORL_ERR_NOT_FOUND,
-                                                   "%s: this photograph is missing", path);
-        scene->photos[i].linear = orl_path_is_file(linear);
-        if (result == ORL_OK && scene->photos[i].linear)
-            result = check_inside(log, scene, linear);
-    }
-    free(path);
-    free(linear);
+    struct orl_photo *photo = &scene->photos[i];
+    bool there, masked;
+    enum orl_result result =
+        check_if_there(log, scene, orl_scene_photo_path(log, scene, i), &there);
+    if (result == ORL_OK && !there)
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
+                          scene->dir, photo->name);
+    if (result == ORL_OK)
+        result = check_if_there(log, scene, orl_scene_linear_path(log, scene, i), &photo->linear);
+    if (result == ORL_OK)
+        result = check_if_there(log, scene, orl_scene_mask_path(log, scene, i), &masked);
     return result;
 }
 

@@ -6,13 +6,15 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "fuzz.h"
-#include "preprocess/job.h"
+#include "preprocess/job/exposure_list.h"
 #include "scene/colmap.h"
 #include "scene/manifest.h"
 #include "scene/path.h"
-#include "scene/radii.h"
+#include "scene/point_radii.h"
 #include "scene/thin.h"
+#include "scene/tuned_settings.h"
 
 // The input is `count` files, each but the last ahead by its length in two bytes.
 static void save_parts(const char *const *names, size_t count, const uint8_t *data, size_t size)
@@ -170,10 +172,12 @@ void fuzz_manifest(const uint8_t *data, size_t size)
     snprintf(manifest, sizeof manifest, "%s", fuzz_path("scene.json"));
     fuzz_save("scene.json", data, size);
     fuzz_save("points.ply", data, 0);
-    if (orl_manifest_read(&fuzz_log, manifest, fuzz_path("points.ply"), scene) == ORL_OK) {
+    if (orl_manifest_read(&fuzz_log, manifest, scene) == ORL_OK) {
+        size_t bad, files;
+        (void)!orl_manifest_check(&fuzz_log, scene->dir, &bad, &files);
         json_decref(orl_manifest_ground(&scene->ground));
         json_t *record = json_pack("{s:{s:f}}", "settings", "scale", 0.5);
-        fuzz_require(orl_manifest_write_tuned(&fuzz_log, scene->dir, "oriel", record) == ORL_OK,
+        fuzz_require(orl_tuned_write(&fuzz_log, scene->dir, "oriel", record) == ORL_OK,
                      "settings can be kept");
     }
     orl_scene_destroy(&scene);
@@ -222,12 +226,11 @@ void fuzz_path_text(const uint8_t *data, size_t size)
 void fuzz_exposures(const uint8_t *data, size_t size)
 {
     struct orl_exposure_list list;
-    char name[] = "a.jpg", given[] = "photos/a.tif";
-    const struct orl_source source = {.name = name, .given = given};
+    const struct orl_exif exif = {.exposure_s = 0.004, .iso = 200};
     double ev;
     fuzz_save("exposures.csv", data, size);
     if (orl_exposure_list_read(&fuzz_log, fuzz_path("exposures.csv"), &list) == ORL_OK) {
-        (void)orl_source_exposure(&list, &source, &ev);
+        (void)orl_exposure_told(&list, "a.jpg", "photos/a.tif", &exif, &ev);
         for (size_t i = 0; i < list.count; i++)
             fuzz_require(fabs(list.items[i].ev) <= 64, "exposures are usable");
     }
