@@ -11,7 +11,7 @@ quick=
 start=$SECONDS
 # Rough minutes on two cores without a GPU, for the time left: "name minutes".
 steps=("dependencies 2" "build 1" "tests 9")
-[ "$quick" ] || steps+=("clang 1" "sanitizers 6")
+[ "$quick" ] || steps+=("clang 1" "sanitizers 6" "fuzz 3")
 failed=()
 passed=0 failures=0 skipped=0
 
@@ -58,7 +58,7 @@ finish() {
 
 step dependencies "checking dependencies"
 extra=(libcmocka-dev openexr imagemagick)
-[ "$quick" ] || extra+=(clang)
+[ "$quick" ] || extra+=(clang llvm libclang-rt-dev)
 install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }
 
 step build "building with gcc"
@@ -75,11 +75,14 @@ if [ -z "$quick" ]; then
     # Leaks of Mesa and EGL's driver loading are not ours to fix: leak detection
     # stays on for the unit tests, which use no GL.
     if build_oriel build-sanitize -DORL_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug; then
-        UBSAN_OPTIONS=print_stacktrace=1 run_tests build-sanitize -L unit
+        UBSAN_OPTIONS=print_stacktrace=1 run_tests build-sanitize -L 'unit|fuzz'
         ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
             run_tests build-sanitize -L gpu
     else
         failed+=("sanitizer build")
     fi
+
+    step fuzz "fuzzing every reader of files for some seconds"
+    FUZZ_JOBS=$(nproc) tests/fuzz/run.sh 5 || failed+=("fuzzing")
 fi
 finish

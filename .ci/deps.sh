@@ -29,12 +29,15 @@ install_dependencies() {
             apt-get install -q -y --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build_oriel BUILD_DIR [cmake arguments]
+# build_oriel BUILD_DIR [cmake arguments] [targets]
 build_oriel() {
-    local dir=$1
+    local dir=$1 options=() targets=() word
     shift
-    cmake -S "$(dirname "${BASH_SOURCE[0]}")/.." -B "$dir" -G Ninja "$@" >"$dir.log" 2>&1 &&
-        cmake --build "$dir" >>"$dir.log" 2>&1 || {
+    for word in "$@"; do
+        case $word in -*) options+=("$word") ;; *) targets+=("$word") ;; esac
+    done
+    cmake -S "$(dirname "${BASH_SOURCE[0]}")/.." -B "$dir" -G Ninja "${options[@]}" >"$dir.log" 2>&1 &&
+        cmake --build "$dir" ${targets:+--target "${targets[@]}"} >>"$dir.log" 2>&1 || {
         tail -n 30 "$dir.log" >&2
         return 1
     }

@@ -45,6 +45,33 @@ static inline int test_file_remove(char *dir, char *file)
     return 0;
 }
 
+// Of a file in it, to be freed.
+static inline char *test_path(const char *dir, const char *name)
+{
+    char *path = orl_path_join(NULL, dir, name);
+    assert_non_null(path);
+    return path;
+}
+
+static inline void test_expect_text(const char *path, const char *want)
+{
+    uint8_t *data;
+    size_t size;
+    assert_int_equal(orl_file_read(NULL, path, 1 << 20, &data, &size), ORL_OK);
+    assert_int_equal(size, strlen(want));
+    assert_string_equal((char *)data, want); // the zero byte after the end
+    free(data);
+}
+
+static inline size_t test_count_entries(const char *dir)
+{
+    struct orl_names names;
+    assert_int_equal(orl_dir_list(NULL, dir, &names), ORL_OK);
+    size_t count = names.count;
+    orl_names_finish(&names);
+    return count;
+}
+
 // Opens DIR/NAME to write text.
 static inline FILE *test_create(const char *dir, const char *name)
 {

@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/command_output.h"
 #include "core/memory.h"
+#include "core/text.h"
 #include "eval/eval.h"
 #include "eval/stability.h"
 #include "hdr/hdr.h"
@@ -64,9 +65,10 @@ static void print_table(const struct orl_eval *eval)
            "fitted", "covered", "SSIM", "FLIP", "cover%", "full%", "1-NCC", "ms");
     for (size_t i = 0; i < eval->view_count; i++) {
         const struct orl_eval_view *view = &eval->views[i];
-        char size[32];
+        char size[32], shown[ORL_TEXT_SHOWN];
         snprintf(size, sizeof size, "%dx%d", view->width, view->height);
-        printf("%-24s %11s", eval->scene->photos[view->photo].name, size);
+        orl_text_escape(eval->scene->photos[view->photo].name, shown, sizeof shown);
+        printf("%-24s %11s", shown, size);
         print_figures(view);
     }
     printf("%-24s %11s", "mean", "");

@@ -4,6 +4,8 @@
 
 #include "cli/commands.h"
 #include "cli/summary.h"
+#include "core/json.h"
+#include "core/text.h"
 #include "scene/info.h"
 #include "scene/manifest.h"
 
@@ -23,7 +25,9 @@ static void print_photos(const struct orl_scene *scene)
 {
     for (size_t i = 0; i < scene->photo_count; i++) {
         const struct orl_photo *photo = &scene->photos[i];
-        printf("%-5s %-32s %5dx%-5d", photo->test ? "test" : "train", photo->name,
+        char shown[ORL_TEXT_SHOWN];
+        orl_text_escape(photo->name, shown, sizeof shown);
+        printf("%-5s %-32s %5dx%-5d", photo->test ? "test" : "train", shown,
                photo->view.camera.width, photo->view.camera.height);
         if (photo->has_exposure)
             printf("  %+.2f EV, series %d", photo->exposure_ev, photo->series);

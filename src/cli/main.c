@@ -59,10 +59,7 @@ int command_main(const struct arg_command *command, int argc, char **argv, comma
     size_t count;
     int status;
     if (command_begin(command, argc, argv, &common, &terminal, &positional, &count, &status)) {
-        enum orl_result result = run(&terminal, options, &common, positional);
-        if (fflush(stdout) != 0 && result == ORL_OK)
-            result = orl_fail(&terminal.log, ORL_ERR_IO, "standard output: cannot write");
-        status = command_status(result);
+        status = command_status(run(&terminal, options, &common, positional));
         terminal_finish(&terminal);
     }
     return status;
@@ -76,7 +73,7 @@ static void print_usage(FILE *out)
     fprintf(out, "  %-10s %s\n", "version", "print the version");
 }
 
-int main(int argc, char **argv)
+static int run_command(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
     for (const struct command *c = commands; c->name; c++)
@@ -91,4 +88,15 @@ int main(int argc, char **argv)
     if (!help && *name)
         fprintf(stderr, "\noriel: error: unknown command %s\n", name);
     return help ? 0 : 2;
+}
+
+int main(int argc, char **argv)
+{
+    int status = run_command(argc, argv);
+    // ferror tells of a part that was lost earlier, which fflush has forgotten.
+    if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {
+        fprintf(stderr, "oriel: error: standard output: cannot write all of it\n");
+        status = command_status(ORL_ERR_IO);
+    }
+    return status;
 }

@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/json.h"
+#include "core/text.h"
 
 static long long count(const json_t *counts, const char *key)
 {
@@ -53,7 +54,9 @@ static void print_left_out(const json_t *list)
     json_array_foreach((json_t *)(uintptr_t)list, i, entry) {
         const char *name = json_string_value(json_object_get(entry, "name"));
         const char *why = json_string_value(json_object_get(entry, "why"));
-        printf("left out     %s: %s\n", name ? name : "?", why ? why : "?");
+        char shown[ORL_TEXT_SHOWN];
+        orl_text_escape(name ? name : "?", shown, sizeof shown);
+        printf("left out     %s: %s\n", shown, why ? why : "?");
     }
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "core/process.h"
+#include "core/text.h"
 
 // The one global: a signal handler can reach nothing else.
 static volatile sig_atomic_t interrupted;
@@ -43,14 +44,15 @@ static void print_line(struct terminal *t, double done, double total, const char
                        double elapsed)
 {
     double fraction = total > 0 ? done / total : 0;
+    char shown[64];
+    orl_text_escape(detail ? detail : "", shown, sizeof shown);
     if (fraction >= 1)
         fprintf(stderr, "\r%-10s done in %.1f s\x1b[K\n", t->step, elapsed);
     else if (fraction > 0.02 && elapsed > 1)
         fprintf(stderr, "\r%-10s %3.0f %%, %.0f s left  %.40s\x1b[K", t->step, 100 * fraction,
-                elapsed * (1 - fraction) / fraction, detail ? detail : "");
+                elapsed * (1 - fraction) / fraction, shown);
     else
-        fprintf(stderr, "\r%-10s %3.0f %%  %.40s\x1b[K", t->step, 100 * fraction,
-                detail ? detail : "");
+        fprintf(stderr, "\r%-10s %3.0f %%  %.40s\x1b[K", t->step, 100 * fraction, shown);
     t->line_open = fraction < 1;
     fflush(stderr);
 }

@@ -38,6 +38,18 @@ bool orl_path_is_dir(const char *path)
     return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
 }
 
+bool orl_path_is_inside(const char *dir, const char *path)
+{
+    char *real_dir = realpath(dir, NULL), *real_path = realpath(path, NULL);
+    size_t length = real_dir ? strlen(real_dir) : 0;
+    length -= length == 1; // "/"
+    bool inside = real_dir && real_path && strncmp(real_dir, real_path, length) == 0 &&
+                  (real_path[length] == '/' || real_path[length] == '\0');
+    free(real_dir);
+    free(real_path);
+    return inside;
+}
+
 static enum orl_result open_to_read(const struct orl_log *log, const char *path, int *fd,
                                     size_t *size)
 {
@@ -59,9 +71,23 @@ static enum orl_result open_to_read(const struct orl_log *log, const char *path,
     return ORL_OK;
 }
 
+enum orl_result orl_file_open(const struct orl_log *log, const char *path, FILE **stream)
+{
+    int fd;
+    size_t size;
+    *stream = NULL;
+    enum orl_result result = open_to_read(log, path, &fd, &size);
+    if (result == ORL_OK && !(*stream = fdopen(fd, "rb"))) {
+        close(fd);
+        result = orl_fail(log, ORL_ERR_MEMORY, "%s: %s", path, strerror(errno));
+    }
+    return result;
+}
+
 enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_t max_size,
                               uint8_t **data, size_t *size)
 {
+    const size_t large = 64 << 20;
     *data = NULL;
     *size = 0;
     int fd = -1;
@@ -75,11 +101,13 @@ enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_
                           total, max_size);
         goto end;
     }
-    bytes = orl_array(log, total + 1, 1);
-    if (!bytes) {
+    if (total > large && total > orl_memory_available()) // a sparse file claims any size
+        result = orl_fail(log, ORL_ERR_MEMORY, "%s: %zu bytes are more than the memory left", path,
+                          total);
+    else if (!(bytes = orl_array(log, total + 1, 1)))
         result = ORL_ERR_MEMORY;
+    if (result != ORL_OK)
         goto end;
-    }
     while (done < total) {
         ssize_t got = read(fd, bytes + done, total - done);
         if (got < 0 && errno == EINTR)
@@ -100,65 +128,10 @@ end:
     return result;
 }
 
-enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
-                                 struct orl_atomic_file *file)
-{
-    // The suffix keeps the extension last: writers may choose a format by it.
-    const char *name = orl_path_name(path);
-    file->path = orl_strdup(log, path);
-    file->temp = orl_format(log, "%.*s.tmp%ld-%s", (int)(name - path), path, (long)getpid(), name);
-    if (file->path && file->temp)
-        return ORL_OK;
-    orl_atomic_abort(file);
-    return ORL_ERR_MEMORY;
-}
-
-enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_file *file)
-{
-    enum orl_result result = ORL_OK;
-    int fd = open(file->temp, O_RDONLY | O_CLOEXEC);
-    if (fd < 0 || fsync(fd) != 0 || rename(file->temp, file->path) != 0)
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", file->path, strerror(errno));
-    if (fd >= 0)
-        close(fd);
-    if (result == ORL_OK) {
-        free(file->temp);
-        file->temp = NULL;
-    }
-    orl_atomic_abort(file);
-    return result;
-}
-
-void orl_atomic_abort(struct orl_atomic_file *file)
-{
-    if (!file)
-        return;
-    if (file->temp)
-        unlink(file->temp);
-    free(file->temp);
-    free(file->path);
-    memset(file, 0, sizeof *file);
-}
-
-enum orl_result orl_file_write(const struct orl_log *log, const char *path, const void *data,
-                               size_t size)
-{
-    struct orl_atomic_file file = {0};
-    enum orl_result result = orl_atomic_begin(log, path, &file);
-    if (result != ORL_OK)
-        return result;
-    FILE *stream = fopen(file.temp, "wb");
-    bool ok = stream && fwrite(data, 1, size, stream) == size;
-    if (stream && fclose(stream) != 0)
-        ok = false;
-    result = ok ? orl_atomic_commit(log, &file)
-                : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    orl_atomic_abort(&file);
-    return result;
-}
-
 enum orl_result orl_dir_make(const struct orl_log *log, const char *path)
 {
+    if (orl_path_is_dir(path))
+        return orl_dir_sweep(NULL, path) == ORL_ERR_MEMORY ? ORL_ERR_MEMORY : ORL_OK;
     char *copy = orl_strdup(log, path);
     if (!copy)
         return ORL_ERR_MEMORY;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/text.h"
 
 enum { JSON_MAX_BYTES = 64 << 20 };
 
@@ -43,6 +44,20 @@ enum orl_result orl_json_write(const struct orl_log *log, const char *path, cons
     enum orl_result result = orl_file_write(log, path, text, strlen(text));
     free(text);
     return result;
+}
+
+json_t *orl_json_string(const char *text)
+{
+    if (orl_utf8_valid(text))
+        return json_string(text);
+    size_t size = 4 * strlen(text) + 1;
+    char *shown = malloc(size);
+    if (!shown)
+        return NULL;
+    orl_text_escape(text, shown, size);
+    json_t *string = json_string(shown);
+    free(shown);
+    return string;
 }
 
 enum orl_result orl_json_refuse(const struct orl_json_place *place, const char *key,

@@ -17,6 +17,10 @@ enum orl_result orl_json_read(const struct orl_log *log, const char *path,
 enum orl_result orl_json_write(const struct orl_log *log, const char *path,
                                const json_t *value) ORL_CHECK_RESULT;
 
+// A string, which JSON wants in UTF-8: other bytes of `text`, which names of files may have, become
+// "\xNN". NULL: no memory.
+json_t *orl_json_string(const char *text);
+
 // Where values are read from, for errors: "PATH: WHAT: "key" is not ...".
 struct orl_json_place {
     const struct orl_log *log;

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "core/text.h"
+
 static void print_stderr(void *priv, enum orl_log_level level, const char *message)
 {
     (void)priv;
@@ -21,9 +23,10 @@ static void log_va(const struct orl_log *log, enum orl_log_level level,
 {
     if (!log || !log->print || level > log->level)
         return;
-    char message[4096];
+    char message[4096], shown[4096];
     vsnprintf(message, sizeof message, format, args);
-    log->print(log->priv, level, message);
+    orl_text_escape(message, shown, sizeof shown); // names of files may hold anything
+    log->print(log->priv, level, shown);
 }
 
 void orl_logf(const struct orl_log *log, enum orl_log_level level, const char *format, ...)

@@ -13,6 +13,7 @@ enum orl_log_level {
 
 struct orl_log {
     enum orl_log_level level; // messages above this level are dropped
+    // `message` is UTF-8 without control characters but newline and tab.
     void (*print)(void *priv, enum orl_log_level level, const char *message);
     void *priv;
 };

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 void *orl_array(const struct orl_log *log, size_t count, size_t size)
 {
@@ -34,6 +36,48 @@ enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capaci
     *array = moved;
     *capacity = grown;
     return ORL_OK;
+}
+
+// The number after `key` at the start of a line; UINT64_MAX when it is not there.
+static uint64_t read_number(const char *path, const char *key)
+{
+    char line[256];
+    size_t length = strlen(key);
+    unsigned long long value = UINT64_MAX;
+    FILE *stream = fopen(path, "re");
+    while (stream && fgets(line, sizeof line, stream))
+        if (strncmp(line, key, length) == 0 && sscanf(line + length, "%llu", &value) == 1)
+            break;
+    if (stream)
+        fclose(stream);
+    return value;
+}
+
+static uint64_t minus(uint64_t a, uint64_t b)
+{
+    return a > b ? a - b : 0;
+}
+
+uint64_t orl_memory_available(void)
+{
+    uint64_t kib = read_number("/proc/meminfo", "MemAvailable:");
+    uint64_t bytes = kib < UINT64_MAX >> 10 ? kib << 10 : UINT64_MAX;
+    uint64_t most = read_number("/sys/fs/cgroup/memory.max", ""); // "max": no number
+    uint64_t used = read_number("/sys/fs/cgroup/memory.current", "");
+    uint64_t cached = read_number("/sys/fs/cgroup/memory.stat", "inactive_file ");
+    if (most != UINT64_MAX && used != UINT64_MAX) {
+        uint64_t left = minus(most, minus(used, cached != UINT64_MAX ? cached : 0));
+        bytes = left < bytes ? left : bytes;
+    }
+    struct rlimit limit;
+    uint64_t pages = read_number("/proc/self/statm", "");
+    long page = sysconf(_SC_PAGE_SIZE);
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && page > 0 &&
+        pages < UINT64_MAX / (uint64_t)page) {
+        uint64_t left = minus(limit.rlim_cur, pages * (uint64_t)page);
+        bytes = left < bytes ? left : bytes;
+    }
+    return bytes;
 }
 
 char *orl_strdup(const struct orl_log *log, const char *text)

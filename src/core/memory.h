@@ -15,6 +15,10 @@ void *orl_array(const struct orl_log *log, size_t count, size_t size);
 enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capacity,
                          size_t needed, size_t size) ORL_CHECK_RESULT;
 
+// Bytes that this process may still ask for without swapping: what the system, its control group
+// and its address space limit leave. UINT64_MAX: nothing is known.
+uint64_t orl_memory_available(void);
+
 // Copies, released with free(); NULL, logged, when memory runs out.
 char *orl_strdup(const struct orl_log *log, const char *text);
 char *orl_format(const struct orl_log *log, const char *format, ...) ORL_PRINTF(2, 3);

@@ -66,9 +66,16 @@ static void exec_child(const struct orl_process_params *params, int output_fd)
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(output_fd, STDOUT_FILENO);
     dup2(output_fd, STDERR_FILENO);
-    int null_fd = open("/dev/null", O_RDONLY);
+    int null_fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (null_fd >= 0)
         dup2(null_fd, STDIN_FILENO);
+    // The program gets neither our files (those of libraries among them, which may lack
+    // O_CLOEXEC) nor our signals: one that ignores SIGPIPE writes to nobody for ever.
+    close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+    signal(SIGPIPE, SIG_DFL);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, NULL);
     for (const char *const *entry = params->env; entry && *entry; entry++)
         putenv((char *)(uintptr_t)*entry);
     execvp(params->argv[0], (char *const *)(uintptr_t)params->argv);
@@ -147,7 +154,7 @@ enum orl_result orl_process_run(const struct orl_log *log, const struct orl_proc
                           strerror(errno));
         goto end;
     }
-    if (params->log_path && !(log_file = fopen(params->log_path, "ab"))) {
+    if (params->log_path && !(log_file = fopen(params->log_path, "abe"))) {
         result = orl_fail(log, ORL_ERR_IO, "%s: %s", params->log_path, strerror(errno));
         goto end;
     }

@@ -1,6 +1,7 @@
 // The benchmark's report (docs/reference/json.md). Field names are fixed.
 #include <jansson.h>
 
+#include "core/json.h"
 #include "eval/bench.h"
 
 static json_t *passes_json(const struct orl_bench_run *run)
@@ -64,8 +65,8 @@ static json_t *memory_json(const struct orl_bench *bench)
 char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench)
 {
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:b, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-        bench->scene->dir, "device", bench->device, "driver", bench->driver, "software",
+        "{s:o, s:s, s:s, s:b, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+        orl_json_string(bench->scene->dir), "device", bench->device, "driver", bench->driver, "software",
         bench->software, "points", (json_int_t)bench->scene->points.count, "photographs",
         (json_int_t)bench->photographs, "photo_size", bench->photo_width, bench->photo_height,
         "host_peak_bytes", (json_int_t)bench->host_peak_bytes, "memory", memory_json(bench),

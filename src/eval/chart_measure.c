@@ -8,6 +8,7 @@
 #endif
 
 #include "bridge/bridge.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/process.h"
 #include "eval/chart_internal.h"
@@ -67,7 +68,7 @@ static enum orl_result write_picture(const struct chart_scene *scene, const char
     char *name = picture_name(scene, id, view, end);
     enum orl_result result = name ? write_jpeg(scene, name, image) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        json_object_set_new(object, key, json_string(name));
+        json_object_set_new(object, key, orl_json_string(name));
     free(name);
     return result;
 }

@@ -170,7 +170,7 @@ static enum orl_result put_picture(const struct orl_log *log, FILE *out, const c
     uint8_t *data = NULL;
     size_t size = 0;
     char *path = orl_path_join(log, dir, name), *key = NULL;
-    json_t *text = json_string(name);
+    json_t *text = orl_json_string(name);
     enum orl_result result = path && text ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_file_read(log, path, JPEG_MAX_BYTES, &data, &size);

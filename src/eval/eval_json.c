@@ -1,6 +1,7 @@
 // The evaluation's report. Field names are fixed; others may be added.
 #include <jansson.h>
 
+#include "core/json.h"
 #include "eval/internal.h"
 
 // Takes over `value`, also on failure: when either is missing or memory ran out.
@@ -43,7 +44,7 @@ static bool add_views(json_t *views, const struct orl_eval *eval)
     for (size_t i = 0; views && i < eval->view_count; i++) {
         const struct orl_eval_view *view = &eval->views[i];
         json_t *object = json_object();
-        bool ok = set(object, "photo", json_string(eval->scene->photos[view->photo].name)) &&
+        bool ok = set(object, "photo", orl_json_string(eval->scene->photos[view->photo].name)) &&
                   set(object, "size", size_json(view)) && set_figures(object, eval, view);
         if (json_array_append_new(views, object) != 0 || !ok)
             return false;
@@ -63,7 +64,7 @@ static bool set_passes(json_t *object, const struct orl_eval *eval)
 static bool add_eval(json_t *array, const struct orl_eval *eval)
 {
     json_t *object = json_object(), *views = json_array(), *mean = json_object();
-    bool ok = set(object, "scene", json_string(eval->scene->dir)) &&
+    bool ok = set(object, "scene", orl_json_string(eval->scene->dir)) &&
               set(object, "method", json_string(eval->method)) &&
               (!eval->setting[0] || set(object, "setting", json_string(eval->setting))) &&
               set(object, "device", json_string(eval->device)) &&

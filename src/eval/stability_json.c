@@ -1,6 +1,7 @@
 // The report of a walk.
 #include <jansson.h>
 
+#include "core/json.h"
 #include "eval/internal.h"
 #include "eval/stability.h"
 
@@ -19,7 +20,7 @@ static json_t *stability_json(const struct orl_scene *scene, const struct orl_st
     for (size_t i = 0; ok && i < s->step_count; i++)
         ok = json_array_append_new(steps, step_json(&s->steps[i])) == 0;
     json_t *object =
-        json_pack("{s:s,s:s,s:s,s:[ii],s:I,s:f,s:I,s:I,s:o,s:O}", "scene", scene->dir, "method",
+        json_pack("{s:o,s:s,s:s,s:[ii],s:I,s:f,s:I,s:I,s:o,s:O}", "scene", orl_json_string(scene->dir), "method",
                   s->method, "device", s->device, "size", s->width, s->height, "frames",
                   (json_int_t)(s->step_count + 1), "render_ms", s->render_ms, "worst_block_step",
                   (json_int_t)s->worst_block_step, "worst_jump_step",

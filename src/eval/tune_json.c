@@ -55,7 +55,7 @@ enum orl_result orl_tune_write_json(const struct orl_log *log, const char *path,
                                                 "psnr_db", t->psnr_db, "ssim", t->ssim, "kept",
                                                 t->kept));
     }
-    json_object_set_new(root, "scene", json_string(scene->dir));
+    json_object_set_new(root, "scene", orl_json_string(scene->dir));
     json_object_set_new(root, "method", json_string(method->name));
     json_object_set_new(root, "device", json_string(device));
     enum orl_result result = json_object_set_new(root, "trials", trials) == 0

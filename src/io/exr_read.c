@@ -10,7 +10,7 @@
 #include "io/internal.h"
 
 // A tile is decoded whole: a few hostile bytes must not ask for much memory.
-enum { EXR_MAX_TILE_SIDE = 4096 };
+enum { EXR_MAX_TILE_SIDE = 4096, EXR_MAX_CHUNK_MIB = 2048 };
 
 struct exr_reader {
     const struct orl_log *log;
@@ -100,6 +100,9 @@ static exr_result_t read_chunk(struct exr_reader *reader, const exr_chunk_info_t
 {
     exr_decode_pipeline_t *pipe = &reader->pipe;
     struct orl_image *image = reader->image;
+    // A chunk is decoded whole, with channels that nobody asked for.
+    if (chunk->unpacked_size > (uint64_t)EXR_MAX_CHUNK_MIB << 20)
+        return EXR_ERR_OUT_OF_MEMORY;
     if (chunk->width > image->width - x || chunk->height > image->height - y)
         return EXR_ERR_BAD_CHUNK_LEADER;
     bool first = !reader->pipe_ready;
@@ -176,6 +179,10 @@ static enum orl_result read_part(struct exr_reader *reader)
     result = find_channels(reader);
     if (result == ORL_OK)
         result = check_window(reader, &width, &height);
+    if (result == ORL_OK)
+        result = orl_picture_check_memory(reader->log, reader->path, (uint64_t)width,
+                                          (uint64_t)height,
+                                          (uint64_t)reader->count * sizeof(float));
     if (result == ORL_OK)
         result = orl_image_init(reader->log, reader->image, width, height, reader->count,
                                 ORL_PIXEL_F32);

@@ -14,6 +14,12 @@
 enum orl_result orl_picture_check_size(const struct orl_log *log, const char *path,
                                        uint64_t width, uint64_t height);
 
+// The same, and that memory is left for as many bytes a pixel as reading it takes: called before
+// anything of that size is allocated.
+enum orl_result orl_picture_check_memory(const struct orl_log *log, const char *path,
+                                         uint64_t width, uint64_t height,
+                                         uint64_t bytes_per_pixel);
+
 // Header only, from a stream at its start. exif: the EXIF block ("Exif\0\0" and TIFF
 // data), released with free(); NULL when the file has none before its pixels.
 struct orl_picture_header {

@@ -138,8 +138,11 @@ enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path
 static enum orl_result check_header(const struct jpeg_job *job,
                                     const struct jpeg_decompress_struct *info, size_t size)
 {
-    enum orl_result result =
-        orl_picture_check_size(job->log, job->path, info->image_width, info->image_height);
+    // A progressive picture is kept as coefficients of two bytes until its last scan.
+    uint64_t pixel = 3 + (jpeg_has_multiple_scans((j_decompress_ptr)(uintptr_t)info)
+                              ? 2 * (uint64_t)info->num_components : 0);
+    enum orl_result result = orl_picture_check_memory(job->log, job->path, info->image_width,
+                                                      info->image_height, pixel);
     if (result != ORL_OK)
         return result;
     if (info->jpeg_color_space == JCS_CMYK || info->jpeg_color_space == JCS_YCCK)
@@ -253,7 +256,7 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
         result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         goto end;
-    out.stream = fopen(file.temp, "wb");
+    out.stream = orl_atomic_stream(&file);
     if (!out.stream) {
         result = orl_fail(log, ORL_ERR_IO, "%s: cannot write here", path);
         goto end;

@@ -1,15 +1,14 @@
 // Which reader a file needs, and what 8-bit and linear pictures have in common.
 #include "io/picture.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 #include "core/color.h"
 #include "core/file.h"
+#include "core/memory.h"
 #include "io/exr.h"
 #include "io/internal.h"
 
@@ -69,19 +68,34 @@ enum orl_result orl_picture_check_size(const struct orl_log *log, const char *pa
     return ORL_OK;
 }
 
+enum orl_result orl_picture_check_memory(const struct orl_log *log, const char *path,
+                                         uint64_t width, uint64_t height,
+                                         uint64_t bytes_per_pixel)
+{
+    const uint64_t small = 64 << 20; // not worth the look
+    const double gib = 1 << 30;
+    enum orl_result result = orl_picture_check_size(log, path, width, height);
+    uint64_t asked = width * height * bytes_per_pixel;
+    if (result != ORL_OK || asked < small)
+        return result;
+    uint64_t left = orl_memory_available();
+    return asked <= left
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_MEMORY,
+                          "%s: its %llux%llu pixels take %.1f GiB of memory to read, and %.1f GiB "
+                          "are left", path, (unsigned long long)width, (unsigned long long)height,
+                          (double)asked / gib, (double)left / gib);
+}
+
 // --- headers ---
 
 static enum orl_result open_file(const struct orl_log *log, const char *path, FILE **stream,
                                  enum format *format)
 {
     uint8_t magic[8];
-    struct stat st;
-    if (stat(path, &st) == 0 && !S_ISREG(st.st_mode))
-        return orl_fail(log, ORL_ERR_IO, "%s: not a regular file", path);
-    *stream = fopen(path, "rb");
-    if (!*stream)
-        return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
-                        strerror(errno));
+    enum orl_result result = orl_file_open(log, path, stream);
+    if (result != ORL_OK)
+        return result;
     size_t got = fread(magic, 1, sizeof magic, *stream);
     rewind(*stream);
     *format = format_of(path, magic, got);
@@ -223,6 +237,9 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
         result = orl_pnm_decode(log, path, data, size, 3, &eight);
     else if (result == ORL_OK)
         result = orl_jpeg_decode(log, path, data, size, 3, &eight);
+    if (result == ORL_OK && eight.data)
+        result = orl_picture_check_memory(log, path, (uint64_t)eight.width,
+                                          (uint64_t)eight.height, 3 * sizeof(float));
     if (result == ORL_OK && eight.data)
         result = decode_eight(log, &eight, image);
     orl_image_finish(&eight);

@@ -129,7 +129,9 @@ static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool de
     png_read_info(job->png, job->info);
     png_uint_32 width = png_get_image_width(job->png, job->info);
     png_uint_32 height = png_get_image_height(job->png, job->info);
-    enum orl_result result = orl_picture_check_size(job->log, job->path, width, height);
+    size_t pixel = 3 * (deep ? sizeof(float) : 1);
+    enum orl_result result =
+        orl_picture_check_memory(job->log, job->path, width, height, pixel);
     if (result != ORL_OK)
         return result;
     if ((uint64_t)png_get_rowbytes(job->png, job->info) * height > file_size * max_ratio)
@@ -251,7 +253,7 @@ enum orl_result orl_png_write(const struct orl_log *log, const char *path,
     enum orl_result result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         return result;
-    FILE *stream = fopen(file.temp, "wb");
+    FILE *stream = orl_atomic_stream(&file);
     if (!stream) {
         result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
         goto end;

@@ -117,6 +117,9 @@ enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *pat
     bool damaged = false;
     int code = LIBRAW_SUCCESS;
     enum orl_result result = open_raw(log, path, &damaged, &raw);
+    if (result == ORL_OK) // raw samples, four of 16 bits a pixel, a bitmap of three, and ours
+        result = orl_picture_check_memory(log, path, raw->sizes.raw_width, raw->sizes.raw_height,
+                                          2 + 8 + 6 + 3 * sizeof(float));
     if (result == ORL_OK)
         result = check(log, path, libraw_unpack(raw));
     if (result == ORL_OK && damaged)

@@ -280,6 +280,8 @@ enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *pa
         profile = orl_profile_create(log, path, icc, size);
     job.encoded = profile != NULL;
     if (result == ORL_OK)
+        result = orl_picture_check_memory(log, path, job.width, job.height, 3 * sizeof(float));
+    if (result == ORL_OK)
         result = orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32);
     if (result == ORL_OK)
         result = TIFFIsTiled(job.tiff) ? read_tiles(&job, image) : read_rows(&job, image);

@@ -3,13 +3,47 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/image.h"
 #include "core/vec3.h"
+
+static bool focal_valid(double focal, double side)
+{
+    return focal >= 1e-3 * side && focal <= 1e5 * side; // false for NaN
+}
 
 bool orl_camera_valid(const struct orl_camera *c)
 {
-    return c->width > 0 && c->height > 0 && isfinite(c->fx) && isfinite(c->fy) && c->fx > 0 &&
-           c->fy > 0 && fabs(c->cx - 0.5 * c->width) <= 10.0 * c->width &&
+    double side = fmax(c->width, c->height);
+    return c->width > 0 && c->height > 0 && c->width <= ORL_IMAGE_MAX_SIDE &&
+           c->height <= ORL_IMAGE_MAX_SIDE && focal_valid(c->fx, side) &&
+           focal_valid(c->fy, side) && fabs(c->cx - 0.5 * c->width) <= 10.0 * c->width &&
            fabs(c->cy - 0.5 * c->height) <= 10.0 * c->height;
+}
+
+static bool within_world(const double v[3])
+{
+    return fabs(v[0]) <= ORL_WORLD_MAX && fabs(v[1]) <= ORL_WORLD_MAX &&
+           fabs(v[2]) <= ORL_WORLD_MAX;
+}
+
+bool orl_pose_valid(const struct orl_pose *pose)
+{
+    double across[3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (!(fabs(orl_dot3(pose->r[i], pose->r[j]) - (i == j)) <= 1e-3))
+                return false;
+    orl_cross3(pose->r[0], pose->r[1], across);
+    return orl_dot3(across, pose->r[2]) > 0 && within_world(pose->t);
+}
+
+const char *orl_view_problem(const struct orl_view *view)
+{
+    if (!orl_camera_valid(&view->camera))
+        return "its size, focal length or principal point is absurd";
+    if (!within_world(view->cam_from_world.t))
+        return "its position is absurdly far";
+    return orl_pose_valid(&view->cam_from_world) ? NULL : "its axes are no rotation, or a mirror's";
 }
 
 struct orl_camera orl_camera_resized(const struct orl_camera *camera, int width, int height)
@@ -24,7 +58,7 @@ bool orl_pose_from_quat(const double quat_wxyz[4], const double t[3], struct orl
 {
     double w = quat_wxyz[0], x = quat_wxyz[1], y = quat_wxyz[2], z = quat_wxyz[3];
     double norm = sqrt(w * w + x * x + y * y + z * z);
-    if (!isfinite(norm) || norm < 1e-12 || !isfinite(t[0] + t[1] + t[2]))
+    if (!isfinite(norm) || norm < 1e-12 || !within_world(t))
         return false;
     w /= norm, x /= norm, y /= norm, z /= norm;
     *pose = (struct orl_pose){
@@ -33,17 +67,6 @@ bool orl_pose_from_quat(const double quat_wxyz[4], const double t[3], struct orl
               {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}},
         .t = {t[0], t[1], t[2]}};
     return true;
-}
-
-bool orl_pose_valid(const struct orl_pose *pose)
-{
-    double cross[3];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            if (!(fabs(orl_dot3(pose->r[i], pose->r[j]) - (i == j)) <= 1e-3))
-                return false;
-    orl_cross3(pose->r[0], pose->r[1], cross);
-    return orl_dot3(cross, pose->r[2]) > 0 && isfinite(pose->t[0] + pose->t[1] + pose->t[2]);
 }
 
 bool orl_pose_from_axes(double world_from_cam[3][3], const double centre[3],

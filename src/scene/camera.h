@@ -21,17 +21,23 @@ struct orl_view {
     struct orl_pose cam_from_world;
 };
 
-// Finite, positive size and focal length, principal point within ten image
-// sizes of the centre.
+// Nothing real is farther from the origin, in any unit; squares of distances still fit a float.
+#define ORL_WORLD_MAX 1e18
+
+// A size up to ORL_IMAGE_MAX_SIDE, focal lengths from a thousandth of its larger side (a view of
+// almost 180 degrees) to a hundred thousand times that, principal point within ten image sizes of
+// the centre.
 bool orl_camera_valid(const struct orl_camera *camera);
+// A rotation (no mirror, no scale) and a centre within ORL_WORLD_MAX.
+bool orl_pose_valid(const struct orl_pose *pose);
+// What keeps a view from being one, in words; NULL: nothing.
+const char *orl_view_problem(const struct orl_view *view);
 // The same camera for a picture of another size: each axis scaled by itself.
 struct orl_camera orl_camera_resized(const struct orl_camera *camera, int width, int height);
 
 // From a quaternion w x y z (normalised here) and translation. False when the
-// quaternion is zero or anything is not finite.
+// quaternion is zero, anything is not finite or t is beyond ORL_WORLD_MAX.
 bool orl_pose_from_quat(const double quat_wxyz[3 + 1], const double t[3], struct orl_pose *pose);
-// A rotation, to within 1e-3, and a finite translation?
-bool orl_pose_valid(const struct orl_pose *pose);
 // From a world_from_cam rotation, whose columns are the camera's axes, and its centre. False when
 // they are no pose.
 bool orl_pose_from_axes(double world_from_cam[3][3], const double centre[3],

@@ -92,11 +92,13 @@ enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *p
     size_t kept = 0;
     for (size_t i = 0; i < model->point_count; i++) {
         const double *p = model->points[i].position;
-        if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
+        if (fabs(p[0]) <= ORL_WORLD_MAX && fabs(p[1]) <= ORL_WORLD_MAX &&
+            fabs(p[2]) <= ORL_WORLD_MAX)
             model->points[kept++] = model->points[i];
     }
     if (kept < model->point_count)
-        orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu points are not finite: dropped", path,
+        orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu points are not finite or absurdly far: "
+                 "dropped", path,
                  model->point_count - kept, model->point_count);
     model->point_count = kept;
     if (kept)
@@ -105,6 +107,25 @@ enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *p
         if (model->points[i].id == model->points[i - 1].id)
             return orl_fail(log, ORL_ERR_FORMAT, "%s: two points have the id %llu", path,
                             (unsigned long long)model->points[i].id);
+    return ORL_OK;
+}
+
+static int compare_cameras(const void *a, const void *b)
+{
+    uint32_t x = ((const struct orl_colmap_camera *)a)->id;
+    uint32_t y = ((const struct orl_colmap_camera *)b)->id;
+    return (x > y) - (x < y);
+}
+
+enum orl_result orl_colmap_sort_cameras(const struct orl_log *log, const char *path,
+                                        struct orl_colmap_model *model)
+{
+    if (model->camera_count)
+        qsort(model->cameras, model->camera_count, sizeof *model->cameras, compare_cameras);
+    for (size_t i = 1; i < model->camera_count; i++)
+        if (model->cameras[i].id == model->cameras[i - 1].id)
+            return orl_fail(log, ORL_ERR_FORMAT, "%s: two cameras have the id %u", path,
+                            model->cameras[i].id);
     return ORL_OK;
 }
 
@@ -117,10 +138,9 @@ static int compare_images(const void *a, const void *b)
 enum orl_result orl_colmap_check(const struct orl_log *log, const char *dir,
                                  struct orl_colmap_model *model)
 {
-    for (size_t i = 0; i < model->camera_count; i++)
-        if (orl_colmap_camera_by_id(model, model->cameras[i].id) != &model->cameras[i])
-            return orl_fail(log, ORL_ERR_FORMAT, "%s: two cameras have the id %u", dir,
-                            model->cameras[i].id);
+    enum orl_result result = orl_colmap_sort_cameras(log, dir, model);
+    if (result != ORL_OK)
+        return result;
     if (model->image_count)
         qsort(model->images, model->image_count, sizeof *model->images, compare_images);
     for (size_t i = 0; i < model->image_count; i++) {
@@ -184,10 +204,10 @@ void orl_colmap_finish(struct orl_colmap_model *model)
 const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
                                                         uint32_t id)
 {
-    for (size_t i = 0; i < model->camera_count; i++)
-        if (model->cameras[i].id == id)
-            return &model->cameras[i];
-    return NULL;
+    struct orl_colmap_camera key = {.id = id};
+    return model->camera_count ? bsearch(&key, model->cameras, model->camera_count,
+                                         sizeof *model->cameras, compare_cameras)
+                               : NULL;
 }
 
 const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_model *model,

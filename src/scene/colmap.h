@@ -32,7 +32,8 @@ struct orl_colmap_point {
     uint32_t track_length;  // photographs that see it
 };
 
-// Images sorted by name. Points that are not finite are dropped with a warning.
+// Cameras sorted by id, images by name. Points that are not finite or beyond ORL_WORLD_MAX are
+// dropped with a warning.
 struct orl_colmap_model {
     struct orl_colmap_camera *cameras;
     size_t camera_count;
@@ -46,6 +47,10 @@ struct orl_colmap_model {
 // ORL_ERR_FORMAT for damaged files, ORL_ERR_NOT_FOUND when there are none.
 enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
                                 struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// Poses alone, in the order of a file like images.txt, and the cameras of a cameras.txt beside it
+// where there is one.
+enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *path,
+                                      struct orl_colmap_model *model) ORL_CHECK_RESULT;
 void orl_colmap_finish(struct orl_colmap_model *model);
 // Writes cameras.bin, images.bin and points3D.bin into `dir`, which is there. Observations lie
 // where their points project.

@@ -179,7 +179,7 @@ static enum orl_result read_image(struct reader *r, const struct orl_colmap_mode
         return result;
     if (!orl_pose_from_quat(quat, t, &image->cam_from_world)) {
         r->at = start;
-        return bad(r, "a picture's pose is zero or not finite");
+        return bad(r, "a picture's pose is zero, not finite or absurdly far");
     }
     if ((result = read_name(r, &image->name)) != ORL_OK)
         return result;

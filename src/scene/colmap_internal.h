@@ -27,6 +27,9 @@ enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *p
 // Sorts images by name; ids and names must be unique and cameras there. `file` is for messages.
 enum orl_result orl_colmap_check(const struct orl_log *log, const char *file,
                                  struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// By id, so that they can be found; no two may have the same.
+enum orl_result orl_colmap_sort_cameras(const struct orl_log *log, const char *path,
+                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
 // Each reads one file; points before images, since images refer to points.
 enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,

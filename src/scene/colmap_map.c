@@ -78,7 +78,7 @@ enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path
     enum orl_result result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         goto end;
-    FILE *stream = fopen(file.temp, "wb");
+    FILE *stream = orl_atomic_stream(&file);
     bool ok = stream && fprintf(stream, "%d&%d&%d&", image->width, image->height,
                                 image->channels) > 0;
     for (size_t c = 0; ok && c < channels; c++)

@@ -110,7 +110,7 @@ static enum orl_result read_image(struct orl_text_lines *l, const struct orl_col
     image->id = (uint32_t)id;
     image->camera_id = (uint32_t)camera_id;
     if (!orl_pose_from_quat(quat, t, &image->cam_from_world))
-        return orl_text_bad(l, "a picture's pose is zero or not finite");
+        return orl_text_bad(l, "a picture's pose is zero, not finite or absurdly far");
     l->at += strspn(l->at, " \t");
     const char *problem = orl_colmap_name_problem(l->at);
     if (problem)
@@ -156,5 +156,30 @@ enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,
             orl_text_close(&l);
         }
     }
+    return result;
+}
+
+enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *path,
+                                      struct orl_colmap_model *model)
+{
+    memset(model, 0, sizeof *model);
+    struct orl_text_lines l;
+    int dir = (int)(orl_path_name(path) - path);
+    char *beside = orl_format(log, "%.*scameras.txt", dir, path);
+    enum orl_result result = beside ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(beside) &&
+        (result = orl_text_open(log, beside, &l)) == ORL_OK) {
+        result = read_cameras(&l, model);
+        if (result == ORL_OK)
+            result = orl_colmap_sort_cameras(log, beside, model);
+        orl_text_close(&l);
+    }
+    if (result == ORL_OK && (result = orl_text_open(log, path, &l)) == ORL_OK) {
+        result = read_images(&l, model);
+        orl_text_close(&l);
+    }
+    free(beside);
+    if (result != ORL_OK)
+        orl_colmap_finish(model);
     return result;
 }

@@ -42,8 +42,8 @@ static json_t *photo_json(const struct orl_photo *photo)
     const struct orl_camera *c = &photo->view.camera;
     double centre[3];
     orl_pose_centre(&photo->view.cam_from_world, centre);
-    return json_pack("{s:s, s:s, s:[i,i], s:[f,f], s:[f,f], s:[f,f,f], s:o, s:i}", "name",
-                     photo->name, "split", photo->test ? "test" : "train", "size", c->width,
+    return json_pack("{s:o, s:s, s:[i,i], s:[f,f], s:[f,f], s:[f,f,f], s:o, s:i}", "name",
+                     orl_json_string(photo->name), "split", photo->test ? "test" : "train", "size", c->width,
                      c->height, "focal_px", c->fx, c->fy, "centre_px", c->cx, c->cy, "position",
                      centre[0], centre[1], centre[2], "exposure_ev",
                      photo->has_exposure ? json_real(photo->exposure_ev) : json_null(), "series",
@@ -66,8 +66,8 @@ json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene)
         result = orl_json_read(log, path, &manifest);
     free(path);
     json_t *root = result != ORL_OK ? NULL : json_pack(
-        "{s:s, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, s:o}",
-        "scene", scene->dir, "counts", "photographs", (json_int_t)scene->photo_count, "train",
+        "{s:o, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, s:o}",
+        "scene", orl_json_string(scene->dir), "counts", "photographs", (json_int_t)scene->photo_count, "train",
         (json_int_t)(scene->photo_count - test), "test", (json_int_t)test, "points",
         (json_int_t)scene->points.count, "photo_distance", scene->photo_distance, "bounds",
         low[0], low[1], low[2], high[0], high[1], high[2], "photographs", photos, "stages",

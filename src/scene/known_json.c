@@ -60,7 +60,7 @@ static enum orl_result read_inria(const struct entry *e, const json_t *item,
                                   struct orl_known_camera *camera)
 {
     struct orl_view view;
-    if (!orl_json_inria_view(item, &view))
+    if (!orl_json_inria_view(item, &view) || orl_view_problem(&view))
         return bad(e, "position, rotation, width, height, fx or fy is missing or not usable");
     const struct orl_camera *c = &view.camera;
     const double f_c[4] = {c->fx, c->fy, c->cx, c->cy};

@@ -193,7 +193,9 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
         char *path = orl_path_join(log, dir, name);
         if (!path)
             return ORL_ERR_MEMORY;
-        bool read = orl_path_is_file(path) && orl_file_checksum(NULL, path, sum) == ORL_OK;
+        // A stranger's manifest may name any file: only the scene's own are read.
+        bool read = orl_path_is_inside(dir, path) && orl_path_is_file(path) &&
+                    orl_file_checksum(NULL, path, sum) == ORL_OK;
         if (!read || strcmp(sum, told) != 0) {
             orl_logf(log, level, "%s: %s", path,
                      read ? "changed since the scene was prepared" : "missing or cannot be read");

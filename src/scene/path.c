@@ -2,13 +2,13 @@
 
 #include <jansson.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "scene/colmap.h"
 #include "scene/json_views.h"
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
@@ -106,6 +106,16 @@ enum orl_result orl_path_through_photos(const struct orl_log *log, const struct 
     return result;
 }
 
+static enum orl_result check_view(const struct orl_log *log, const char *file, const char *what,
+                                  size_t index, bool whole, const struct orl_view *view)
+{
+    const char *problem = whole ? orl_view_problem(view)
+                                : "a value is missing, not known or out of range";
+    return problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: %s %zu is not usable: %s", file, what,
+                              index, problem)
+                   : ORL_OK;
+}
+
 // --- Oriel keyframes ---
 
 static bool read_key(const struct orl_scene *scene, const json_t *key, struct orl_view *view)
@@ -126,8 +136,6 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
             view->cam_from_world.t[i] = rows[i][3];
         }
-        if (!orl_pose_valid(&view->cam_from_world))
-            return false;
     } else {
         const json_t *up_json = json_object_get(key, "up");
         if (!orl_json_read_numbers(json_object_get(key, "position"), 3, eye) ||
@@ -154,8 +162,8 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
     enum orl_result result = allocate(log, json_array_size(keys), &read);
     for (size_t i = 0; result == ORL_OK && i < read.count; i++) {
         read.views[i].camera = scene->photos[0].view.camera;
-        if (!read_key(scene, json_array_get(keys, i), &read.views[i]))
-            result = orl_fail(log, ORL_ERR_FORMAT, "%s: keyframe %zu is not usable", file, i);
+        bool ok = read_key(scene, json_array_get(keys, i), &read.views[i]);
+        result = check_view(log, file, "keyframe", i, ok, &read.views[i]);
     }
     if (result == ORL_OK && frames) {
         json_int_t count = json_integer_value(frames);
@@ -165,6 +173,8 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
                               PATH_VIEWS_MAX);
         else
             result = spread_frames(log, &read, (size_t)count, path);
+        for (size_t i = 0; result == ORL_OK && i < path->count; i++) // a curve may swing out
+            result = check_view(log, file, "frame", i, true, &path->views[i]);
     } else if (result == ORL_OK) {
         *path = read;
         read = (struct orl_path){0};
@@ -186,7 +196,8 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
     view->camera = (struct orl_camera){.width = width, .height = height,
                                        .cx = 0.5 * width, .cy = 0.5 * height};
     set_fov_y(&view->camera, fov * pi / 180);
-    return orl_pose_from_opengl(m, &view->cam_from_world);
+    (void)orl_pose_from_opengl(m, &view->cam_from_world); // check_view tells what is wrong with it
+    return true;
 }
 
 static enum orl_result read_json(const struct orl_log *log, const struct orl_scene *scene,
@@ -200,9 +211,9 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
         return orl_fail(log, ORL_ERR_FORMAT,
                         "%s: neither keyframes, nor nerfstudio's camera_path, nor Inria's cameras",
                         file);
-    int width = (int)json_integer_value(json_object_get(root, "render_width"));
-    int height = (int)json_integer_value(json_object_get(root, "render_height"));
-    if (nerfstudio && (width < 1 || height < 1 || width > 16384 || height > 16384))
+    int width = orl_json_side(root, "render_width");
+    int height = orl_json_side(root, "render_height");
+    if (nerfstudio && (!width || !height))
         return orl_fail(log, ORL_ERR_FORMAT, "%s: render_width and render_height are not usable",
                         file);
     enum orl_result result = allocate(log, json_array_size(entries), path);
@@ -210,100 +221,49 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
         const json_t *entry = json_array_get(entries, i);
         bool ok = nerfstudio ? read_nerfstudio_view(entry, width, height, &path->views[i])
                              : orl_json_inria_view(entry, &path->views[i]);
-        if (!ok)
-            result = orl_fail(log, ORL_ERR_FORMAT, "%s: camera %zu is not usable", file, i);
+        result = check_view(log, file, "camera", i, ok, &path->views[i]);
     }
     return result;
 }
 
-// One line of cameras.txt: ID MODEL W H PARAMS; pinhole models only.
-static bool find_text_camera(const char *text, unsigned id, struct orl_camera *camera)
-{
-    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
-        line += *line == '\n';
-        unsigned line_id;
-        char model[32];
-        int width, height;
-        double p[4];
-        int got = sscanf(line, "%u %31s %d %d %lf %lf %lf %lf", &line_id, model, &width, &height,
-                         &p[0], &p[1], &p[2], &p[3]);
-        if (got >= 7 && line_id == id) {
-            bool simple = strcmp(model, "SIMPLE_PINHOLE") == 0;
-            if (!simple && (strcmp(model, "PINHOLE") != 0 || got != 8))
-                return false;
-            *camera = (struct orl_camera){.width = width, .height = height, .fx = p[0],
-                                          .fy = simple ? p[0] : p[1], .cx = simple ? p[1] : p[2],
-                                          .cy = simple ? p[2] : p[3]};
-            return orl_camera_valid(camera);
-        }
-    }
-    return false;
-}
-
 static enum orl_result read_colmap_text(const struct orl_log *log, const struct orl_scene *scene,
-                                        const char *file, const char *text, const char *cameras,
-                                        struct orl_path *path)
+                                        const char *file, struct orl_path *path)
 {
-    size_t lines = 1;
-    for (const char *c = text; *c; c++)
-        lines += *c == '\n';
-    enum orl_result result = allocate(log, lines, path);
-    if (result != ORL_OK)
-        return result;
-    path->count = 0;
-    bool is_pose = true; // lines come in pairs: pose, then observations
-    for (const char *line = text; line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL) {
-        if (*line == '#' || (is_pose && (*line == '\n' || !*line)))
-            continue;
-        if (is_pose) {
-            double q[4], t[3];
-            unsigned id, camera_id;
-            struct orl_view *view = &path->views[path->count];
-            view->camera = scene->photos[0].view.camera;
-            if (sscanf(line, "%u %lf %lf %lf %lf %lf %lf %lf %u", &id, &q[0], &q[1], &q[2], &q[3],
-                       &t[0], &t[1], &t[2], &camera_id) != 9 ||
-                !orl_pose_from_quat(q, t, &view->cam_from_world) ||
-                (cameras && !find_text_camera(cameras, camera_id, &view->camera)))
-                return orl_fail(log, ORL_ERR_FORMAT, "%s: image %zu, at byte %zu, is not usable",
-                                file, path->count, (size_t)(line - text));
-            path->count++;
-        }
-        is_pose = !is_pose;
+    struct orl_colmap_model model;
+    enum orl_result result = orl_colmap_read_poses(log, file, &model);
+    if (result == ORL_OK && !model.image_count)
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: no camera in it", file);
+    if (result == ORL_OK)
+        result = allocate(log, model.image_count, path);
+    for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
+        const struct orl_colmap_image *image = &model.images[i];
+        const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(&model, image->camera_id);
+        path->views[i] = (struct orl_view){scene->photos[0].view.camera, image->cam_from_world};
+        if (camera && camera->model <= 1)
+            path->views[i].camera = camera->pinhole;
+        else if (model.camera_count)
+            result = orl_fail(log, ORL_ERR_FORMAT,
+                              "%s: image %zu: its camera is not in cameras.txt or not PINHOLE",
+                              file, i);
     }
-    return path->count ? ORL_OK : orl_fail(log, ORL_ERR_FORMAT, "%s: no camera in it", file);
-}
-
-static enum orl_result read_beside(const struct orl_log *log, const char *file, uint8_t **cameras)
-{
-    size_t size;
-    *cameras = NULL;
-    char *path = orl_format(log, "%.*scameras.txt", (int)(orl_path_name(file) - file), file);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (path && orl_path_is_file(path))
-        result = orl_file_read(log, path, PATH_FILE_MAX, cameras, &size);
-    free(path);
+    orl_colmap_finish(&model);
     return result;
 }
 
 enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene *scene,
                               const char *file, struct orl_path *path)
 {
-    uint8_t *text = NULL, *cameras = NULL;
+    uint8_t *text = NULL;
     size_t size;
     json_t *root = NULL;
     memset(path, 0, sizeof *path);
     if (scene->photo_count < 1)
         return orl_fail(log, ORL_ERR_DATA, "%s: the scene has no photographs", scene->dir);
-    enum orl_result result = orl_file_read(log, file, PATH_FILE_MAX, &text, &size);
-    if (result != ORL_OK)
-        return result;
+    enum orl_result result = ORL_OK;
     const char *extension = strrchr(file, '.');
     if (extension && strcmp(extension, ".txt") == 0) {
-        result = read_beside(log, file, &cameras);
-        if (result == ORL_OK)
-            result = read_colmap_text(log, scene, file, (const char *)text,
-                                      (const char *)cameras, path);
-    } else {
+        result = read_colmap_text(log, scene, file, path);
+    } else if ((result = orl_file_read(log, file, PATH_FILE_MAX, &text, &size)) == ORL_OK) {
         result = orl_json_parse(log, file, text, size, &root);
         if (result == ORL_OK)
             result = read_json(log, scene, file, root, path);
@@ -311,7 +271,6 @@ enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene 
     if (result != ORL_OK)
         orl_path_finish(path);
     json_decref(root);
-    free(cameras);
     free(text);
     return result;
 }

@@ -4,6 +4,7 @@
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "core/memory.h"
@@ -133,9 +134,13 @@ static void search_close(struct search *s)
 static enum orl_result search_chunk(struct search *s, size_t first, size_t count)
 {
     size_t columns = (size_t)s->neighbours + 1;
+    memset(s->found, 0xff, count * columns * sizeof *s->found); // -1: none
     if (flann_find_nearest_neighbors_index(s->index, s->points->position[first], (int)count,
                                            s->found, s->dist2, (int)columns, &s->flann) != 0)
         return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
+    for (size_t i = 0; i < count * columns; i++)
+        if (s->found[i] < 0 || (size_t)s->found[i] >= s->points->count)
+            return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN found a point that is not there");
     for (size_t i = 0; i < count; i++) {
         // The point itself is among them at distance zero, so the last one is the k-th.
         s->points->radius[first + i] =
@@ -189,6 +194,7 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
 {
     ORL_REQUIRE(log, params->neighbours >= 1 && params->neighbours <= 64);
     ORL_REQUIRE(log, params->overlap > 0 && params->overlap <= 8);
+    orl_points_drop_unusable(log, points); // FLANN loses its way among distances that overflow
     if (points->count == 0)
         return ORL_OK;
     if (points->count > INT_MAX / 64)

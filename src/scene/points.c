@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "scene/camera.h"
 
 enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points, size_t count)
 {
@@ -46,6 +47,24 @@ void orl_points_copy(const struct orl_points *from, size_t i, struct orl_points 
     to->photographs[k] = from->photographs[i];
 }
 
+bool orl_point_usable(const float position[3])
+{
+    const float most = (float)ORL_WORLD_MAX;
+    return fabsf(position[0]) <= most && fabsf(position[1]) <= most && fabsf(position[2]) <= most;
+}
+
+void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *points)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++)
+        if (orl_point_usable(points->position[i]))
+            orl_points_copy(points, i, points, kept++);
+    if (kept < points->count)
+        orl_logf(log, ORL_LOG_WARNING, "%zu of %zu points are not finite or absurdly far: dropped",
+                 points->count - kept, points->count);
+    points->count = kept;
+}
+
 // As in the file: packed, 32 bytes.
 enum { RECORD_SIZE = 6 * 4 + 3 + 4 + 1 };
 
@@ -82,7 +101,7 @@ enum orl_result orl_points_write(const struct orl_log *log, const char *path,
     enum orl_result result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         return result;
-    FILE *stream = fopen(file.temp, "wb");
+    FILE *stream = orl_atomic_stream(&file);
     bool ok = stream && write_points(stream, points);
     if (stream && fclose(stream) != 0)
         ok = false;

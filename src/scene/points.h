@@ -20,11 +20,15 @@ enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *po
 void orl_points_finish(struct orl_points *points);
 // All of one point. `to` may be `from`.
 void orl_points_copy(const struct orl_points *from, size_t i, struct orl_points *to, size_t k);
+// Is it finite, and within ORL_WORLD_MAX?
+bool orl_point_usable(const float position[3]);
+// Drops points that are not, and counts them in a warning.
+void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *points);
 
 // PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue,
 // radius, photographs, in any order and scalar type; other properties and elements after
-// `vertex` are skipped. Points that are not finite are dropped and counted in a
-// warning, as are negative radii (set to 0).
+// `vertex` are skipped. Points that are not finite or beyond ORL_WORLD_MAX are
+// dropped and counted in a warning, as are negative radii (set to 0).
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,
                                 struct orl_points *points) ORL_CHECK_RESULT;
 // Binary little-endian PLY: x y z nx ny nz red green blue radius photographs.

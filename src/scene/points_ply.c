@@ -26,11 +26,6 @@ static void find_roles(const struct orl_ply_element *vertex, int property[ROLE_C
     }
 }
 
-static bool finite3(const float v[3])
-{
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-}
-
 static void set_normal(const double values[3], float normal[3])
 {
     double length = sqrt(values[0] * values[0] + values[1] * values[1] + values[2] * values[2]);
@@ -47,7 +42,7 @@ static bool set_point(struct orl_points *points, size_t i, const double values[R
         double c = values[RED + k];
         points->color[i][k] = (uint8_t)(c >= 255 ? 255 : c > 0 ? c + 0.5 : 0);
     }
-    if (!finite3(points->position[i]))
+    if (!orl_point_usable(points->position[i]))
         return false;
     set_normal(&values[NX], points->normal[i]);
     float radius = (float)values[RADIUS];
@@ -81,8 +76,8 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
     if (result != ORL_OK)
         return result;
     if (kept < vertex->count)
-        orl_logf(ply->log, ORL_LOG_WARNING, "%s: %zu of %zu points are not finite: dropped",
-                 ply->path, (size_t)vertex->count - kept, (size_t)vertex->count);
+        orl_logf(ply->log, ORL_LOG_WARNING, "%s: %zu of %zu points are not finite or absurdly far: "
+                 "dropped", ply->path, (size_t)vertex->count - kept, (size_t)vertex->count);
     if (bad_radii)
         orl_logf(ply->log, ORL_LOG_WARNING,
                  "%s: %zu radii are negative or not finite: taken as unknown", ply->path,

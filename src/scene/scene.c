@@ -35,25 +35,52 @@ static enum orl_result set_photo(const struct orl_log *log, const char *dir,
     return photo->name ? ORL_OK : ORL_ERR_MEMORY;
 }
 
+// A stranger's scene must not show this machine's other files, nor publish them.
+static enum orl_result check_inside(const struct orl_log *log, const struct orl_scene *scene,
+                                    const char *path)
+{
+    return orl_path_is_inside(scene->dir, path)
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_DATA,
+                          "%s: leads out of the scene through a symbolic link; put the file itself "
+                          "there", path);
+}
+
+// Takes over `path`, which need not be there.
+static enum orl_result check_if_there(const struct orl_log *log, const struct orl_scene *scene,
+                                      char *path, bool *there)
+{
+    *there = path && orl_path_is_file(path);
+    enum orl_result result = !path    ? ORL_ERR_MEMORY
+                             : *there ? check_inside(log, scene, path)
+                                      : ORL_OK;
+    free(path);
+    return result;
+}
+
+static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *scene, size_t i)
+{
+    struct orl_photo *photo = &scene->photos[i];
+    bool there, linear, masked;
+    enum orl_result result =
+        check_if_there(log, scene, orl_scene_photo_path(log, scene, i), &there);
+    if (result == ORL_OK && !there)
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
+                          scene->dir, photo->name);
+    if (result == ORL_OK)
+        result = check_if_there(log, scene, orl_scene_linear_path(log, scene, i), &linear);
+    photo->linear = result == ORL_OK && linear && !shows_moment(scene);
+    if (result == ORL_OK)
+        result = check_if_there(log, scene, orl_scene_mask_path(log, scene, i), &masked);
+    return result;
+}
+
 static enum orl_result check_photo_files(const struct orl_log *log, struct orl_scene *scene)
 {
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        char *path = orl_scene_photo_path(log, scene, i);
-        bool there = path && orl_path_is_file(path);
-        enum orl_result result = !path ? ORL_ERR_MEMORY
-                                 : there ? ORL_OK
-                                         : orl_fail(log, ORL_ERR_NOT_FOUND,
-                                                    "%s: this photograph is missing", path);
-        free(path);
-        path = orl_scene_linear_path(log, scene, i);
-        scene->photos[i].linear = !shows_moment(scene) && path && orl_path_is_file(path);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        free(path);
-        if (result != ORL_OK)
-            return result;
-    }
-    return ORL_OK;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
+        result = check_photo(log, scene, i);
+    return result;
 }
 
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene, int frame)
@@ -250,13 +277,35 @@ static enum orl_result read_points(const struct orl_log *log, struct orl_scene *
     return result;
 }
 
-static enum orl_result read_model(const struct orl_log *log, const char *dir,
+static enum orl_result check_files_inside(const struct orl_log *log, const struct orl_scene *scene,
+                                          const char *dir)
+{
+    struct orl_names names;
+    if (!orl_path_is_dir(dir))
+        return ORL_OK; // the reader says what is missing
+    enum orl_result result = orl_dir_list(log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        char *path = orl_path_join(log, dir, names.items[i]);
+        result = path ? ORL_OK : ORL_ERR_MEMORY;
+        if (path && orl_path_is_file(path))
+            result = check_inside(log, scene, path);
+        free(path);
+    }
+    orl_names_finish(&names);
+    return result;
+}
+
+static enum orl_result read_model(const struct orl_log *log, const struct orl_scene *scene,
                                   struct orl_colmap_model *model)
 {
-    char *sparse = orl_path_join(log, dir, "sparse");
+    char *sparse = orl_path_join(log, scene->dir, "sparse");
     char *first = sparse ? orl_path_join(log, sparse, "0") : NULL;
-    enum orl_result result = !first ? ORL_ERR_MEMORY
-                             : orl_colmap_read(log, orl_path_is_dir(first) ? first : sparse, model);
+    const char *dir = first && orl_path_is_dir(first) ? first : sparse;
+    enum orl_result result = first ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = check_files_inside(log, scene, dir);
+    if (result == ORL_OK)
+        result = orl_colmap_read(log, dir, model);
     free(first);
     free(sparse);
     return result;
@@ -310,14 +359,21 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
                             struct orl_colmap_model *model, const struct folder *folder)
 {
     enum orl_result result;
-    if ((result = read_model(log, scene->dir, model)) != ORL_OK ||
+    const char *points = folder->manifest ? folder->points : folder->fused;
+    if ((result = check_inside(log, scene, points)) != ORL_OK ||
+        (folder->manifest &&
+         (result = check_inside(log, scene, folder->manifest)) != ORL_OK) ||
+        (result = read_model(log, scene, model)) != ORL_OK ||
         (result = set_photos(log, scene, model)) != ORL_OK)
         return result;
     if (folder->manifest &&
         (result = orl_manifest_read(log, folder->manifest, scene)) != ORL_OK)
         return result;
-    return add_points(log, scene, model, folder->manifest ? folder->points : folder->fused,
-                      folder->manifest != NULL);
+    bool there;
+    result = check_if_there(log, scene, orl_scene_mesh_path(log, scene), &there);
+    if (result != ORL_OK)
+        return result;
+    return add_points(log, scene, model, points, folder->manifest != NULL);
 }
 
 static enum orl_result create(const struct orl_log *log, const char *dir, struct orl_scene **out)

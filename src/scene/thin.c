@@ -3,6 +3,7 @@
 #include <flann/flann.h>
 #include <limits.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "core/memory.h"
@@ -55,9 +56,13 @@ static enum orl_result find_alone(const struct orl_log *log, const struct orl_th
     enum orl_result result = open_nearest(log, points, &n);
     for (size_t first = 0; result == ORL_OK && first < thin->count; first += CHUNK) {
         size_t count = thin->count - first < CHUNK ? thin->count - first : CHUNK;
+        memset(n.found, 0xff, count * sizeof *n.found); // -1: none
         if (flann_find_nearest_neighbors_index(n.index, thin->position[first], (int)count,
                                                n.found, n.dist2, 1, &n.flann) != 0)
             result = orl_fail(log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
+        for (size_t i = 0; result == ORL_OK && i < count; i++)
+            if (n.found[i] < 0 || (size_t)n.found[i] >= points->count)
+                result = orl_fail(log, ORL_ERR_EXTERNAL, "FLANN found a point that is not there");
         for (size_t i = 0; result == ORL_OK && i < count; i++) {
             // Often the nearest point is in both clouds and exactly as far as the radius:
             // near, however this is rounded.
@@ -88,9 +93,11 @@ static enum orl_result append(const struct orl_log *log, const struct orl_points
 }
 
 enum orl_result orl_points_add_thin(const struct orl_log *log, const struct orl_thin_params *params,
-                                    const struct orl_points *thin, struct orl_points *points)
+                                    struct orl_points *thin, struct orl_points *points)
 {
     ORL_REQUIRE(log, params->spacing > 0 && params->spacing <= 64);
+    orl_points_drop_unusable(log, points); // FLANN loses its way among distances that overflow
+    orl_points_drop_unusable(log, thin);
     if (points->count > INT_MAX / 64 || thin->count > INT_MAX / 64)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are more than FLANN can index",
                         points->count > thin->count ? points->count : thin->count);

@@ -15,9 +15,9 @@ struct orl_thin_params {
 
 // Appends to `points` those of `thin` that stand where `points` has nothing near: no point
 // within `spacing` times their radius. thin's radii say how dense it is there
-// (orl_points_set_radii). Points keep their order, so the result is the same on every run.
+// (orl_points_set_radii). Points of either that are not usable are dropped. Points keep their order, so the result is the same on every run.
 enum orl_result orl_points_add_thin(const struct orl_log *log, const struct orl_thin_params *params,
-                                    const struct orl_points *thin,
+                                    struct orl_points *thin,
                                     struct orl_points *points) ORL_CHECK_RESULT;
 
 // Adds one to seen_past[i] for the points that stand in front of what this photograph sees:

@@ -15,8 +15,8 @@ if [ ! -e "$scene/fused.ply" ]; then
     [ -e "$work/photos-$count" ] ||
         "$oriel" synth monument --out "$work/photos-$count" --size 256x192 --count "$count" --quiet
     mkdir -p "$scene"
-    ln -sfn "$work/photos-$count" "$scene/images"
-    ln -sfn "$work/photos-$count-truth/sparse" "$scene/sparse"
+    cp -rlT "$work/photos-$count" "$scene/images"
+    cp -rlT "$work/photos-$count-truth/sparse" "$scene/sparse"
     "$here/truth_cloud" "$work/photos-$count-truth" $((4 + count / 50)) >"$scene/fused.tmp"
     mv "$scene/fused.tmp" "$scene/fused.ply"
 fi

@@ -177,6 +177,11 @@ static void refuses_bad_text(void **state)
         {"cameras.txt", "7 WIDE 640 480 500 320 240 0\n", "unknown camera model"},
         {"cameras.txt", "7 PINHOLE 640 480 nan 500 320 240\n", "not finite"},
         {"cameras.txt", "7 PINHOLE 99999999999 480 500 500 320 240\n", "size is absurd"},
+        {"cameras.txt", "7 PINHOLE 4294967360 480 500 500 320 240\n", "size is absurd"},
+        {"cameras.txt", "7 PINHOLE 640 480 1e-300 500 320 240\n", "focal length"},
+        {"cameras.txt", "7 PINHOLE 640 480 500 1e300 320 240\n", "focal length"},
+        {"cameras.txt", "7 PINHOLE 640 480 500 -500 320 240\n", "focal length"},
+        {"images.txt", "3 1 0 0 0 1e308 0 0 7 a.jpg\n\n", "absurdly far"},
         {"cameras.txt", "x\n", "id is missing"},
         {"points3D.txt", "30 1 2\n", "a point needs"},
         {"points3D.txt", "30 1 2 3 1 2 3 0.5 1 zwei\n", "not a number"},
@@ -288,7 +293,7 @@ static void refuses_absurd_binary(void **state)
     (void)state;
     const double nan = NAN;
     const uint32_t unknown = 99;
-    static const char *const why[] = {"not finite", "unknown camera model 99", "pose is zero or",
+    static const char *const why[] = {"not finite", "unknown camera model 99", "pose is zero,",
                                       "leads out of its folder"};
     for (int which = 0; which < 4; which++) {
         char *dir = test_dir_make();
@@ -378,6 +383,29 @@ static void refuses_bad_maps(void **state)
     test_dir_remove(dir);
 }
 
+// Each picture with a camera of its own: cameras are found by bisection.
+static void many_cameras_take_no_time(void **state)
+{
+    (void)state;
+    enum { COUNT = 50000 };
+    char *dir = test_dir_make();
+    FILE *cameras = test_create(dir, "cameras.txt"), *images = test_create(dir, "images.txt");
+    for (int i = 0; i < COUNT; i++) {
+        fprintf(cameras, "%d SIMPLE_PINHOLE 64 48 70 32 24\n", COUNT - i);
+        fprintf(images, "%d 1 0 0 0 0 0 0 %d %d.jpg\n\n", i + 1, i + 1, i);
+    }
+    assert_int_equal(fclose(cameras), 0);
+    assert_int_equal(fclose(images), 0);
+    save_text(dir, "points3D.txt", "");
+    struct orl_colmap_model m;
+    alarm(60);
+    assert_int_equal(orl_colmap_read(NULL, dir, &m), ORL_OK);
+    alarm(0);
+    assert_int_equal(m.image_count, COUNT);
+    orl_colmap_finish(&m);
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -391,6 +419,7 @@ int main(void)
         cmocka_unit_test(names_a_missing_model),
         cmocka_unit_test(round_trips_maps),
         cmocka_unit_test(refuses_bad_maps),
+        cmocka_unit_test(many_cameras_take_no_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

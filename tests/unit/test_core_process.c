@@ -1,6 +1,8 @@
 #include "test.h"
 
+#include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/process.h"
 
@@ -137,6 +139,20 @@ static void cancellation(void **state)
     assert_int_equal(heard.errors, 0);
 }
 
+// Neither files that a library opened without O_CLOEXEC, nor a SIGPIPE that is ignored.
+static void programs_inherit_nothing(void **state)
+{
+    (void)state;
+    struct heard heard = {0};
+    assert_int_equal(dup2(STDERR_FILENO, 77), 77);
+    assert_int_equal(run(&heard, "[ ! -e /proc/self/fd/77 ]"), ORL_OK);
+    close(77);
+    signal(SIGPIPE, SIG_IGN);
+    assert_int_equal(run(&heard, "kill -PIPE $$; exit 0"), ORL_ERR_EXTERNAL);
+    assert_non_null(strstr(heard.last, "signal 13"));
+    signal(SIGPIPE, SIG_DFL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -147,6 +163,7 @@ int main(void)
         cmocka_unit_test(lines_environment_and_log),
         cmocka_unit_test(much_output_does_not_block),
         cmocka_unit_test(cancellation),
+        cmocka_unit_test(programs_inherit_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,10 @@
 #include "test.h"
 
 #include <math.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <OpenEXR/openexr.h>
 
@@ -489,6 +492,32 @@ static void a_failed_write_keeps_the_old_file(void **state)
     orl_image_finish(&image);
 }
 
+// A disk that fills up half way: an error, not a wait for a lock that OpenEXR holds.
+static void a_cut_write_ends_with_an_error(void **state)
+{
+    (void)state;
+    struct orl_image image = picture(200, 200, 3);
+    struct orl_exr_params params = rgb_params(&image, false);
+    struct rlimit before, tight;
+    assert_int_equal(orl_file_write(NULL, file, "old", 3), ORL_OK);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, SIG_IGN);
+    alarm(60);
+    for (rlim_t size = 16; size < 65536; size *= 4) {
+        tight = (struct rlimit){.rlim_cur = size, .rlim_max = before.rlim_max};
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &tight), 0);
+        enum orl_result result = orl_exr_write(NULL, file, &params);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+        assert_int_equal(result, ORL_ERR_IO);
+    }
+    alarm(0);
+    struct orl_names names;
+    assert_int_equal(orl_dir_list(NULL, dir, &names), ORL_OK);
+    assert_int_equal(names.count, 1);
+    orl_names_finish(&names);
+    orl_image_finish(&image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -507,6 +536,7 @@ int main(void)
         cmocka_unit_test(every_truncation_is_an_error),
         cmocka_unit_test(random_damage_never_crashes),
         cmocka_unit_test(a_failed_write_keeps_the_old_file),
+        cmocka_unit_test(a_cut_write_ends_with_an_error),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

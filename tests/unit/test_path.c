@@ -1,5 +1,6 @@
 // Camera paths in every format, against poses found by hand.
 #include <math.h>
+#include <unistd.h>
 
 #include "scene/path.h"
 #include "test.h"
@@ -167,6 +168,18 @@ static void damaged_paths_are_refused(void **state)
         "{\"keyframes\": [{\"position\": [0,0], \"target\": [0,0,1]}]}",
         "{\"render_width\": 0, \"render_height\": 60, \"camera_path\": [{}]}",
         "[{\"width\": 10, \"height\": 10, \"fx\": 5}]",
+        // A mirror, a size that is 64 modulo 2^32, and numbers that nothing real has.
+        "{\"keyframes\": [{\"cam_from_world\": [[-1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}",
+        "{\"keyframes\": [{\"cam_from_world\": [[1,0,0,1e308],[0,1,0,0],[0,0,1,0]]}]}",
+        "{\"keyframes\": [{\"position\": [1e308,0,0], \"target\": [0,0,1]}]}",
+        "[{\"width\": 4294967360, \"height\": 64, \"position\": [0,0,0], \"fx\": 60, \"fy\": 60,"
+        " \"rotation\": [[1,0,0],[0,1,0],[0,0,1]]}]",
+        "[{\"width\": 64, \"height\": 64, \"position\": [0,0,0], \"fx\": 1e-300, \"fy\": 60,"
+        " \"rotation\": [[1,0,0],[0,1,0],[0,0,1]]}]",
+        "[{\"width\": 64, \"height\": 64, \"position\": [0,0,0], \"fx\": 60, \"fy\": 60,"
+        " \"rotation\": [[1,0,0],[0,-1,0],[0,0,1]]}]",
+        "{\"render_width\": 4294967360, \"render_height\": 60, \"camera_path\": [{\"fov\": 90,"
+        " \"camera_to_world\": [1,0,0,1, 0,1,0,2, 0,0,1,3, 0,0,0,1]}]}",
     };
     struct orl_path path;
     for (size_t i = 0; i < ORL_COUNT(bad); i++) {
@@ -175,6 +188,55 @@ static void damaged_paths_are_refused(void **state)
     }
     assert_int_not_equal(read_text("bad.txt", "1 0 0 0 0 1 2 3 4 x.jpg\n\n", &path), ORL_OK);
     assert_int_not_equal(read_text("bad.txt", "# nothing\n", &path), ORL_OK);
+    assert_int_not_equal(read_text("bad.txt", "1 1 0 0 0 1e308 2 3 4 x.jpg\n\n", &path), ORL_OK);
+}
+
+static void refusals_say_why(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"{\"keyframes\": [{\"photo\": \"a\"}, {\"cam_from_world\": [[-1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}",
+         "bad.json: keyframe 1 is not usable: its axes are no rotation, or a mirror's"},
+        {"{\"keyframes\": [{\"cam_from_world\": [[1,0,0,1e308],[0,1,0,0],[0,0,1,0]]}]}",
+         "keyframe 0 is not usable: its position is absurdly far"},
+        {"[{\"width\": 64, \"height\": 64, \"position\": [0,0,0], \"fx\": 1e-300, \"fy\": 60,"
+         " \"rotation\": [[1,0,0],[0,1,0],[0,0,1]]}]",
+         "camera 0 is not usable: its size, focal length or principal point is absurd"},
+    };
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        struct said said;
+        struct orl_log log = log_to(&said);
+        struct orl_path path;
+        char *file = test_path(dir, "bad.json");
+        assert_int_equal(orl_file_write(NULL, file, cases[i][0], strlen(cases[i][0])), ORL_OK);
+        assert_int_equal(orl_path_read(&log, &scene, file, &path), ORL_ERR_FORMAT);
+        if (!strstr(said.text, cases[i][1]))
+            fail_msg("case %zu: %s", i, said.text);
+        free(file);
+    }
+}
+
+// Cameras and lines are looked at once, not once for every picture.
+static void a_hundred_thousand_poses_take_no_time(void **state)
+{
+    (void)state;
+    enum { COUNT = 100000 };
+    FILE *cameras = test_create(dir, "cameras.txt"), *images = test_create(dir, "images.txt");
+    for (int i = 0; i < COUNT; i++) {
+        fprintf(cameras, "%d PINHOLE 64 48 70 70 32 24\n", COUNT - i);
+        fprintf(images, "%d 1 0 0 0 %d 2 3 %d x.jpg\n\n", i + 1, i, i + 1);
+    }
+    assert_int_equal(fclose(cameras), 0);
+    assert_int_equal(fclose(images), 0);
+    char *file = orl_path_join(NULL, dir, "images.txt");
+    struct orl_path path;
+    alarm(60);
+    assert_int_equal(orl_path_read(NULL, &scene, file, &path), ORL_OK);
+    alarm(0);
+    assert_int_equal(path.count, COUNT);
+    assert_centre(&path.views[COUNT - 1], 1 - COUNT, -2, -3);
+    orl_path_finish(&path);
+    free(file);
 }
 
 int main(void)
@@ -187,6 +249,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(colmap_text_takes_the_cameras_beside_it, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(damaged_paths_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(refusals_say_why, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_hundred_thousand_poses_take_no_time, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("path", tests, NULL, NULL);
 }

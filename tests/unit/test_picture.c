@@ -2,6 +2,8 @@
 
 #include <math.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <jpeglib.h>
 #include <png.h>
@@ -364,6 +366,17 @@ static void put_be32(uint8_t *to, uint32_t value)
         to[i] = (uint8_t)(value >> (24 - 8 * i));
 }
 
+static uint32_t crc_of(const uint8_t *data, size_t size)
+{
+    uint32_t crc = 0xffffffff;
+    for (size_t k = 0; k < size; k++) {
+        crc ^= data[k];
+        for (int bit = 0; bit < 8; bit++)
+            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
+    }
+    return ~crc;
+}
+
 // A few hostile bytes must not make the reader allocate what they claim.
 static void huge_claims_are_refused(void **state)
 {
@@ -388,18 +401,62 @@ static void huge_claims_are_refused(void **state)
     for (size_t i = 0; i < ORL_COUNT(sides); i++) {
         put_be32(data + 16, sides[i]);
         put_be32(data + 20, sides[i]);
-        // The header's checksum, so that only the size is wrong.
-        uint32_t crc = 0xffffffff;
-        for (int k = 12; k < 29; k++) {
-            crc ^= data[k];
-            for (int bit = 0; bit < 8; bit++)
-                crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
-        }
-        put_be32(data + 29, ~crc);
+        put_be32(data + 29, crc_of(data + 12, 17)); // so that only the size is wrong
         write_bytes(data, size);
         assert_int_equal(read_back(3, &image), ORL_ERR_FORMAT);
     }
     free(data);
+}
+
+// Room for `room` bytes more than there are, until the test ends.
+static struct rlimit limit_memory(size_t room)
+{
+    struct rlimit before, tight;
+    unsigned long long pages = 0;
+    FILE *statm = fopen("/proc/self/statm", "r");
+    assert_non_null(statm);
+    assert_int_equal(fscanf(statm, "%llu", &pages), 1);
+    fclose(statm);
+    assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+    tight = before;
+    tight.rlim_cur = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGE_SIZE) + room;
+    assert_int_equal(setrlimit(RLIMIT_AS, &tight), 0);
+    return before;
+}
+
+// A header may claim what the file could hold, and still be more than this machine has.
+static void more_than_the_memory_left_is_refused(void **state)
+{
+    (void)state;
+    struct said said;
+    struct orl_log log = log_to(&said);
+    for (int kind = 0; kind < 2; kind++) {
+        struct orl_image image;
+        size_t size, padded = 4 << 20;
+        write_kind(kind, 3);
+        uint8_t *data = file_bytes(&size), *bomb = calloc(1, padded);
+        memcpy(bomb, data, size);
+        if (kind == 0) {
+            put_be32(bomb + 16, 30000);
+            put_be32(bomb + 20, 30000);
+            put_be32(bomb + 29, crc_of(bomb + 12, 17));
+        }
+        for (size_t i = 2; kind && i + 9 < size; i += 2u + (size_t)bomb[i + 2] * 256 + bomb[i + 3])
+            if (bomb[i + 1] == 0xc0) {
+                put_be32(bomb + i + 5, 30000u << 16 | 30000u);
+                break;
+            }
+        write_bytes(bomb, padded);
+        struct rlimit before = limit_memory((size_t)1 << 30);
+        enum orl_result result = orl_picture_read(&log, file, 3, &image);
+        assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
+        assert_int_equal(result, ORL_ERR_MEMORY);
+        assert_non_null(strstr(said.text, "30000x30000 pixels take 2.5 GiB of memory to read"));
+        assert_null(image.data);
+        free(data);
+        free(bomb);
+        said.text[0] = '\0';
+    }
 }
 
 // --- writing ---
@@ -437,6 +494,7 @@ int main(void)
         cmocka_unit_test(every_truncation_is_an_error),
         cmocka_unit_test(random_damage_never_crashes),
         cmocka_unit_test(huge_claims_are_refused),
+        cmocka_unit_test(more_than_the_memory_left_is_refused),
         cmocka_unit_test(a_failed_write_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -96,6 +96,28 @@ static void gives_coinciding_points_the_median(void **state)
     orl_points_finish(&points);
 }
 
+// FLANN would read an index that it never wrote.
+static void drops_points_beyond_the_world(void **state)
+{
+    (void)state;
+    const float far[] = {1e19f, -3e38f, INFINITY, NAN};
+    for (size_t f = 0; f < ORL_COUNT(far); f++) {
+        struct orl_points points;
+        struct said said;
+        struct orl_log log = log_to(&said);
+        assert_int_equal(orl_points_init(NULL, &points, 40), ORL_OK);
+        for (size_t i = 0; i < 40; i++)
+            points.position[i][0] = i % 4 == 3 ? far[f] : (float)i;
+        const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
+        assert_int_equal(orl_points_set_radii(&log, NULL, &params, NULL, 0, &points), ORL_OK);
+        assert_int_equal(points.count, 30);
+        assert_non_null(strstr(said.text, "10 of 40 points"));
+        for (size_t i = 0; i < points.count; i++)
+            assert_true(points.radius[i] > 0 && points.radius[i] < 20);
+        orl_points_finish(&points);
+    }
+}
+
 static void takes_few_points(void **state)
 {
     (void)state;
@@ -173,6 +195,7 @@ int main(void)
         cmocka_unit_test(agrees_with_brute_force),
         cmocka_unit_test(fits_normals),
         cmocka_unit_test(gives_coinciding_points_the_median),
+        cmocka_unit_test(drops_points_beyond_the_world),
         cmocka_unit_test(takes_few_points),
         cmocka_unit_test(limits_radii_by_pixels),
         cmocka_unit_test(stops_when_cancelled),

@@ -336,6 +336,43 @@ static void reads_ground(void **state)
     test_dir_remove(dir);
 }
 
+// A link to a place outside of the scene is refused wherever it stands; one that stays inside, or
+// that names the scene itself, is fine.
+static void links_out_of_the_scene_are_refused(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"images/b.jpg", "images", "sparse", "sparse/images.txt",
+                                        "points.ply", "scene.json", "images_linear/b.jpg.exr",
+                                        "masks/b.jpg.png"};
+    char *elsewhere = test_dir_make(), from[4096], to[4096];
+    struct orl_scene *scene;
+    for (size_t i = 0; i < ORL_COUNT(names); i++) {
+        char *dir = whole();
+        save(dir, "images_linear/b.jpg.exr", "not looked at here");
+        save(dir, "masks/b.jpg.png", "nor this");
+        snprintf(from, sizeof from, "%s/%s", dir, names[i]);
+        snprintf(to, sizeof to, "%s/moved", elsewhere);
+        assert_int_equal(rename(from, to), 0);
+        assert_int_equal(symlink(to, from), 0);
+        struct said said;
+        struct orl_log log = log_to(&said);
+        assert_int_equal(orl_scene_open(&log, dir, &scene), ORL_ERR_DATA);
+        assert_non_null(strstr(said.text, "leads out of the scene"));
+        assert_int_equal(orl_dir_remove(NULL, to), ORL_OK);
+        test_dir_remove(dir);
+    }
+    char *dir = whole();
+    snprintf(from, sizeof from, "%s/images/b.jpg", dir);
+    assert_int_equal(unlink(from), 0);
+    assert_int_equal(symlink("a.jpg", from), 0);
+    snprintf(to, sizeof to, "%s/scene", elsewhere);
+    assert_int_equal(symlink(dir, to), 0);
+    assert_int_equal(orl_scene_open(NULL, to, &scene), ORL_OK);
+    orl_scene_destroy(&scene);
+    test_dir_remove(dir);
+    test_dir_remove(elsewhere);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -348,6 +385,7 @@ int main(void)
         cmocka_unit_test(warns_of_other_points),
         cmocka_unit_test(reads_tuned_settings),
         cmocka_unit_test(reads_ground),
+        cmocka_unit_test(links_out_of_the_scene_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 // Points of two photographs beside those of three, and COLMAP's lists that tell them.
+#include <math.h>
 #include <string.h>
 
 #include "scene/colmap.h"
@@ -42,6 +43,21 @@ static void adds_where_nothing_is_near(void **state)
         assert_int_equal(sure.color[10 + i][1], 10 + (int)(added[i] - 5));
         assert_int_equal(sure.photographs[10 + i], 2);
     }
+    orl_points_finish(&sure);
+    orl_points_finish(&thin);
+}
+
+static void drops_points_beyond_the_world(void **state)
+{
+    (void)state;
+    struct orl_points sure, thin;
+    line_up(&sure, 10, 0, 1, 3);
+    line_up(&thin, 10, 20, 1, 2);
+    sure.position[3][1] = 1e20f;
+    thin.position[4][2] = -INFINITY;
+    const struct orl_thin_params params = {ORL_THIN_DEFAULTS};
+    assert_int_equal(orl_points_add_thin(NULL, &params, &thin, &sure), ORL_OK);
+    assert_int_equal(sure.count, 18);
     orl_points_finish(&sure);
     orl_points_finish(&thin);
 }
@@ -133,6 +149,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(adds_where_nothing_is_near),
+        cmocka_unit_test(drops_points_beyond_the_world),
         cmocka_unit_test(takes_what_there_is),
         cmocka_unit_test(finds_strays),
         cmocka_unit_test(reads_visibility),

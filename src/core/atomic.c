@@ -1,0 +1,216 @@
+// Files that appear under their final name only when they are whole.
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+enum {
+    LINKS_MAX = 40,     // as the kernel has it
+    NAME_TAIL_MAX = 64, // of the final name in the temporary one, which must fit NAME_MAX
+    TRIES_MAX = 16,
+    STALE_AFTER_S = 60, // a temporary file may be younger than its lock
+};
+
+static const char part_prefix[] = ".oriel-part-";
+
+static enum orl_result fail_errno(const struct orl_log *log, const char *path)
+{
+    return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+}
+
+// The name at the end of a chain of symbolic links, there or not.
+static enum orl_result follow_links(const struct orl_log *log, const char *path, char **target)
+{
+    char *current = orl_strdup(log, path), to[PATH_MAX];
+    for (int links = 0; current; links++) {
+        ssize_t length = readlink(current, to, sizeof to - 1);
+        if (length < 0) {
+            *target = current;
+            return ORL_OK;
+        }
+        if (links == LINKS_MAX) {
+            free(current);
+            return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(ELOOP));
+        }
+        to[length] = '\0';
+        size_t dir = *to == '/' ? 0 : (size_t)(orl_path_name(current) - current);
+        char *next = orl_format(log, "%.*s%s", (int)dir, current, to);
+        free(current);
+        current = next;
+    }
+    return ORL_ERR_MEMORY;
+}
+
+// "--json /dev/stdout >FILE": the shell's file must be added to, not replaced.
+static bool is_standard_stream(const struct stat *st)
+{
+    struct stat stream;
+    for (int fd = STDOUT_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fstat(fd, &stream) == 0 && stream.st_dev == st->st_dev && stream.st_ino == st->st_ino)
+            return true;
+    return false;
+}
+
+static enum orl_result begin_direct(const struct orl_log *log, const char *path,
+                                    struct orl_atomic_file *file)
+{
+    file->direct = true;
+    file->path = orl_strdup(log, path);
+    file->temp = orl_strdup(log, path);
+    if (!file->path || !file->temp)
+        return ORL_ERR_MEMORY;
+    file->fd = open(path, O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC);
+    return file->fd >= 0 ? ORL_OK : fail_errno(log, path);
+}
+
+static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_file *file)
+{
+    // The suffix keeps the extension last: writers may choose a format by it.
+    const char *name = orl_path_name(file->path);
+    size_t length = strlen(name), cut = length > NAME_TAIL_MAX ? length - NAME_TAIL_MAX : 0;
+    while (((unsigned char)name[cut] & 0xc0) == 0x80) // some drives take whole characters only
+        cut++;
+    for (int tries = 0; tries < TRIES_MAX; tries++) {
+        unsigned long long number;
+        if (getrandom(&number, sizeof number, 0) != sizeof number)
+            return fail_errno(log, file->path);
+        file->temp = orl_format(log, "%.*s%s%016llx-%s", (int)(name - file->path), file->path,
+                                part_prefix, number, name + cut);
+        if (!file->temp)
+            return ORL_ERR_MEMORY;
+        file->fd = open(file->temp, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (file->fd >= 0)
+            break;
+        free(file->temp);
+        file->temp = NULL;
+        if (errno != EEXIST)
+            break;
+    }
+    if (!file->temp)
+        return fail_errno(log, file->path);
+    // Tells orl_dir_sweep that somebody is writing. Drives without locks go without.
+    (void)!flock(file->fd, LOCK_EX | LOCK_NB);
+    return ORL_OK;
+}
+
+enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
+                                 struct orl_atomic_file *file)
+{
+    *file = (struct orl_atomic_file){.fd = -1};
+    struct stat st;
+    bool there = stat(path, &st) == 0;
+    enum orl_result result;
+    if (there && !S_ISDIR(st.st_mode) && (!S_ISREG(st.st_mode) || is_standard_stream(&st)))
+        result = begin_direct(log, path, file);
+    else if ((result = follow_links(log, path, &file->path)) == ORL_OK)
+        result = open_part(log, file);
+    if (result == ORL_OK && there && !file->direct)
+        (void)!fchmod(file->fd, st.st_mode & 0777); // what replaces a file is as private as it was
+    if (result != ORL_OK)
+        orl_atomic_abort(file);
+    return result;
+}
+
+FILE *orl_atomic_stream(struct orl_atomic_file *file)
+{
+    int copy = fcntl(file->fd, F_DUPFD_CLOEXEC, 0);
+    FILE *stream = copy >= 0 ? fdopen(copy, "wb") : NULL;
+    if (copy >= 0 && !stream)
+        close(copy);
+    file->streamed = stream != NULL;
+    return stream;
+}
+
+// Some drives know no fsync: nothing can be flushed there.
+static bool flush_to_disk(int fd)
+{
+    return fsync(fd) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP;
+}
+
+enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_file *file)
+{
+    enum orl_result result = ORL_OK;
+    struct stat st;
+    if (!file->direct) {
+        if (fstat(file->fd, &st) != 0 || !flush_to_disk(file->fd))
+            result = fail_errno(log, file->path);
+        else if (st.st_size == 0 && !file->streamed)
+            result = orl_fail(log, ORL_ERR_IO, "%s: nothing was written", file->path);
+        else if (rename(file->temp, file->path) != 0)
+            result = fail_errno(log, file->path);
+    }
+    if (result == ORL_OK)
+        file->direct = true; // nothing is left to remove
+    orl_atomic_abort(file);
+    return result;
+}
+
+void orl_atomic_abort(struct orl_atomic_file *file)
+{
+    if (!file)
+        return;
+    if (file->temp && file->fd >= 0) {
+        if (!file->direct)
+            unlink(file->temp);
+        close(file->fd);
+    }
+    free(file->temp);
+    free(file->path);
+    *file = (struct orl_atomic_file){.fd = -1};
+}
+
+enum orl_result orl_file_write(const struct orl_log *log, const char *path, const void *data,
+                               size_t size)
+{
+    struct orl_atomic_file file;
+    enum orl_result result = orl_atomic_begin(log, path, &file);
+    if (result != ORL_OK)
+        return result;
+    FILE *stream = orl_atomic_stream(&file);
+    bool ok = stream && fwrite(data, 1, size, stream) == size;
+    if (stream && fclose(stream) != 0)
+        ok = false;
+    result = ok ? orl_atomic_commit(log, &file) : fail_errno(log, path);
+    orl_atomic_abort(&file);
+    return result;
+}
+
+// Nobody writes to it any more: its lock is free.
+static bool is_stale(const char *path)
+{
+    struct stat st;
+    int fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    bool stale = fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) &&
+                 time(NULL) - st.st_mtime > STALE_AFTER_S && flock(fd, LOCK_EX | LOCK_NB) == 0;
+    if (fd >= 0)
+        close(fd);
+    return stale;
+}
+
+enum orl_result orl_dir_sweep(const struct orl_log *log, const char *dir)
+{
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        if (strncmp(names.items[i], part_prefix, sizeof part_prefix - 1) != 0)
+            continue;
+        char *path = orl_path_join(log, dir, names.items[i]);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (is_stale(path) && unlink(path) == 0)
+            orl_logf(log, ORL_LOG_DEBUG, "%s: removed, its writer is gone", path);
+        free(path);
+    }
+    orl_names_finish(&names);
+    return result;
+}

@@ -1,0 +1,59 @@
+#include "core/text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+size_t orl_utf8_length(const char *text)
+{
+    const unsigned char *c = (const unsigned char *)text;
+    if (c[0] < 0x80)
+        return c[0] ? 1 : 0;
+    size_t length = c[0] >= 0xf0 ? 4 : c[0] >= 0xe0 ? 3 : 2;
+    if (c[0] < 0xc2 || c[0] > 0xf4)
+        return 0;
+    for (size_t i = 1; i < length; i++)
+        if ((c[i] & 0xc0) != 0x80)
+            return 0;
+    // No longer than needed, no surrogates, nothing above U+10FFFF.
+    bool bad = (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f) ||
+               (c[0] == 0xf0 && c[1] < 0x90) || (c[0] == 0xf4 && c[1] > 0x8f);
+    return bad ? 0 : length;
+}
+
+bool orl_utf8_valid(const char *text)
+{
+    for (size_t length; *text; text += length)
+        if (!(length = orl_utf8_length(text)))
+            return false;
+    return true;
+}
+
+static bool controls_terminal(const unsigned char *c)
+{
+    return (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
+           (c[0] == 0xc2 && c[1] < 0xa0); // C1 controls, U+0080 to U+009F
+}
+
+void orl_text_escape(const char *text, char *out, size_t size)
+{
+    size_t used = 0;
+    while (*text) {
+        const unsigned char *c = (const unsigned char *)text;
+        size_t length = orl_utf8_length(text);
+        char coded[5];
+        const char *from = text;
+        bool escaped = length == 0 || controls_terminal(c);
+        if (escaped) { // a C1 control's second byte is no UTF-8 by itself and follows suit
+            snprintf(coded, sizeof coded, "\\x%02x", c[0]);
+            from = coded;
+        }
+        size_t wide = escaped ? 4 : length;
+        if (used + wide + 1 > size)
+            break;
+        memcpy(out + used, from, wide);
+        used += wide;
+        text += escaped ? 1 : length;
+    }
+    if (size)
+        out[used] = '\0';
+}

@@ -1,0 +1,99 @@
+// Photographs, as every reader of them sees them.
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "fuzz.h"
+#include "io/exr.h"
+#include "io/internal.h"
+#include "io/picture.h"
+
+static void write_again(const struct orl_image *image)
+{
+    static const struct orl_exif exif = {.make = "Oriel", .exposure_s = 0.004, .iso = 70000};
+    if (orl_image_bytes(image) > 1 << 16)
+        return;
+    fuzz_require(orl_png_write(&fuzz_log, fuzz_path("again.png"), image) == ORL_OK &&
+                     orl_jpeg_write(&fuzz_log, fuzz_path("again.jpg"), image, 90, &exif) == ORL_OK,
+                 "a picture can be written");
+}
+
+static void read_picture(const char *name)
+{
+    struct orl_picture_info info;
+    struct orl_exif exif;
+    struct orl_image image;
+    double ev;
+    int width = 0, height = 0;
+    const char *path = fuzz_path(name);
+    bool known = orl_picture_inspect(&fuzz_log, path, &info) == ORL_OK;
+    if (orl_exif_read(&fuzz_log, path, &exif) == ORL_OK)
+        (void)orl_exif_exposure_ev(&exif, &ev);
+    (void)!orl_picture_size(&fuzz_log, path, &width, &height);
+    for (int channels = 1; channels <= 3; channels += 2) {
+        path = fuzz_path(name);
+        if (orl_picture_read(&fuzz_log, path, channels, &image) == ORL_OK) {
+            fuzz_require(known && image.width == info.width && image.height == info.height,
+                         "the header says the picture's size");
+            write_again(&image);
+        }
+        orl_image_finish(&image);
+    }
+    (void)!orl_picture_read_linear(&fuzz_log, fuzz_path(name), &image);
+    orl_image_finish(&image);
+}
+
+// Inputs of one kind only: the others have targets of their own.
+static void read_if(bool kind, const char *name, const uint8_t *data, size_t size)
+{
+    if (!kind)
+        return;
+    fuzz_save(name, data, size);
+    read_picture(name);
+}
+
+void fuzz_jpeg(const uint8_t *data, size_t size)
+{
+    read_if(size > 2 && data[0] == 0xff && data[1] == 0xd8, "a.jpg", data, size);
+}
+
+void fuzz_png(const uint8_t *data, size_t size)
+{
+    read_if(size > 2 && data[0] == 0x89, "a.png", data, size);
+}
+
+void fuzz_tiff(const uint8_t *data, size_t size)
+{
+    read_if(size > 2 && (data[0] == 'I' || data[0] == 'M'), "a.tif", data, size);
+}
+
+void fuzz_raw(const uint8_t *data, size_t size)
+{
+    read_if(true, "a.dng", data, size);
+}
+
+void fuzz_exr(const uint8_t *data, size_t size)
+{
+    static const char *const names[] = {"R", "depth.Z"};
+    struct orl_image image;
+    read_if(size > 2 && data[0] == 0x76, "a.exr", data, size);
+    fuzz_save("a.exr", data, size);
+    (void)!orl_exr_read(&fuzz_log, fuzz_path("a.exr"), names, 2, &image);
+    orl_image_finish(&image);
+}
+
+void fuzz_exif(const uint8_t *data, size_t size)
+{
+    struct orl_exif exif, again;
+    uint8_t *block;
+    size_t length;
+    if (orl_exif_decode(&fuzz_log, "exif", data, size, &exif) != ORL_OK)
+        return;
+    fuzz_require(isfinite(exif.exposure_s) && isfinite(exif.aperture) && isfinite(exif.iso) &&
+                     isfinite(exif.bias_ev) && exif.orientation >= 0 && exif.orientation <= 8,
+                 "EXIF's numbers are numbers");
+    fuzz_require(orl_exif_encode(&fuzz_log, &exif, &block, &length) == ORL_OK &&
+                     orl_exif_decode(&fuzz_log, "exif", block, length, &again) == ORL_OK,
+                 "EXIF can be written");
+    free(block);
+}

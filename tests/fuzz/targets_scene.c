@@ -1,0 +1,238 @@
+// Models, maps, clouds, manifests and camera paths.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "fuzz.h"
+#include "preprocess/job/exposure_list.h"
+#include "scene/colmap.h"
+#include "scene/manifest.h"
+#include "scene/path.h"
+#include "scene/point_radii.h"
+#include "scene/thin.h"
+#include "scene/tuned_settings.h"
+
+// The input is `count` files, each but the last ahead by its length in two bytes.
+static void save_parts(const char *const *names, size_t count, const uint8_t *data, size_t size)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t length = size;
+        if (i + 1 < count) {
+            length = size >= 2 ? (size_t)data[0] | (size_t)data[1] << 8 : 0;
+            size_t head = size >= 2 ? 2 : size;
+            data += head;
+            size -= head;
+            length = length < size ? length : size;
+        }
+        fuzz_save(names[i], data, length);
+        data += length;
+        size -= length;
+    }
+}
+
+static void use_model(const struct orl_colmap_model *model)
+{
+    for (size_t i = 0; i < model->image_count; i++) {
+        const struct orl_colmap_image *image = &model->images[i];
+        const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(model, image->camera_id);
+        fuzz_require(camera && orl_camera_valid(&camera->pinhole), "a picture has a camera");
+        fuzz_require(orl_pose_valid(&image->cam_from_world), "a pose is a pose");
+        for (size_t k = 0; k < image->point_count; k++)
+            fuzz_require(image->points[k] < model->point_count, "observed points are there");
+    }
+    for (size_t i = 0; i < model->camera_count && i < 8; i++) {
+        double pixel[2];
+        orl_colmap_camera_project(&model->cameras[i], (const double[2]){0.3, -0.2}, pixel);
+        (void)orl_colmap_camera_reaches_corners(&model->cameras[i]);
+    }
+}
+
+static void read_model(const char *dir)
+{
+    struct orl_colmap_model model;
+    if (orl_colmap_read(&fuzz_log, dir, &model) == ORL_OK)
+        use_model(&model);
+    orl_colmap_finish(&model);
+}
+
+void fuzz_colmap_binary(const uint8_t *data, size_t size)
+{
+    static const char *const names[] = {"cameras.bin", "points3D.bin", "images.bin"};
+    save_parts(names, ORL_COUNT(names), data, size);
+    read_model(fuzz_path("."));
+}
+
+void fuzz_colmap_text(const uint8_t *data, size_t size)
+{
+    static const char *const names[] = {"cameras.txt", "points3D.txt", "images.txt"};
+    save_parts(names, ORL_COUNT(names), data, size);
+    read_model(fuzz_path("."));
+}
+
+// What was read is written, and read again the same.
+void fuzz_depth_map(const uint8_t *data, size_t size)
+{
+    struct orl_image image, again;
+    fuzz_save("map.bin", data, size);
+    if (orl_colmap_map_read(&fuzz_log, fuzz_path("map.bin"), &image) != ORL_OK)
+        return;
+    fuzz_require(orl_colmap_map_write(&fuzz_log, fuzz_path("again.bin"), &image) == ORL_OK &&
+                     orl_colmap_map_read(&fuzz_log, fuzz_path("again.bin"), &again) == ORL_OK,
+                 "a map can be written");
+    fuzz_require(orl_image_bytes(&image) == orl_image_bytes(&again) &&
+                     memcmp(image.data, again.data, orl_image_bytes(&image)) == 0,
+                 "a map stays what it is");
+    orl_image_finish(&image);
+    orl_image_finish(&again);
+}
+
+void fuzz_visibility(const uint8_t *data, size_t size)
+{
+    uint8_t photographs[64];
+    size_t count = size ? data[0] % ORL_COUNT(photographs) : 0;
+    fuzz_save("fused.ply.vis", data + (size > 0), size - (size > 0));
+    (void)!orl_colmap_visibility_read(&fuzz_log, fuzz_path("fused.ply.vis"), count, photographs);
+}
+
+static void use_views(struct orl_points *points)
+{
+    static const struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
+    const struct orl_view view = {{64, 48, 50, 50, 32, 24},
+                                  {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 5}}};
+    uint16_t *seen_past = calloc(points->count + 1, sizeof *seen_past);
+    struct orl_image depth;
+    fuzz_require(orl_image_init(&fuzz_log, &depth, 32, 24, 1, ORL_PIXEL_F32) == ORL_OK, "memory");
+    for (size_t i = 0; i < 32 * 24; i++)
+        depth.f32[i] = (float)i / 64;
+    orl_points_count_seen_past(points, &view, &depth, 0.01f, seen_past);
+    orl_points_drop_seen_past(seen_past, points);
+    fuzz_require(orl_points_limit_radii(&fuzz_log, &limits, &view, 1, points) == ORL_OK,
+                 "radii are limited");
+    orl_image_finish(&depth);
+    free(seen_past);
+}
+
+static void use_points(struct orl_points *points)
+{
+    static const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
+    static const struct orl_thin_params thin = {ORL_THIN_DEFAULTS};
+    const double viewers[1][3] = {{0, 0, -5}};
+    struct orl_points other;
+    for (size_t i = 0; i < points->count; i++)
+        fuzz_require(orl_point_usable(points->position[i]) && points->radius[i] >= 0 &&
+                         isfinite(points->radius[i]), "points are usable");
+    if (points->count > 256)
+        return;
+    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("again.ply"), points) == ORL_OK &&
+                     orl_points_read(&fuzz_log, fuzz_path("again.ply"), &other) == ORL_OK &&
+                     other.count == points->count, "points can be written");
+    fuzz_require(orl_points_set_radii(&fuzz_log, NULL, &radii, viewers, 1, points) == ORL_OK,
+                 "radii are found");
+    for (size_t i = 0; i < points->count; i++)
+        fuzz_require(points->radius[i] > 0 && isfinite(points->radius[i]), "radii are usable");
+    fuzz_require(orl_points_add_thin(&fuzz_log, &thin, &other, points) == ORL_OK,
+                 "clouds can be joined");
+    orl_points_finish(&other);
+    use_views(points);
+}
+
+void fuzz_ply(const uint8_t *data, size_t size)
+{
+    struct orl_points points;
+    fuzz_save("points.ply", data, size);
+    if (orl_points_read(&fuzz_log, fuzz_path("points.ply"), &points) == ORL_OK)
+        use_points(&points);
+    orl_points_finish(&points);
+}
+
+static struct orl_scene *make_scene(void)
+{
+    static const char *const names[] = {"a.jpg", "b.jpg", "c.jpg"};
+    struct orl_scene *scene = calloc(1, sizeof *scene);
+    scene->dir = strdup(fuzz_path("."));
+    scene->photo_count = ORL_COUNT(names);
+    scene->photos = calloc(scene->photo_count, sizeof *scene->photos);
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const double eye[3] = {(double)i, 0, 0}, target[3] = {1, 0, 9}, up[3] = {0, -1, 0};
+        scene->photos[i].name = strdup(names[i]);
+        scene->photos[i].view.camera = (struct orl_camera){64, 48, 50, 50, 32, 24};
+        scene->photos[i].view.cam_from_world = orl_pose_look_at(eye, target, up);
+    }
+    return scene;
+}
+
+void fuzz_manifest(const uint8_t *data, size_t size)
+{
+    struct orl_scene *scene = make_scene();
+    char manifest[128];
+    snprintf(manifest, sizeof manifest, "%s", fuzz_path("scene.json"));
+    fuzz_save("scene.json", data, size);
+    fuzz_save("points.ply", data, 0);
+    if (orl_manifest_read(&fuzz_log, manifest, scene) == ORL_OK) {
+        size_t bad, files;
+        (void)!orl_manifest_check(&fuzz_log, scene->dir, &bad, &files);
+        json_decref(orl_manifest_ground(&scene->ground));
+        json_t *record = json_pack("{s:{s:f}}", "settings", "scale", 0.5);
+        fuzz_require(orl_tuned_write(&fuzz_log, scene->dir, "oriel", record) == ORL_OK,
+                     "settings can be kept");
+    }
+    orl_scene_destroy(&scene);
+}
+
+void fuzz_stages(const uint8_t *data, size_t size)
+{
+    mkdir(fuzz_path(".oriel"), 0700);
+    fuzz_save(".oriel/stages.json", data, size);
+    (void)!orl_manifest_check_unfinished(&fuzz_log, fuzz_path("."));
+}
+
+static void read_path(const char *name)
+{
+    struct orl_scene *scene = make_scene();
+    struct orl_path path;
+    if (orl_path_read(&fuzz_log, scene, fuzz_path(name), &path) == ORL_OK)
+        fuzz_require(path.count > 0, "a path has views");
+    for (size_t i = 0; i < path.count; i++)
+        fuzz_require(orl_camera_valid(&path.views[i].camera) &&
+                         orl_pose_valid(&path.views[i].cam_from_world), "views are usable");
+    orl_path_finish(&path);
+    fuzz_require(orl_path_through_photos(&fuzz_log, scene, 5, &path) == ORL_OK, "a walk is made");
+    orl_path_finish(&path);
+    orl_scene_destroy(&scene);
+}
+
+void fuzz_path_json(const uint8_t *data, size_t size)
+{
+    fuzz_save("path.json", data, size);
+    read_path("path.json");
+}
+
+// The first byte's last bit: is there a cameras.txt?
+void fuzz_path_text(const uint8_t *data, size_t size)
+{
+    static const char *const names[] = {"cameras.txt", "images.txt"};
+    bool both = size && (data[0] & 1);
+    data += size > 0;
+    size -= size > 0;
+    unlink(fuzz_path("cameras.txt"));
+    save_parts(both ? names : names + 1, both ? 2 : 1, data, size);
+    read_path("images.txt");
+}
+
+void fuzz_exposures(const uint8_t *data, size_t size)
+{
+    struct orl_exposure_list list;
+    const struct orl_exif exif = {.exposure_s = 0.004, .iso = 200};
+    double ev;
+    fuzz_save("exposures.csv", data, size);
+    if (orl_exposure_list_read(&fuzz_log, fuzz_path("exposures.csv"), &list) == ORL_OK) {
+        (void)orl_exposure_told(&list, "a.jpg", "photos/a.tif", &exif, &ev);
+        for (size_t i = 0; i < list.count; i++)
+            fuzz_require(fabs(list.items[i].ev) <= 64, "exposures are usable");
+    }
+    orl_exposure_list_finish(&list);
+}

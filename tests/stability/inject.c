@@ -1,0 +1,194 @@
+// LD_PRELOAD: fails, or kills the program, at the N-th call of a kind, as a full disk, a lost
+// drive, an exhausted memory or a power switch would.
+//   INJECT_CALL   write, sync, rename, unlink or malloc
+//   INJECT_AT     which one, from 1
+//   INJECT_KILL   set: SIGKILL ahead of the call, instead of an error
+//   INJECT_MARK   this file is made when it happens
+// Allocations count only when the program itself makes them, not a library for its own use.
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <link.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *old, size_t size);
+
+enum kind { KIND_NONE, KIND_WRITE, KIND_SYNC, KIND_RENAME, KIND_UNLINK, KIND_MALLOC };
+
+// A preloaded library has no owner to keep its state.
+static enum kind wanted;
+static long at;
+static bool kills;
+static const char *mark;
+static uintptr_t program_from, program_to;
+static atomic_long count;
+
+static int find_program(struct dl_phdr_info *info, size_t size, void *priv)
+{
+    (void)size;
+    (void)priv;
+    for (int i = 0; i < info->dlpi_phnum; i++) {
+        const ElfW(Phdr) *header = &info->dlpi_phdr[i];
+        if (header->p_type != PT_LOAD || !(header->p_flags & PF_X))
+            continue;
+        program_from = info->dlpi_addr + header->p_vaddr;
+        program_to = program_from + header->p_memsz;
+    }
+    return 1; // the first is the program
+}
+
+__attribute__((constructor)) static void start(void)
+{
+    static const char *const names[] = {[KIND_WRITE] = "write", [KIND_SYNC] = "sync",
+                                        [KIND_RENAME] = "rename", [KIND_UNLINK] = "unlink",
+                                        [KIND_MALLOC] = "malloc"};
+    const char *call = getenv("INJECT_CALL"), *number = getenv("INJECT_AT");
+    mark = getenv("INJECT_MARK");
+    kills = getenv("INJECT_KILL") != NULL;
+    at = number ? strtol(number, NULL, 10) : 0;
+    dl_iterate_phdr(find_program, NULL);
+    for (size_t i = 1; call && i < sizeof names / sizeof *names; i++)
+        if (strcmp(call, names[i]) == 0)
+            wanted = (enum kind)i;
+    unsetenv("LD_PRELOAD"); // not for programs that this one runs
+}
+
+static bool hits(enum kind kind)
+{
+    if (kind != wanted || atomic_fetch_add(&count, 1) + 1 != at)
+        return false;
+    if (mark) {
+        long fd = syscall(SYS_openat, AT_FDCWD, mark, O_CREAT | O_WRONLY, 0666);
+        if (fd >= 0)
+            syscall(SYS_close, fd);
+    }
+    if (kills)
+        syscall(SYS_kill, getpid(), SIGKILL);
+    return true;
+}
+
+static void *next(const char *name)
+{
+    return dlsym(RTLD_NEXT, name);
+}
+
+// --- writing: a full disk ---
+
+ssize_t write(int fd, const void *data, size_t size)
+{
+    if (hits(KIND_WRITE)) {
+        errno = ENOSPC;
+        return -1;
+    }
+    return syscall(SYS_write, fd, data, size);
+}
+
+ssize_t pwrite(int fd, const void *data, size_t size, off_t offset)
+{
+    if (hits(KIND_WRITE)) {
+        errno = ENOSPC;
+        return -1;
+    }
+    return syscall(SYS_pwrite64, fd, data, size, offset);
+}
+
+ssize_t pwrite64(int fd, const void *data, size_t size, off_t offset)
+{
+    return pwrite(fd, data, size, offset);
+}
+
+// Standard streams write by themselves, out of reach: their buffer fails instead.
+size_t fwrite(const void *data, size_t size, size_t items, FILE *stream)
+{
+    if (stream != stderr && hits(KIND_WRITE)) {
+        errno = ENOSPC;
+        return 0;
+    }
+    size_t (*real)(const void *, size_t, size_t, FILE *) = next("fwrite");
+    return real(data, size, items, stream);
+}
+
+int fclose(FILE *stream)
+{
+    bool fails = hits(KIND_WRITE);
+    int (*real)(FILE *) = next("fclose");
+    int result = real(stream);
+    if (!fails)
+        return result;
+    errno = ENOSPC;
+    return EOF;
+}
+
+int fflush(FILE *stream)
+{
+    if (stream != stderr && hits(KIND_WRITE)) {
+        errno = ENOSPC;
+        return EOF;
+    }
+    int (*real)(FILE *) = next("fflush");
+    return real(stream);
+}
+
+// --- the rest ---
+
+int fsync(int fd)
+{
+    if (hits(KIND_SYNC)) {
+        errno = EIO;
+        return -1;
+    }
+    return (int)syscall(SYS_fsync, fd);
+}
+
+int rename(const char *from, const char *to)
+{
+    if (hits(KIND_RENAME)) {
+        errno = EIO;
+        return -1;
+    }
+    return (int)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0);
+}
+
+int unlink(const char *path)
+{
+    if (hits(KIND_UNLINK)) {
+        errno = EIO;
+        return -1;
+    }
+    return (int)syscall(SYS_unlinkat, AT_FDCWD, path, 0);
+}
+
+static bool no_memory(void *caller)
+{
+    uintptr_t from = (uintptr_t)caller;
+    if (from < program_from || from >= program_to || !hits(KIND_MALLOC))
+        return false;
+    errno = ENOMEM;
+    return true;
+}
+
+void *malloc(size_t size)
+{
+    return no_memory(__builtin_return_address(0)) ? NULL : __libc_malloc(size);
+}
+
+void *calloc(size_t items, size_t size)
+{
+    return no_memory(__builtin_return_address(0)) ? NULL : __libc_calloc(items, size);
+}
+
+void *realloc(void *old, size_t size)
+{
+    return no_memory(__builtin_return_address(0)) ? NULL : __libc_realloc(old, size);
+}

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Writes docs/measured/robustness.md: fuzzes every reader, injects every fault, counts.
+# usage: tests/stability/report.sh BUILD SECONDS [all]
+# SECONDS of fuzzing for each reader, 0: only the inputs that there are. all: every call fails in
+# turn, which takes an hour, instead of the first ones of a kind and then ever fewer. BUILD is a build folder with the program and tests. Inputs tried add up over the runs of
+# tests/fuzz/run.sh in build-fuzz.
+set -eu
+[ $# -ge 2 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
+source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1") seconds=$2 all=${3:-}
+fuzz=${FUZZ_DIR:-$source/build-fuzz} page=$source/docs/measured/robustness.md
+status=0
+mkdir -p "$source/docs/measured"
+"$source/tests/fuzz/run.sh" "$seconds" || status=1
+"$source/tests/stability/inject.sh" "$build/oriel" "$source" "$build/tests/libinject.so" $all |
+    tee "$fuzz/injected.txt" || status=1
+
+failures() { find "$fuzz/failures" -type f | wc -l; }
+
+{
+    cat <<'END'
+# Robustness: what was tried, and what failed
+
+Made by `tests/stability/report.sh BUILD SECONDS`. SECURITY.md says what Oriel promises; the inputs
+and checks below are in `tests/fuzz` and `tests/stability`.
+
+END
+    echo "## Inputs tried"
+    echo
+    echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
+    echo
+    echo "| reader | inputs tried | seconds of wall clock on one core | failures left |"
+    echo "|---|--:|--:|--:|"
+    awk '{ n[$1] += $2; s[$1] += $3 } END { for (k in n) print k, n[k], s[k] }' "$fuzz/tried.txt" |
+        sort | while read -r name inputs time; do
+        left=$(find "$fuzz/failures" -name "$name-*" | wc -l)
+        printf '| %s | %s | %s | %s |\n' "$name" "$inputs" "$time" "$left"
+    done
+    awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | ", n, s, s / 3600 }' \
+        "$fuzz/tried.txt"
+    echo "$(failures) |"
+    echo
+    echo "## Lines of each reader that these inputs reach"
+    echo
+    echo "| file | lines | reached |"
+    echo "|---|--:|--:|"
+    awk '{ printf "| `%s` | %d | %.0f %% |\n", $3, $5, 100 * $4 / ($5 ? $5 : 1) }' "$fuzz/lines.txt"
+    echo
+    echo "## Faults injected"
+    echo
+    echo "A call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
+    echo "(PNG, EXR), \`hdr\` and \`synth\`. Afterwards a final name holds what it held before or the whole"
+    echo "result, the exit status tells, and only a killed program leaves a temporary file."
+    echo
+    echo "| fault | times | files cut, crashes, wrong statuses |"
+    echo "|---|--:|--:|"
+    sed -n 's/^injected: \(.*\) \([0-9]*\)$/\1|\2/p' "$fuzz/injected.txt" | while IFS='|' read -r kind times; do
+        echo "| $kind | $times | $(grep -cE "^FAILED.*: ${kind% kill} " "$fuzz/injected.txt" || true) |"
+    done
+    echo
+    echo "## Found, mended, and kept as tests"
+    echo
+    echo "| what was wrong | test |"
+    echo "|---|---|"
+    awk -F'|' '{ gsub(/, /, "`, `", $2); printf "| %s | `%s` |\n", $1, $2 }' \
+        "$source/tests/stability/found.txt"
+} >"$page.part"
+mv "$page.part" "$page"
+echo "$page"
+exit $status
