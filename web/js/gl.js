@@ -11,12 +11,13 @@ precision highp sampler2DArray;
 
 // Format, type of the pixels that fill it.
 const FORMATS = {
-    R16F: ["RED", "HALF_FLOAT"], R32F: ["RED", "FLOAT"], RG16F: ["RG", "HALF_FLOAT"],
+    R16F: ["RED", "HALF_FLOAT"], R32F: ["RED", "FLOAT"], RG32F: ["RG", "FLOAT"],
+    RG16F: ["RG", "HALF_FLOAT"],
     RGBA8: ["RGBA", "UNSIGNED_BYTE"], SRGB8_ALPHA8: ["RGBA", "UNSIGNED_BYTE"],
     RGBA16F: ["RGBA", "HALF_FLOAT"], RGBA32F: ["RGBA", "FLOAT"], R32UI: ["RED_INTEGER", "UNSIGNED_INT"],
     RG32UI: ["RG_INTEGER", "UNSIGNED_INT"],
 };
-const BYTES = {R16F: 2, R32F: 4, RG16F: 4, RGBA8: 4, SRGB8_ALPHA8: 4, RGBA16F: 8, RGBA32F: 16,
+const BYTES = {R16F: 2, R32F: 4, RG32F: 8, RG16F: 4, RGBA8: 4, SRGB8_ALPHA8: 4, RGBA16F: 8, RGBA32F: 16,
                R32UI: 4, RG32UI: 8};
 const FILTERED = new Set(["RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
 

@@ -18,6 +18,7 @@ export class Input {
         this.actions = actions;
         this.wake = wake;
         this.pressed = new Set();
+        this.tapped = new Set(); // since the last frame: a short touch of a key counts too
         this.fast = false;
         this.pointers = new Map();
         window.addEventListener("keydown", event => this.keyDown(event));
@@ -51,6 +52,7 @@ export class Input {
         this.fast = event.shiftKey;
         if (event.code in MOVES) {
             this.pressed.add(event.code);
+            this.tapped.add(event.code);
             event.preventDefault();
             this.wake();
             return;
@@ -73,7 +75,9 @@ export class Input {
     state()
     {
         const keys = [0, 0, 0], turn = [0, 0];
-        for (const code of this.pressed) {
+        const codes = new Set([...this.pressed, ...this.tapped]);
+        this.tapped.clear();
+        for (const code of codes) {
             if (this.fast && code in TURNS)
                 TURNS[code].forEach((x, k) => turn[k] += x);
             else

@@ -291,6 +291,8 @@ class Walk {
             this.drawFrame(rests || !this.refined && this.frames.length === 0 ? 0 : this.scale, passed);
         else if (rests && !this.refined)
             this.drawFrame(0, 0);
+        else if (this.dirty)
+            this.showState();
         this.dirty = false;
         if (rests && this.refined) {
             this.writeAddress();

@@ -6,7 +6,7 @@ import {PhotoStore} from "oriel/photos.js";
 const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "level0.glsl", "pull.frag",
     "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
     "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "photo.glsl", "choose.frag",
-    "gather.frag", "colors.glsl", "seed_color.frag", "compose.frag", "show.frag",
+    "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag", "compose.frag", "show.frag",
     "octahedron.glsl", "surfel.glsl", "srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
 const LEVELS_MOST = 9;     // of the surfel pyramid
@@ -31,7 +31,8 @@ function makePrograms(device, sources)
         support: screen("support.frag"), seedDepth: screen("fill_seed_depth.frag"),
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
         fillDepth: screen("fill_depth.frag"), depthUnpack: screen("depth_unpack.frag"),
-        choose: screen("choose.frag", {TILE}), gather: screen("gather.frag", {TILE}),
+        choose: screen("choose.frag", {TILE}), vote: screen("silhouette_vote.frag", {TILE}),
+        cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE}),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
         show: screen("show.frag", {FLIP: 1}), capture: screen("show.frag"),
     };
@@ -65,6 +66,8 @@ class Frame {
         this.surface = make(width, height, ["R32F", "RGBA8"]);
         this.supported = make(width, height, ["R32F", "RGBA8"]);
         this.depth = make(width, height, ["R32F"]);
+        this.votes = make(width, height, ["RG32F"]);
+        this.cut = make(width, height, ["R32F", "RGBA8"]);
         this.fillDepth = this.pyramid(make, "RGBA32F");
         this.fillColor = this.pyramid(make, "RGBA16F");
         this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
@@ -132,6 +135,7 @@ export class Renderer {
         this.device.pass(this.programs.fillDepth, f.depth,
                          {...this.values, known: this.supported,
                           filled: f.fillDepth.pushed[0].textures[0]});
+        this.depth = f.depth;
         this.used = pointsOnly ? 0 : this.gather(camera, o);
         this.compose(pointsOnly);
     }
@@ -232,11 +236,19 @@ export class Renderer {
                         photo_depth: store.depth, depth_tolerance: o.depth_tolerance,
                         border_px: o.border_px, mip_most: store.levels - 1,
                         slot_size: [store.width, store.height], view_depth: f.depth.textures[0],
-                        photos: count, tiles: f.tiles.textures[0], candidates: Math.round(o.candidates),
+                        silhouette: Math.round(o.silhouette), photos: count, tiles: f.tiles.textures[0], candidates: Math.round(o.candidates),
                         outliers: o.outliers, unknown_trust: o.unknown_trust, sharpness: o.sharpness,
                         guess_sharpness: o.guess_sharpness, guess_blur_share: o.guess_blur,
                         photos_per_pixel: Math.round(o.photos_per_pixel)};
         this.device.pass(this.programs.choose, f.tiles, values);
+        if (values.silhouette > 0) {
+            this.device.pass(this.programs.vote, f.votes, values);
+            this.device.pass(this.programs.cut, f.cut, {...values, votes: f.votes.textures[0],
+                                                        normal_in: this.normals});
+            this.depth = f.cut;
+            this.normals = f.cut.textures[1];
+            values.view_depth = f.cut.textures[0];
+        }
         this.device.pass(this.programs.gather, f.painted, values);
         return count;
     }
@@ -260,7 +272,7 @@ export class Renderer {
         const width = target ? target.width : gl.drawingBufferWidth;
         const height = target ? target.height : gl.drawingBufferHeight;
         this.device.pass(target ? this.programs.capture : this.programs.show, target,
-                         {composed: f.composed.textures[0], depth: f.depth.textures[0],
+                         {composed: f.composed.textures[0], depth: this.depth.textures[0],
                           normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
                           scale: [f.width / width, f.height / height]});
@@ -285,7 +297,7 @@ export class Renderer {
         const gl = this.device.gl, f = this.frame, pixel = new Float32Array(4);
         if (!f || x < 0 || y < 0 || x >= f.width || y >= f.height)
             return 0;
-        this.device.begin(f.depth);
+        this.device.begin(this.depth);
         gl.readPixels(Math.floor(x), Math.floor(y), 1, 1, gl.RGBA, gl.FLOAT, pixel);
         return Math.abs(pixel[0]);
     }

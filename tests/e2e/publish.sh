@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# A published site: what is written, what is refused, and the page itself in a browser.
+. "$(dirname "$0")/command_lib"
+tools=$(dirname "$oriel")/tests
+[ -x "$tools/bench_truth_scene" ] || { echo "bench_truth_scene is not built"; exit 77; }
+
+"$oriel" synth monument --out photos --size 240x160 --count 8 --quiet &&
+    "$tools/bench_truth_scene" photos photos-truth made 1 4 || exit 1
+
+runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
+grep -q '8 photographs\|6 photographs' stdout.txt || fail "publish does not say what it wrote"
+site=served/path/site
+for file in index.html style.css manifest.json poster.jpg js/main.js shaders/gather.frag \
+    shaders/surfel.glsl points/coarse.bin photos/00000.jpg depth/00000.png thumbs/00000.jpg; do
+    [ -s "$site/$file" ] || fail "the site lacks $file"
+done
+[ -e "$site.part" ] && fail "$site.part is left behind"
+grep -q '<title>A &quot;test&quot; &amp; &lt;more></title>' "$site/index.html" ||
+    fail "the title is not in the page as text"
+grep -q '{{' "$site/index.html" && fail "the page has unfilled places"
+# What must be there before the page shows anything.
+first=$(cat "$site"/{index.html,style.css,manifest.json,poster.jpg,points/coarse.bin} "$site"/js/* \
+    "$site"/shaders/* | wc -c)
+[ "$first" -le 1000000 ] || fail "$first bytes until the first picture"
+
+# An earlier site is replaced, and nothing else.
+runs 0 "$oriel" publish made --out served/path/site --quiet
+mkdir foreign && touch foreign/precious
+runs 2 "$oriel" publish made --out foreign
+[ -e foreign/precious ] || fail "a folder that is no site was emptied"
+runs 2 "$oriel" publish made --out foreign/precious
+runs 2 "$oriel" publish made
+runs 2 "$oriel" publish no-such-scene --out other
+[ -e other ] && fail "a site of no scene"
+runs 2 "$oriel" publish made --out foreign --single-file
+runs 0 "$oriel" publish made --out single.html --single-file --max-points 4000 --max-size 120
+[ -e single.html.part ] && fail "single.html.part is left behind"
+grep -q 'src="photos\|href="style.css"' single.html && fail "the single file names other files"
+runs 0 "$oriel" publish made --out single.html --single-file
+[ $failed -eq 0 ] || exit 1
+
+if ! command -v chromedriver >/dev/null || ! /usr/bin/python3 -c 'import selenium' 2>/dev/null; then
+    echo "the page is not tested: chromium-driver or python3-selenium is missing"
+    exit 77
+fi
+timeout 400 /usr/bin/python3 "$source/tests/web/test_page.py" "$oriel" \
+    "$tools/bench_web_pictures" "$work/made" "$work/$site" "$work/single.html" 2>&1
