@@ -5,7 +5,7 @@ import {byId} from "oriel/ui.js";
 import {text} from "oriel/strings.js";
 
 const MARGIN = 0.06;       // of the map's side
-const SPREAD_LEAST = 0.02; // of the points: those farther out do not count
+const AROUND = 1.2;        // of the scene's distance: what of the points around photographs shows
 const FRUSTUM = 0.05;      // of the map's side
 const CLICK_REACH = 24;    // CSS pixels
 
@@ -33,10 +33,10 @@ export class Map2d {
         cloud.forEachCoarse((p, color) => points.push([...this.flat(p), dot(p, this.navigator.up), color]));
         const places = this.navigator.photos.map(p => this.flat(p.eye));
         const range = k => {
-            const values = points.map(p => p[k]).sort((a, b) => a - b), n = values.length;
-            const own = places.map(p => p[k]);
-            return [Math.min(values[Math.floor(SPREAD_LEAST * n)], ...own),
-                    Math.max(values[Math.floor((1 - SPREAD_LEAST) * (n - 1))], ...own)];
+            const own = places.map(p => p[k]), reach = AROUND * this.navigator.distance;
+            const low = Math.min(...own) - reach, high = Math.max(...own) + reach;
+            const seen = points.map(p => p[k]).filter(v => v > low && v < high).concat(own);
+            return [seen.reduce((a, b) => Math.min(a, b)), seen.reduce((a, b) => Math.max(a, b))];
         };
         const [x0, x1] = range(0), [y0, y1] = range(1);
         const side = Math.max(x1 - x0, y1 - y0, 1e-9) * (1 + 2 * MARGIN);
