@@ -57,7 +57,7 @@ finish() {
 }
 
 step dependencies "checking dependencies"
-extra=(libcmocka-dev openexr imagemagick)
+extra=(libcmocka-dev openexr imagemagick chromium chromium-driver python3-selenium)
 [ "$quick" ] || extra+=(clang)
 install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }
 
