@@ -10,8 +10,10 @@
 #include "walk/web_table.h"
 
 static const char index_name[] = "index.html";
-static const char *const shared_shaders[] = {"proxy/octahedron.glsl", "proxy/surfel.glsl",
-                                             "shared/srgb.glsl", NULL};
+static const char *const shared_shaders[] = {
+    "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl", "gather/sample/srgb.glsl",
+    "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl",
+    "shared/srgb.glsl", NULL};
 static const size_t FILE_MOST = (size_t)1 << 30;
 
 // --- growing text ---
@@ -143,6 +145,22 @@ static enum orl_result write_index(struct site *site)
     return result;
 }
 
+// A shader file, if it is one of those that the page includes too.
+static enum orl_result write_shared(struct site *site, const struct orl_shader_file *file)
+{
+    bool shared = false;
+    for (int i = 0; shared_shaders[i]; i++)
+        shared = shared || strcmp(file->name, shared_shaders[i]) == 0;
+    if (!shared)
+        return ORL_OK;
+    char *path = orl_format(site->log, "shaders/%s", file->name);
+    enum orl_result result = path ? orl_site_write(site, path, file->text, strlen(file->text))
+                                  : ORL_ERR_MEMORY;
+    free(path);
+    site->report->first_bytes += strlen(file->text);
+    return result;
+}
+
 enum orl_result orl_site_page(struct site *site)
 {
     enum orl_result result = write_index(site);
@@ -153,14 +171,7 @@ enum orl_result orl_site_page(struct site *site)
         site->report->first_bytes += strlen(f->text);
     }
     for (const struct orl_shader_file *f = orl_shader_table; result == ORL_OK && f->name; f++)
-        for (int i = 0; result == ORL_OK && shared_shaders[i]; i++) {
-            if (strcmp(f->name, shared_shaders[i]) != 0)
-                continue;
-            char path[64];
-            snprintf(path, sizeof path, "shaders/%s", orl_path_name(f->name));
-            result = orl_site_write(site, path, f->text, strlen(f->text));
-            site->report->first_bytes += strlen(f->text);
-        }
+        result = write_shared(site, f);
     return result;
 }
 

@@ -67,7 +67,8 @@ static enum orl_result check_out(const struct orl_log *log, const char *out, boo
 
 static enum orl_result make_folders(struct site *site)
 {
-    static const char *const folders[] = {"js", "shaders", "points", "photos", "depth", "thumbs"};
+    static const char *const folders[] = {"js", "shaders/gather/sample", "shaders/proxy",
+                                          "shaders/shared", "points", "photos", "depth", "thumbs"};
     enum orl_result result = orl_dir_remove(site->log, site->dir);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
         char *path = orl_site_path(site, folders[i]);
@@ -164,24 +165,45 @@ static enum orl_result make_renderer(struct site *site)
                : result;
 }
 
+// Beside `out`, with or without a slash after it.
+static char *part_name(const struct orl_log *log, const char *out)
+{
+    size_t length = strlen(out);
+    while (length > 1 && out[length - 1] == '/')
+        length--;
+    return orl_format(log, "%.*s.part", (int)length, out);
+}
+
+// The folder's name, without what stands before it and a slash after it.
+static char *scene_name(const struct orl_log *log, const char *dir)
+{
+    char *name = orl_strdup(log, dir);
+    size_t length = name ? strlen(name) : 0;
+    while (length > 1 && name[length - 1] == '/')
+        name[--length] = '\0';
+    char *last = name ? orl_strdup(log, orl_path_name(name)) : NULL;
+    free(name);
+    return last;
+}
+
 enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
                             const struct orl_publish_params *asked,
                             struct orl_publish_report *report)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_publish_params params = *asked;
-    if (!params.title)
-        params.title = orl_path_name(scene->dir);
+    char *title = params.title ? orl_strdup(log, params.title) : scene_name(log, scene->dir);
+    if (!title)
+        return ORL_ERR_MEMORY;
+    params.title = title;
     *report = (struct orl_publish_report){0};
     struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
                         .report = report};
     enum orl_result result = check_out(log, params.out, params.single_file);
     if (result != ORL_OK)
-        return result;
-    site.dir = orl_format(log, "%s.part", params.out);
-    if (!site.dir)
-        return ORL_ERR_MEMORY;
-    result = make_renderer(&site);
+        goto end;
+    site.dir = part_name(log, params.out);
+    result = site.dir ? make_renderer(&site) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = write_site(&site);
     if (result == ORL_OK)
@@ -189,8 +211,11 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
     if (result == ORL_OK)
         result = params.single_file ? orl_site_pack(&site, params.out)
                                     : replace(&site, params.out);
-    enum orl_result removed = orl_dir_remove(log, site.dir);
+    if (site.dir && orl_dir_remove(log, site.dir) != ORL_OK && result == ORL_OK)
+        result = ORL_ERR_IO;
+end:
     orl_renderer_destroy(&site.renderer);
     free(site.dir);
-    return result != ORL_OK ? result : removed;
+    free(title);
+    return result;
 }

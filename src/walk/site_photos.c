@@ -98,14 +98,20 @@ static enum orl_result pack_depth(const struct orl_log *log, const struct orl_im
     return result;
 }
 
-// The surface that this camera sees of the points: what the occlusion test compares with.
+// The surface that this camera sees of the points, without any photograph's help: what the
+// occlusion test compares with.
 static enum orl_result draw_depth(struct site *site, const struct orl_view *view,
                                   struct orl_image *depth)
 {
-    struct orl_render_params params = site->render;
-    params.color = ORL_COLOR_POINTS; // no photograph is asked
+    const struct orl_method *points = orl_method_find(site->log, "points");
+    if (!points)
+        return ORL_ERR_NOT_FOUND;
+    struct orl_render_params params = points->params;
     params.fill = ORL_FILL_NONE;
-    params.antialias = ORL_ANTIALIAS_OFF;
+    params.splat_scale = site->render.splat_scale;
+    params.front_layer = site->render.front_layer;
+    params.min_support = site->render.min_support;
+    params.points_per_pixel = site->render.points_per_pixel;
     params.leave_out = ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE | ORL_LAYER_CONFIDENCE;
     struct orl_frame frame;
     enum orl_result result = orl_renderer_draw(site->renderer, view, &params, NULL, &frame);

@@ -5,7 +5,7 @@ tools=$(dirname "$oriel")/tests
 [ -x "$tools/bench_truth_scene" ] || { echo "bench_truth_scene is not built"; exit 77; }
 
 "$oriel" synth monument --out photos --size 240x160 --count 8 --quiet &&
-    "$tools/bench_truth_scene" photos photos-truth made 1 4 || exit 1
+    "$tools/bench_truth_scene" photos photos-truth made 2 4 || exit 1
 
 runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
 grep -q ': 6 photographs' stdout.txt || fail "publish does not say what it wrote"
@@ -43,5 +43,5 @@ if ! command -v chromedriver >/dev/null || ! /usr/bin/python3 -c 'import seleniu
     echo "the page is not tested: chromium-driver or python3-selenium is missing"
     exit 77
 fi
-timeout 500 /usr/bin/python3 "$source/tests/web/test_page.py" "$oriel" \
+timeout 900 /usr/bin/python3 "$source/tests/web/test_page.py" "$oriel" \
     "$tools/bench_web_pictures" "$work/made" "$work/$site" "$work/single.html" 2>&1

@@ -12,7 +12,7 @@ import unittest
 from browser import Browser, Server
 
 ORIEL, TOOL, SCENE, SITE, SINGLE = sys.argv[1:6]
-WIDTH, HEIGHT = 480, 320 # of the photographs' aspect, with room beside the tools
+WIDTH, HEIGHT = 360, 240 # of the photographs' aspect, with room beside the tools
 
 
 def run(*command):
@@ -48,6 +48,7 @@ class Page(unittest.TestCase):
             const nav = oriel.navigator;
             nav.setMode("walk");
             nav.speed = [0, 0, 0];
+            nav.calm = true; // no flights
             nav.flight = null;
             nav.setView(nav.home, nav.photos[oriel.manifest.start]);
             oriel.wake();""")
@@ -117,14 +118,15 @@ class Page(unittest.TestCase):
 
     def test_layers_differ(self):
         seen = set()
-        for _ in range(6): # the points come last
+        for layer in range(6): # the points come last
             picture = self.file("layer.png")
-            self.browser.capture(picture, self.cameras[0], self.browser.js("return oriel.layer"))
+            self.browser.capture(picture, self.cameras[0], layer)
             with open(picture, "rb") as file:
                 seen.add(file.read())
-            self.press("l", "KeyL")
         self.assertEqual(len(seen), 6)
-        self.assertEqual(self.browser.js("return oriel.layer"), 0)
+        self.press("l", "KeyL")
+        self.assertEqual(self.browser.js("return oriel.layer"), 1)
+        self.browser.js("oriel.setLayer(0)")
 
     # --- movement ---
 
@@ -142,7 +144,7 @@ class Page(unittest.TestCase):
 
     def test_drag_looks(self):
         before = self.view()
-        self.drag((150, 80), (120, 80), (90, 80))
+        self.drag((150, 70), (120, 70), (90, 70))
         self.browser.settle()
         # The scene follows the pointer: to the left, so the view turns right.
         now, focal = self.view(), before["frame"]["fx"] * HEIGHT
@@ -161,7 +163,7 @@ class Page(unittest.TestCase):
     def test_orbit_keeps_the_middle(self):
         self.press("3", "Digit3")
         before = self.browser.js("return oriel.navigator.pivot")
-        self.drag((120, 80), (150, 80))
+        self.drag((120, 70), (150, 70))
         self.browser.settle()
         self.assertEqual(before, self.browser.js("return oriel.navigator.pivot"))
         x = self.browser.js("""
@@ -179,9 +181,10 @@ class Page(unittest.TestCase):
     # --- photographs ---
 
     def test_snap_lands_on_the_photograph(self):
-        self.drag((150, 80), (140, 80))
+        self.drag((150, 70), (140, 70))
         self.hold("KeyD", "d")
         self.assertIsNone(self.browser.js("return oriel.navigator.at"))
+        self.browser.js("oriel.navigator.calm = false")
         self.press("p", "KeyP")
         at = self.browser.js("return oriel.navigator.at.name")
         camera = next(c for c in self.cameras if c["name"] == at)
@@ -224,7 +227,7 @@ class Page(unittest.TestCase):
     # --- the page ---
 
     def test_address_keeps_the_view(self):
-        self.drag((150, 80), (130, 70))
+        self.drag((150, 70), (130, 60))
         self.browser.settle()
         before, address = self.view(), self.browser.driver.current_url
         self.assertIn("#v=", address)

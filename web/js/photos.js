@@ -166,7 +166,7 @@ export class PhotoStore {
     }
 }
 
-// As struct photo of photo.glsl.
+// As struct photo of shaders/gather/photo.glsl.
 function describePhoto(photo, camera)
 {
     const out = [];
@@ -179,8 +179,8 @@ function describePhoto(photo, camera)
     out.push(...rotate(camera.r, sub(photo.eye, camera.eye)), photo.slot);
     out.push(photo.fx, photo.fy, photo.cx, photo.cy);
     out.push(width, height, depth.width, depth.height);
-    out.push(...photo.gain, depth.nearest);
+    out.push(...photo.gain, 0);
     out.push(...photo.vignette, 4 / (width * width + height * height));
-    out.push(photo.number, 0, 0, 0);
+    out.push(photo.number, depth.nearest, 0, 0);
     return out;
 }

@@ -3,11 +3,14 @@
 import {add, dot, rotate, scale, sub} from "oriel/math.js";
 import {PhotoStore} from "oriel/photos.js";
 
+// The page's own and, in folders, those that it shares with the renderer.
 const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "level0.glsl", "pull.frag",
     "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
-    "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "photo.glsl", "choose.frag",
-    "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag", "compose.frag", "show.frag",
-    "octahedron.glsl", "surfel.glsl", "srgb.glsl"];
+    "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "gather/photo.glsl", "choose.frag",
+    "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag",
+    "compose.frag", "show.frag", "gather/guess_blur.glsl", "gather/hidden.glsl",
+    "gather/penalty.glsl", "gather/sample/srgb.glsl", "proxy/octahedron.glsl", "proxy/surfel.glsl",
+    "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
 const LEVELS_MOST = 9;     // of the surfel pyramid
 const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
@@ -32,7 +35,7 @@ function makePrograms(device, sources)
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
         fillDepth: screen("fill_depth.frag"), depthUnpack: screen("depth_unpack.frag"),
         choose: screen("choose.frag", {TILE}), vote: screen("silhouette_vote.frag", {TILE}),
-        cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE}),
+        cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
         show: screen("show.frag", {FLIP: 1}), capture: screen("show.frag"),
     };
@@ -124,7 +127,7 @@ export class Renderer {
         this.resize(camera.width, camera.height);
         const o = this.manifest.options, f = this.frame;
         this.camera = camera;
-        this.values = {focal: [camera.fx, camera.fy, camera.cx, camera.cy],
+        this.values = {view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
                        front_layer: Math.max(o.front_layer, 1e-9), typical: this.manifest.distance,
                        ground: this.groundAlongRays(camera)};
         this.splat(camera, o);
@@ -233,13 +236,14 @@ export class Renderer {
     {
         const f = this.frame, store = this.photos, count = store.describe(camera, this.values.typical);
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
-                        photo_depth: store.depth, depth_tolerance: o.depth_tolerance,
-                        border_px: o.border_px, mip_most: store.levels - 1,
-                        slot_size: [store.width, store.height], view_depth: f.depth.textures[0],
-                        silhouette: Math.round(o.silhouette), photos: count, tiles: f.tiles.textures[0], candidates: Math.round(o.candidates),
-                        outliers: o.outliers, unknown_trust: o.unknown_trust, sharpness: o.sharpness,
-                        guess_sharpness: o.guess_sharpness, guess_blur_share: o.guess_blur,
-                        photos_per_pixel: Math.round(o.photos_per_pixel)};
+                        photo_depth: store.depth, slot_size: [store.width, store.height],
+                        last_mip: store.levels - 1, border_px: o.border_px, photos: count,
+                        blur_per_radian: o.guess_blur, silhouette: Math.round(o.silhouette),
+                        candidates: Math.round(o.candidates), outliers: o.outliers,
+                        photos_per_pixel: Math.round(o.photos_per_pixel),
+                        view_depth: f.depth.textures[0], tiles: f.tiles.textures[0]};
+        for (const [key, value] of Object.entries(o))
+            values[`opt.${key}`] = value;
         this.device.pass(this.programs.choose, f.tiles, values);
         if (values.silhouette > 0) {
             this.device.pass(this.programs.vote, f.votes, values);

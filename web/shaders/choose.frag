@@ -1,6 +1,7 @@
 // The photographs that can paint a tile of the screen best, as shaders/gather/choose.comp lists
 // them: eight bytes, best first, 255: none.
-#include "photo.glsl"
+#include "gather/penalty.glsl"
+#include "gather/hidden.glsl"
 
 uniform sampler2D view_depth; // < 0: guessed
 uniform int photos;
@@ -16,7 +17,7 @@ void main()
         ivec2 at = tile * TILE + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * TILE / (2 * ACROSS);
         at = min(at, area - 1);
         float depth = abs(texelFetch(view_depth, at, 0).x);
-        points[i] = vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0) * depth;
+        points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
     }
     float best[CANDIDATES];
     uint index[CANDIDATES];

@@ -12,9 +12,8 @@ float blur_around(ivec2 at)
 {
     float blur = 0.0;
     for (int i = 0; i < 4; i++) {
-        float a = texelFetch(painted, min(at / 2 * 2 + ivec2(i & 1, i >> 1),
-                                          textureSize(painted, 0) - 1), 0).a;
-        blur = max(blur, -1.0 - a);
+        ivec2 from = min(at / 2 * 2 + ivec2(i & 1, i >> 1), textureSize(painted, 0) - 1);
+        blur = max(blur, pixel_blur(texelFetch(painted, from, 0)));
     }
     return blur;
 }
@@ -23,9 +22,9 @@ void main()
 {
     ivec2 at = ivec2(gl_FragCoord.xy), area = textureSize(normals, 0);
     vec4 own = own_color(at);
-    if (own.a == -1.0) {
+    if (!pixel_is_finished(own) && pixel_blur(own) == 0.0) {
         vec4 finer = fill_finer(filled, at);
-        composed = vec4(finer.a > 0.0 ? finer.rgb / finer.a : vec3(0.0), 0.0);
+        composed = pixel_finished(finer.a > 0.0 ? finer.rgb / finer.a : vec3(0.0), false);
         return;
     }
     float blur = own.a > 0.5 ? 0.0 : blur_around(at);
@@ -37,5 +36,5 @@ void main()
         vec3 soft = around.a > 1e-6 ? around.rgb / around.a : color;
         color = mix(color, soft, min(blur, 1.0));
     }
-    composed = vec4(color, own.a > 0.5 ? 1.0 : 0.0);
+    composed = pixel_finished(color, own.a > 0.5);
 }

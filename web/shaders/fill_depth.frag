@@ -2,7 +2,7 @@
 // than the ground.
 #include "fill_finer.glsl"
 uniform sampler2D known, filled;
-uniform vec4 focal;
+uniform vec4 view_focal;
 uniform vec4 ground; // dot(xyz, ray) is its inverse depth; w: the least that counts
 layout(location = 0) out float depth;
 
@@ -13,6 +13,6 @@ void main()
     vec4 finer = fill_finer(filled, at);
     if (depth > 0.0 || !(finer.r > 0.0))
         return;
-    float inverse = dot(ground.xyz, vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0));
+    float inverse = dot(ground.xyz, vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0));
     depth = -1.0 / max(finer.r / finer.a, inverse > ground.w ? inverse : 0.0);
 }

@@ -1,7 +1,7 @@
 // Level 0 of the pyramid: the nearest point of a pixel, moved to the mean depth of its layer, since
 // the nearest of many noisy points is too near.
-#include "octahedron.glsl"
-#include "surfel.glsl"
+#include "proxy/octahedron.glsl"
+#include "proxy/surfel.glsl"
 
 uniform sampler2D splats; // splats.frag
 uniform highp usampler2D splat_normals;

@@ -1,6 +1,6 @@
 // Points of one cell, one pixel each. Row 0 of every target but the canvas is the top row.
 // LAYER: the points of the front layer alone, which layer.frag sums for their mean depth.
-#include "octahedron.glsl"
+#include "proxy/octahedron.glsl"
 
 layout(location = 0) in vec3 part;       // position within the cell's bounds
 layout(location = 1) in vec2 octahedral; // normal
@@ -8,7 +8,7 @@ layout(location = 2) in vec4 look;       // sRGB colour; how large the radius is
 uniform mat3 rotation;                   // camera from world
 uniform vec3 cell_low, cell_size;        // bounds; low relative to the eye
 uniform vec2 cell_radius;                // the smallest, and octaves up to the largest
-uniform vec4 focal;                      // fx fy cx cy, pixels
+uniform vec4 view_focal;                      // fx fy cx cy, pixels
 uniform vec2 size;                       // pixels
 uniform float typical;                   // depth, where the depth test is most exact
 
@@ -25,7 +25,7 @@ flat out vec3 color;
 void main()
 {
     vec3 p = rotation * (cell_low + part * cell_size);
-    vec2 pixel = focal.xy * p.xy / p.z + focal.zw;
+    vec2 pixel = view_focal.xy * p.xy / p.z + view_focal.zw;
     vec2 at = floor(pixel);
     bool drawn = p.z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < size.x && at.y < size.y;
 #ifdef LAYER

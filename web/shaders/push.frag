@@ -5,7 +5,7 @@
 
 uniform sampler2D coarse_a;
 uniform highp usampler2D coarse_b;
-uniform vec4 focal;
+uniform vec4 view_focal;
 #ifdef LAST
 layout(location = 0) out float depth_out; // 0: none
 layout(location = 1) out vec4 normal_out; // half of it and a half; a: 1 on a splat
@@ -20,7 +20,7 @@ layout(location = 1) out uvec2 filled_b;
 
 vec2 camera_ray(vec2 pixel)
 {
-    return (pixel - focal.zw) / focal.xy;
+    return (pixel - view_focal.zw) / view_focal.xy;
 }
 
 surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec4 weight)

@@ -13,7 +13,8 @@ void main()
         if (from.x >= area.x || from.y >= area.y)
             continue;
         vec4 own = own_color(from);
-        vec4 color = own.a == -1.0 ? vec4(0.0) : vec4(own.rgb, 1.0);
+        bool unpainted = !pixel_is_finished(own) && pixel_blur(own) == 0.0;
+        vec4 color = unpainted ? vec4(0.0) : vec4(own.rgb, 1.0);
         seeded += color * 0.25;
         guesses += own.a > 0.5 ? vec4(0.0) : color * 0.25;
     }

@@ -1,5 +1,5 @@
 // One layer of the finished frame as sRGB. The canvas has its bottom row first: FLIP.
-#include "srgb.glsl"
+#include "shared/srgb.glsl"
 uniform sampler2D composed, depth, normals, source;
 uniform int layer;     // as LAYERS of renderer.js
 uniform float typical; // depth

@@ -1,6 +1,8 @@
 // Depth from splats reaches past silhouettes by a few pixels: each pixel before an edge of depth
 // votes on belonging behind it, as shaders/edges/silhouette_find.comp and silhouette_judge.comp do.
-#include "photo.glsl"
+#include "gather/penalty.glsl"
+#include "gather/hidden.glsl"
+#include "gather/sample/srgb.glsl"
 
 uniform sampler2D view_depth; // < 0: guessed
 uniform highp usampler2D tiles; // choose.frag
@@ -26,7 +28,7 @@ float depth_at(ivec2 at)
 
 vec3 look(photo shot, vec2 pixel, float z, vec3 p)
 {
-    vec3 color = photo_texel(pixel / slot_size, shot.eye.w, floor(photo_mip(shot, z, p.z)));
+    vec3 color = photo_bilinear(shot, pixel, floor(photo_mip(shot, z, p.z))).rgb;
     return sqrt(photo_aligned(shot, pixel, color));
 }
 
@@ -36,10 +38,10 @@ opinion ask(uvec2 list, vec3 p)
     vec4 sum = vec4(0.0);
     float squares = 0.0, weights = 0.0, most = 0.0;
     for (int c = 0; c < candidates; c++) {
-        uint i = (c < 4 ? list.x : list.y) >> uint(8 * (c & 3)) & 255u;
-        if (i == 255u)
+        int i = photo_listed(list, c);
+        if (i < 0)
             break;
-        photo shot = photo_at(int(i));
+        photo shot = photo_at(i);
         vec2 pixel;
         float z;
         if (!photo_project(shot, p, pixel, z))
@@ -51,7 +53,7 @@ opinion ask(uvec2 list, vec3 p)
         squares += dot(color, color) * weight;
         weights += weight * weight;
         if (weight > most) {
-            o.best = int(i);
+            o.best = i;
             o.best_color = color;
             most = weight;
         }
@@ -66,7 +68,7 @@ opinion ask(uvec2 list, vec3 p)
 
 vec3 ray(ivec2 at)
 {
-    return vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0);
+    return vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0);
 }
 
 float likeness(opinion here, opinion there, ivec2 inner)
