@@ -17,6 +17,7 @@ static const struct command commands[] = {
     {"render", "render new views", cmd_render},
     {"synth", "synthetic photographs with ground truth", cmd_synth},
     {"tune", "fit a method's options to a scene", cmd_tune},
+    {"walk", "walk through a scene in the browser, drawn by this machine", cmd_walk},
     {0},
 };
 

@@ -112,12 +112,13 @@ static void fill_template(const struct value *values, size_t count, struct text 
 
 enum { TITLE, POSTER, STYLE, MODULES, FILES, VALUES };
 
-static void start_values(const struct site *site, struct value values[VALUES])
+static void start_values(const struct orl_log *log, const char *title,
+                         struct value values[VALUES])
 {
     static const char *const keys[VALUES] = {"title", "poster", "style", "modules", "files"};
     for (int i = 0; i < VALUES; i++)
-        values[i] = (struct value){.key = keys[i], .text = {.log = site->log}};
-    add_html(&values[TITLE].text, site->params->title);
+        values[i] = (struct value){.key = keys[i], .text = {.log = log}};
+    add_html(&values[TITLE].text, title);
 }
 
 static void finish_values(struct value values[VALUES])
@@ -126,22 +127,30 @@ static void finish_values(struct value values[VALUES])
         free(values[i].text.data);
 }
 
-static enum orl_result write_index(struct site *site)
+char *orl_walk_index(const struct orl_log *log, const char *title, const char *poster)
 {
     struct value values[VALUES];
-    struct text page = {.log = site->log};
-    start_values(site, values);
-    add(&values[POSTER].text, "poster.jpg");
+    struct text page = {.log = log};
+    start_values(log, title, values);
+    add(&values[POSTER].text, poster);
     add(&values[STYLE].text, "<link rel=\"stylesheet\" href=\"style.css\">");
     add(&values[MODULES].text,
         "<script type=\"importmap\">{\"imports\": {\"oriel/\": \"./js/\"}}</script>");
     fill_template(values, VALUES, &page);
-    enum orl_result result = page.result;
-    if (result == ORL_OK)
-        result = orl_site_write(site, index_name, page.data, page.size);
-    site->report->first_bytes += page.size;
     finish_values(values);
+    if (page.result == ORL_OK)
+        return page.data;
     free(page.data);
+    return NULL;
+}
+
+static enum orl_result write_index(struct site *site)
+{
+    char *page = orl_walk_index(site->log, site->params->title, "poster.jpg");
+    enum orl_result result = page ? orl_site_write(site, index_name, page, strlen(page))
+                                  : ORL_ERR_MEMORY;
+    site->report->first_bytes += page ? strlen(page) : 0;
+    free(page);
     return result;
 }
 
@@ -248,7 +257,7 @@ enum orl_result orl_site_pack(struct site *site, const char *file)
 {
     struct value values[VALUES];
     struct text page = {.log = site->log}, files = {.log = site->log};
-    start_values(site, values);
+    start_values(site->log, site->params->title, values);
     add(&values[STYLE].text, "<style>");
     add(&values[STYLE].text, web_file("style.css"));
     add(&values[STYLE].text, "</style>");

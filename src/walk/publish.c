@@ -1,7 +1,6 @@
 // A site, part by part; it appears under its name only when it is whole.
 #include "walk/publish.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,30 +87,6 @@ static enum orl_result replace(const struct site *site, const char *out)
 
 // --- what ---
 
-// The training photograph that is nearest to all others.
-static enum orl_result find_start(struct site *site)
-{
-    const struct orl_scene *scene = site->scene;
-    double least = INFINITY;
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        double a[3], sum = 0;
-        orl_pose_centre(&scene->photos[i].view.cam_from_world, a);
-        for (size_t j = 0; j < scene->photo_count; j++) {
-            double b[3];
-            orl_pose_centre(&scene->photos[j].view.cam_from_world, b);
-            if (!scene->photos[j].test)
-                sum += hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
-        }
-        if (!scene->photos[i].test && sum < least) {
-            least = sum;
-            site->start = i;
-        }
-    }
-    return isfinite(least) ? ORL_OK
-                           : orl_fail(site->log, ORL_ERR_DATA, "the scene has no photographs that "
-                                      "may be shown");
-}
-
 static size_t folder_bytes(const struct site *site, const char *folder)
 {
     struct orl_names names = {0};
@@ -134,7 +109,7 @@ static size_t folder_bytes(const struct site *site, const char *folder)
 static enum orl_result write_site(struct site *site)
 {
     json_t *points = NULL, *photos = NULL;
-    enum orl_result result = find_start(site);
+    enum orl_result result = orl_walk_start(site->log, site->scene, &site->start);
     if (result == ORL_OK)
         result = make_folders(site);
     if (result == ORL_OK)
@@ -174,25 +149,13 @@ static char *part_name(const struct orl_log *log, const char *out)
     return orl_format(log, "%.*s.part", (int)length, out);
 }
 
-// The folder's name, without what stands before it and a slash after it.
-static char *scene_name(const struct orl_log *log, const char *dir)
-{
-    char *name = orl_strdup(log, dir);
-    size_t length = name ? strlen(name) : 0;
-    while (length > 1 && name[length - 1] == '/')
-        name[--length] = '\0';
-    char *last = name ? orl_strdup(log, orl_path_name(name)) : NULL;
-    free(name);
-    return last;
-}
-
 enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
                             const struct orl_publish_params *asked,
                             struct orl_publish_report *report)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_publish_params params = *asked;
-    char *title = params.title ? orl_strdup(log, params.title) : scene_name(log, scene->dir);
+    char *title = params.title ? orl_strdup(log, params.title) : orl_walk_title(log, scene);
     if (!title)
         return ORL_ERR_MEMORY;
     params.title = title;

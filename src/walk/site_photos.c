@@ -147,16 +147,6 @@ static json_t *vector_json(const float v[3])
     return json_pack("[f,f,f]", (double)v[0], (double)v[1], (double)v[2]);
 }
 
-// Rows of cam_from_world: rotation and translation.
-static json_t *pose_json(const struct orl_pose *pose)
-{
-    json_t *rows = json_array();
-    for (int i = 0; i < 3; i++)
-        json_array_append_new(rows, json_pack("[f,f,f,f]", pose->r[i][0], pose->r[i][1],
-                                              pose->r[i][2], pose->t[i]));
-    return rows;
-}
-
 static enum orl_result write_photo(struct site *site, size_t index, size_t number, json_t **out)
 {
     const struct orl_photo *photo = &site->scene->photos[index];
@@ -178,13 +168,15 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
                            json_pack("{s:i, s:i, s:f, s:i}", "width", depth_view.camera.width,
                                      "height", depth_view.camera.height, "nearest", (double)nearest,
                                      "steps_per_fold", STEPS_PER_FOLD));
-    *out = json_pack("{s:s, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "name",
-                     photo->name, "width", c.width, "height", c.height, "fx", c.fx, "fy", c.fy,
-                     "cx", c.cx, "cy", c.cy, "cam_from_world",
-                     pose_json(&photo->view.cam_from_world), "gain", vector_json(photo->gain),
-                     "vignette", vector_json(photo->vignette), "picture",
-                     orl_site_file(site, picture), "thumb", orl_site_file(site, thumb), "depth",
-                     depth_file);
+    *out = orl_walk_photo(photo, &c);
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o}", "gain", vector_json(photo->gain),
+                             "vignette", vector_json(photo->vignette), "picture",
+                             orl_site_file(site, picture), "thumb", orl_site_file(site, thumb),
+                             "depth", depth_file);
+    if (*out && json_object_update_new(*out, more) != 0) {
+        json_decref(*out);
+        *out = NULL;
+    }
     return *out ? ORL_OK : ORL_ERR_MEMORY;
 }
 

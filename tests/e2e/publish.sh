@@ -11,7 +11,7 @@ runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
 grep -q ': 6 photographs' stdout.txt || fail "publish does not say what it wrote"
 site=served/path/site
 for file in index.html style.css manifest.json poster.jpg js/main.js shaders/gather.frag \
-    shaders/surfel.glsl points/coarse.bin photos/00000.jpg depth/00000.png thumbs/00000.jpg; do
+    shaders/proxy/surfel.glsl shaders/gather/photo.glsl points/coarse.bin photos/00000.jpg depth/00000.png thumbs/00000.jpg; do
     [ -s "$site/$file" ] || fail "the site lacks $file"
 done
 [ -e "$site.part" ] && fail "$site.part is left behind"
@@ -19,8 +19,8 @@ grep -q '<title>A &quot;test&quot; &amp; &lt;more></title>' "$site/index.html" |
     fail "the title is not in the page as text"
 grep -q '{{' "$site/index.html" && fail "the page has unfilled places"
 # What must be there before the page shows anything.
-first=$(cat "$site"/{index.html,style.css,manifest.json,poster.jpg,points/coarse.bin} "$site"/js/* \
-    "$site"/shaders/* | wc -c)
+first=$(find "$site" \( -path '*/js/*' -o -path '*/shaders/*' -o -path '*/points/coarse.bin' -o \
+    -path "$site/*" ! -path "$site/*/*" \) -type f -exec cat {} + | wc -c)
 [ "$first" -le 1000000 ] || fail "$first bytes until the first picture"
 
 # An earlier site is replaced, and nothing else.

@@ -15,6 +15,9 @@ struct setup {
     struct orl_publish_params params;
     struct orl_publish_report report;
     struct site site;
+    uint8_t *coarse; // points/coarse.bin, once published
+    size_t size;
+    uint32_t cells;
 };
 
 // A flat square of side 1 with `count` points a side; its right half has radii of 0.04, the rest
@@ -43,6 +46,7 @@ static void start(struct setup *s, size_t side)
 
 static void finish(struct setup *s)
 {
+    free(s->coarse);
     orl_points_finish(&s->scene.points);
     test_dir_remove(s->dir);
 }
@@ -54,6 +58,15 @@ static uint8_t *read_file(struct setup *s, const char *name, size_t *size)
     assert_int_equal(orl_file_read(&s->log, path, 1 << 30, &data, size), ORL_OK);
     free(path);
     return data;
+}
+
+static void publish(struct setup *s)
+{
+    json_t *json = NULL;
+    assert_int_equal(orl_site_points(&s->site, &json), ORL_OK);
+    json_decref(json);
+    s->coarse = read_file(s, "points/coarse.bin", &s->size);
+    memcpy(&s->cells, s->coarse + 8, sizeof s->cells);
 }
 
 static float word(const uint8_t *cell, int index)
@@ -87,20 +100,18 @@ static void test_points_come_back(void **state)
     struct setup s;
     enum { SIDE = 300 };
     start(&s, SIDE);
-    json_t *json = NULL;
-    assert_int_equal(orl_site_points(&s.site, &json), ORL_OK);
+    publish(&s);
     assert_int_equal(s.report.points, SIDE * SIDE);
-    size_t size, rest_size[2], total = 0;
-    uint8_t *coarse = read_file(&s, "points/coarse.bin", &size);
+    size_t rest_size[2], total = 0;
+    const uint8_t *coarse = s.coarse;
     uint8_t *rest[2] = {read_file(&s, "points/0000.bin", &rest_size[0]),
                         read_file(&s, "points/0001.bin", &rest_size[1])};
-    uint32_t cells = number(coarse, 2);
     assert_int_equal(number(coarse, 3), POINT);
-    assert_int_equal(cells, (SIDE * SIDE + 4095) / 4096);
-    assert_true(size < 440 << 10);
-    const uint8_t *next = coarse + HEADER + CELL * cells;
+    assert_int_equal(s.cells, (SIDE * SIDE + 4095) / 4096);
+    assert_true(s.size < 440 << 10);
+    const uint8_t *next = coarse + HEADER + CELL * s.cells;
     uint8_t *seen = orl_array(&s.log, SIDE * SIDE, 1);
-    for (uint32_t c = 0; c < cells; c++) {
+    for (uint32_t c = 0; c < s.cells; c++) {
         const uint8_t *cell = coarse + HEADER + CELL * c;
         uint32_t count = number(cell, 12), first = number(cell, 13), file = number(cell, 14);
         for (uint32_t i = 0; i < count; i++) {
@@ -120,12 +131,10 @@ static void test_points_come_back(void **state)
         total += count;
     }
     assert_int_equal(total, SIDE * SIDE);
-    assert_int_equal(next - coarse, size);
+    assert_int_equal(next - coarse, s.size);
     free(seen);
-    free(coarse);
     free(rest[0]);
     free(rest[1]);
-    json_decref(json);
     finish(&s);
 }
 
@@ -135,11 +144,9 @@ static void test_first_parts_are_spread(void **state)
     (void)state;
     struct setup s;
     start(&s, 256);
-    json_t *json = NULL;
-    assert_int_equal(orl_site_points(&s.site, &json), ORL_OK);
-    size_t size;
-    uint8_t *coarse = read_file(&s, "points/coarse.bin", &size);
-    const uint8_t *cell = coarse + HEADER, *points = coarse + HEADER + CELL * number(coarse, 2);
+    publish(&s);
+    const uint8_t *coarse = s.coarse;
+    const uint8_t *cell = coarse + HEADER, *points = coarse + HEADER + CELL * s.cells;
     int counts[9] = {0}, first = 90;
     assert_true(number(cell, 13) >= (uint32_t)first);
     for (int i = 0; i < first; i++) {
@@ -151,8 +158,6 @@ static void test_first_parts_are_spread(void **state)
     }
     for (int k = 0; k < 9; k++)
         assert_in_range(counts[k], 5, 16);
-    free(coarse);
-    json_decref(json);
     finish(&s);
 }
 
@@ -163,20 +168,16 @@ static void test_thinned_points_grow(void **state)
     struct setup s;
     start(&s, 256);
     s.params.max_points = 256 * 256 / 4;
-    json_t *json = NULL;
-    assert_int_equal(orl_site_points(&s.site, &json), ORL_OK);
+    publish(&s);
     assert_int_equal(s.report.points, 256 * 256 / 4);
-    size_t size;
-    uint8_t *coarse = read_file(&s, "points/coarse.bin", &size);
+    const uint8_t *coarse = s.coarse;
     float least = INFINITY, most = 0;
-    for (uint32_t c = 0; c < number(coarse, 2); c++) {
+    for (uint32_t c = 0; c < s.cells; c++) {
         const uint8_t *cell = coarse + HEADER + CELL * c;
         least = fminf(least, word(cell, 6));
         most = fmaxf(most, word(cell, 6) * exp2f(word(cell, 7)));
     }
     assert_true(fabsf(least - 0.02f) < 1e-4f && fabsf(most - 0.08f) < 1e-3f);
-    free(coarse);
-    json_decref(json);
     finish(&s);
 }
 
@@ -201,10 +202,8 @@ static void test_degenerate_points(void **state)
         memset(s.scene.points.position[i], 0, sizeof s.scene.points.position[i]);
     for (size_t i = 9000; i < 9100; i++)
         s.scene.points.position[i][1] = NAN;
-    json_t *json = NULL;
-    assert_int_equal(orl_site_points(&s.site, &json), ORL_OK);
+    publish(&s);
     assert_int_equal(s.report.points, 9900);
-    json_decref(json);
     finish(&s);
 }
 

@@ -54,7 +54,7 @@ class Browser:
         self.settle(seconds)
 
     def settle(self, seconds=90):
-        self.wait("return !!window.oriel && oriel.complete && oriel.refined && !oriel.running", seconds)
+        self.wait("return !!window.oriel && oriel.settled", seconds)
 
     def wait(self, condition, seconds=90):
         end = time.monotonic() + seconds
@@ -94,12 +94,9 @@ class Browser:
 HINT = "return document.getElementById('hint') ? document.getElementById('hint').textContent : ''"
 
 CAPTURE = """
-const image = oriel.renderer.capture(arguments[0], arguments[1]);
-const canvas = document.createElement("canvas");
-canvas.width = image.width;
-canvas.height = image.height;
-canvas.getContext("2d").putImageData(image, 0, 0);
-oriel.refined = false;
-oriel.wake();
-return canvas.toDataURL("image/png");
+return oriel.picture.capture(arguments[0], arguments[1]).then(canvas => {
+    oriel.refined = false;
+    oriel.wake();
+    return canvas.toDataURL("image/png");
+});
 """

@@ -26,11 +26,11 @@ def median(values):
 
 # Milliseconds of one frame of a camera, finished on the device, of each of two layers.
 TIME = """
-const [camera, layer, frames] = arguments, gl = oriel.device.gl, times = [];
+const [camera, layer, frames] = arguments, renderer = oriel.picture.renderer, times = [];
 for (let i = 0; i < frames; i++) {
     const start = performance.now();
-    oriel.renderer.draw(camera, layer);
-    oriel.renderer.depthAt(0, 0);
+    renderer.draw(camera, layer);
+    renderer.depthAt(0, 0);
     times.push(performance.now() - start);
 }
 return times;
@@ -55,12 +55,12 @@ def main():
         browser.driver.get(server.address)
         browser.wait("return document.getElementById('poster').complete")
         print(f"poster after {time.monotonic() - start:.1f} s")
-        browser.wait("return !!window.oriel && oriel.renderer.frame !== null")
+        browser.wait("return !!window.oriel && oriel.picture.renderer.frame !== null")
         print(f"coarse points after {time.monotonic() - start:.1f} s, "
               f"{browser.js('return oriel.files.bytes') / 1e6:.2f} MB of data")
         browser.settle()
         print(f"everything after {time.monotonic() - start:.1f} s")
-        print(f"graphics memory {browser.js('return oriel.device.bytes + oriel.cloud.bytes') / 1e6:.0f} MB")
+        print(f"graphics memory {browser.js('return oriel.picture.device.bytes + oriel.picture.cloud.bytes') / 1e6:.0f} MB")
         print("photograph         page: PSNR  SSIM  oriel: PSNR  SSIM  page to oriel: PSNR  SSIM")
         rows = []
         for camera in test:

@@ -28,6 +28,15 @@ export class Files {
         this.running = 0;
     }
 
+    // Of the web server. A token in the page's own address is passed on.
+    url(path)
+    {
+        const url = new URL(path, document.baseURI), token = new URLSearchParams(location.search).get("token");
+        if (token)
+            url.searchParams.set("token", token);
+        return url;
+    }
+
     // The file's bytes, at once.
     async get(path)
     {
@@ -37,7 +46,7 @@ export class Files {
                 throw new Error(text.missing(path));
             data = decodeBase64(this.embedded[path]);
         } else {
-            const answer = await fetch(new URL(path, document.baseURI));
+            const answer = await fetch(this.url(path));
             if (!answer.ok)
                 throw new Error(text.notLoaded(path, answer.status));
             data = await answer.arrayBuffer();
@@ -60,7 +69,7 @@ export class Files {
     async address(path)
     {
         if (!this.embedded)
-            return new URL(path, document.baseURI).href;
+            return this.url(path).href;
         return URL.createObjectURL(new Blob([await this.get(path)]));
     }
 

@@ -1,40 +1,29 @@
 // The walk: loads the site, draws when something changes, and joins input, picture and tools.
 import {Files} from "oriel/files.js";
-import {Device} from "oriel/gl.js";
 import {Input} from "oriel/input.js";
+import {LivePicture} from "oriel/live.js";
+import {LocalPicture} from "oriel/local.js";
 import {Map2d} from "oriel/map.js";
-import {clamp, distance} from "oriel/math.js";
+import {clamp} from "oriel/math.js";
 import {Navigator, MODES} from "oriel/navigation.js";
-import {makePhotos, preselect} from "oriel/photos.js";
-import {Cloud} from "oriel/points.js";
-import {LAYERS, loadShaders, Renderer} from "oriel/renderer.js";
+import {makePhotos} from "oriel/photos.js";
 import {text} from "oriel/strings.js";
 import {buildHelp, byId, Compare, Panel, showHint, showProgress, Thumbs, Tools} from "oriel/ui.js";
 import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "oriel/view.js";
 
-const PIXELS_MOST = 2.6e6;                // of a picture, whatever the screen
-const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of it while moving
+const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
 const FRAME_LONG = 38, FRAME_SHORT = 14;  // milliseconds: fewer pixels, more pixels
+const LIVE_LONG = 90, LIVE_SHORT = 45;    // the same of frames that come over the network
 const REFINE_AFTER = 140;                 // milliseconds of rest
 const POSTER_SHARE = 0.625;               // height to width: POSTER_* of site_photos.c
 
-// Bytes for photographs on the graphics chip: what phones stand, more where there is more.
-function photoBudget()
-{
-    const gigabytes = navigator.deviceMemory || (matchMedia("(pointer: coarse)").matches ? 2 : 8);
-    return (gigabytes >= 8 ? 768 : gigabytes >= 4 ? 384 : 160) * 2 ** 20;
-}
-
 class Walk {
-    constructor(files, manifest, sources, coarse)
+    constructor(files, manifest, photos)
     {
         this.files = files;
         this.manifest = manifest;
         this.canvas = byId("canvas");
-        this.photos = makePhotos(manifest);
-        this.device = new Device(this.canvas);
-        this.cloud = new Cloud(this.device, coarse);
-        this.renderer = new Renderer(this.device, sources, manifest, this.photos, this.cloud, photoBudget());
+        this.photos = photos;
         this.layer = 0;
         this.scale = 0;          // index into SCALES
         this.frames = [];        // milliseconds of the last frames while moving
@@ -42,24 +31,35 @@ class Walk {
         this.restSince = 0;
         this.refined = false;
         this.lastTime = 0;
-        this.allBytes = totalBytes(manifest) + coarse.byteLength;
         this.navigator = new Navigator(manifest, this.photos, {
             calm: matchMedia("(prefers-reduced-motion: reduce)").matches,
-            pivotAt: () => this.middle(),
+            pivotAt: () => this.picture.middle(),
         });
+        this.running = false;
+    }
+
+    // The picture can be drawn from now on.
+    begin(picture)
+    {
+        this.picture = picture;
         this.buildTools();
         this.readAddress();
+        this.placePoster();
         window.addEventListener("hashchange", () => this.readAddress());
         window.addEventListener("resize", () => this.wake());
         this.canvas.setAttribute("aria-label", text.canvas);
-        this.canvas.addEventListener("webglcontextlost", event => {
-            event.preventDefault();
-            showHint(text.lostDevice, true);
-        });
-        this.canvas.addEventListener("webglcontextrestored", () => location.reload());
-        this.placePoster();
-        this.requestAll();
-        this.running = false;
+        this.wake();
+    }
+
+    // Something came that makes the picture better; took: milliseconds, of a frame that has come.
+    changed(took)
+    {
+        if (!this.picture)
+            return;
+        if (took !== undefined)
+            this.adapt(took, 0);
+        else
+            this.refined = false;
         this.wake();
     }
 
@@ -81,7 +81,7 @@ class Walk {
             next: {key: ".", run: () => this.act(() => nav.browse(1))},
             snap: {key: "p", run: () => this.act(() => nav.snap())},
             ...Object.fromEntries(MODES.map((name, i) => [name, {key: String(i + 1), ...mode(name)}])),
-            layer: {key: "l", run: () => this.setLayer((this.layer + 1) % LAYERS.length)},
+            layer: {key: "l", run: () => this.setLayer((this.layer + 1) % this.picture.layers.length)},
             compare: {key: "c", run: () => this.toggleCompare(), pressed: () => this.compare.on},
             thumbs: {key: "t", pressed: shown("thumbs"), run: () => {
                 toggle("thumbs")();
@@ -95,8 +95,8 @@ class Walk {
         };
         this.tools = new Tools(actions);
         this.compare = new Compare(this.files);
-        this.panel = new Panel({layer: this.layer, onLayer: layer => this.setLayer(layer)});
-        this.map = new Map2d(nav, this.cloud, photo => this.act(() => nav.goTo(photo)));
+        this.panel = new Panel({layers: this.picture.layers, layer: this.layer, onLayer: layer => this.setLayer(layer)});
+        this.map = new Map2d(nav, this.picture, photo => this.act(() => nav.goTo(photo)));
         this.input = new Input(this.canvas, nav, {
             focal: () => this.windowCamera(1).fx, wake: () => this.wake(),
             actions: new Map(Object.values(actions).map(a => [a.key, a.run])),
@@ -134,11 +134,9 @@ class Walk {
             document.documentElement.requestFullscreen();
     }
 
-    saveScreenshot()
+    async saveScreenshot()
     {
-        const image = this.renderer.capture(this.windowCamera(1), this.layer);
-        const canvas = Object.assign(document.createElement("canvas"), {width: image.width, height: image.height});
-        canvas.getContext("2d").putImageData(image, 0, 0);
+        const canvas = await this.picture.capture(this.windowCamera(1), this.layer);
         canvas.toBlob(blob => {
             const link = document.createElement("a");
             link.href = URL.createObjectURL(blob);
@@ -180,90 +178,16 @@ class Walk {
             history.replaceState(null, "", hash);
     }
 
-    // --- loading ---
-
-    requestAll()
-    {
-        this.rank = [];
-        for (const photo of this.photos)
-            this.files.schedule(() => this.photoUrgency(photo), () => this.loadPhoto(photo));
-        this.manifest.points.files.forEach((file, number) =>
-            this.files.schedule(() => this.pointsUrgency(file), () => this.loadPoints(file, number)));
-    }
-
-    // Photographs of the view first, and with every two of them a part of the points.
-    photoUrgency(photo)
-    {
-        const place = this.rank.indexOf(photo);
-        return place < 0 || place >= this.renderer.photos.slots ? Infinity : place;
-    }
-
-    pointsUrgency(file)
-    {
-        const {eye} = this.navigator.view, box = file.box;
-        const nearest = [0, 1, 2].map(k => clamp(eye[k], box[k], box[3 + k]));
-        return 1.5 + 8 * distance(nearest, eye) / this.manifest.distance;
-    }
-
-    async loadPhoto(photo)
-    {
-        const options = {colorSpaceConversion: "none", premultiplyAlpha: "none"};
-        const picture = async file => createImageBitmap(new Blob([await this.files.get(file)]), options);
-        const both = await Promise.all([picture(photo.picture.file), picture(photo.depth.file)]);
-        this.renderer.photos.add(photo, ...both);
-        this.loaded();
-    }
-
-    async loadPoints(file, number)
-    {
-        this.cloud.addFile(number, await this.files.get(file.file));
-        this.loaded();
-    }
-
-    loaded()
-    {
-        this.refined = false;
-        this.wake();
-    }
-
-    // What is wanted for the view; photographs that made room for others are asked for again.
-    rankPhotos(camera)
-    {
-        const store = this.renderer.photos, all = this.photos;
-        this.rank = preselect(all, camera, this.manifest.distance, all.length);
-        for (const photo of this.rank.slice(0, store.slots)) {
-            if (photo.slot >= 0)
-                photo.lastUse = ++store.clock;
-            else if (photo.dropped)
-                this.files.schedule(() => this.photoUrgency(photo), () => this.loadPhoto(photo));
-            photo.dropped = false;
-        }
-        this.files.next();
-    }
-
-    // Everything that this view wants is here.
-    get complete()
-    {
-        return this.cloud.loaded === this.cloud.points &&
-               this.rank.slice(0, this.renderer.photos.slots).every(p => p.slot >= 0);
-    }
-
     // --- frames ---
 
     windowCamera(share)
     {
         const ratio = window.devicePixelRatio || 1;
         let width = window.innerWidth * ratio, height = window.innerHeight * ratio;
-        const fit = Math.min(1, Math.sqrt(PIXELS_MOST / (width * height))) * share;
+        const fit = Math.min(1, Math.sqrt(this.picture.pixelsMost / (width * height))) * share;
         width = Math.max(Math.round(width * fit), 2);
         height = Math.max(Math.round(height * fit), 2);
         return cameraOf(this.navigator.view, width, height);
-    }
-
-    middle()
-    {
-        const f = this.renderer.frame;
-        return f ? this.renderer.pointAt(f.width / 2, f.height / 2) : null;
     }
 
     wake()
@@ -305,14 +229,11 @@ class Walk {
     drawFrame(scale, passed)
     {
         const full = this.windowCamera(1), started = performance.now();
-        if (this.canvas.width !== full.width || this.canvas.height !== full.height)
-            Object.assign(this.canvas, {width: full.width, height: full.height});
         const camera = scale ? this.windowCamera(SCALES[scale]) : full;
-        this.rankPhotos(full);
-        this.renderer.draw(camera, this.layer);
-        this.renderer.show(this.layer);
+        this.picture.draw(full, camera, this.layer);
         this.refined = scale === 0;
-        this.adapt(passed, performance.now() - started);
+        if (!this.manifest.live) // else frames tell when they come
+            this.adapt(passed, performance.now() - started);
         this.showState();
     }
 
@@ -327,44 +248,42 @@ class Walk {
             return;
         const mean = this.frames.reduce((a, b) => a + b) / this.frames.length;
         this.frameMs = mean;
-        const step = mean > FRAME_LONG ? 1 : mean < FRAME_SHORT ? -1 : 0;
+        const [long, short] = this.manifest.live ? [LIVE_LONG, LIVE_SHORT] : [FRAME_LONG, FRAME_SHORT];
+        const step = mean > long ? 1 : mean < short ? -1 : 0;
         const next = clamp(this.scale + step, 0, SCALES.length - 1);
         if (next !== this.scale)
             this.frames = [];
         this.scale = next;
     }
 
+    // Nothing is on its way any more that would change the picture.
+    get settled() { return this.refined && !this.running && this.picture.complete; }
+
     // --- what is said about it ---
 
     showState()
     {
-        const nav = this.navigator, renderer = this.renderer, ready = renderer.photos.ready.length;
+        const nav = this.navigator;
         this.tools.update();
         this.map.draw();
         this.thumbs.mark(nav.at);
         this.compare.update(nav.at, nav.view);
         byId("place").textContent = nav.at ? text.atPhoto(nav.at.number + 1, this.photos.length, nav.at.name) : "";
         showHint(this.compare.on && !nav.at && !nav.flying ? text.standAtPhoto : nav.farOut ? text.farOut : "");
-        showProgress(this.complete ? 1 : Math.min(this.files.bytes / this.allBytes, 0.99));
+        showProgress(this.picture.loadedShare);
         if (this.shouldShowPicture())
             byId("poster").classList.add("away");
         if (byId("panel").hidden)
             return;
-        const f = renderer.frame;
-        this.panel.show({
-            frame: this.frameMs ? text.milliseconds(this.frameMs) : "–", size: text.size(f.width, f.height),
-            points: `${renderer.drawn} / ${this.cloud.loaded}`,
-            photos: text.ofLoaded(renderer.used, ready, this.photos.length),
-            loaded: text.bytes(this.files.bytes, this.allBytes),
-            memory: text.memory(this.device.bytes + this.cloud.bytes), device: this.device.name,
-        });
+        this.panel.show({frame: this.frameMs ? text.milliseconds(this.frameMs) : "–",
+                         ...this.picture.figures()});
     }
 
     // The poster is the start view: it stays until the picture is as good, or the viewer moves on.
     shouldShowPicture()
     {
         const start = this.navigator.at && this.navigator.at.number === this.manifest.start;
-        return !start || this.rank.slice(0, 3).every(p => p.slot >= 0);
+        return !start || this.picture.presentable;
     }
 
     placePoster()
@@ -375,12 +294,6 @@ class Walk {
         if (!this.navigator.at || this.navigator.at.number !== this.manifest.start)
             poster.classList.add("away");
     }
-}
-
-function totalBytes(manifest)
-{
-    const photos = manifest.photos.reduce((sum, p) => sum + p.picture.bytes + p.depth.bytes, 0);
-    return photos + manifest.points.files.reduce((sum, f) => sum + f.bytes, 0);
 }
 
 async function start()
@@ -397,8 +310,10 @@ async function start()
     if (files.embedded)
         poster.src = await files.address("poster.jpg");
     const manifest = await files.json("manifest.json");
-    const [sources, coarse] = await Promise.all([loadShaders(files), files.get(manifest.points.coarse.file)]);
-    window.oriel = new Walk(files, manifest, sources, coarse);
+    const photos = makePhotos(manifest), walk = new Walk(files, manifest, photos);
+    const kind = manifest.live ? LivePicture : LocalPicture;
+    walk.begin(await kind.open(walk.canvas, files, manifest, photos, took => walk.changed(took)));
+    window.oriel = walk;
 }
 
 start().catch(error => {

@@ -10,7 +10,7 @@ const FRUSTUM = 0.05;      // of the map's side
 const CLICK_REACH = 24;    // CSS pixels
 
 export class Map2d {
-    constructor(navigator, cloud, goTo)
+    constructor(navigator, picture, goTo)
     {
         this.canvas = byId("map");
         this.canvas.setAttribute("aria-label", text.map);
@@ -21,16 +21,16 @@ export class Map2d {
         // The start looks upwards on the map.
         this.north = normalize(sub(forward, scale(up, dot(forward, up))));
         this.east = cross(this.north, up);
-        this.frame(cloud);
+        this.frame(picture);
         this.canvas.addEventListener("click", event => this.click(event));
     }
 
     flat(p) { return [dot(p, this.east), -dot(p, this.north)]; }
 
-    frame(cloud)
+    frame(picture)
     {
         const points = [];
-        cloud.forEachCoarse((p, color) => points.push([...this.flat(p), dot(p, this.navigator.up), color]));
+        picture.forEachPoint((p, color) => points.push([...this.flat(p), dot(p, this.navigator.up), color]));
         const places = this.navigator.photos.map(p => this.flat(p.eye));
         const range = k => {
             const own = places.map(p => p[k]), reach = AROUND * this.navigator.distance;

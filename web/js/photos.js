@@ -28,6 +28,7 @@ function samplePoints(camera, typical)
     return points;
 }
 
+// Inverse of the penalty; 0 where the photograph does not see the point.
 function score(photo, eye, point)
 {
     const v = sub(photo.eye, point), q = rotate(photo.r, scale(v, -1));
@@ -42,19 +43,34 @@ function score(photo, eye, point)
     return 1 / (angle + 0.1 * Math.max(coarser, 0) + 0.005);
 }
 
-// At most `most` of the photographs, the most useful first.
-export function preselect(photos, camera, typical, most)
+// Marks the best few of one sample point.
+function nameBest(candidates, scores)
+{
+    const best = []; // indices, best first
+    scores.forEach((value, i) => {
+        candidates[i].score += value;
+        if (!(value > 0) || (best.length === PER_SAMPLE && !(value > scores[best[PER_SAMPLE - 1]])))
+            return;
+        let at = best.length;
+        while (at > 0 && value > scores[best[at - 1]])
+            at--;
+        best.splice(at, 0, i);
+        best.length = Math.min(best.length, PER_SAMPLE);
+    });
+    best.forEach(i => candidates[i].named = true);
+}
+
+// All photographs, the most useful first.
+export function rankPhotos(photos, camera, typical)
 {
     const candidates = photos.map(photo => ({photo, score: 0, named: false}));
+    const scores = new Float64Array(photos.length);
     for (const point of samplePoints(camera, typical)) {
-        const scores = candidates.map(c => score(c.photo, camera.eye, point));
-        const best = scores.map((s, i) => i).filter(i => scores[i] > 0)
-            .sort((a, b) => scores[b] - scores[a] || a - b).slice(0, PER_SAMPLE);
-        scores.forEach((s, i) => candidates[i].score += s);
-        best.forEach(i => candidates[i].named = true);
+        photos.forEach((photo, i) => scores[i] = score(photo, camera.eye, point));
+        nameBest(candidates, scores);
     }
     candidates.sort((a, b) => b.named - a.named || b.score - a.score || a.photo.number - b.photo.number);
-    return candidates.slice(0, most).map(c => c.photo);
+    return candidates.map(c => c.photo);
 }
 
 export function nearestPhoto(photos, view)
@@ -155,8 +171,9 @@ export class PhotoStore {
     // What the gather passes are told of the photographs that this view is painted from; how many.
     describe(camera, typical)
     {
-        const chosen = preselect(this.ready, camera, typical, PER_FRAME)
-            .sort((a, b) => a.number - b.number);
+        const {ready} = this;
+        const chosen = ready.length <= PER_FRAME ? ready
+            : rankPhotos(ready, camera, typical).slice(0, PER_FRAME).sort((a, b) => a.number - b.number);
         chosen.forEach((photo, i) => {
             photo.lastUse = ++this.clock;
             this.rowData.set(describePhoto(photo, camera), 4 * ROW_TEXELS * i);

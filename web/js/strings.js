@@ -10,6 +10,8 @@ export const text = {
     noWebgl: "This browser offers no WebGL 2, which the walk is drawn with.",
     noFloats: "This graphics chip cannot draw into floating-point pictures, which the walk needs.",
     lostDevice: "The graphics chip was taken away. The page starts again as soon as it is back.",
+    noServer: "The server does not answer. The page tries again.",
+    byServer: (server, took) => `the server, ${server.toFixed(0)} ms of ${took.toFixed(0)} ms`,
     missing: path => `${path} is missing from the site.`,
     notLoaded: (path, status) => `${path} could not be loaded (status ${status}).`,
     failed: message => `Something went wrong: ${message}`,

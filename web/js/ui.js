@@ -1,6 +1,5 @@
 // Everything around the picture: tools, panel, photographs, help, comparison.
 import {icons} from "oriel/icons.js";
-import {LAYERS} from "oriel/renderer.js";
 import {text} from "oriel/strings.js";
 import {frameHeight} from "oriel/view.js";
 
@@ -52,15 +51,15 @@ export class Tools {
 // --- panel ---
 
 export class Panel {
-    constructor({layer, onLayer})
+    constructor({layers, layer, onLayer})
     {
         this.element = byId("panel");
-        this.choices = LAYERS.map((id, i) => {
+        this.choices = layers.map((id, i) => {
             const input = make("input", {type: "radio", name: "layer", value: id, checked: i === layer});
             input.addEventListener("change", () => onLayer(i));
             return input;
         });
-        const labels = this.choices.map((input, i) => make("label", {}, input, text.layers[LAYERS[i]]));
+        const labels = this.choices.map((input, i) => make("label", {}, input, text.layers[layers[i]]));
         const list = make("dl");
         this.figures = {};
         for (const [id, label] of Object.entries(text.figure)) {
