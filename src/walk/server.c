@@ -6,7 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <netdb.h>
 #include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <libwebsockets.h>
 
@@ -81,11 +84,11 @@ static bool asks_from_here(const struct server *server, struct lws *wsi)
 
 static bool has_token(const struct server *server, struct lws *wsi)
 {
-    char given[128] = "";
+    char argument[128];
     if (!server->token[0])
         return true;
-    if (!lws_get_urlarg_by_name(wsi, "token=", given, sizeof given) ||
-        strlen(given) != strlen(server->token))
+    const char *given = lws_get_urlarg_by_name(wsi, "token=", argument, sizeof argument);
+    if (!given || strlen(given) != strlen(server->token))
         return false;
     unsigned char differs = 0; // as long for any wrong one
     for (size_t i = 0; server->token[i]; i++)
@@ -289,6 +292,23 @@ static enum orl_result make_token(struct server *server)
     return ORL_OK;
 }
 
+// libwebsockets waits for an address that this machine has not got, in case it comes.
+static enum orl_result check_address(const struct orl_log *log, const char *host)
+{
+    const struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE};
+    struct addrinfo *found = NULL;
+    bool ours = false;
+    if (getaddrinfo(host, NULL, &hints, &found) == 0) {
+        int probe = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        ours = probe >= 0 && bind(probe, found->ai_addr, found->ai_addrlen) == 0;
+        if (probe >= 0)
+            close(probe);
+        freeaddrinfo(found);
+    }
+    return ours ? ORL_OK : orl_fail(log, ORL_ERR_ARGUMENT, "cannot listen on %s: it is no address of "
+                                    "this machine", host);
+}
+
 static enum orl_result listen_there(struct server *server)
 {
     static const struct lws_protocols protocols[] = {
@@ -303,8 +323,8 @@ static enum orl_result listen_there(struct server *server)
     lws_set_log_level(LLL_ERR, NULL);
     server->context = lws_create_context(&info);
     if (!server->context)
-        return orl_fail(server->log, ORL_ERR_IO, "cannot listen on %s, port %d: taken, or not an "
-                        "address of this machine", params->host, params->port);
+        return orl_fail(server->log, ORL_ERR_IO, "cannot listen on %s, port %d: it is taken",
+                        params->host, params->port);
     int port = lws_get_vhost_listen_port(lws_get_vhost_by_name(server->context, "default"));
     char address[256];
     snprintf(address, sizeof address, "http://%s:%d/%s%s", params->host, port,
@@ -339,6 +359,8 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
     char *title = params->title ? orl_strdup(log, params->title) : orl_walk_title(log, scene);
     enum orl_result result = title ? orl_content_init(log, scene, title, &server.content)
                                    : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = check_address(log, params->host);
     if (result == ORL_OK)
         result = make_token(&server);
     if (result == ORL_OK)

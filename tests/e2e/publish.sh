@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # A published site: what is written, what is refused, and the page itself in a browser.
 . "$(dirname "$0")/command_lib"
-tools=$(dirname "$oriel")/tests
-[ -x "$tools/bench_truth_scene" ] || { echo "bench_truth_scene is not built"; exit 77; }
-
-"$oriel" synth monument --out photos --size 240x160 --count 8 --quiet &&
-    "$tools/bench_truth_scene" photos photos-truth made 2 4 || exit 1
+monument_scene || exit 1
 
 runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
 grep -q ': 6 photographs' stdout.txt || fail "publish does not say what it wrote"
@@ -39,9 +35,6 @@ grep -q 'src="photos\|href="style.css"' single.html && fail "the single file nam
 runs 0 "$oriel" publish made --out single.html --single-file
 [ $failed -eq 0 ] || exit 1
 
-if ! command -v chromedriver >/dev/null || ! /usr/bin/python3 -c 'import selenium' 2>/dev/null; then
-    echo "the page is not tested: chromium-driver or python3-selenium is missing"
-    exit 77
-fi
+needs_browser
 timeout 900 /usr/bin/python3 "$source/tests/web/test_page.py" "$oriel" \
     "$tools/bench_web_pictures" "$work/made" "$work/$site" "$work/single.html" 2>&1
