@@ -4,7 +4,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "core/color.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "io/picture.h"
 #include "walk/internal.h"
@@ -15,20 +15,6 @@ enum { SIDE_LEAST = 16, SIDE_MOST = 4096, PIXELS_MOST = 4000000 };
 
 static const char *const layer_names[WALK_LAYERS] = {"color", "depth", "normal", "coverage",
                                                      "points"};
-
-// `count` numbers of an array.
-static bool read_numbers(const json_t *array, size_t count, double *out)
-{
-    if (json_array_size(array) != count)
-        return false;
-    for (size_t i = 0; i < count; i++) {
-        const json_t *value = json_array_get(array, i);
-        out[i] = json_number_value(value);
-        if (!json_is_number(value) || !isfinite(out[i]))
-            return false;
-    }
-    return true;
-}
 
 // Is it a rotation? Rounding aside.
 static bool is_rotation(double r[3][3])
@@ -47,10 +33,10 @@ static bool read_view(const json_t *root, struct orl_view *view)
     struct orl_camera *c = &view->camera;
     struct orl_pose *pose = &view->cam_from_world;
     double size[2], focal[4], eye[3];
-    if (!read_numbers(json_object_get(root, "size"), 2, size) ||
-        !read_numbers(json_object_get(root, "focal"), 4, focal) ||
-        !read_numbers(json_object_get(root, "r"), 9, &pose->r[0][0]) ||
-        !read_numbers(json_object_get(root, "eye"), 3, eye) || !is_rotation(pose->r))
+    if (!orl_json_read_numbers(json_object_get(root, "size"), 2, size) ||
+        !orl_json_read_numbers(json_object_get(root, "focal"), 4, focal) ||
+        !orl_json_read_numbers(json_object_get(root, "r"), 9, &pose->r[0][0]) ||
+        !orl_json_read_numbers(json_object_get(root, "eye"), 3, eye) || !is_rotation(pose->r))
         return false;
     if (!(size[0] >= SIDE_LEAST && size[1] >= SIDE_LEAST && size[0] <= SIDE_MOST &&
           size[1] <= SIDE_MOST && size[0] * size[1] <= PIXELS_MOST))

@@ -7,8 +7,8 @@
 #include <sys/stat.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
-#include "scene/manifest.h"
 #include "walk/internal.h"
 
 char *orl_site_path(const struct site *site, const char *path)
