@@ -7,7 +7,8 @@ runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
 grep -q ': 6 photographs' stdout.txt || fail "publish does not say what it wrote"
 site=served/path/site
 for file in index.html style.css manifest.json poster.jpg js/main.js shaders/gather.frag \
-    shaders/proxy/surfel.glsl shaders/gather/photo.glsl points/coarse.bin photos/00000.jpg depth/00000.png thumbs/00000.jpg; do
+    shaders/proxy/surfel.glsl shaders/gather/photo.glsl points/coarse.bin photos/00000.jpg \
+    depth/00000.png thumbs/00000.jpg; do
     [ -s "$site/$file" ] || fail "the site lacks $file"
 done
 [ -e "$site.part" ] && fail "$site.part is left behind"
@@ -36,5 +37,5 @@ runs 0 "$oriel" publish made --out single.html --single-file
 [ $failed -eq 0 ] || exit 1
 
 needs_browser
-timeout 900 /usr/bin/python3 "$source/tests/web/test_page.py" "$oriel" \
+timeout 900 /usr/bin/python3 -B "$source/tests/web/test_page.py" "$oriel" \
     "$tools/bench_web_pictures" "$work/made" "$work/$site" "$work/single.html" 2>&1

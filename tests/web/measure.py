@@ -13,7 +13,7 @@ import time
 
 from browser import Browser, Server
 
-FRAMES = 12
+FRAMES = 7
 
 
 def run(*command):
