@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "cli/views.h"
+#include "eval/choice.h"
 #include "walk/server.h"
 
 struct options {
@@ -26,10 +26,10 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
     struct orl_renderer *renderer = NULL;
-    struct orl_render_params render;
+    struct orl_choice choice;
     enum orl_result result = orl_scene_open(log, dir, &scene);
     if (result == ORL_OK)
-        result = method_choose(log, scene, o->method, &o->settings, &render);
+        result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &choice);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
@@ -37,7 +37,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_walk_params params = {.host = o->host, .port = o->port, .title = o->title,
-                                           .render = &render, .progress = &terminal->progress,
+                                           .render = &choice.params, .progress = &terminal->progress,
                                            .ready = print_address};
     if (result == ORL_OK)
         result = orl_walk_serve(gpu, renderer, scene, &params);
