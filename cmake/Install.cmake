@@ -9,7 +9,7 @@ get_property(modules GLOBAL PROPERTY ORL_MODULES)
 foreach(folder src datasets)
     install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/oriel/$<IF:$<STREQUAL:${folder},src>,.,${folder}>
             FILES_MATCHING PATTERN "*.h" PATTERN "*internal.h" EXCLUDE PATTERN "cli" EXCLUDE
-            PATTERN "shader_table.h" EXCLUDE)
+            PATTERN "*_table.h" EXCLUDE)
 endforeach()
 # Of preprocess only what a program may call; the stages are its own affair.
 foreach(header prepare.h job/prepare_params.h densify/densify.h)

@@ -13,9 +13,11 @@ static const struct command commands[] = {
     {"info", "say what is in a scene", cmd_info},
     {"methods", "list the methods of rendering and their options", cmd_methods},
     {"prepare", "make a scene from photographs", cmd_prepare},
+    {"publish", "a walk through the scene as static files for any web server", cmd_publish},
     {"render", "render new views", cmd_render},
     {"synth", "synthetic photographs with ground truth", cmd_synth},
     {"tune", "fit a method's options to a scene", cmd_tune},
+    {"walk", "walk through a scene in the browser, drawn by this machine", cmd_walk},
     {0},
 };
 

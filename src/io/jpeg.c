@@ -200,24 +200,28 @@ struct jpeg_output {
     int quality;
     uint8_t *exif;
     size_t exif_size;
-    FILE *stream;
+    FILE *stream; // NULL: to memory
+    uint8_t *data; // owned by the caller, also after an error
+    unsigned long size;
 };
 
-static enum orl_result encode(struct jpeg_job *job, j_compress_ptr info,
-                              const struct jpeg_output *out)
+static enum orl_result encode(struct jpeg_job *job, j_compress_ptr info, struct jpeg_output *out)
 {
     const struct orl_image *image = out->image;
     if (setjmp(job->on_error))
         return orl_fail(job->log, ORL_ERR_IO, "%s: %s", job->path, job->message);
     jpeg_create_compress(info);
-    jpeg_stdio_dest(info, out->stream);
+    if (out->stream)
+        jpeg_stdio_dest(info, out->stream);
+    else
+        jpeg_mem_dest(info, &out->data, &out->size);
     info->image_width = (JDIMENSION)image->width;
     info->image_height = (JDIMENSION)image->height;
     info->input_components = image->channels;
     info->in_color_space = image->channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
     jpeg_set_defaults(info);
     jpeg_set_quality(info, out->quality, TRUE);
-    info->optimize_coding = TRUE;
+    info->optimize_coding = out->stream != NULL; // a second pass over the picture
     if (out->quality >= 90 && image->channels == 3) {
         info->comp_info[0].h_samp_factor = 1;
         info->comp_info[0].v_samp_factor = 1;
@@ -271,4 +275,25 @@ end:
     orl_atomic_abort(&file);
     free(out.exif);
     return result;
+}
+
+enum orl_result orl_jpeg_encode(const struct orl_log *log, const struct orl_image *image,
+                                int quality, uint8_t **data, size_t *size)
+{
+    ORL_REQUIRE(log, image->type == ORL_PIXEL_U8 && image->data);
+    ORL_REQUIRE(log, image->channels == 1 || image->channels == 3);
+    ORL_REQUIRE(log, quality >= 1 && quality <= 100);
+    struct jpeg_job job = {0};
+    struct jpeg_compress_struct info = {0};
+    struct jpeg_output out = {.image = image, .quality = quality};
+    start_job(&job, (j_common_ptr)&info, log, "picture");
+    enum orl_result result = encode(&job, &info, &out);
+    jpeg_destroy_compress(&info);
+    if (result != ORL_OK) {
+        free(out.data);
+        return result;
+    }
+    *data = out.data;
+    *size = out.size;
+    return ORL_OK;
 }

@@ -53,5 +53,8 @@ bool orl_exif_exposure_ev(const struct orl_exif *exif, double *ev);
 enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
                                const struct orl_image *image, int quality,
                                const struct orl_exif *exif) ORL_CHECK_RESULT;
+// The same into memory, faster and a little larger; *data is released with free().
+enum orl_result orl_jpeg_encode(const struct orl_log *log, const struct orl_image *image,
+                                int quality, uint8_t **data, size_t *size) ORL_CHECK_RESULT;
 
 #endif

@@ -1,7 +1,8 @@
 // truth_scene PHOTOS TRUTH SCENE STRIDE TEST_EVERY: a scene of synthetic photographs (oriel
 // synth) with true cameras, exposures, and points on the true surface, every STRIDE-th pixel
-// of every training photograph. What is measured on it is rendering and merging alone. Every
-// TEST_EVERY-th photograph is held out, from the middle of the first such group; 0: none.
+// of every training photograph in its colour. What is measured on it is rendering and merging
+// alone. Every TEST_EVERY-th photograph is held out, from the middle of the first such group; 0:
+// none.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +12,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "io/picture.h"
 #include "scene/colmap.h"
 #include "scene/points.h"
 
@@ -60,7 +62,7 @@ static enum orl_result read_map(const struct job *job, const char *folder, const
 }
 
 static void add_point(struct job *job, const struct orl_view *view, int x, int y, double z,
-                      const float normal[3])
+                      const float normal[3], const uint8_t color[3])
 {
     const struct orl_pose *pose = &view->cam_from_world;
     struct orl_points *points = &job->points;
@@ -73,25 +75,32 @@ static void add_point(struct job *job, const struct orl_view *view, int x, int y
     }
     // Discs of slanted surfaces reach their neighbours; no more, or edges grow.
     double facing = fmax(fabs((double)normal[2]), 0.6);
+    memcpy(points->color[points->count], color, 3);
     points->radius[points->count++] = (float)(0.6 * job->stride * z / view->camera.fx / facing);
 }
 
 static enum orl_result add_photo(struct job *job, const struct orl_colmap_image *image)
 {
-    struct orl_image depth = {0}, normal = {0};
+    struct orl_image depth = {0}, normal = {0}, color = {0};
     struct orl_view view = {orl_colmap_camera_by_id(&job->model, image->camera_id)->pinhole,
                             image->cam_from_world};
     enum orl_result result = read_map(job, "depth_maps", image->name, &depth);
     if (result == ORL_OK)
         result = read_map(job, "normal_maps", image->name, &normal);
+    char *path = orl_path_join(&job->log, job->photos, image->name);
+    if (result == ORL_OK)
+        result = path ? orl_picture_read(&job->log, path, 3, &color) : ORL_ERR_MEMORY;
+    free(path);
     for (int y = job->stride / 2; result == ORL_OK && y < depth.height; y += job->stride)
         for (int x = job->stride / 2; x < depth.width; x += job->stride) {
             size_t at = (size_t)y * (size_t)depth.width + (size_t)x;
             if (depth.f32[at] > 0)
-                add_point(job, &view, x, y, (double)depth.f32[at], normal.f32 + 3 * at);
+                add_point(job, &view, x, y, (double)depth.f32[at], normal.f32 + 3 * at,
+                          color.u8 + 3 * at);
         }
     orl_image_finish(&depth);
     orl_image_finish(&normal);
+    orl_image_finish(&color);
     return result;
 }
 

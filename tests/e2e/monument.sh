@@ -26,6 +26,10 @@ grep -q '"name": *"0012.jpg"' info.json
 
 "$oriel" eval scene --method airieau --json airieau.json --images pictures
 "$oriel" eval scene --method points --json points.json
+# The default method, with what COLMAP varies below it.
+"$oriel" eval scene --json oriel.json
+at_least "oriel psnr_db" "$(mean oriel.json psnr_db)" 22
+at_least "oriel ssim" "$(mean oriel.json ssim)" 0.8
 for key in scene method device size psnr_db psnr_cc_db psnr_covered_db ssim coverage \
     completeness ncc_error render_ms; do
     grep -q "\"$key\"" airieau.json || { echo "eval's JSON lacks $key" >&2; exit 1; }

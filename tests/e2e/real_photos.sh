@@ -20,7 +20,7 @@ grep -q '8 registered (6 train, 2 held out)' info.txt
 "$oriel" eval scene --method all --json report.json
 awk '/"method"/ { gsub(/[",]/, ""); method = $2 }
      /"mean"/ { inside = 1 }
-     inside && /"psnr_(covered_)?db"/ { gsub(/[",:]/, " "); print method, $1, $2 }
+     inside && /"(psnr_(covered_)?db|ssim)"/ { gsub(/[",:]/, " "); print method, $1, $2 }
      inside && /}/ { inside = 0 }' report.json | tee figures.txt
 value() {
     awk -v method="$1" -v key="$2" '$1 == method && $2 == key { print $3 }' figures.txt
@@ -29,3 +29,8 @@ awk -v full="$(value airieau psnr_db)" -v covered="$(value airieau psnr_covered_
     -v points="$(value points psnr_covered_db)" \
     'BEGIN { exit !(full >= 22 && covered >= 24 && covered >= points + 1) }' ||
     { echo "worse than it has to be" >&2; exit 1; }
+# The default method, which is to be far better than any other.
+awk -v full="$(value oriel psnr_db)" -v ssim="$(value oriel ssim)" \
+    -v airieau="$(value airieau psnr_db)" \
+    'BEGIN { exit !(full >= 27.5 && ssim >= 0.91 && full >= airieau + 2) }' ||
+    { echo "the default method is worse than it has to be" >&2; exit 1; }

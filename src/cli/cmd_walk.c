@@ -1,0 +1,70 @@
+// oriel walk: a scene in the browser, drawn by this machine.
+#include <stdio.h>
+
+#include "cli/commands.h"
+#include "eval/choice.h"
+#include "walk/server.h"
+
+struct options {
+    const char *method, *host, *title;
+    struct orl_names settings;
+    int port, max_vram_mib;
+};
+
+static void print_address(void *priv, const char *address)
+{
+    (void)priv;
+    printf("%s\n", address);
+    fflush(stdout);
+}
+
+static enum orl_result run(const struct terminal *terminal, const void *options,
+                           const struct arg_common *common, const char *dir)
+{
+    const struct options *o = options;
+    const struct orl_log *log = &terminal->log;
+    struct orl_scene *scene = NULL;
+    struct orl_gpu *gpu = NULL;
+    struct orl_renderer *renderer = NULL;
+    struct orl_choice choice;
+    enum orl_result result = orl_scene_open(log, dir, &scene);
+    if (result == ORL_OK)
+        result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &choice);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
+    const struct orl_renderer_params limits = {.max_vram_bytes = (size_t)o->max_vram_mib << 20};
+    if (result == ORL_OK)
+        result = orl_renderer_create(gpu, scene, &limits, &renderer);
+    const struct orl_walk_params params = {.host = o->host, .port = o->port, .title = o->title,
+                                           .render = &choice.params, .progress = &terminal->progress,
+                                           .ready = print_address};
+    if (result == ORL_OK)
+        result = orl_walk_serve(gpu, renderer, scene, &params);
+    orl_renderer_destroy(&renderer);
+    orl_gpu_destroy(&gpu);
+    orl_scene_destroy(&scene);
+    return result;
+}
+
+int cmd_walk(int argc, char **argv)
+{
+    struct options o = {.method = orl_methods[0].name, .host = "127.0.0.1", .port = 8765};
+    const struct arg_option table[] = {
+        {"port", ARG_INT, &o.port, "N", "to listen on; default 8765, 0: any that is free", 0, 65535},
+        {"host", ARG_STRING, &o.host, "ADDRESS",
+         "to listen on; default 127.0.0.1; others ask for the token in the printed address", 0, 0},
+        {"title", ARG_STRING, &o.title, "TEXT", "of the page; default: the scene's name", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the first", 0, 0},
+        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
+        {0},
+    };
+    const struct arg_command command = {
+        "walk", "SCENE [options]",
+        "Serves the scene to browsers, drawn by this machine, until it is interrupted (ctrl-C).\n"
+        "Prints the address to open.", table, 1, 1};
+    int status = command_main(&command, argc, argv, run, &o);
+    orl_names_finish(&o.settings);
+    return status;
+}

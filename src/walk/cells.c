@@ -1,0 +1,345 @@
+// The point cloud as a site holds it: cells of neighbouring points, positions quantised within
+// each cell, and every cell in an order of which any first part is spread evenly over it. The first
+// parts of all cells come first, in one file: the coarse cloud.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "walk/internal.h"
+
+enum {
+    CELL_POINTS = 4096, // a power of two: of its bits the order within a cell is made
+    CELLS_PER_FILE = 16,
+    POINT_BYTES = 12,   // web/js/points.js reads them
+    CELL_WORDS = 16,
+    COARSE_BYTES = 420 << 10, // of the points that are loaded first
+    NEIGHBOURS = 7,     // points in a disc of a point's radius, itself included
+};
+static const uint32_t magic = 0x504c524f; // "ORLP"
+
+// What the file says of a cell, in 4-byte words.
+struct cell_words {
+    float low[3], size[3];           // bounds of its points
+    float radius_low, radius_octaves; // radius = low * 2^(octaves * byte / 255)
+    float density;                   // points per unit of area
+    float normal[3];                 // mean
+    uint32_t count, coarse;          // points; of them in the coarse file
+    uint32_t file, first;            // of the others: number of the file, and first point in it
+};
+_Static_assert(sizeof(struct cell_words) == 4 * CELL_WORDS, "cell_words is words");
+
+// The points in the order they are written in.
+struct order {
+    const struct orl_points *points;
+    uint32_t *index;
+    size_t count;
+    size_t cells;
+};
+
+// --- order ---
+
+static float coordinate(const struct order *order, size_t i, int axis)
+{
+    return order->points->position[order->index[i]][axis];
+}
+
+static int widest_axis(const struct order *order, size_t first, size_t count)
+{
+    float widest = -1;
+    int axis = 0;
+    for (int k = 0; k < 3; k++) {
+        float low = INFINITY, high = -INFINITY;
+        for (size_t i = first; i < first + count; i++) {
+            low = fminf(low, coordinate(order, i, k));
+            high = fmaxf(high, coordinate(order, i, k));
+        }
+        if (high - low > widest) {
+            widest = high - low;
+            axis = k;
+        }
+    }
+    return axis;
+}
+
+// Wirth's quickselect: no coordinate before `middle` is larger than any after it.
+static void split(struct order *order, size_t first, size_t count, size_t middle, int axis)
+{
+    ptrdiff_t low = (ptrdiff_t)first, high = (ptrdiff_t)(first + count) - 1;
+    ptrdiff_t target = (ptrdiff_t)middle;
+    while (low < high) {
+        float pivot = coordinate(order, middle, axis);
+        ptrdiff_t i = low, j = high;
+        while (i <= j) {
+            while (coordinate(order, (size_t)i, axis) < pivot)
+                i++;
+            while (coordinate(order, (size_t)j, axis) > pivot)
+                j--;
+            if (i > j)
+                break;
+            uint32_t swap = order->index[i];
+            order->index[i++] = order->index[j];
+            order->index[j--] = swap;
+        }
+        low = j < target ? i : low;
+        high = target < i ? j : high;
+    }
+}
+
+// A k-d tree's order: halves of halves are neighbours, down to single points.
+static void sort_points(struct order *order, size_t first, size_t count)
+{
+    if (count < 2)
+        return;
+    size_t cells = (count + CELL_POINTS - 1) / CELL_POINTS;
+    size_t half = cells > 1 ? cells / 2 * CELL_POINTS : count / 2;
+    split(order, first, count, first + half, widest_axis(order, first, count));
+    sort_points(order, first, half);
+    sort_points(order, first + half, count - half);
+}
+
+// Bit-reversed, so that any first part of a cell is spread evenly.
+static void shuffle_cell(uint32_t *index, size_t count)
+{
+    uint32_t sorted[CELL_POINTS];
+    size_t next = 0;
+    memcpy(sorted, index, count * sizeof *index);
+    for (unsigned i = 0; i < CELL_POINTS; i++) {
+        unsigned from = 0;
+        for (unsigned bit = 1; bit < CELL_POINTS; bit *= 2)
+            from = 2 * from + (i & bit ? 1 : 0);
+        if (from < count)
+            index[next++] = sorted[from];
+    }
+}
+
+static bool usable(const struct orl_points *points, size_t i)
+{
+    const float *p = points->position[i];
+    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]) && points->radius[i] > 0;
+}
+
+static enum orl_result make_order(const struct orl_log *log, const struct orl_points *points,
+                                  struct order *order)
+{
+    *order = (struct order){.points = points};
+    if (points->count > UINT32_MAX)
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
+    order->index = orl_array(log, points->count, sizeof *order->index);
+    if (!order->index)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < points->count; i++)
+        if (usable(points, i))
+            order->index[order->count++] = (uint32_t)i;
+    order->cells = (order->count + CELL_POINTS - 1) / CELL_POINTS;
+    sort_points(order, 0, order->count);
+    for (size_t c = 0; c < order->cells; c++) {
+        size_t first = c * CELL_POINTS, left = order->count - first;
+        shuffle_cell(order->index + first, left < CELL_POINTS ? left : CELL_POINTS);
+    }
+    return ORL_OK;
+}
+
+// --- a cell ---
+
+struct cell {
+    const struct orl_points *points;
+    const uint32_t *index;
+    float enlarged; // radii: fewer points than there are cover the same surface
+    struct cell_words words;
+};
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static void describe_cell(struct cell *cell, size_t count)
+{
+    const struct orl_points *points = cell->points;
+    struct cell_words *w = &cell->words;
+    float radii[CELL_POINTS];
+    for (int k = 0; k < 3; k++) {
+        float low = INFINITY, high = -INFINITY;
+        double normal = 0;
+        for (size_t i = 0; i < count; i++) {
+            float p = points->position[cell->index[i]][k];
+            low = fminf(low, p);
+            high = fmaxf(high, p);
+            normal += (double)points->normal[cell->index[i]][k];
+        }
+        w->low[k] = low;
+        w->size[k] = fmaxf(high - low, 1e-12f);
+        w->normal[k] = (float)(normal / (double)count);
+    }
+    for (size_t i = 0; i < count; i++)
+        radii[i] = points->radius[cell->index[i]] * cell->enlarged;
+    qsort(radii, count, sizeof *radii, compare_floats);
+    float middle = radii[count / 2];
+    w->radius_low = radii[0];
+    w->radius_octaves = log2f(radii[count - 1] / radii[0]);
+    w->density = NEIGHBOURS / (3.14159265f * middle * middle);
+    w->count = (uint32_t)count;
+}
+
+static uint8_t signed_byte(float value)
+{
+    return (uint8_t)(int8_t)lrintf(fminf(1, fmaxf(-1, value)) * 127);
+}
+
+// As shaders/proxy/octahedron.glsl.
+static void encode_normal(const float n[3], uint8_t out[2])
+{
+    float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]) + 1e-20f, x = n[0] / sum, y = n[1] / sum;
+    float wrapped_x = (1 - fabsf(y)) * (x >= 0 ? 1 : -1);
+    float wrapped_y = (1 - fabsf(x)) * (y >= 0 ? 1 : -1);
+    out[0] = signed_byte(n[2] >= 0 ? x : wrapped_x);
+    out[1] = signed_byte(n[2] >= 0 ? y : wrapped_y);
+}
+
+// Position 3 x 16 bits, normal 2 x 8, sRGB colour 3 x 8, radius 8, and 16 spare to align.
+static void encode_point(const struct cell *cell, size_t i, uint8_t out[POINT_BYTES])
+{
+    const struct cell_words *w = &cell->words;
+    size_t point = cell->index[i];
+    memset(out, 0, POINT_BYTES);
+    for (int k = 0; k < 3; k++) {
+        float part = (cell->points->position[point][k] - w->low[k]) / w->size[k];
+        unsigned value = (unsigned)lrintf(fminf(1, fmaxf(0, part)) * 65535);
+        out[2 * k] = (uint8_t)value;
+        out[2 * k + 1] = (uint8_t)(value >> 8);
+    }
+    encode_normal(cell->points->normal[point], out + 6);
+    memcpy(out + 8, cell->points->color[point], 3);
+    float radius = cell->points->radius[point] * cell->enlarged;
+    float octaves = w->radius_octaves > 0 ? log2f(radius / w->radius_low) / w->radius_octaves : 0;
+    out[11] = (uint8_t)lrintf(fminf(1, fmaxf(0, octaves)) * 255);
+}
+
+// --- files ---
+
+static json_t *box_json(const struct cell_words *words, size_t count)
+{
+    float low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = words[0].low[k];
+        high[k] = words[0].low[k] + words[0].size[k];
+        for (size_t c = 1; c < count; c++) {
+            low[k] = fminf(low[k], words[c].low[k]);
+            high[k] = fmaxf(high[k], words[c].low[k] + words[c].size[k]);
+        }
+    }
+    return json_pack("[f,f,f,f,f,f]", (double)low[0], (double)low[1], (double)low[2],
+                     (double)high[0], (double)high[1], (double)high[2]);
+}
+
+struct writing {
+    struct site *site;
+    struct order order;
+    struct cell_words *words; // of all cells
+    double share, coarse;     // of a cell's points: kept; kept and coarse
+    uint8_t *coarse_data;     // owned
+    size_t coarse_size;
+};
+
+// Describes and encodes cells [first, first + count); what is not coarse goes to the end of `rest`.
+static void encode_cells(struct writing *w, size_t first, size_t count, uint8_t *rest,
+                         size_t *rest_points)
+{
+    for (size_t c = first; c < first + count; c++) {
+        size_t at = c * CELL_POINTS, left = w->order.count - at;
+        size_t all = left < CELL_POINTS ? left : CELL_POINTS;
+        size_t kept = (size_t)ceil((double)all * w->share);
+        size_t coarse = (size_t)ceil((double)all * w->coarse);
+        coarse = coarse < kept ? coarse : kept;
+        struct cell cell = {.points = w->order.points, .index = w->order.index + at,
+                            .enlarged = sqrtf((float)all / (float)kept)};
+        describe_cell(&cell, kept);
+        cell.words.coarse = (uint32_t)coarse;
+        cell.words.file = (uint32_t)(c / CELLS_PER_FILE);
+        cell.words.first = (uint32_t)*rest_points;
+        for (size_t i = 0; i < kept; i++) {
+            uint8_t *to = i < coarse ? w->coarse_data + w->coarse_size
+                                     : rest + *rest_points * POINT_BYTES;
+            encode_point(&cell, i, to);
+            w->coarse_size += i < coarse ? POINT_BYTES : 0;
+            *rest_points += i < coarse ? 0 : 1;
+        }
+        w->words[c] = cell.words;
+        w->site->report->points += kept;
+    }
+}
+
+static enum orl_result write_files(struct writing *w, json_t *files)
+{
+    uint8_t *rest = orl_array(w->site->log, CELLS_PER_FILE * CELL_POINTS, POINT_BYTES);
+    enum orl_result result = rest ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t c = 0; result == ORL_OK && c < w->order.cells; c += CELLS_PER_FILE) {
+        size_t left = w->order.cells - c, points = 0;
+        size_t count = left < CELLS_PER_FILE ? left : CELLS_PER_FILE;
+        encode_cells(w, c, count, rest, &points);
+        char path[64];
+        snprintf(path, sizeof path, "points/%04zu.bin", c / CELLS_PER_FILE);
+        result = orl_site_write(w->site, path, rest, points * POINT_BYTES);
+        json_t *file = result == ORL_OK ? orl_site_file(w->site, path) : NULL;
+        if (file)
+            json_object_set_new(file, "box", box_json(w->words + c, count));
+        if (result == ORL_OK && json_array_append_new(files, file) != 0)
+            result = ORL_ERR_MEMORY;
+    }
+    free(rest);
+    return result;
+}
+
+// Header, cells, coarse points.
+static enum orl_result write_coarse(struct writing *w)
+{
+    const uint32_t header[4] = {magic, 1, (uint32_t)w->order.cells, POINT_BYTES};
+    size_t cells = w->order.cells * sizeof *w->words;
+    size_t size = sizeof header + cells + w->coarse_size;
+    uint8_t *data = orl_array(w->site->log, size, 1);
+    if (!data)
+        return ORL_ERR_MEMORY;
+    memcpy(data, header, sizeof header);
+    memcpy(data + sizeof header, w->words, cells);
+    memcpy(data + sizeof header + cells, w->coarse_data, w->coarse_size);
+    enum orl_result result = orl_site_write(w->site, "points/coarse.bin", data, size);
+    free(data);
+    return result;
+}
+
+enum orl_result orl_site_points(struct site *site, json_t **out)
+{
+    struct writing w = {.site = site};
+    json_t *files = json_array(), *coarse = NULL;
+    enum orl_result result = make_order(site->log, &site->scene->points, &w.order);
+    if (result == ORL_OK && w.order.count == 0)
+        result = orl_fail(site->log, ORL_ERR_DATA, "the scene has no points: nothing to publish");
+    if (result != ORL_OK)
+        goto end;
+    double count = (double)w.order.count;
+    w.share = fmin(1, (double)site->params->max_points / count);
+    w.coarse = fmin(w.share, (double)COARSE_BYTES / POINT_BYTES / count);
+    w.words = orl_array(site->log, w.order.cells, sizeof *w.words);
+    w.coarse_data = orl_array(site->log, (size_t)ceil(count * w.coarse) + w.order.cells,
+                              POINT_BYTES);
+    result = w.words && w.coarse_data ? write_files(&w, files) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = write_coarse(&w);
+    coarse = result == ORL_OK ? orl_site_file(site, "points/coarse.bin") : NULL;
+    if (result == ORL_OK) {
+        site->report->first_bytes += (size_t)json_integer_value(json_object_get(coarse, "bytes"));
+        *out = json_pack("{s:I, s:O, s:O}", "count", (json_int_t)site->report->points, "coarse",
+                         coarse, "files", files);
+        result = *out ? ORL_OK : ORL_ERR_MEMORY;
+    }
+end:
+    json_decref(files);
+    json_decref(coarse);
+    free(w.order.index);
+    free(w.words);
+    free(w.coarse_data);
+    return result;
+}

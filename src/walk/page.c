@@ -1,0 +1,279 @@
+// The page of a site: the files of web/, and the shader functions that page and renderer share.
+// web/index.html names in double braces what differs between a folder and a single file.
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "gpu/shader_table.h"
+#include "walk/internal.h"
+#include "walk/web_table.h"
+
+static const char index_name[] = "index.html";
+static const char *const shared_shaders[] = {
+    "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl", "gather/sample/srgb.glsl",
+    "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl",
+    "shared/srgb.glsl", NULL};
+static const size_t FILE_MOST = (size_t)1 << 30;
+
+// --- growing text ---
+
+struct text {
+    const struct orl_log *log;
+    char *data; // owned, ends in a zero byte
+    size_t size, capacity;
+    enum orl_result result; // the first failure; nothing is added after it
+};
+
+static void add_bytes(struct text *text, const char *data, size_t size)
+{
+    if (text->result == ORL_OK)
+        text->result = orl_grow(text->log, (void **)&text->data, &text->capacity,
+                                text->size + size + 1, 1);
+    if (text->result != ORL_OK)
+        return;
+    memcpy(text->data + text->size, data, size);
+    text->size += size;
+    text->data[text->size] = '\0';
+}
+
+static void add(struct text *text, const char *string)
+{
+    add_bytes(text, string, strlen(string));
+}
+
+static void add_base64(struct text *text, const uint8_t *data, size_t size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3) {
+        size_t left = size - i;
+        uint32_t bits = (uint32_t)data[i] << 16 | (left > 1 ? (uint32_t)data[i + 1] << 8 : 0) |
+                        (left > 2 ? data[i + 2] : 0);
+        char four[4] = {digits[bits >> 18], digits[bits >> 12 & 63],
+                        left > 1 ? digits[bits >> 6 & 63] : '=', left > 2 ? digits[bits & 63] : '='};
+        add_bytes(text, four, 4);
+    }
+}
+
+static void add_html(struct text *text, const char *string)
+{
+    for (; *string; string++) {
+        if (*string == '<')
+            add(text, "&lt;");
+        else if (*string == '&')
+            add(text, "&amp;");
+        else if (*string == '"')
+            add(text, "&quot;");
+        else
+            add_bytes(text, string, 1);
+    }
+}
+
+// --- the page from its template ---
+
+struct value {
+    const char *key;
+    struct text text;
+};
+
+static const char *web_file(const char *name)
+{
+    for (const struct orl_web_file *f = orl_web_table; f->name; f++)
+        if (strcmp(f->name, name) == 0)
+            return f->text;
+    return NULL;
+}
+
+// `page`: the template with {{key}} replaced.
+static void fill_template(const struct value *values, size_t count, struct text *page)
+{
+    const char *rest = web_file(index_name);
+    for (const char *open; (open = strstr(rest, "{{")) != NULL;) {
+        const char *close = strstr(open, "}}");
+        size_t length = close ? (size_t)(close - open) - 2 : 0;
+        add_bytes(page, rest, (size_t)(open - rest));
+        bool found = false;
+        for (size_t i = 0; close && i < count; i++) {
+            const struct value *v = &values[i];
+            if (strlen(v->key) != length || strncmp(v->key, open + 2, length) != 0)
+                continue;
+            found = true;
+            add_bytes(page, v->text.data ? v->text.data : "", v->text.size);
+            if (page->result == ORL_OK)
+                page->result = v->text.result;
+        }
+        if (!found && page->result == ORL_OK)
+            page->result = orl_fail(page->log, ORL_ERR_FORMAT, "%s: {{%.*s}} is not known",
+                                    index_name, (int)length, open + 2);
+        rest = close ? close + 2 : open + 2;
+    }
+    add(page, rest);
+}
+
+enum { TITLE, POSTER, STYLE, MODULES, FILES, VALUES };
+
+static void start_values(const struct orl_log *log, const char *title,
+                         struct value values[VALUES])
+{
+    static const char *const keys[VALUES] = {"title", "poster", "style", "modules", "files"};
+    for (int i = 0; i < VALUES; i++)
+        values[i] = (struct value){.key = keys[i], .text = {.log = log}};
+    add_html(&values[TITLE].text, title);
+}
+
+static void finish_values(struct value values[VALUES])
+{
+    for (int i = 0; i < VALUES; i++)
+        free(values[i].text.data);
+}
+
+char *orl_walk_index(const struct orl_log *log, const char *title, const char *poster)
+{
+    struct value values[VALUES];
+    struct text page = {.log = log};
+    start_values(log, title, values);
+    add(&values[POSTER].text, poster);
+    add(&values[STYLE].text, "<link rel=\"stylesheet\" href=\"style.css\">");
+    add(&values[MODULES].text,
+        "<script type=\"importmap\">{\"imports\": {\"oriel/\": \"./js/\"}}</script>");
+    fill_template(values, VALUES, &page);
+    finish_values(values);
+    if (page.result == ORL_OK)
+        return page.data;
+    free(page.data);
+    return NULL;
+}
+
+static enum orl_result write_index(struct site *site)
+{
+    char *page = orl_walk_index(site->log, site->params->title, "poster.jpg");
+    enum orl_result result = page ? orl_site_write(site, index_name, page, strlen(page))
+                                  : ORL_ERR_MEMORY;
+    site->report->first_bytes += page ? strlen(page) : 0;
+    free(page);
+    return result;
+}
+
+// A shader file, if it is one of those that the page includes too.
+static enum orl_result write_shared(struct site *site, const struct orl_shader_file *file)
+{
+    bool shared = false;
+    for (int i = 0; shared_shaders[i]; i++)
+        shared = shared || strcmp(file->name, shared_shaders[i]) == 0;
+    if (!shared)
+        return ORL_OK;
+    char *path = orl_format(site->log, "shaders/%s", file->name);
+    enum orl_result result = path ? orl_site_write(site, path, file->text, strlen(file->text))
+                                  : ORL_ERR_MEMORY;
+    free(path);
+    site->report->first_bytes += strlen(file->text);
+    return result;
+}
+
+enum orl_result orl_site_page(struct site *site)
+{
+    enum orl_result result = write_index(site);
+    for (const struct orl_web_file *f = orl_web_table; result == ORL_OK && f->name; f++) {
+        if (strcmp(f->name, index_name) == 0)
+            continue;
+        result = orl_site_write(site, f->name, f->text, strlen(f->text));
+        site->report->first_bytes += strlen(f->text);
+    }
+    for (const struct orl_shader_file *f = orl_shader_table; result == ORL_OK && f->name; f++)
+        result = write_shared(site, f);
+    return result;
+}
+
+// --- one file ---
+
+// Every module under the name that others import it by, as a data: address.
+static void add_modules(struct text *text)
+{
+    bool first = true;
+    add(text, "<script type=\"importmap\">{\"imports\": {");
+    for (const struct orl_web_file *f = orl_web_table; f->name; f++) {
+        if (strncmp(f->name, "js/", 3) != 0)
+            continue;
+        add(text, first ? "\n\"oriel/" : ",\n\"oriel/");
+        add(text, f->name + 3);
+        add(text, "\": \"data:text/javascript;base64,");
+        add_base64(text, (const uint8_t *)f->text, strlen(f->text));
+        add(text, "\"");
+        first = false;
+    }
+    add(text, "\n}}</script>");
+}
+
+// Is it data, which the page asks for by name?
+static bool is_data(const char *path)
+{
+    return strcmp(path, index_name) != 0 && strcmp(path, "style.css") != 0 &&
+           strncmp(path, "js/", 3) != 0;
+}
+
+static void add_file(const struct site *site, const char *path, struct text *text)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    char *file = orl_site_path(site, path);
+    if (text->result == ORL_OK)
+        text->result = file ? orl_file_read(site->log, file, FILE_MOST, &data, &size)
+                            : ORL_ERR_MEMORY;
+    if (text->result == ORL_OK) {
+        add(text, text->size ? ",\n\"" : "\"");
+        add(text, path);
+        add(text, "\": \"");
+        add_base64(text, data, size);
+        add(text, "\"");
+    }
+    free(file);
+    free(data);
+}
+
+// All data below `folder` of the site ("": the site itself).
+static void add_folder(const struct site *site, const char *folder, struct text *text)
+{
+    struct orl_names names = {0};
+    char *dir = orl_site_path(site, folder);
+    if (text->result == ORL_OK)
+        text->result = dir ? orl_dir_list(site->log, dir, &names) : ORL_ERR_MEMORY;
+    for (size_t i = 0; i < names.count && text->result == ORL_OK; i++) {
+        char *path = orl_format(site->log, "%s%s%s", folder, *folder ? "/" : "", names.items[i]);
+        char *full = path ? orl_site_path(site, path) : NULL;
+        if (!full)
+            text->result = ORL_ERR_MEMORY;
+        else if (orl_path_is_dir(full))
+            add_folder(site, path, text);
+        else if (is_data(path))
+            add_file(site, path, text);
+        free(full);
+        free(path);
+    }
+    orl_names_finish(&names);
+    free(dir);
+}
+
+enum orl_result orl_site_pack(struct site *site, const char *file)
+{
+    struct value values[VALUES];
+    struct text page = {.log = site->log}, files = {.log = site->log};
+    start_values(site->log, site->params->title, values);
+    add(&values[STYLE].text, "<style>");
+    add(&values[STYLE].text, web_file("style.css"));
+    add(&values[STYLE].text, "</style>");
+    add_modules(&values[MODULES].text);
+    add_folder(site, "", &files);
+    add(&values[FILES].text, "<script type=\"application/json\" id=\"files\">{");
+    add_bytes(&values[FILES].text, files.data ? files.data : "", files.size);
+    add(&values[FILES].text, "}</script>");
+    // The page shows the poster from its own file table: none is asked for by address.
+    fill_template(values, VALUES, &page);
+    enum orl_result result = files.result != ORL_OK ? files.result : page.result;
+    if (result == ORL_OK)
+        result = orl_file_write(site->log, file, page.data, page.size);
+    site->report->bytes = site->report->first_bytes = page.size;
+    finish_values(values);
+    free(files.data);
+    free(page.data);
+    return result;
+}

@@ -1,0 +1,184 @@
+// A site, part by part; it appears under its name only when it is whole.
+#include "walk/publish.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "walk/internal.h"
+
+char *orl_site_path(const struct site *site, const char *path)
+{
+    return orl_path_join(site->log, site->dir, path);
+}
+
+enum orl_result orl_site_write(struct site *site, const char *path, const void *data, size_t size)
+{
+    char *file = orl_site_path(site, path);
+    enum orl_result result = file ? orl_file_write(site->log, file, data, size) : ORL_ERR_MEMORY;
+    free(file);
+    return result;
+}
+
+json_t *orl_site_file(struct site *site, const char *path)
+{
+    struct stat status;
+    char *file = orl_site_path(site, path);
+    bool there = file && stat(file, &status) == 0;
+    free(file);
+    if (!there) {
+        orl_logf(site->log, ORL_LOG_ERROR, "%s is missing in the site", path);
+        return NULL;
+    }
+    return json_pack("{s:s, s:I}", "file", path, "bytes", (json_int_t)status.st_size);
+}
+
+// --- where to ---
+
+// Nothing there, or a site that Oriel wrote.
+static enum orl_result check_out(const struct orl_log *log, const char *out, bool single_file)
+{
+    if (single_file)
+        return orl_path_is_dir(out) ? orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: is a folder, but "
+                                               "--single-file writes an HTML file", out)
+                                    : ORL_OK;
+    if (orl_path_is_file(out))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: is a file, and a site is a folder; "
+                        "--single-file writes an HTML file", out);
+    if (!orl_path_is_dir(out))
+        return ORL_OK;
+    char *path = orl_path_join(log, out, "manifest.json");
+    json_t *manifest = NULL;
+    const struct orl_log quiet = {.level = ORL_LOG_ERROR};
+    bool ours = path && orl_path_is_file(path) &&
+                orl_json_read(&quiet, path, &manifest) == ORL_OK;
+    const char *format = json_string_value(json_object_get(manifest, "format"));
+    ours = ours && format && strcmp(format, "oriel site") == 0;
+    json_decref(manifest);
+    free(path);
+    return ours ? ORL_OK : orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: is a folder that is no site "
+                                    "of Oriel, and stays as it is", out);
+}
+
+static enum orl_result make_folders(struct site *site)
+{
+    static const char *const folders[] = {"js", "shaders/gather/sample", "shaders/proxy",
+                                          "shaders/shared", "points", "photos", "depth", "thumbs"};
+    enum orl_result result = orl_dir_remove(site->log, site->dir);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
+        char *path = orl_site_path(site, folders[i]);
+        result = path ? orl_dir_make(site->log, path) : ORL_ERR_MEMORY;
+        free(path);
+    }
+    return result;
+}
+
+static enum orl_result replace(const struct site *site, const char *out)
+{
+    enum orl_result result = orl_dir_remove(site->log, out);
+    if (result == ORL_OK && rename(site->dir, out) != 0)
+        result = orl_fail(site->log, ORL_ERR_IO, "%s: cannot be named %s", site->dir, out);
+    return result;
+}
+
+// --- what ---
+
+static size_t folder_bytes(const struct site *site, const char *folder)
+{
+    struct orl_names names = {0};
+    size_t bytes = 0;
+    if (orl_dir_list(site->log, folder, &names) != ORL_OK)
+        return 0;
+    for (size_t i = 0; i < names.count; i++) {
+        struct stat status;
+        char *path = orl_path_join(site->log, folder, names.items[i]);
+        if (path && orl_path_is_dir(path))
+            bytes += folder_bytes(site, path);
+        else if (path && stat(path, &status) == 0)
+            bytes += (size_t)status.st_size;
+        free(path);
+    }
+    orl_names_finish(&names);
+    return bytes;
+}
+
+static enum orl_result write_site(struct site *site)
+{
+    json_t *points = NULL, *photos = NULL;
+    enum orl_result result = orl_walk_start(site->log, site->scene, &site->start);
+    if (result == ORL_OK)
+        result = make_folders(site);
+    if (result == ORL_OK)
+        result = orl_site_page(site);
+    if (result == ORL_OK)
+        result = orl_site_points(site, &points);
+    if (result == ORL_OK)
+        result = orl_site_photos(site, &photos);
+    if (result == ORL_OK)
+        result = orl_site_poster(site);
+    if (result == ORL_OK) {
+        json_t *poster = orl_site_file(site, "poster.jpg");
+        site->report->first_bytes += (size_t)json_integer_value(json_object_get(poster, "bytes"));
+        json_decref(poster);
+        return orl_site_manifest(site, points, photos);
+    }
+    json_decref(points);
+    json_decref(photos);
+    return result;
+}
+
+static enum orl_result make_renderer(struct site *site)
+{
+    enum orl_result result = orl_render_params_tuned(site->log, &orl_methods[0], site->scene,
+                                                     &site->render);
+    return result == ORL_OK
+               ? orl_renderer_create(site->gpu, site->scene, NULL, &site->renderer)
+               : result;
+}
+
+// Beside `out`, with or without a slash after it.
+static char *part_name(const struct orl_log *log, const char *out)
+{
+    size_t length = strlen(out);
+    while (length > 1 && out[length - 1] == '/')
+        length--;
+    return orl_format(log, "%.*s.part", (int)length, out);
+}
+
+enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
+                            const struct orl_publish_params *asked,
+                            struct orl_publish_report *report)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    struct orl_publish_params params = *asked;
+    char *title = params.title ? orl_strdup(log, params.title) : orl_walk_title(log, scene);
+    if (!title)
+        return ORL_ERR_MEMORY;
+    params.title = title;
+    *report = (struct orl_publish_report){0};
+    struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
+                        .report = report};
+    enum orl_result result = check_out(log, params.out, params.single_file);
+    if (result != ORL_OK)
+        goto end;
+    site.dir = part_name(log, params.out);
+    result = site.dir ? make_renderer(&site) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = write_site(&site);
+    if (result == ORL_OK)
+        report->bytes = folder_bytes(&site, site.dir);
+    if (result == ORL_OK)
+        result = params.single_file ? orl_site_pack(&site, params.out)
+                                    : replace(&site, params.out);
+    if (site.dir && orl_dir_remove(log, site.dir) != ORL_OK && result == ORL_OK)
+        result = ORL_ERR_IO;
+end:
+    orl_renderer_destroy(&site.renderer);
+    free(site.dir);
+    free(title);
+    return result;
+}

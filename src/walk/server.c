@@ -1,0 +1,375 @@
+// The server: one thread, which serves the network by libwebsockets' event loop and, between two
+// rounds of it, draws one frame for the client that has waited longest.
+#include "walk/server.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <netdb.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <libwebsockets.h>
+
+#include "core/memory.h"
+#include "walk/content_internal.h"
+#include "walk/internal.h"
+
+enum {
+    MESSAGE_MOST = 4096, // bytes of a request for a frame
+    CLIENTS_MOST = 64,
+    CHUNK = 16384,       // of a file that is written at once
+    TOKEN_BYTES = 16,
+    IDLE_S = 30,         // seconds that a connection may take for what it began
+};
+
+// A connection: of a request for a file, or of a client that walks.
+struct session {
+    struct lws *wsi;
+    struct session *next;
+    bool walks;
+    // Walks: the newest request, and one frame on its way.
+    struct walk_request request;
+    bool wants, sending;
+    unsigned waits_since;
+    uint8_t *frame; // owned, LWS_PRE bytes of room before it; NULL: none to write
+    size_t frame_size;
+    char message[MESSAGE_MOST]; // as far as it has come
+    size_t message_size;
+    // A file.
+    struct content_file file;
+    size_t written;
+};
+
+struct server {
+    const struct orl_log *log;
+    const struct orl_walk_params *params;
+    struct walk_renderer walk;
+    struct content content;
+    struct lws_context *context;
+    struct session *sessions; // that walk
+    size_t session_count;
+    unsigned clock;
+    char token[2 * TOKEN_BYTES + 1]; // "": none is asked for
+};
+
+// --- who may ask ---
+
+static bool is_local(const char *name)
+{
+    return strcmp(name, "127.0.0.1") == 0 || strcmp(name, "localhost") == 0 ||
+           strcmp(name, "[::1]") == 0 || strcmp(name, "::1") == 0;
+}
+
+// Without a token a request must name this machine as its host: a page of another site whose name
+// was made to point here does not. A page of another origin may ask for nothing.
+static bool asks_from_here(const struct server *server, struct lws *wsi)
+{
+    char host[256] = "", origin[256] = "", own[300];
+    if (lws_hdr_copy(wsi, host, sizeof host, WSI_TOKEN_HOST) <= 0)
+        return false;
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) > 0) {
+        snprintf(own, sizeof own, "http://%s", host);
+        if (lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN) <= 0 ||
+            strcmp(origin, own) != 0)
+            return false;
+    }
+    char *port = strrchr(host, ':');
+    if (port && !strchr(port, ']'))
+        *port = '\0';
+    return server->token[0] || is_local(host);
+}
+
+static bool has_token(const struct server *server, struct lws *wsi)
+{
+    char argument[128];
+    if (!server->token[0])
+        return true;
+    const char *given = lws_get_urlarg_by_name(wsi, "token=", argument, sizeof argument);
+    if (!given || strlen(given) != strlen(server->token))
+        return false;
+    unsigned char differs = 0; // as long for any wrong one
+    for (size_t i = 0; server->token[i]; i++)
+        differs |= (unsigned char)(given[i] ^ server->token[i]);
+    return differs == 0;
+}
+
+// --- files ---
+
+static int refuse(struct lws *wsi, unsigned status)
+{
+    return lws_return_http_status(wsi, status, NULL) != 0 || lws_http_transaction_completed(wsi) ? -1
+                                                                                                  : 0;
+}
+
+static int start_file(struct server *server, struct lws *wsi, struct session *session,
+                      const char *path)
+{
+    unsigned char buffer[LWS_PRE + 1024], *at = buffer + LWS_PRE, *end = buffer + sizeof buffer - 1;
+    if (!asks_from_here(server, wsi))
+        return refuse(wsi, HTTP_STATUS_FORBIDDEN);
+    free(session->file.owned);
+    enum orl_result result = orl_content_find(&server->content, path, &session->file);
+    if (result != ORL_OK)
+        return refuse(wsi, result == ORL_ERR_NOT_FOUND ? HTTP_STATUS_NOT_FOUND
+                                                       : HTTP_STATUS_INTERNAL_SERVER_ERROR);
+    if (session->file.is_private && !has_token(server, wsi))
+        return refuse(wsi, HTTP_STATUS_FORBIDDEN);
+    session->written = 0;
+    static const char policy[] = "no-cache";
+    if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, session->file.type, session->file.size,
+                                    &at, end) ||
+        lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_CACHE_CONTROL,
+                                     (const unsigned char *)policy, (int)strlen(policy), &at,
+                                     end) ||
+        lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &at, end))
+        return -1;
+    lws_callback_on_writable(wsi);
+    return 0;
+}
+
+static int continue_file(struct lws *wsi, struct session *session)
+{
+    unsigned char buffer[LWS_PRE + CHUNK];
+    size_t left = session->file.size - session->written, size = left < CHUNK ? left : CHUNK;
+    memcpy(buffer + LWS_PRE, session->file.data + session->written, size);
+    session->written += size;
+    bool last = session->written == session->file.size;
+    if (lws_write(wsi, buffer + LWS_PRE, size, last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < 0)
+        return -1;
+    if (!last) {
+        lws_callback_on_writable(wsi);
+        return 0;
+    }
+    free(session->file.owned);
+    session->file = (struct content_file){0};
+    return lws_http_transaction_completed(wsi) ? -1 : 0;
+}
+
+// --- clients that walk ---
+
+static void add_session(struct server *server, struct lws *wsi, struct session *session)
+{
+    session->wsi = wsi;
+    session->walks = true;
+    session->next = server->sessions;
+    server->sessions = session;
+    server->session_count++;
+}
+
+static void remove_session(struct server *server, struct session *session)
+{
+    for (struct session **at = &server->sessions; *at; at = &(*at)->next)
+        if (*at == session) {
+            *at = session->next;
+            server->session_count--;
+            break;
+        }
+    free(session->frame);
+    session->frame = NULL;
+    session->walks = false;
+}
+
+static int close_for(struct lws *wsi, enum lws_close_status status)
+{
+    lws_close_reason(wsi, status, NULL, 0);
+    return -1;
+}
+
+// A newer request replaces one that no frame was drawn for yet.
+static int take_message(struct server *server, struct lws *wsi, struct session *session,
+                        const char *data, size_t size)
+{
+    if (lws_frame_is_binary(wsi))
+        return close_for(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE);
+    if (size > sizeof session->message - session->message_size)
+        return close_for(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE);
+    memcpy(session->message + session->message_size, data, size);
+    session->message_size += size;
+    if (!lws_is_final_fragment(wsi))
+        return 0;
+    struct walk_request request;
+    bool valid = orl_walk_request_read(session->message, session->message_size, &request);
+    session->message_size = 0;
+    if (!valid)
+        return close_for(wsi, LWS_CLOSE_STATUS_INVALID_PAYLOAD);
+    session->request = request;
+    if (!session->wants)
+        session->waits_since = server->clock++;
+    session->wants = true;
+    return 0;
+}
+
+// The next frame is drawn once this one has left for the network.
+static int write_frame(struct lws *wsi, struct session *session)
+{
+    if (!session->frame) {
+        session->sending = false;
+        return 0;
+    }
+    int written = lws_write(wsi, session->frame + LWS_PRE, session->frame_size, LWS_WRITE_BINARY);
+    free(session->frame);
+    session->frame = NULL;
+    lws_callback_on_writable(wsi);
+    return written < 0 ? -1 : 0;
+}
+
+static struct session *longest_waiting(const struct server *server)
+{
+    struct session *longest = NULL;
+    for (struct session *s = server->sessions; s; s = s->next)
+        if (s->wants && !s->sending && (!longest || s->waits_since < longest->waits_since))
+            longest = s;
+    return longest;
+}
+
+static enum orl_result answer(struct server *server, struct session *session)
+{
+    enum orl_result result = orl_walk_frame(&server->walk, &session->request, LWS_PRE,
+                                            &session->frame, &session->frame_size);
+    if (result != ORL_OK)
+        return result;
+    session->wants = false;
+    session->sending = true;
+    lws_callback_on_writable(session->wsi);
+    return ORL_OK;
+}
+
+// --- events ---
+
+static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *data,
+                    size_t size)
+{
+    struct server *server = lws_context_user(lws_get_context(wsi));
+    struct session *session = user;
+    switch (reason) {
+    case LWS_CALLBACK_HTTP:
+        return start_file(server, wsi, session, data);
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+        return session->file.data ? continue_file(wsi, session) : 0;
+    case LWS_CALLBACK_CLOSED_HTTP:
+        free(session ? session->file.owned : NULL);
+        if (session)
+            session->file = (struct content_file){0};
+        return 0;
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+        return asks_from_here(server, wsi) && has_token(server, wsi) &&
+                       server->session_count < CLIENTS_MOST
+                   ? 0
+                   : -1;
+    case LWS_CALLBACK_ESTABLISHED:
+        *session = (struct session){0};
+        add_session(server, wsi, session);
+        return 0;
+    case LWS_CALLBACK_RECEIVE:
+        return take_message(server, wsi, session, data, size);
+    case LWS_CALLBACK_SERVER_WRITEABLE:
+        return write_frame(wsi, session);
+    case LWS_CALLBACK_CLOSED:
+        remove_session(server, session);
+        return 0;
+    case LWS_CALLBACK_FILTER_HTTP_CONNECTION:
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+        return 0;
+    default:
+        return lws_callback_http_dummy(wsi, reason, user, data, size);
+    }
+}
+
+// --- the server ---
+
+static enum orl_result make_token(struct server *server)
+{
+    unsigned char bytes[TOKEN_BYTES];
+    if (is_local(server->params->host))
+        return ORL_OK;
+    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
+        return orl_fail(server->log, ORL_ERR_IO, "no random numbers for a token");
+    for (size_t i = 0; i < sizeof bytes; i++)
+        snprintf(server->token + 2 * i, 3, "%02x", bytes[i]);
+    return ORL_OK;
+}
+
+// libwebsockets waits for an address that this machine has not got, in case it comes.
+static enum orl_result check_address(const struct orl_log *log, const char *host)
+{
+    const struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE};
+    struct addrinfo *found = NULL;
+    bool ours = false;
+    if (getaddrinfo(host, NULL, &hints, &found) == 0) {
+        int probe = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        ours = probe >= 0 && bind(probe, found->ai_addr, found->ai_addrlen) == 0;
+        if (probe >= 0)
+            close(probe);
+        freeaddrinfo(found);
+    }
+    return ours ? ORL_OK : orl_fail(log, ORL_ERR_ARGUMENT, "cannot listen on %s: it is no address of "
+                                    "this machine", host);
+}
+
+static enum orl_result listen_there(struct server *server)
+{
+    static const struct lws_protocols protocols[] = {
+        {"http", on_event, sizeof(struct session), MESSAGE_MOST, 0, NULL, 0},
+        {"oriel-walk", on_event, sizeof(struct session), MESSAGE_MOST, 0, NULL, 0},
+        {NULL, NULL, 0, 0, 0, NULL, 0}};
+    const struct orl_walk_params *params = server->params;
+    struct lws_context_creation_info info = {
+        .port = params->port ? params->port : 0, .iface = params->host, .protocols = protocols,
+        .user = server, .timeout_secs = IDLE_S, .keepalive_timeout = IDLE_S,
+        .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND, .gid = (gid_t)-1, .uid = (uid_t)-1};
+    lws_set_log_level(LLL_ERR, NULL);
+    server->context = lws_create_context(&info);
+    if (!server->context)
+        return orl_fail(server->log, ORL_ERR_IO, "cannot listen on %s, port %d: it is taken",
+                        params->host, params->port);
+    int port = lws_get_vhost_listen_port(lws_get_vhost_by_name(server->context, "default"));
+    char address[256];
+    snprintf(address, sizeof address, "http://%s:%d/%s%s", params->host, port,
+             server->token[0] ? "?token=" : "", server->token);
+    params->ready(params->priv, address);
+    return ORL_OK;
+}
+
+static enum orl_result serve(struct server *server)
+{
+    enum orl_result result = ORL_OK;
+    while (result == ORL_OK && !orl_progress_cancelled(server->params->progress)) {
+        struct session *session = longest_waiting(server);
+        if (session) {
+            result = answer(server, session);
+            lws_cancel_service(server->context); // look for events, but do not wait
+        }
+        if (result == ORL_OK && lws_service(server->context, 0) < 0 && errno != EINTR)
+            result = orl_fail(server->log, ORL_ERR_IO, "the network cannot be served");
+    }
+    return result;
+}
+
+enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                               const struct orl_scene *scene, const struct orl_walk_params *params)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    struct server server = {.log = log, .params = params};
+    server.walk = (struct walk_renderer){
+        .log = log, .renderer = renderer, .render = params->render,
+        .typical = scene->photo_distance > 0 ? (float)scene->photo_distance : 1};
+    char *title = params->title ? orl_strdup(log, params->title) : orl_walk_title(log, scene);
+    enum orl_result result = title ? orl_content_init(log, scene, title, &server.content)
+                                   : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = check_address(log, params->host);
+    if (result == ORL_OK)
+        result = make_token(&server);
+    if (result == ORL_OK)
+        result = listen_there(&server);
+    if (result == ORL_OK)
+        result = serve(&server);
+    if (server.context)
+        lws_context_destroy(server.context);
+    orl_content_finish(&server.content);
+    free(title);
+    return result;
+}

@@ -1,0 +1,129 @@
+// manifest.json of a site: all that the page must know before it loads anything else.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "core/vec3.h"
+#include "scene/manifest.h"
+#include "walk/internal.h"
+
+// Numbers of the method, by their keys.
+static json_t *options_json(const struct orl_render_params *params)
+{
+    json_t *options = json_object();
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        float value;
+        if (o->kind != ORL_OPTION_NUMBER)
+            continue;
+        memcpy(&value, (const char *)params + o->offset, sizeof value);
+        json_object_set_new(options, o->key, json_real((double)value));
+    }
+    return options;
+}
+
+// The ground's normal, or what the photographers held upwards.
+static json_t *up_json(const struct orl_scene *scene)
+{
+    double up[3] = {0};
+    for (size_t i = 0; i < scene->photo_count; i++)
+        for (int k = 0; k < 3; k++)
+            up[k] -= scene->photos[i].view.cam_from_world.r[1][k];
+    if (scene->ground.height > 0)
+        memcpy(up, scene->ground.plane, sizeof up);
+    if (!(orl_normalize3(up) > 0))
+        up[1] = -1;
+    return json_pack("[f,f,f]", up[0], up[1], up[2]);
+}
+
+enum orl_result orl_walk_start(const struct orl_log *log, const struct orl_scene *scene,
+                               size_t *start)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        double a[3], sum = 0;
+        orl_pose_centre(&scene->photos[i].view.cam_from_world, a);
+        for (size_t j = 0; j < scene->photo_count; j++) {
+            double b[3];
+            orl_pose_centre(&scene->photos[j].view.cam_from_world, b);
+            if (!scene->photos[j].test)
+                sum += hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+        }
+        if (!scene->photos[i].test && sum < least) {
+            least = sum;
+            *start = i;
+        }
+    }
+    return isfinite(least) ? ORL_OK
+                           : orl_fail(log, ORL_ERR_DATA, "the scene has no photographs that "
+                                      "may be shown");
+}
+
+char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene)
+{
+    char *name = orl_strdup(log, scene->dir);
+    size_t length = name ? strlen(name) : 0;
+    while (length > 1 && name[length - 1] == '/')
+        name[--length] = '\0';
+    char *last = name ? orl_strdup(log, orl_path_name(name)) : NULL;
+    free(name);
+    return last;
+}
+
+// Number of a photograph among those that are not held out.
+static json_int_t number_of(const struct orl_scene *scene, size_t photo)
+{
+    json_int_t number = 0;
+    for (size_t i = 0; i < photo; i++)
+        number += !scene->photos[i].test;
+    return number;
+}
+
+// Rows of cam_from_world: rotation and translation.
+static json_t *pose_json(const struct orl_pose *pose)
+{
+    json_t *rows = json_array();
+    for (int i = 0; i < 3; i++)
+        json_array_append_new(rows, json_pack("[f,f,f,f]", pose->r[i][0], pose->r[i][1],
+                                              pose->r[i][2], pose->t[i]));
+    return rows;
+}
+
+json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *c)
+{
+    return json_pack("{s:s, s:i, s:i, s:f, s:f, s:f, s:f, s:o}", "name", photo->name, "width",
+                     c->width, "height", c->height, "fx", c->fx, "fy", c->fy, "cx", c->cx, "cy",
+                     c->cy, "cam_from_world", pose_json(&photo->view.cam_from_world));
+}
+
+json_t *orl_walk_manifest(const struct orl_scene *scene, const char *title, size_t start)
+{
+    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:o, s:I}", "format", "oriel site", "version",
+                     1, "made_by", "oriel " ORL_VERSION, "title", title, "up", up_json(scene),
+                     "distance", scene->photo_distance > 0 ? scene->photo_distance : 1.0, "ground",
+                     orl_manifest_ground(&scene->ground), "start", number_of(scene, start));
+}
+
+enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos)
+{
+    json_t *root = orl_walk_manifest(site->scene, site->params->title, site->start);
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o}", "poster", orl_site_file(site, "poster.jpg"),
+                             "options", options_json(&site->render), "points", points, "photos",
+                             photos);
+    if (!root || !more || json_object_update(root, more) != 0) {
+        json_decref(root);
+        json_decref(more);
+        return ORL_ERR_MEMORY;
+    }
+    json_decref(more);
+    char *path = orl_site_path(site, "manifest.json");
+    enum orl_result result = path ? orl_json_write(site->log, path, root) : ORL_ERR_MEMORY;
+    json_t *file = result == ORL_OK ? orl_site_file(site, "manifest.json") : NULL;
+    site->report->first_bytes += (size_t)json_integer_value(json_object_get(file, "bytes"));
+    json_decref(file);
+    json_decref(root);
+    free(path);
+    return result;
+}

@@ -1,0 +1,225 @@
+// Photographs of a site: JPEG, thumbnails, and the depth that each of them sees.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bridge/bridge.h"
+#include "core/memory.h"
+#include "io/picture.h"
+#include "scene/path.h"
+#include "walk/internal.h"
+
+enum {
+    THUMB_SIDE = 160,
+    THUMB_QUALITY = 70,
+    POSTER_WIDTH = 960,
+    POSTER_HEIGHT = 600,
+    POSTER_QUALITY = 78,
+    DEPTH_SIDE_MAX = 1024, // as of the renderer: depth is smooth between edges
+    // Depth is kept as round(STEPS_PER_FOLD * ln(z / nearest)) + 1, 0 where there is none: steps of a
+    // twentieth of the tolerance of the occlusion test.
+    STEPS_PER_FOLD = 2048,
+    DEPTH_MOST = 32767, // the upper bit is free for the page
+};
+
+static struct orl_camera within(const struct orl_camera *camera, int side)
+{
+    int longer = camera->width > camera->height ? camera->width : camera->height;
+    if (longer <= side)
+        return *camera;
+    double scale = (double)side / longer;
+    int width = (int)lrint(fmax(1, camera->width * scale));
+    int height = (int)lrint(fmax(1, camera->height * scale));
+    return orl_camera_resized(camera, width, height);
+}
+
+// --- pictures ---
+
+static enum orl_result write_smaller(struct site *site, const struct orl_image *image, int width,
+                                     int height, int quality, const char *path)
+{
+    struct orl_image small = {0};
+    bool same = image->width == width && image->height == height;
+    enum orl_result result = same ? ORL_OK
+                                  : orl_bridge_resize(site->log, image, width, height, &small);
+    char *file = result == ORL_OK ? orl_site_path(site, path) : NULL;
+    if (result == ORL_OK)
+        result = file ? orl_jpeg_write(site->log, file, same ? image : &small, quality, NULL)
+                      : ORL_ERR_MEMORY;
+    free(file);
+    orl_image_finish(&small);
+    return result;
+}
+
+static enum orl_result write_pictures(struct site *site, size_t photo,
+                                      const struct orl_camera *camera, const char *picture,
+                                      const char *thumb)
+{
+    struct orl_image image = {0};
+    char *path = orl_scene_photo_path(site->log, site->scene, photo);
+    enum orl_result result = path ? orl_picture_read(site->log, path, 3, &image) : ORL_ERR_MEMORY;
+    free(path);
+    struct orl_camera small = within(camera, THUMB_SIDE);
+    if (result == ORL_OK)
+        result = write_smaller(site, &image, camera->width, camera->height,
+                               site->params->jpeg_quality, picture);
+    if (result == ORL_OK)
+        result = write_smaller(site, &image, small.width, small.height, THUMB_QUALITY, thumb);
+    orl_image_finish(&image);
+    return result;
+}
+
+// --- depth ---
+
+static float nearest_depth(const struct orl_image *depth)
+{
+    float nearest = INFINITY;
+    size_t count = (size_t)depth->width * (size_t)depth->height;
+    for (size_t i = 0; i < count; i++)
+        if (depth->f32[i] > 0)
+            nearest = fminf(nearest, depth->f32[i]);
+    return isfinite(nearest) ? nearest : 1;
+}
+
+// High byte red, low byte green.
+static enum orl_result pack_depth(const struct orl_log *log, const struct orl_image *depth,
+                                  float nearest, struct orl_image *packed)
+{
+    enum orl_result result = orl_image_init(log, packed, depth->width, depth->height, 3,
+                                            ORL_PIXEL_U8);
+    size_t count = (size_t)depth->width * (size_t)depth->height;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        float z = depth->f32[i];
+        float steps = z > 0 ? STEPS_PER_FOLD * logf(z / nearest) + 1 : 0;
+        long value = lrintf(fminf(steps, DEPTH_MOST));
+        packed->u8[3 * i] = (uint8_t)(value >> 8);
+        packed->u8[3 * i + 1] = (uint8_t)value;
+    }
+    return result;
+}
+
+// The surface that this camera sees of the points, without any photograph's help: what the
+// occlusion test compares with.
+static enum orl_result draw_depth(struct site *site, const struct orl_view *view,
+                                  struct orl_image *depth)
+{
+    const struct orl_method *points = orl_method_find(site->log, "points");
+    if (!points)
+        return ORL_ERR_NOT_FOUND;
+    struct orl_render_params params = points->params;
+    params.fill = ORL_FILL_NONE;
+    params.splat_scale = site->render.splat_scale;
+    params.front_layer = site->render.front_layer;
+    params.min_support = site->render.min_support;
+    params.points_per_pixel = site->render.points_per_pixel;
+    params.leave_out = ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE | ORL_LAYER_CONFIDENCE;
+    struct orl_frame frame;
+    enum orl_result result = orl_renderer_draw(site->renderer, view, &params, NULL, &frame);
+    if (result != ORL_OK)
+        return result;
+    *depth = frame.depth;
+    frame.depth = (struct orl_image){0};
+    orl_frame_finish(&frame);
+    return ORL_OK;
+}
+
+static enum orl_result write_depth(struct site *site, const struct orl_view *view,
+                                   const char *path, float *nearest)
+{
+    struct orl_image depth = {0}, packed = {0};
+    enum orl_result result = draw_depth(site, view, &depth);
+    *nearest = result == ORL_OK ? nearest_depth(&depth) : 1;
+    if (result == ORL_OK)
+        result = pack_depth(site->log, &depth, *nearest, &packed);
+    char *file = result == ORL_OK ? orl_site_path(site, path) : NULL;
+    if (result == ORL_OK)
+        result = file ? orl_png_write(site->log, file, &packed) : ORL_ERR_MEMORY;
+    free(file);
+    orl_image_finish(&depth);
+    orl_image_finish(&packed);
+    return result;
+}
+
+// --- the manifest's part ---
+
+static json_t *vector_json(const float v[3])
+{
+    return json_pack("[f,f,f]", (double)v[0], (double)v[1], (double)v[2]);
+}
+
+static enum orl_result write_photo(struct site *site, size_t index, size_t number, json_t **out)
+{
+    const struct orl_photo *photo = &site->scene->photos[index];
+    struct orl_camera c = within(&photo->view.camera, site->params->photo_side);
+    struct orl_view depth_view = {.camera = within(&c, DEPTH_SIDE_MAX),
+                                  .cam_from_world = photo->view.cam_from_world};
+    char picture[64], thumb[64], depth[64];
+    float nearest = 1;
+    snprintf(picture, sizeof picture, "photos/%05zu.jpg", number);
+    snprintf(thumb, sizeof thumb, "thumbs/%05zu.jpg", number);
+    snprintf(depth, sizeof depth, "depth/%05zu.png", number);
+    enum orl_result result = write_pictures(site, index, &c, picture, thumb);
+    if (result == ORL_OK)
+        result = write_depth(site, &depth_view, depth, &nearest);
+    json_t *depth_file = result == ORL_OK ? orl_site_file(site, depth) : NULL;
+    if (result != ORL_OK || !depth_file)
+        return result != ORL_OK ? result : ORL_ERR_IO;
+    json_object_update_new(depth_file,
+                           json_pack("{s:i, s:i, s:f, s:i}", "width", depth_view.camera.width,
+                                     "height", depth_view.camera.height, "nearest", (double)nearest,
+                                     "steps_per_fold", STEPS_PER_FOLD));
+    *out = orl_walk_photo(photo, &c);
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o}", "gain", vector_json(photo->gain),
+                             "vignette", vector_json(photo->vignette), "picture",
+                             orl_site_file(site, picture), "thumb", orl_site_file(site, thumb),
+                             "depth", depth_file);
+    if (*out && json_object_update_new(*out, more) != 0) {
+        json_decref(*out);
+        *out = NULL;
+    }
+    return *out ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+enum orl_result orl_site_photos(struct site *site, json_t **out)
+{
+    const struct orl_scene *scene = site->scene;
+    json_t *photos = json_array();
+    enum orl_result result = photos ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (scene->photos[i].test)
+            continue;
+        json_t *photo = NULL;
+        if (orl_progress_cancelled(site->params->progress))
+            result = ORL_ERR_CANCELLED;
+        if (result == ORL_OK)
+            result = write_photo(site, i, site->report->photos, &photo);
+        if (result == ORL_OK && json_array_append_new(photos, photo) != 0)
+            result = ORL_ERR_MEMORY;
+        site->report->photos += result == ORL_OK;
+        orl_progress_report(site->params->progress, "publish", (double)(i + 1),
+                            (double)scene->photo_count, scene->photos[i].name);
+    }
+    if (result == ORL_OK)
+        *out = photos;
+    else
+        json_decref(photos);
+    return result;
+}
+
+enum orl_result orl_site_poster(struct site *site)
+{
+    struct orl_view view = site->scene->photos[site->start].view;
+    struct orl_frame frame;
+    struct orl_image srgb = {0};
+    view.camera = orl_camera_reframed(&view.camera, POSTER_WIDTH, POSTER_HEIGHT);
+    enum orl_result result = orl_renderer_draw(site->renderer, &view, &site->render, NULL, &frame);
+    if (result != ORL_OK)
+        return result;
+    result = orl_tone_srgb(site->log, &frame.color, &srgb);
+    if (result == ORL_OK)
+        result = write_smaller(site, &srgb, POSTER_WIDTH, POSTER_HEIGHT, POSTER_QUALITY,
+                               "poster.jpg");
+    orl_image_finish(&srgb);
+    orl_frame_finish(&frame);
+    return result;
+}

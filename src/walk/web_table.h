@@ -1,0 +1,11 @@
+// The files of web/, the interactive page, embedded at build time and ended by a NULL name.
+#ifndef ORL_WALK_WEB_TABLE_H
+#define ORL_WALK_WEB_TABLE_H
+
+struct orl_web_file {
+    const char *name; // relative to web/
+    const char *text;
+};
+extern const struct orl_web_file orl_web_table[];
+
+#endif

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# A published site: what is written, what is refused, and the page itself in a browser.
+. "$(dirname "$0")/command_lib"
+monument_scene || exit 1
+
+runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
+grep -q ': 6 photographs' stdout.txt || fail "publish does not say what it wrote"
+site=served/path/site
+for file in index.html style.css manifest.json poster.jpg js/main.js shaders/gather.frag \
+    shaders/proxy/surfel.glsl shaders/gather/photo.glsl points/coarse.bin photos/00000.jpg \
+    depth/00000.png thumbs/00000.jpg; do
+    [ -s "$site/$file" ] || fail "the site lacks $file"
+done
+[ -e "$site.part" ] && fail "$site.part is left behind"
+grep -q '<title>A &quot;test&quot; &amp; &lt;more></title>' "$site/index.html" ||
+    fail "the title is not in the page as text"
+grep -q '{{' "$site/index.html" && fail "the page has unfilled places"
+# What must be there before the page shows anything.
+first=$(find "$site" \( -path '*/js/*' -o -path '*/shaders/*' -o -path '*/points/coarse.bin' -o \
+    -path "$site/*" ! -path "$site/*/*" \) -type f -exec cat {} + | wc -c)
+[ "$first" -le 1000000 ] || fail "$first bytes until the first picture"
+
+# An earlier site is replaced, and nothing else.
+runs 0 "$oriel" publish made --out served/path/site --quiet
+mkdir foreign && touch foreign/precious
+runs 2 "$oriel" publish made --out foreign
+[ -e foreign/precious ] || fail "a folder that is no site was emptied"
+runs 2 "$oriel" publish made --out foreign/precious
+runs 2 "$oriel" publish made
+runs 2 "$oriel" publish no-such-scene --out other
+[ -e other ] && fail "a site of no scene"
+runs 2 "$oriel" publish made --out foreign --single-file
+runs 0 "$oriel" publish made --out single.html --single-file --max-points 4000 --max-size 120
+[ -e single.html.part ] && fail "single.html.part is left behind"
+grep -q 'src="photos\|href="style.css"' single.html && fail "the single file names other files"
+runs 0 "$oriel" publish made --out single.html --single-file
+[ $failed -eq 0 ] || exit 1
+
+needs_browser
+timeout 900 /usr/bin/python3 -B "$source/tests/web/test_page.py" "$oriel" \
+    "$tools/bench_web_pictures" "$work/made" "$work/$site" "$work/single.html" 2>&1

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# The walk's server: what it answers, whom, and its page in a browser.
+. "$(dirname "$0")/command_lib"
+monument_scene || exit 1
+
+runs 2 "$oriel" walk no-such-scene
+runs 2 "$oriel" walk made --port 70000
+runs 2 timeout 60 "$oriel" walk made --host 192.0.2.1 --port 0
+grep -q 'cannot listen on 192.0.2.1' stderr.txt || fail "an address that is not ours is not named"
+[ $failed -eq 0 ] || exit 1
+needs_browser
+timeout 400 /usr/bin/python3 -B "$source/tests/web/test_server.py" "$oriel" \
+    "$tools/bench_web_pictures" "$work/made" 2>&1

@@ -1,0 +1,315 @@
+#!/usr/bin/python3
+"""The published page in a headless Chromium. Made by tests/e2e/publish.sh:
+test_page.py ORIEL TOOL SCENE SITE SINGLE, SITE two folders below the served one."""
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from browser import Browser, Server
+
+ORIEL, TOOL, SCENE, SITE, SINGLE = sys.argv[1:6]
+WIDTH, HEIGHT = 360, 240 # of the photographs' aspect, with room beside the tools
+
+
+def run(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def psnr(a, b):
+    return float(run(TOOL, "compare", a, b).split()[0])
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.work = tempfile.TemporaryDirectory()
+        cls.server = Server(os.path.dirname(os.path.dirname(SITE)))
+        cls.path = os.path.relpath(SITE, os.path.dirname(os.path.dirname(SITE)))
+        cls.address = f"{cls.server.address}/{cls.path}/"
+        cls.browser = Browser(WIDTH, HEIGHT)
+        cls.browser.open(cls.address)
+        cls.cameras = json.loads(run(TOOL, "cameras", SCENE))
+        with open(f"{SITE}/manifest.json") as file:
+            cls.manifest = json.load(file)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.server.close()
+        cls.work.cleanup()
+
+    def setUp(self):
+        # As a visitor finds it.
+        self.browser.js("""
+            const nav = oriel.navigator;
+            nav.setMode("walk");
+            nav.speed = [0, 0, 0];
+            nav.calm = true; // no flights
+            nav.flight = null;
+            nav.setView(nav.home, nav.photos[oriel.manifest.start]);
+            oriel.wake();""")
+        self.browser.settle()
+
+    def reopen(self, address):
+        """A new document, even where only what follows the # differs."""
+        self.browser.driver.get("about:blank")
+        self.browser.open(address)
+
+    def tearDown(self):
+        self.assertEqual(self.browser.errors(), [])
+
+    def view(self):
+        return self.browser.js("return oriel.navigator.view")
+
+    def file(self, name):
+        return f"{self.work.name}/{name}"
+
+    def moved(self, before):
+        """Along right, down and forward of the view before, in scene units."""
+        now = self.view()
+        by = [b - a for a, b in zip(before["eye"], now["eye"])]
+        return [sum(before["r"][3 * i + k] * by[k] for k in range(3)) for i in range(3)]
+
+    def turned(self, before):
+        """Angle between the two views' directions, radians."""
+        cosine = sum(a * b for a, b in zip(before["r"][6:], self.view()["r"][6:]))
+        return math.acos(max(-1.0, min(1.0, cosine)))
+
+    def drag(self, *points):
+        for kind, (x, y) in zip(["mousePressed"] + ["mouseMoved"] * (len(points) - 1), points):
+            self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+                "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1})
+        self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+            "type": "mouseReleased", "x": points[-1][0], "y": points[-1][1], "button": "left"})
+
+    def hold(self, code, key):
+        self.browser.keys(code, key, 0.3)
+        self.browser.settle()
+
+    def press(self, key, code):
+        self.browser.keys(code, key, 0)
+        self.browser.settle()
+
+    # --- the picture ---
+
+    def test_agrees_with_the_renderer(self):
+        test = [c for c in self.cameras if c["test"]]
+        for camera in test[:1] + self.cameras[:1]:
+            name = camera["name"]
+            page, own = self.file("page.png"), self.file("own.png")
+            self.browser.capture(page, camera)
+            run(ORIEL, "render", SCENE, "--at", name, "--out", own, "--quiet")
+            self.assertGreaterEqual(psnr(page, own), 30, name)
+
+    def test_held_out_photographs_are_not_published(self):
+        names = [photo["name"] for photo in self.manifest["photos"]]
+        self.assertEqual(names, [c["name"] for c in self.cameras if not c["test"]])
+        self.assertEqual(len(os.listdir(f"{SITE}/photos")), len(names))
+
+    def test_draws_something_before_photographs_are_there(self):
+        camera = self.cameras[0]
+        points = self.file("points.png")
+        self.browser.capture(points, camera, 5)
+        self.assertGreaterEqual(psnr(points, f"{SCENE}/images/{camera['name']}"), 14)
+
+    def test_layers_differ(self):
+        seen = set()
+        for layer in range(6): # the points come last
+            picture = self.file("layer.png")
+            self.browser.capture(picture, self.cameras[0], layer)
+            with open(picture, "rb") as file:
+                seen.add(file.read())
+        self.assertEqual(len(seen), 6)
+        self.press("l", "KeyL")
+        self.assertEqual(self.browser.js("return oriel.layer"), 1)
+        self.browser.js("oriel.setLayer(0)")
+
+    # --- movement ---
+
+    def test_keys_move(self):
+        for mode in ("1", "2"):
+            self.press(mode, f"Digit{mode}")
+            for code, key, axis, sign in (("KeyW", "w", 2, 1), ("KeyS", "s", 2, -1),
+                                          ("ArrowRight", "ArrowRight", 0, 1), ("KeyA", "a", 0, -1)):
+                before = self.view()
+                self.hold(code, key)
+                self.assertGreater(sign * self.moved(before)[axis], 0, f"mode {mode}, {key}")
+        before = self.view()
+        self.hold("KeyE", "e")
+        self.assertLess(self.moved(before)[1], 0)
+
+    def test_drag_looks(self):
+        before = self.view()
+        self.drag((150, 70), (120, 70), (90, 70))
+        self.browser.settle()
+        # The scene follows the pointer: to the left, so the view turns right.
+        now, focal = self.view(), before["frame"]["fx"] * HEIGHT
+        self.assertAlmostEqual(self.turned(before), 2 * math.atan(30 / focal), delta=0.05)
+        self.assertGreater(sum(before["r"][k] * now["r"][6 + k] for k in range(3)), 0)
+        self.assertEqual(before["eye"], now["eye"])
+
+    def test_wheel_moves_forward(self):
+        before = self.view()
+        self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+            "type": "mouseWheel", "x": 100, "y": 75, "deltaX": 0, "deltaY": -120})
+        self.browser.wait(f"return oriel.navigator.view.eye[0] !== {before['eye'][0]!r}")
+        self.browser.settle()
+        self.assertGreater(self.moved(before)[2], 0)
+
+    def test_orbit_keeps_the_middle(self):
+        self.press("3", "Digit3")
+        before = self.browser.js("return oriel.navigator.pivot")
+        self.drag((120, 70), (150, 70))
+        self.browser.settle()
+        self.assertEqual(before, self.browser.js("return oriel.navigator.pivot"))
+        x = self.browser.js("""
+            const c = oriel.windowCamera(1), p = oriel.navigator.pivot;
+            const d = p.map((v, k) => v - c.eye[k]);
+            const q = [0, 1, 2].map(i => [0, 1, 2].reduce((s, k) => s + c.r[3 * i + k] * d[k], 0));
+            return c.fx * q[0] / q[2] + c.cx;""")
+        self.assertAlmostEqual(x, WIDTH / 2, delta=2)
+
+    def test_walkers_stay_near_photographs(self):
+        self.browser.keys("KeyS", "s", 4)
+        self.browser.settle()
+        self.assertLess(self.browser.js("return oriel.navigator.outness"), 1.0)
+
+    # --- photographs ---
+
+    def test_snap_lands_on_the_photograph(self):
+        self.drag((150, 70), (140, 70))
+        self.hold("KeyD", "d")
+        self.assertIsNone(self.browser.js("return oriel.navigator.at"))
+        self.browser.js("oriel.navigator.calm = false")
+        self.press("p", "KeyP")
+        at = self.browser.js("return oriel.navigator.at.name")
+        camera = next(c for c in self.cameras if c["name"] == at)
+        view = self.view()
+        for a, b in zip(view["eye"] + view["r"], camera["eye"] + camera["r"]):
+            self.assertAlmostEqual(a, b, places=5)
+        # What the window shows is that photograph: it has the photograph's aspect.
+        window = self.browser.js("return oriel.windowCamera(1)")
+        for key in ("fx", "fy", "cx", "cy"):
+            self.assertAlmostEqual(window[key], camera[key] * WIDTH / camera["width"], places=3)
+        picture = self.file("snap.png")
+        self.browser.capture(picture, {**camera, **self.browser.js(
+            "const {r, eye} = oriel.windowCamera(1); return {r, eye}")})
+        own = self.file("own.png")
+        run(ORIEL, "render", SCENE, "--at", at, "--out", own, "--quiet")
+        photo = f"{SCENE}/images/{at}"
+        self.assertGreaterEqual(psnr(picture, photo), max(20, psnr(own, photo) - 1.5))
+
+    def test_next_and_previous(self):
+        names = [photo["name"] for photo in self.manifest["photos"]]
+        start = self.browser.js("return oriel.navigator.at.number")
+        self.press(".", "Period")
+        self.assertEqual(self.browser.js("return oriel.navigator.at.name"), names[(start + 1) % len(names)])
+        self.press(",", "Comma")
+        self.press(",", "Comma")
+        self.assertEqual(self.browser.js("return oriel.navigator.at.name"), names[start - 1])
+        self.press("h", "KeyH")
+        self.assertEqual(self.browser.js("return oriel.navigator.at.number"), start)
+
+    def test_comparison_shows_the_photograph(self):
+        self.press("c", "KeyC")
+        self.browser.wait("return document.querySelector('#compare img').naturalWidth > 0")
+        box = self.browser.js("""
+            const {left, top, width, height} = document.querySelector('#compare img').getBoundingClientRect();
+            return [left, top, width, height]""")
+        self.assertEqual([round(x) for x in box], [0, 0, WIDTH, HEIGHT])
+        self.press("c", "KeyC")
+        self.assertTrue(self.browser.js("return document.getElementById('compare').hidden"))
+
+    # --- the page ---
+
+    def test_address_keeps_the_view(self):
+        self.drag((150, 70), (130, 60))
+        self.browser.settle()
+        before, address = self.view(), self.browser.driver.current_url
+        self.assertIn("#v=", address)
+        self.reopen(address)
+        now = self.view()
+        for a, b in zip(before["eye"] + before["r"], now["eye"] + now["r"]):
+            self.assertAlmostEqual(a, b, places=4)
+
+    def test_bad_addresses_start_at_home(self):
+        for hash_ in ("#v=1,2,3", "#v=a,b,c,d,e,f,g,h", "#p=999", "#v=0,0,0,0,0,0,0,1", "#mode=x"):
+            self.reopen(self.address + hash_)
+            self.assertEqual(self.browser.js("return oriel.navigator.at.number"), self.manifest["start"])
+
+    def test_keyboard_reaches_every_tool(self):
+        ids = self.browser.js("return [...document.querySelectorAll('#tools button')].map(b => b.id)")
+        self.assertGreaterEqual(len(ids), 15)
+        for id_ in ids:
+            label = self.browser.js(f"return document.getElementById('{id_}').getAttribute('aria-label')")
+            self.assertTrue(label, id_)
+            self.assertGreaterEqual(self.browser.js(f"return document.getElementById('{id_}').tabIndex"), 0)
+        for key, code, panel in (("t", "KeyT", "thumbs"), ("m", "KeyM", "map"), ("i", "KeyI", "panel")):
+            self.press(key, code)
+            self.assertFalse(self.browser.js(f"return document.getElementById('{panel}').hidden"))
+            if panel == "panel":
+                self.assertIn("loaded", self.browser.js(
+                    "return document.getElementById('figure-photos').textContent"))
+            self.press(key, code)
+        self.press("?", "Slash")
+        self.assertTrue(self.browser.js("return document.getElementById('help').open"))
+        self.browser.js("document.getElementById('help').close()")
+
+    def test_missing_file_is_said(self):
+        self.browser.js("oriel.files.schedule(() => 0, () => oriel.files.get('photos/none.jpg'))")
+        self.browser.wait("return document.getElementById('hint').classList.contains('error')")
+        self.assertIn("none.jpg", self.browser.js("return document.getElementById('hint').textContent"))
+        self.assertTrue(self.browser.errors())
+        self.reopen(self.address)
+
+    def test_single_file_opens_from_disk(self):
+        camera = self.cameras[0]
+        served, single = self.file("served.png"), self.file("single.png")
+        self.browser.capture(served, camera)
+        self.reopen(f"file://{SINGLE}")
+        self.browser.capture(single, camera)
+        self.assertGreaterEqual(psnr(single, served), 50)
+        self.reopen(self.address)
+
+
+class Phone(unittest.TestCase):
+    def test_fingers(self):
+        server, browser = Server(SITE), Browser(360, 640, touch=True)
+        try:
+            browser.open(server.address)
+
+            def touch(kind, *points):
+                browser.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                    "type": kind, "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+
+            def view():
+                return browser.js("return oriel.navigator.view")
+
+            before = view()
+            touch("touchStart", (200, 300))
+            touch("touchMove", (150, 300))
+            touch("touchEnd")
+            browser.settle()
+            one = view()
+            self.assertEqual(one["eye"], before["eye"])
+            self.assertNotEqual(one["r"], before["r"])
+            touch("touchStart", (150, 300), (250, 300))
+            touch("touchMove", (120, 300), (280, 300))
+            touch("touchEnd")
+            browser.settle()
+            two = view()
+            self.assertEqual(two["r"], one["r"])
+            forward = sum((b - a) * f for a, b, f in zip(one["eye"], two["eye"], one["r"][6:]))
+            self.assertGreater(forward, 0)
+            self.assertEqual(browser.errors(), [])
+        finally:
+            browser.close()
+            server.close()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[6:], verbosity=2)

@@ -1,0 +1,282 @@
+#!/usr/bin/python3
+"""The walk's server and its page. Made by tests/e2e/walk.sh: test_server.py ORIEL TOOL SCENE."""
+import base64
+import http.client
+import json
+import os
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from browser import Browser
+
+ORIEL, TOOL, SCENE = sys.argv[1:4]
+WIDTH, HEIGHT = 360, 240
+CLIENTS = 20
+
+
+def run(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+class Walk:
+    """The program, serving."""
+
+    def __init__(self, *options):
+        self.process = subprocess.Popen([ORIEL, "walk", SCENE, "--port", "0", *options],
+                                        stdout=subprocess.PIPE, text=True)
+        self.address = self.process.stdout.readline().strip()
+        self.host, self.port = self.address.split("/")[2].split(":")
+
+    def get(self, path, **headers):
+        connection = http.client.HTTPConnection(self.host, int(self.port), timeout=60)
+        connection.putrequest("GET", path, skip_host="Host" in headers)
+        for name, value in headers.items():
+            connection.putheader(name, value)
+        connection.endheaders()
+        answer = connection.getresponse()
+        body = answer.read()
+        connection.close()
+        return answer.status, body
+
+    def close(self):
+        self.process.terminate()
+        self.process.stdout.close()
+        return self.process.wait(60)
+
+
+class Client:
+    """A WebSocket, as little of it as the tests need."""
+
+    def __init__(self, walk, path="/live", **headers):
+        self.socket = socket.create_connection((walk.host, int(walk.port)), timeout=60)
+        lines = {"Host": f"{walk.host}:{walk.port}", "Upgrade": "websocket", "Connection": "Upgrade",
+                 "Sec-WebSocket-Key": base64.b64encode(os.urandom(16)).decode(),
+                 "Sec-WebSocket-Version": "13", "Sec-WebSocket-Protocol": "oriel-walk", **headers}
+        request = f"GET {path} HTTP/1.1\r\n" + "".join(f"{k}: {v}\r\n" for k, v in lines.items())
+        self.socket.sendall(request.encode() + b"\r\n")
+        self.answer = b""
+        while b"\r\n\r\n" not in self.answer:
+            part = self.socket.recv(1)
+            if not part:
+                break
+            self.answer += part
+        self.open = b" 101 " in self.answer
+
+    def send(self, data, opcode=1):
+        data = data if isinstance(data, bytes) else json.dumps(data).encode()
+        mask = os.urandom(4)
+        size = (bytes([0x80 | len(data)]) if len(data) < 126 else
+                b"\xfe" + struct.pack(">H", len(data)) if len(data) < 65536 else
+                b"\xff" + struct.pack(">Q", len(data)))
+        self.socket.sendall(bytes([0x80 | opcode]) + size + mask +
+                            bytes(x ^ mask[i % 4] for i, x in enumerate(data)))
+
+    def exactly(self, size):
+        data = b""
+        while len(data) < size:
+            part = self.socket.recv(size - len(data))
+            if not part:
+                raise ConnectionError
+            data += part
+        return data
+
+    def receive(self):
+        """Opcode and data of the next message."""
+        first, size = self.exactly(2)
+        size &= 127
+        if size == 126:
+            size = struct.unpack(">H", self.exactly(2))[0]
+        elif size == 127:
+            size = struct.unpack(">Q", self.exactly(8))[0]
+        return first & 15, self.exactly(size)
+
+    def closed_for(self):
+        """The reason that the server closed with; 0: none."""
+        try:
+            opcode, data = self.receive()
+        except (ConnectionError, OSError):
+            return 0
+        return struct.unpack(">H", data[:2])[0] if opcode == 8 and len(data) >= 2 else 0
+
+    def close(self):
+        self.socket.close()
+
+
+def opens(walk, path="/live", **headers):
+    client = Client(walk, path, **headers)
+    client.close()
+    return client.open
+
+
+class Server(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.walk = Walk()
+        cls.camera = json.loads(run(TOOL, "cameras", SCENE))[0]
+
+    @classmethod
+    def tearDownClass(cls):
+        assert cls.walk.close() == 0, "the server does not end well"
+
+    def request(self, number, **changes):
+        c = self.camera
+        return {"number": number, "size": [c["width"], c["height"]],
+                "focal": [c["fx"], c["fy"], c["cx"], c["cy"]], "r": c["r"], "eye": c["eye"],
+                "layer": "color", "quality": 80, **changes}
+
+    def frame(self, client):
+        opcode, data = client.receive()
+        self.assertEqual(opcode, 2)
+        number, _, width, height = struct.unpack("<4I", data[:16])
+        self.assertEqual(data[16:18], b"\xff\xd8")
+        return number, width, height
+
+    def works(self):
+        client = Client(self.walk)
+        client.send(self.request(7))
+        self.assertEqual(self.frame(client), (7, self.camera["width"], self.camera["height"]))
+        client.close()
+
+    def test_files(self):
+        for path, start in (("/", b"<!DOCTYPE"), ("/js/main.js", b"//"), ("/manifest.json", b"{"),
+                            ("/photos/00000.jpg", b"\xff\xd8"), ("/thumbs/00005.jpg", b"\xff\xd8")):
+            status, body = self.walk.get(path)
+            self.assertEqual(status, 200, path)
+            self.assertTrue(body.startswith(start), path)
+
+    def test_no_other_files(self):
+        for path in ("/../../../../../../etc/passwd", "/js/../js/main.js/..", "/%2e%2e/etc/passwd",
+                     "/photos/00006.jpg", "/photos/0.jpg", "/photos/-0001.jpg", "//etc/passwd",
+                     "/points.ply", "/photos/../scene.json", "/" + "a" * 900):
+            self.assertIn(self.walk.get(path)[0], (400, 403, 404, 414), path)
+        self.works()
+
+    def test_other_origins_and_names_are_refused(self):
+        self.assertEqual(self.walk.get("/manifest.json", Host="evil.example")[0], 403)
+        self.assertEqual(self.walk.get("/manifest.json", Origin="http://evil.example")[0], 403)
+        self.assertFalse(opens(self.walk, Origin="http://evil.example"))
+        self.assertFalse(opens(self.walk, Host="evil.example"))
+        self.assertTrue(opens(self.walk, Origin=f"http://{self.walk.host}:{self.walk.port}"))
+
+    def test_frames(self):
+        client = Client(self.walk)
+        for number, layer in enumerate(("color", "depth", "normal", "coverage", "points")):
+            client.send(self.request(number, layer=layer))
+            self.assertEqual(self.frame(client)[0], number)
+        client.send(self.request(9, size=[60, 40]))
+        self.assertEqual(self.frame(client), (9, 60, 40))
+        client.close()
+
+    def test_the_newest_request_is_answered(self):
+        client = Client(self.walk)
+        for number in range(12):
+            client.send(self.request(number))
+        numbers = []
+        while not numbers or numbers[-1] != 11:
+            numbers.append(self.frame(client)[0])
+        self.assertEqual(numbers, sorted(numbers))
+        self.assertLess(len(numbers), 12)
+        client.close()
+
+    def test_garbage_is_refused(self):
+        bad = [b"", b"{", b"[]", b"\x00\xff", b'{"number": 1}', self.request(-1),
+               self.request(1, size=[0, 0]), self.request(1, size=[100000, 100000]),
+               self.request(1, size=[4000, 4000]), self.request(1, size=["a", 3]),
+               self.request(1, focal=[0, 0, 0, 0]), self.request(1, focal=[1e308, 1, 1, 1e300]),
+               self.request(1, r=[1] * 9), self.request(1, eye=[1, 2]), self.request(1, layer="x"),
+               self.request(1, quality=0), self.request(1, quality=1e99)]
+        for message in bad:
+            client = Client(self.walk)
+            client.send(message)
+            self.assertEqual(client.closed_for(), 1007, message)
+            client.close()
+        client = Client(self.walk)
+        client.send(b"\x00" * 50, opcode=2)
+        self.assertEqual(client.closed_for(), 1003)
+        self.works()
+
+    def test_oversized_messages_are_refused(self):
+        client = Client(self.walk)
+        try:
+            client.send(b" " * 200000)
+        except OSError:
+            pass # closed while it was sent
+        self.assertIn(client.closed_for(), (0, 1009))
+        self.works()
+
+    def test_many_clients_are_all_served(self):
+        clients = [Client(self.walk) for _ in range(CLIENTS)]
+        for number, client in enumerate(clients):
+            client.send(self.request(number, size=[64, 48]))
+        for number, client in enumerate(clients):
+            self.assertEqual(self.frame(client)[0], number)
+            client.close()
+
+    def test_clients_that_go_or_do_not_read(self):
+        for _ in range(5):
+            client = Client(self.walk)
+            client.send(self.request(1))
+            client.close() # in the middle of a frame
+        lazy = Client(self.walk)
+        for number in range(50):
+            lazy.send(self.request(number, quality=100))
+        self.works()
+        half = socket.create_connection((self.walk.host, int(self.walk.port)))
+        half.sendall(b"GET / HT")
+        self.works()
+        half.close()
+        lazy.close()
+
+
+class Token(unittest.TestCase):
+    def test_other_addresses_ask_for_a_token(self):
+        walk = Walk("--host", "0.0.0.0")
+        try:
+            token = walk.address.split("token=")[1]
+            self.assertEqual(len(token), 32)
+            self.assertEqual(walk.get("/manifest.json")[0], 403)
+            self.assertEqual(walk.get("/photos/00000.jpg?token=" + "0" * 32)[0], 403)
+            self.assertEqual(walk.get(f"/manifest.json?token={token}", Host="any.example")[0], 200)
+            self.assertFalse(opens(walk))
+            self.assertTrue(opens(walk, f"/live?token={token}"))
+        finally:
+            self.assertEqual(walk.close(), 0)
+
+
+class Page(unittest.TestCase):
+    def test_page(self):
+        walk, browser, work = Walk(), Browser(WIDTH, HEIGHT), tempfile.TemporaryDirectory()
+        try:
+            browser.open(walk.address)
+            camera = json.loads(run(TOOL, "cameras", SCENE))[0]
+            page, own = f"{work.name}/page.png", f"{work.name}/own.png"
+            browser.capture(page, camera)
+            run(ORIEL, "render", SCENE, "--at", camera["name"], "--out", own, "--quiet")
+            self.assertGreaterEqual(float(run(TOOL, "compare", page, own).split()[0]), 34)
+            before = browser.js("return oriel.navigator.view.eye")
+            shown = browser.js("return oriel.picture.shown.number")
+            browser.keys("KeyA", "a", 0.3)
+            browser.settle()
+            self.assertNotEqual(before, browser.js("return oriel.navigator.view.eye"))
+            self.assertGreater(browser.js("return oriel.picture.shown.number"), shown)
+            # Sharp again: as many pixels as the window has.
+            self.assertEqual(browser.js("return [oriel.picture.shown.width, oriel.picture.shown.height]"),
+                             [WIDTH, HEIGHT])
+            browser.keys("KeyL", "l", 0)
+            time.sleep(0.2)
+            browser.settle()
+            self.assertEqual(browser.js("return oriel.layer"), 1)
+            self.assertEqual(browser.errors(), [])
+        finally:
+            browser.close()
+            walk.close()
+            work.cleanup()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:], verbosity=2)

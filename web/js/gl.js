@@ -1,0 +1,222 @@
+// WebGL2: programs from shader files, textures, targets, and one call that runs a pass.
+import {text} from "oriel/strings.js";
+
+const PRELUDE = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp usampler2D;
+precision highp sampler2DArray;
+`;
+
+// Format, type of the pixels that fill it.
+const FORMATS = {
+    R16F: ["RED", "HALF_FLOAT"], R32F: ["RED", "FLOAT"], RG32F: ["RG", "FLOAT"],
+    RG16F: ["RG", "HALF_FLOAT"],
+    RGBA8: ["RGBA", "UNSIGNED_BYTE"], SRGB8_ALPHA8: ["RGBA", "UNSIGNED_BYTE"],
+    RGBA16F: ["RGBA", "HALF_FLOAT"], RGBA32F: ["RGBA", "FLOAT"], R32UI: ["RED_INTEGER", "UNSIGNED_INT"],
+    RG32UI: ["RG_INTEGER", "UNSIGNED_INT"],
+};
+const BYTES = {R16F: 2, R32F: 4, RG32F: 8, RG16F: 4, RGBA8: 4, SRGB8_ALPHA8: 4, RGBA16F: 8, RGBA32F: 16,
+               R32UI: 4, RG32UI: 8};
+const FILTERED = new Set(["RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
+
+export class Device {
+    constructor(canvas)
+    {
+        const gl = canvas.getContext("webgl2", {alpha: false, antialias: false, depth: false,
+                                                powerPreference: "high-performance"});
+        if (!gl)
+            throw new Error(text.noWebgl);
+        if (!gl.getExtension("EXT_color_buffer_float"))
+            throw new Error(text.noFloats);
+        this.gl = gl;
+        this.bytes = 0;
+        this.nothing = gl.createVertexArray();
+        const info = gl.getExtension("WEBGL_debug_renderer_info");
+        this.name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER);
+        gl.disable(gl.DITHER);
+        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+        gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+    }
+
+    // `sources`: text of every shader file, by name.
+    program(sources, vertex, fragment, defines = {})
+    {
+        const gl = this.gl, program = gl.createProgram();
+        const head = PRELUDE + Object.entries(defines).map(([k, v]) => `#define ${k} ${v}\n`).join("");
+        const shaders = [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]].map(([kind, file]) => {
+            const shader = gl.createShader(kind);
+            gl.shaderSource(shader, head + expand(sources, file, new Set()));
+            gl.compileShader(shader);
+            gl.attachShader(program, shader);
+            return [file, shader];
+        });
+        gl.linkProgram(program);
+        if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+            const logs = shaders.map(([file, shader]) => `${file}: ${gl.getShaderInfoLog(shader) || ""}`);
+            throw new Error(`${logs.join("\n")}\n${gl.getProgramInfoLog(program)}`);
+        }
+        shaders.forEach(([, shader]) => gl.deleteShader(shader));
+        return new Program(gl, program, `${vertex} ${fragment}`);
+    }
+
+    texture(format, width, height, {levels = 1, layers = 0} = {})
+    {
+        const gl = this.gl, kind = layers ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D;
+        const id = gl.createTexture(), filter = FILTERED.has(format) ? gl.LINEAR : gl.NEAREST;
+        gl.bindTexture(kind, id);
+        if (layers)
+            gl.texStorage3D(kind, levels, gl[format], width, height, layers);
+        else
+            gl.texStorage2D(kind, levels, gl[format], width, height);
+        gl.texParameteri(kind, gl.TEXTURE_MAG_FILTER, filter);
+        gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, levels > 1 ? gl.LINEAR_MIPMAP_NEAREST : filter);
+        gl.texParameteri(kind, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+        gl.texParameteri(kind, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+        const bytes = BYTES[format] * width * height * Math.max(layers, 1) * (levels > 1 ? 4 / 3 : 1);
+        this.bytes += bytes;
+        return {id, kind, format, width, height, levels, layers, bytes};
+    }
+
+    write(texture, data)
+    {
+        const gl = this.gl, [format, type] = FORMATS[texture.format];
+        gl.bindTexture(gl.TEXTURE_2D, texture.id);
+        if (ArrayBuffer.isView(data))
+            gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, texture.width, texture.height, gl[format], gl[type], data);
+        else
+            gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, gl[format], gl[type], data);
+    }
+
+    release(...textures)
+    {
+        for (const texture of textures) {
+            this.gl.deleteTexture(texture.id);
+            this.bytes -= texture.bytes;
+        }
+    }
+
+    // What passes draw into: textures that exist, or formats of new ones.
+    target(width, height, attachments, {depth = false} = {})
+    {
+        const gl = this.gl, fbo = gl.createFramebuffer();
+        const textures = attachments.map(a => typeof a === "string" ? this.texture(a, width, height) : a);
+        const own = textures.filter((t, i) => typeof attachments[i] === "string");
+        gl.bindFramebuffer(gl.FRAMEBUFFER, fbo);
+        textures.forEach((t, i) => gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i,
+                                                           gl.TEXTURE_2D, t.id, 0));
+        gl.drawBuffers(textures.map((t, i) => gl.COLOR_ATTACHMENT0 + i));
+        let buffer = null;
+        if (depth) {
+            buffer = gl.createRenderbuffer();
+            gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+            gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
+            gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, buffer);
+        }
+        return {fbo, width, height, textures, own, buffer};
+    }
+
+    releaseTarget(target)
+    {
+        this.gl.deleteFramebuffer(target.fbo);
+        this.gl.deleteRenderbuffer(target.buffer);
+        this.release(...target.own);
+    }
+
+    begin(target)
+    {
+        const gl = this.gl;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, target ? target.fbo : null);
+        gl.viewport(0, 0, target ? target.width : gl.drawingBufferWidth,
+                    target ? target.height : gl.drawingBufferHeight);
+    }
+
+    clear(target)
+    {
+        const gl = this.gl;
+        this.begin(target);
+        target.textures.forEach((t, i) => {
+            if (t.format.endsWith("UI"))
+                gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
+            else
+                gl.clearBufferfv(gl.COLOR, i, [0, 0, 0, 0]);
+        });
+        if (target.buffer)
+            gl.clearBufferfv(gl.DEPTH, 0, [1]);
+    }
+
+    // Every pixel of the target (null: the canvas) by one program.
+    pass(program, target, values)
+    {
+        this.begin(target);
+        program.use(values);
+        this.gl.bindVertexArray(this.nothing);
+        this.gl.drawArrays(this.gl.TRIANGLES, 0, 3);
+    }
+}
+
+function expand(sources, file, done)
+{
+    if (done.has(file))
+        return "";
+    done.add(file);
+    if (!(file in sources))
+        throw new Error(text.missing(file));
+    return sources[file].replace(/^#include "(.*)"$/gm, (line, name) => expand(sources, name, done));
+}
+
+class Program {
+    constructor(gl, id, name)
+    {
+        this.gl = gl;
+        this.id = id;
+        this.name = name;
+        this.uniforms = new Map();
+        const count = gl.getProgramParameter(id, gl.ACTIVE_UNIFORMS);
+        for (let i = 0, unit = 0; i < count; i++) {
+            const {name: key, type} = gl.getActiveUniform(id, i);
+            const samples = type === gl.SAMPLER_2D || type === gl.SAMPLER_2D_ARRAY ||
+                            type === gl.UNSIGNED_INT_SAMPLER_2D;
+            this.uniforms.set(key, {type, place: gl.getUniformLocation(id, key),
+                                    unit: samples ? unit++ : -1});
+        }
+    }
+
+    // `values`: textures and numbers by uniform name; what the program does not read is ignored, what
+    // it lacks is an error.
+    use(values)
+    {
+        const gl = this.gl;
+        gl.useProgram(this.id);
+        for (const [key, uniform] of this.uniforms) {
+            if (values[key] === undefined)
+                throw new Error(`${this.name}: ${key} is not given`);
+            this.set(uniform, values[key]);
+        }
+    }
+
+    set({type, place, unit}, value)
+    {
+        const gl = this.gl;
+        if (unit >= 0) {
+            gl.activeTexture(gl.TEXTURE0 + unit);
+            gl.bindTexture(value.kind, value.id);
+            gl.uniform1i(place, unit);
+        } else if (type === gl.FLOAT) {
+            gl.uniform1f(place, value);
+        } else if (type === gl.INT || type === gl.BOOL) {
+            gl.uniform1i(place, value);
+        } else if (type === gl.FLOAT_VEC2) {
+            gl.uniform2fv(place, value);
+        } else if (type === gl.FLOAT_VEC3) {
+            gl.uniform3fv(place, value);
+        } else if (type === gl.FLOAT_VEC4) {
+            gl.uniform4fv(place, value);
+        } else if (type === gl.FLOAT_MAT3) {
+            gl.uniformMatrix3fv(place, true, value); // rows
+        } else {
+            throw new Error(`${this.name}: a uniform of an unknown type`);
+        }
+    }
+}

@@ -1,0 +1,164 @@
+// The picture as this browser draws it: points and photographs on its own graphics chip.
+import {Device} from "oriel/gl.js";
+import {clamp, distance} from "oriel/math.js";
+import {rankPhotos} from "oriel/photos.js";
+import {Cloud} from "oriel/points.js";
+import {LAYERS, loadShaders, Renderer} from "oriel/renderer.js";
+import {text} from "oriel/strings.js";
+
+const RANK_EVERY = 250; // milliseconds, while moving
+const handheld = matchMedia("(pointer: coarse)").matches;
+
+// Bytes for photographs on the graphics chip: what phones stand, more where there is more.
+function photoBudget()
+{
+    const gigabytes = navigator.deviceMemory || (handheld ? 2 : 8);
+    return (gigabytes >= 8 ? 768 : gigabytes >= 4 ? 384 : 160) * 2 ** 20;
+}
+
+function totalBytes(manifest)
+{
+    const photos = manifest.photos.reduce((sum, p) => sum + p.picture.bytes + p.depth.bytes, 0);
+    return photos + manifest.points.files.reduce((sum, f) => sum + f.bytes, manifest.points.coarse.bytes);
+}
+
+export class LocalPicture {
+    // onChange: something has arrived that makes the picture better
+    static async open(canvas, files, manifest, photos, onChange)
+    {
+        const [sources, coarse] = await Promise.all([loadShaders(files), files.get(manifest.points.coarse.file)]);
+        return new LocalPicture(canvas, files, manifest, photos, onChange, sources, coarse);
+    }
+
+    constructor(canvas, files, manifest, photos, onChange, sources, coarse)
+    {
+        this.canvas = canvas;
+        this.files = files;
+        this.manifest = manifest;
+        this.all = photos;
+        this.onChange = onChange;
+        this.layers = LAYERS;
+        // Of a picture, whatever the screen: each takes some 120 bytes on the graphics chip.
+        this.pixelsMost = handheld ? 1.0e6 : 2.6e6;
+        this.device = new Device(canvas);
+        this.cloud = new Cloud(this.device, coarse);
+        this.renderer = new Renderer(this.device, sources, manifest, photos, this.cloud, photoBudget());
+        this.allBytes = totalBytes(manifest);
+        this.rank = [];
+        this.eye = photos[manifest.start].eye;
+        canvas.addEventListener("webglcontextlost", event => {
+            event.preventDefault();
+            throw new Error(text.lostDevice);
+        });
+        canvas.addEventListener("webglcontextrestored", () => location.reload());
+        for (const photo of photos)
+            this.request(photo);
+        manifest.points.files.forEach((file, number) =>
+            files.schedule(() => this.pointsUrgency(file), () => this.loadPoints(file, number)));
+    }
+
+    // --- loading ---
+
+    request(photo)
+    {
+        this.files.schedule(() => this.photoUrgency(photo), () => this.loadPhoto(photo));
+    }
+
+    // Photographs of the view first, and between them the points that are near.
+    photoUrgency(photo)
+    {
+        const place = this.rank.indexOf(photo);
+        return place < 0 || place >= this.renderer.photos.slots ? Infinity : place;
+    }
+
+    pointsUrgency(file)
+    {
+        const nearest = [0, 1, 2].map(k => clamp(this.eye[k], file.box[k], file.box[3 + k]));
+        return 1.5 + 8 * distance(nearest, this.eye) / this.manifest.distance;
+    }
+
+    async loadPhoto(photo)
+    {
+        const options = {colorSpaceConversion: "none", premultiplyAlpha: "none"};
+        const picture = async file => createImageBitmap(new Blob([await this.files.get(file)]), options);
+        const both = await Promise.all([picture(photo.picture.file), picture(photo.depth.file)]);
+        this.renderer.photos.add(photo, ...both);
+        this.onChange();
+    }
+
+    async loadPoints(file, number)
+    {
+        this.cloud.addFile(number, await this.files.get(file.file));
+        this.onChange();
+    }
+
+    // What is wanted for the view; photographs that made room for others are asked for again.
+    rankFor(camera, rests)
+    {
+        const store = this.renderer.photos, now = performance.now();
+        if (!rests && this.rank.length && now - this.rankedAt < RANK_EVERY)
+            return;
+        this.rankedAt = now;
+        this.eye = camera.eye;
+        this.rank = rankPhotos(this.all, camera, this.manifest.distance);
+        for (const photo of this.rank.slice(0, store.slots)) {
+            if (photo.slot >= 0)
+                photo.lastUse = ++store.clock;
+            else if (photo.dropped)
+                this.request(photo);
+            photo.dropped = false;
+        }
+        this.files.next();
+    }
+
+    // Everything that the view wants is here.
+    get complete()
+    {
+        return this.cloud.loaded === this.cloud.points &&
+               this.rank.slice(0, this.renderer.photos.slots).every(p => p.slot >= 0);
+    }
+
+    // Good enough to take the poster's place.
+    get presentable() { return this.rank.length > 0 && this.rank.slice(0, 3).every(p => p.slot >= 0); }
+    get loadedShare() { return this.complete ? 1 : Math.min(this.files.bytes / this.allBytes, 0.99); }
+
+    // --- frames ---
+
+    // full: the window's camera at full resolution; camera: the same with fewer pixels, perhaps.
+    draw(full, camera, layer)
+    {
+        if (this.canvas.width !== full.width || this.canvas.height !== full.height)
+            Object.assign(this.canvas, {width: full.width, height: full.height});
+        this.rankFor(full, camera === full);
+        this.renderer.draw(camera, layer);
+        this.renderer.show(layer);
+    }
+
+    async capture(camera, layer)
+    {
+        const image = this.renderer.capture(camera, layer);
+        const canvas = Object.assign(document.createElement("canvas"), {width: image.width, height: image.height});
+        canvas.getContext("2d").putImageData(image, 0, 0);
+        return canvas;
+    }
+
+    // What the middle of the picture shows, in the world; null: nothing is known of it.
+    middle()
+    {
+        const f = this.renderer.frame;
+        return f ? this.renderer.pointAt(f.width / 2, f.height / 2) : null;
+    }
+
+    forEachPoint(visit) { this.cloud.forEachCoarse(visit); }
+
+    figures()
+    {
+        const {renderer} = this, f = renderer.frame;
+        return {
+            size: text.size(f.width, f.height), points: `${renderer.drawn} / ${this.cloud.loaded}`,
+            photos: text.ofLoaded(renderer.used, renderer.photos.ready.length, this.all.length),
+            loaded: text.bytes(this.files.bytes, this.allBytes),
+            memory: text.memory(this.device.bytes + this.cloud.bytes), device: this.device.name,
+        };
+    }
+}

@@ -1,0 +1,322 @@
+// The walk: loads the site, draws when something changes, and joins input, picture and tools.
+import {Files} from "oriel/files.js";
+import {Input} from "oriel/input.js";
+import {LivePicture} from "oriel/live.js";
+import {LocalPicture} from "oriel/local.js";
+import {Map2d} from "oriel/map.js";
+import {clamp} from "oriel/math.js";
+import {Navigator, MODES} from "oriel/navigation.js";
+import {makePhotos} from "oriel/photos.js";
+import {text} from "oriel/strings.js";
+import {buildHelp, byId, Compare, Panel, showHint, showProgress, Thumbs, Tools} from "oriel/ui.js";
+import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "oriel/view.js";
+
+const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
+const FRAME_LONG = 38, FRAME_SHORT = 14;  // milliseconds: fewer pixels, more pixels
+const LIVE_LONG = 90, LIVE_SHORT = 45;    // the same of frames that come over the network
+const REFINE_AFTER = 140;                 // milliseconds of rest
+const POSTER_SHARE = 0.625;               // height to width: POSTER_* of site_photos.c
+
+class Walk {
+    constructor(files, manifest, photos)
+    {
+        this.files = files;
+        this.manifest = manifest;
+        this.canvas = byId("canvas");
+        this.photos = photos;
+        this.layer = 0;
+        this.scale = 0;          // index into SCALES
+        this.frames = [];        // milliseconds of the last frames while moving
+        this.dirty = true;
+        this.restSince = 0;
+        this.refined = false;
+        this.lastTime = 0;
+        this.navigator = new Navigator(manifest, this.photos, {
+            calm: matchMedia("(prefers-reduced-motion: reduce)").matches,
+            pivotAt: () => this.picture.middle(),
+        });
+        this.running = false;
+    }
+
+    // The picture can be drawn from now on.
+    begin(picture)
+    {
+        this.picture = picture;
+        this.buildTools();
+        this.readAddress();
+        this.placePoster();
+        window.addEventListener("hashchange", () => this.readAddress());
+        window.addEventListener("resize", () => this.wake());
+        this.canvas.setAttribute("aria-label", text.canvas);
+        this.wake();
+    }
+
+    // Something came that makes the picture better; took: milliseconds, of a frame that has come.
+    changed(took)
+    {
+        if (!this.picture)
+            return;
+        if (took !== undefined)
+            this.adapt(took, 0);
+        else
+            this.refined = false;
+        this.wake();
+    }
+
+    // --- tools ---
+
+    buildTools()
+    {
+        const nav = this.navigator, help = buildHelp();
+        const toggle = id => () => {
+            byId(id).hidden = !byId(id).hidden;
+            this.wake();
+        };
+        const shown = id => () => !byId(id).hidden;
+        const mode = name => ({run: () => this.act(() => nav.setMode(name)), pressed: () => nav.mode === name});
+        this.thumbs = new Thumbs(this.photos, this.files, photo => this.act(() => nav.goTo(photo)));
+        const actions = {
+            home: {key: "h", run: () => this.act(() => nav.goHome())},
+            previous: {key: ",", run: () => this.act(() => nav.browse(-1))},
+            next: {key: ".", run: () => this.act(() => nav.browse(1))},
+            snap: {key: "p", run: () => this.act(() => nav.snap())},
+            ...Object.fromEntries(MODES.map((name, i) => [name, {key: String(i + 1), ...mode(name)}])),
+            layer: {key: "l", run: () => this.setLayer((this.layer + 1) % this.picture.layers.length)},
+            compare: {key: "c", run: () => this.toggleCompare(), pressed: () => this.compare.on},
+            thumbs: {key: "t", pressed: shown("thumbs"), run: () => {
+                toggle("thumbs")();
+                this.thumbs.open();
+            }},
+            map: {key: "m", run: toggle("map"), pressed: shown("map")},
+            panel: {key: "i", run: toggle("panel"), pressed: shown("panel")},
+            screenshot: {key: "x", run: () => this.saveScreenshot()},
+            full: {key: "f", run: () => this.toggleFull(), pressed: () => document.fullscreenElement !== null},
+            help: {key: "?", run: () => help.showModal()},
+        };
+        this.tools = new Tools(actions);
+        this.compare = new Compare(this.files);
+        this.panel = new Panel({layers: this.picture.layers, layer: this.layer, onLayer: layer => this.setLayer(layer)});
+        this.map = new Map2d(nav, this.picture, photo => this.act(() => nav.goTo(photo)));
+        this.input = new Input(this.canvas, nav, {
+            focal: () => this.windowCamera(1).fx, wake: () => this.wake(),
+            actions: new Map(Object.values(actions).map(a => [a.key, a.run])),
+        });
+        document.addEventListener("fullscreenchange", () => this.wake());
+    }
+
+    act(what)
+    {
+        what();
+        this.wake();
+    }
+
+    setLayer(layer)
+    {
+        this.layer = layer;
+        this.panel.setLayer(layer);
+        this.refined = false;
+        this.wake();
+    }
+
+    toggleCompare()
+    {
+        this.compare.on = !this.compare.on;
+        if (this.compare.on && !this.navigator.at)
+            this.navigator.snap();
+        this.wake();
+    }
+
+    toggleFull()
+    {
+        if (document.fullscreenElement)
+            document.exitFullscreen();
+        else
+            document.documentElement.requestFullscreen();
+    }
+
+    async saveScreenshot()
+    {
+        const canvas = await this.picture.capture(this.windowCamera(1), this.layer);
+        canvas.toBlob(blob => {
+            const link = document.createElement("a");
+            link.href = URL.createObjectURL(blob);
+            link.download = `${this.manifest.title}.png`;
+            link.click();
+            setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+        });
+        this.refined = false;
+        this.wake();
+    }
+
+    // --- the address ---
+
+    readAddress()
+    {
+        const parts = new URLSearchParams(location.hash.slice(1)), nav = this.navigator;
+        const photo = parts.has("p") ? this.photos[Number(parts.get("p")) - 1] : undefined;
+        const view = parts.has("v") ? viewFromText(parts.get("v"), nav.home) : null;
+        if (MODES.includes(parts.get("mode")))
+            nav.setMode(parts.get("mode"));
+        if (photo)
+            nav.setView(photoView(photo), photo);
+        else if (view)
+            nav.setView(view);
+        this.wake();
+    }
+
+    writeAddress()
+    {
+        const nav = this.navigator, parts = new URLSearchParams();
+        if (nav.at)
+            parts.set("p", nav.at.number + 1);
+        else
+            parts.set("v", viewToText(nav.view));
+        if (nav.mode !== "walk")
+            parts.set("mode", nav.mode);
+        const hash = `#${parts.toString().replaceAll("%2C", ",")}`;
+        if (hash !== location.hash)
+            history.replaceState(null, "", hash);
+    }
+
+    // --- frames ---
+
+    windowCamera(share)
+    {
+        const ratio = window.devicePixelRatio || 1;
+        let width = window.innerWidth * ratio, height = window.innerHeight * ratio;
+        const fit = Math.min(1, Math.sqrt(this.picture.pixelsMost / (width * height))) * share;
+        width = Math.max(Math.round(width * fit), 2);
+        height = Math.max(Math.round(height * fit), 2);
+        return cameraOf(this.navigator.view, width, height);
+    }
+
+    wake()
+    {
+        this.dirty = true;
+        if (!this.running) {
+            this.running = true;
+            this.lastTime = 0;
+            requestAnimationFrame(time => this.tick(time));
+        }
+    }
+
+    tick(time)
+    {
+        const passed = this.lastTime ? time - this.lastTime : 16;
+        this.lastTime = time;
+        const {keys, turn, fast} = this.input.state(), nav = this.navigator;
+        const moves = nav.update(Math.min(passed, 100) / 1000, keys, turn, fast);
+        const changed = nav.changed;
+        nav.changed = false;
+        if (changed || moves)
+            this.restSince = time;
+        const rests = time - this.restSince > REFINE_AFTER && !this.input.dragging;
+        if (changed || (this.dirty && !rests))
+            this.drawFrame(rests || !this.refined && this.frames.length === 0 ? 0 : this.scale, passed);
+        else if (rests && !this.refined)
+            this.drawFrame(0, 0);
+        else if (this.dirty)
+            this.showState();
+        this.dirty = false;
+        if (rests && this.refined) {
+            this.writeAddress();
+            this.running = false;
+            return;
+        }
+        requestAnimationFrame(next => this.tick(next));
+    }
+
+    drawFrame(scale, passed)
+    {
+        const full = this.windowCamera(1), started = performance.now();
+        const camera = scale ? this.windowCamera(SCALES[scale]) : full;
+        this.picture.draw(full, camera, this.layer);
+        this.refined = scale === 0;
+        if (!this.manifest.live) // else frames tell when they come
+            this.adapt(passed, performance.now() - started);
+        this.showState();
+    }
+
+    // While moving, frames follow one another as fast as they are drawn.
+    adapt(passed, own)
+    {
+        if (passed > 0 && passed < 2000) {
+            this.frames.push(Math.max(passed, own));
+            this.frames = this.frames.slice(-8);
+        }
+        if (this.frames.length < 4)
+            return;
+        const mean = this.frames.reduce((a, b) => a + b) / this.frames.length;
+        this.frameMs = mean;
+        const [long, short] = this.manifest.live ? [LIVE_LONG, LIVE_SHORT] : [FRAME_LONG, FRAME_SHORT];
+        const step = mean > long ? 1 : mean < short ? -1 : 0;
+        const next = clamp(this.scale + step, 0, SCALES.length - 1);
+        if (next !== this.scale)
+            this.frames = [];
+        this.scale = next;
+    }
+
+    // Nothing is on its way any more that would change the picture.
+    get settled() { return this.refined && !this.running && this.picture.complete; }
+
+    // --- what is said about it ---
+
+    showState()
+    {
+        const nav = this.navigator;
+        this.tools.update();
+        this.map.draw();
+        this.thumbs.mark(nav.at);
+        this.compare.update(nav.at, nav.view);
+        byId("place").textContent = nav.at ? text.atPhoto(nav.at.number + 1, this.photos.length, nav.at.name) : "";
+        showHint(this.compare.on && !nav.at && !nav.flying ? text.standAtPhoto : nav.farOut ? text.farOut : "");
+        showProgress(this.picture.loadedShare);
+        if (this.shouldShowPicture())
+            byId("poster").classList.add("away");
+        if (byId("panel").hidden)
+            return;
+        this.panel.show({frame: this.frameMs ? text.milliseconds(this.frameMs) : "–",
+                         ...this.picture.figures()});
+    }
+
+    // The poster is the start view: it stays until the picture is as good, or the viewer moves on.
+    shouldShowPicture()
+    {
+        const start = this.navigator.at && this.navigator.at.number === this.manifest.start;
+        return !start || this.picture.presentable;
+    }
+
+    placePoster()
+    {
+        const poster = byId("poster"), frame = this.navigator.home.frame;
+        const h = frameHeight(frame, window.innerWidth, window.innerHeight);
+        Object.assign(poster.style, {height: `${h}px`, width: `${h / POSTER_SHARE}px`});
+        if (!this.navigator.at || this.navigator.at.number !== this.manifest.start)
+            poster.classList.add("away");
+    }
+}
+
+async function start()
+{
+    const fail = error => showHint(text.failed(error.message), true);
+    window.addEventListener("error", event => fail(event.error || event));
+    window.addEventListener("unhandledrejection", event => fail(event.reason));
+    showProgress(0.02);
+    const files = new Files(error => {
+        console.error(error);
+        fail(error);
+    });
+    const poster = byId("poster");
+    if (files.embedded)
+        poster.src = await files.address("poster.jpg");
+    const manifest = await files.json("manifest.json");
+    const photos = makePhotos(manifest), walk = new Walk(files, manifest, photos);
+    const kind = manifest.live ? LivePicture : LocalPicture;
+    walk.begin(await kind.open(walk.canvas, files, manifest, photos, took => walk.changed(took)));
+    window.oriel = walk;
+}
+
+start().catch(error => {
+    console.error(error);
+    showHint(text.failed(error.message), true);
+});

@@ -1,0 +1,242 @@
+// Where the viewer is and how they get on: walk, fly, orbit, and flights from place to place.
+import {add, clamp, distance, dot, length, mix, multiply, normalize, rotate, rotateBack, rotation,
+        scale, sub} from "oriel/math.js";
+import {nearestPhoto} from "oriel/photos.js";
+import {forwardOf, mixViews, photoView, rightOf, upOf} from "oriel/view.js";
+
+const SPEED = 0.35;          // of the scene's distance, a second
+const FASTER = 3;
+const TURN_SPEED = 1.2;      // radians a second
+const SETTLE = 0.12;         // seconds in which speed follows the keys
+const FLIGHT_LEAST = 0.5, FLIGHT_MOST = 1.8; // seconds
+const PITCH_MOST = 1.45;     // radians from the horizon
+const ROOM = 0.3;            // of the scene's distance, around photographs, that is free to walk
+const HINT_FROM = 0.6;       // share of the way to the border of that
+export const MODES = ["walk", "fly", "orbit"];
+
+const smooth = t => t * t * (3 - 2 * t);
+
+function median(values)
+{
+    const sorted = [...values].sort((a, b) => a - b);
+    return sorted[sorted.length >> 1] || 0;
+}
+
+export class Navigator {
+    // calm: no flights, no gliding; pivotAt: () => the point in the middle of the picture, or null
+    constructor(manifest, photos, {calm, pivotAt})
+    {
+        this.photos = photos;
+        this.up = normalize(manifest.up);
+        this.ground = manifest.ground;
+        this.distance = manifest.distance;
+        this.calm = calm;
+        this.pivotAt = pivotAt;
+        this.home = photoView(photos[manifest.start]);
+        this.mode = "walk";
+        this.speed = [0, 0, 0]; // right, up, forward
+        this.flight = null;
+        this.pivot = null;
+        const apart = photos.map(p => Math.min(...photos.filter(q => q !== p).map(q => distance(p.eye, q.eye))));
+        this.room = Math.max(ROOM * this.distance, 2 * median(apart.filter(Number.isFinite)));
+        this.setView(this.home, photos[manifest.start]);
+    }
+
+    // photo: the one whose view this is, if any
+    setView(view, photo = null)
+    {
+        this.view = view;
+        this.at = photo;
+        this.changed = true;
+    }
+
+    setMode(mode)
+    {
+        this.mode = mode;
+        this.pivot = mode === "orbit" ? this.pivotAt() ||
+            add(this.view.eye, scale(forwardOf(this.view), this.distance)) : null;
+    }
+
+    get flying() { return this.flight !== null; }
+
+    // --- turning ---
+
+    // Radians: to the right, upwards.
+    turn(yaw, pitch)
+    {
+        this.flight = null;
+        const {view, up} = this;
+        const height = Math.asin(clamp(dot(forwardOf(view), up), -1, 1));
+        const least = Math.min(-PITCH_MOST, height), most = Math.max(PITCH_MOST, height);
+        pitch = clamp(height + pitch, least, most) - height;
+        // New rows are the old ones turned in the world: r' = r * turn^-1.
+        const yawed = multiply(view.r, rotation(up, yaw));
+        const r = multiply(rotation([1, 0, 0], -pitch), yawed);
+        if (this.mode === "orbit" && this.pivot) {
+            const offset = rotate(view.r, sub(view.eye, this.pivot));
+            this.setView({...view, r, eye: add(this.pivot, rotateBack(r, offset))});
+        } else {
+            this.setView({...view, r});
+        }
+    }
+
+    // Drag by pixels; focal: the camera's, in the same pixels.
+    drag(dx, dy, focal)
+    {
+        const turns = this.mode === "orbit" ? -2 : 1;
+        this.turn(-Math.atan(dx / focal) * turns, Math.atan(dy / focal) * turns);
+    }
+
+    zoom(factor)
+    {
+        const f = this.view.frame, fy = clamp(f.fy * factor, 0.3, 10), s = fy / f.fy;
+        this.setView({...this.view, frame: {...f, fx: f.fx * s, fy}});
+    }
+
+    // --- moving ---
+
+    // By a share of the scene's distance: right, up, forward.
+    step(right, up, forward)
+    {
+        this.flight = null;
+        this.shift([right, up, forward].map(x => x * this.distance));
+    }
+
+    // Directions of the keys in the world.
+    axes()
+    {
+        const forward = forwardOf(this.view), right = rightOf(this.view);
+        if (this.mode !== "walk")
+            return [right, this.mode === "fly" ? this.up : upOf(this.view), forward];
+        const level = v => sub(v, scale(this.up, dot(v, this.up)));
+        let ahead = level(forward);
+        if (length(ahead) < 0.2) // looking straight down or up
+            ahead = level(scale(upOf(this.view), dot(forward, this.up) < 0 ? 1 : -1));
+        return [normalize(level(right)), this.up, normalize(ahead)];
+    }
+
+    shift(by)
+    {
+        const axes = this.axes(), {view} = this;
+        let way = [0, 1, 2].reduce((sum, k) => add(sum, scale(axes[k], by[k])), [0, 0, 0]);
+        if (length(way) === 0)
+            return;
+        if (this.mode === "walk")
+            way = this.held(way);
+        let eye = add(view.eye, way);
+        if (this.mode === "orbit" && this.pivot && by[2] !== 0 && by[0] === 0 && by[1] === 0) {
+            const from = sub(view.eye, this.pivot); // never through the pivot
+            const factor = Math.exp(-by[2] / Math.max(length(from), 1e-9));
+            eye = add(this.pivot, scale(from, clamp(factor, 0.2, 5)));
+        } else if (this.mode === "orbit" && this.pivot) {
+            this.pivot = add(this.pivot, way);
+        }
+        this.setView({...view, eye});
+    }
+
+    // Distance along the ground to the nearest photograph.
+    apart(eye)
+    {
+        const level = v => sub(v, scale(this.up, dot(v, this.up)));
+        return Math.min(...this.photos.map(p => length(level(sub(eye, p.eye)))));
+    }
+
+    // Of the room around photographs: 0 among them, 1 at its border.
+    get outness() { return this.apart(this.view.eye) / this.room; }
+    get farOut() { return this.outness > HINT_FROM; }
+
+    // A step of the walker: softer and softer towards the border, free on the way back.
+    held(way)
+    {
+        const {eye} = this.view, now = this.apart(eye), then = this.apart(add(eye, way));
+        if (then <= now)
+            return way;
+        const left = clamp((1 - now / this.room) / (1 - HINT_FROM), 0, 1);
+        return scale(way, left);
+    }
+
+    // Eye height above the plane through the origin along `up` that the walker comes to rest at.
+    eyeHeight()
+    {
+        const {eye} = this.view;
+        if (this.ground)
+            return this.ground.height - this.ground.plane[3];
+        let sum = 0, total = 0;
+        for (const p of this.photos) {
+            const weight = 1 / (distance(p.eye, eye) ** 2 + (0.02 * this.distance) ** 2);
+            sum += weight * dot(p.eye, this.up);
+            total += weight;
+        }
+        return sum / total;
+    }
+
+    // keys: right, up, forward in [-1, 1]; turn: yaw, pitch in [-1, 1]. True while anything moves.
+    update(seconds, keys, turn, fast)
+    {
+        if (this.flight)
+            return this.fly(seconds);
+        const wanted = keys.map(k => k * SPEED * this.distance * (fast ? FASTER : 1));
+        const follow = this.calm ? 1 : 1 - Math.exp(-seconds / SETTLE);
+        this.speed = this.speed.map((s, k) => mix(s, wanted[k], follow));
+        if (length(this.speed) < 1e-3 * this.distance)
+            this.speed = [0, 0, 0];
+        const moves = length(this.speed) > 0;
+        if (moves)
+            this.shift(this.speed.map(s => s * seconds));
+        if (moves && this.mode === "walk")
+            this.settle(seconds);
+        if (turn[0] || turn[1])
+            this.turn(turn[0] * TURN_SPEED * seconds, turn[1] * TURN_SPEED * seconds);
+        return moves || turn[0] !== 0 || turn[1] !== 0;
+    }
+
+    // While walking the eye comes to its height above the ground.
+    settle(seconds)
+    {
+        const {view, up} = this, off = this.eyeHeight() - dot(view.eye, up);
+        this.setView({...view, eye: add(view.eye, scale(up, off * (1 - Math.exp(-3 * seconds))))});
+    }
+
+    // --- flights ---
+
+    flyTo(view, photo = null)
+    {
+        this.speed = [0, 0, 0];
+        const angle = Math.acos(clamp(dot(forwardOf(view), forwardOf(this.view)), -1, 1));
+        const far = distance(view.eye, this.view.eye) / this.distance;
+        const seconds = clamp(0.4 + 0.5 * angle + 0.8 * far, FLIGHT_LEAST, FLIGHT_MOST);
+        this.flight = this.calm ? null : {from: this.view, to: view, photo, seconds, passed: 0};
+        if (this.calm)
+            this.setView(view, photo);
+        if (this.mode === "orbit")
+            this.mode = "fly";
+    }
+
+    fly(seconds)
+    {
+        const f = this.flight;
+        f.passed += seconds;
+        const t = Math.min(f.passed / f.seconds, 1);
+        if (t < 1) {
+            this.setView(mixViews(f.from, f.to, smooth(t)));
+        } else {
+            this.flight = null;
+            this.setView(f.to, f.photo);
+        }
+        return true;
+    }
+
+    goTo(photo) { this.flyTo(photoView(photo), photo); }
+    goHome() { this.flyTo(this.home, this.photos.find(p => p.eye === this.home.eye) || null); }
+    snap() { this.goTo(nearestPhoto(this.photos, this.view)); }
+
+    // The photograph that is `by` further on, from the one that the viewer is at or flies to.
+    browse(by)
+    {
+        const from = this.flight && this.flight.photo || this.at;
+        if (!from)
+            return this.snap();
+        const n = this.photos.length;
+        this.goTo(this.photos[((from.number + by) % n + n) % n]);
+    }
+}

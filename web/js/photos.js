@@ -1,0 +1,203 @@
+// Photographs: which of them a view can use best, and those that are on the graphics chip.
+import {clamp, distance, dot, rotate, rotateBack, scale, sub} from "oriel/math.js";
+
+export function makePhotos(manifest)
+{
+    return manifest.photos.map((p, number) => {
+        const r = p.cam_from_world.flatMap(row => row.slice(0, 3));
+        const t = p.cam_from_world.map(row => row[3]);
+        return {...p, number, r, t, eye: scale(rotateBack(r, t), -1), slot: -1, loading: false, lastUse: 0};
+    });
+}
+
+// --- choice, as src/render/preselect.c makes it ---
+
+const ACROSS = 5, DEPTHS = [0.4, 1, 4], PER_SAMPLE = 8;
+
+function samplePoints(camera, typical)
+{
+    const points = [];
+    for (const depth of DEPTHS)
+        for (let i = 0; i < ACROSS * ACROSS; i++) {
+            const u = (i % ACROSS + 0.5) * camera.width / ACROSS;
+            const v = (Math.floor(i / ACROSS) + 0.5) * camera.height / ACROSS, z = depth * typical;
+            const q = [(u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z];
+            const p = rotateBack(camera.r, q);
+            points.push([p[0] + camera.eye[0], p[1] + camera.eye[1], p[2] + camera.eye[2]]);
+        }
+    return points;
+}
+
+// Inverse of the penalty; 0 where the photograph does not see the point.
+function score(photo, eye, point)
+{
+    const v = sub(photo.eye, point), q = rotate(photo.r, scale(v, -1));
+    if (!(q[2] > 0))
+        return 0;
+    const x = photo.fx * q[0] / q[2] + photo.cx, y = photo.fy * q[1] / q[2] + photo.cy;
+    if (!(x > 0 && y > 0 && x < photo.width && y < photo.height))
+        return 0;
+    const u = sub(eye, point), uu = dot(u, u), vv = dot(v, v);
+    const angle = Math.acos(clamp(dot(u, v) / Math.sqrt(uu * vv), -1, 1));
+    const coarser = Math.sqrt(vv / uu) - 1;
+    return 1 / (angle + 0.1 * Math.max(coarser, 0) + 0.005);
+}
+
+// Marks the best few of one sample point.
+function nameBest(candidates, scores)
+{
+    const best = []; // indices, best first
+    scores.forEach((value, i) => {
+        candidates[i].score += value;
+        if (!(value > 0) || (best.length === PER_SAMPLE && !(value > scores[best[PER_SAMPLE - 1]])))
+            return;
+        let at = best.length;
+        while (at > 0 && value > scores[best[at - 1]])
+            at--;
+        best.splice(at, 0, i);
+        best.length = Math.min(best.length, PER_SAMPLE);
+    });
+    best.forEach(i => candidates[i].named = true);
+}
+
+// All photographs, the most useful first.
+export function rankPhotos(photos, camera, typical)
+{
+    const candidates = photos.map(photo => ({photo, score: 0, named: false}));
+    const scores = new Float64Array(photos.length);
+    for (const point of samplePoints(camera, typical)) {
+        photos.forEach((photo, i) => scores[i] = score(photo, camera.eye, point));
+        nameBest(candidates, scores);
+    }
+    candidates.sort((a, b) => b.named - a.named || b.score - a.score || a.photo.number - b.photo.number);
+    return candidates.map(c => c.photo);
+}
+
+export function nearestPhoto(photos, view)
+{
+    const forward = view.r.slice(6);
+    // A photograph that looks elsewhere counts as farther away.
+    const apart = p => distance(p.eye, view.eye);
+    const most = Math.max(...photos.map(apart), 1e-9);
+    const cost = p => apart(p) / most + 0.5 * Math.acos(clamp(dot(forward, p.r.slice(6)), -1, 1));
+    return photos.reduce((best, p) => cost(p) < cost(best) ? p : best, photos[0]);
+}
+
+// --- on the graphics chip ---
+
+const PER_FRAME = 32; // that one frame paints from; one byte numbers them
+const ROW_TEXELS = 9;
+
+export class PhotoStore {
+    constructor(device, programs, photos, budgetBytes)
+    {
+        const gl = device.gl, largest = key => Math.max(...photos.map(p => key(p)));
+        this.device = device;
+        this.programs = programs;
+        this.photos = photos;
+        this.width = largest(p => p.width);
+        this.height = largest(p => p.height);
+        this.levels = 1 + Math.floor(Math.log2(Math.max(this.width, this.height)));
+        const depthWidth = largest(p => p.depth.width), depthHeight = largest(p => p.depth.height);
+        const each = this.width * this.height * 4 * 4 / 3 + depthWidth * depthHeight * 2;
+        const layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
+        this.slots = clamp(Math.floor(budgetBytes / each), 2, Math.min(photos.length, layers));
+        this.color = device.texture("SRGB8_ALPHA8", this.width, this.height,
+                                    {levels: this.levels, layers: this.slots});
+        this.depth = device.texture("R16F", depthWidth, depthHeight, {layers: this.slots});
+        this.rows = device.texture("RGBA32F", ROW_TEXELS, PER_FRAME);
+        this.rowData = new Float32Array(4 * ROW_TEXELS * PER_FRAME);
+        this.fbo = gl.createFramebuffer();
+        this.clock = 0;
+    }
+
+    get ready() { return this.photos.filter(p => p.slot >= 0); }
+
+    freeSlot()
+    {
+        const ready = this.ready;
+        if (ready.length < this.slots) {
+            const taken = new Set(ready.map(p => p.slot));
+            return [...Array(this.slots).keys()].find(slot => !taken.has(slot));
+        }
+        const oldest = ready.reduce((a, b) => b.lastUse < a.lastUse ? b : a);
+        const slot = oldest.slot;
+        oldest.slot = -1;
+        oldest.dropped = true;
+        return slot;
+    }
+
+    // Both pictures are decoded: ImageBitmaps, closed here.
+    add(photo, picture, depth)
+    {
+        const slot = this.freeSlot();
+        this.writeColor(picture, slot);
+        this.writeDepth(photo, depth, slot);
+        picture.close();
+        depth.close();
+        photo.lastUse = ++this.clock;
+        photo.slot = slot;
+    }
+
+    // Mip levels are made in a texture of its own: of the array they would be made for all layers.
+    writeColor(picture, slot)
+    {
+        const gl = this.device.gl;
+        const one = this.device.texture("SRGB8_ALPHA8", this.width, this.height, {levels: this.levels});
+        this.device.write(one, picture);
+        gl.generateMipmap(gl.TEXTURE_2D);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.color.id);
+        for (let level = 0; level < this.levels; level++) {
+            const w = Math.max(this.width >> level, 1), h = Math.max(this.height >> level, 1);
+            gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, one.id, level);
+            gl.copyTexSubImage3D(gl.TEXTURE_2D_ARRAY, level, 0, 0, slot, 0, 0, w, h);
+        }
+        this.device.release(one);
+    }
+
+    writeDepth(photo, depth, slot)
+    {
+        const gl = this.device.gl;
+        const packed = this.device.texture("RGBA8", depth.width, depth.height);
+        this.device.write(packed, depth);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
+        gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, this.depth.id, 0, slot);
+        this.device.pass(this.programs.depthUnpack, {fbo: this.fbo, width: depth.width, height: depth.height},
+                         {packed_depth: packed, steps_per_fold: photo.depth.steps_per_fold});
+        this.device.release(packed);
+    }
+
+    // What the gather passes are told of the photographs that this view is painted from; how many.
+    describe(camera, typical)
+    {
+        const {ready} = this;
+        const chosen = ready.length <= PER_FRAME ? ready
+            : rankPhotos(ready, camera, typical).slice(0, PER_FRAME).sort((a, b) => a.number - b.number);
+        chosen.forEach((photo, i) => {
+            photo.lastUse = ++this.clock;
+            this.rowData.set(describePhoto(photo, camera), 4 * ROW_TEXELS * i);
+        });
+        this.device.write(this.rows, this.rowData);
+        return chosen.length;
+    }
+}
+
+// As struct photo of shaders/gather/photo.glsl.
+function describePhoto(photo, camera)
+{
+    const out = [];
+    const offset = rotate(photo.r, sub(camera.eye, photo.eye));
+    for (let i = 0; i < 3; i++) {
+        const axis = photo.r.slice(3 * i, 3 * i + 3);
+        out.push(...rotate(camera.r, axis), offset[i]);
+    }
+    const {width, height, depth} = photo;
+    out.push(...rotate(camera.r, sub(photo.eye, camera.eye)), photo.slot);
+    out.push(photo.fx, photo.fy, photo.cx, photo.cy);
+    out.push(width, height, depth.width, depth.height);
+    out.push(...photo.gain, 0);
+    out.push(...photo.vignette, 4 / (width * width + height * height));
+    out.push(photo.number, depth.nearest, 0, 0);
+    return out;
+}

@@ -1,0 +1,116 @@
+// The point cloud: cells in one vertex buffer, coarse parts first, and what of it a view draws.
+import {add, dot, length, rotate, row, scale, sub} from "oriel/math.js";
+
+const MAGIC = 0x504c524f, HEADER_BYTES = 16, CELL_WORDS = 16, POINT_BYTES = 12;
+
+function readCells(data)
+{
+    const header = new Uint32Array(data, 0, 4);
+    if (header[0] !== MAGIC || header[1] !== 1 || header[3] !== POINT_BYTES)
+        throw new Error("points/coarse.bin: not what this page reads");
+    const cells = [];
+    let base = 0;
+    for (let i = 0; i < header[2]; i++) {
+        const at = HEADER_BYTES + 4 * CELL_WORDS * i;
+        const f = new Float32Array(data, at, CELL_WORDS), u = new Uint32Array(data, at, CELL_WORDS);
+        cells.push({low: [f[0], f[1], f[2]], size: [f[3], f[4], f[5]], radiusLow: f[6],
+                    radiusOctaves: f[7], density: f[8], normal: [f[9], f[10], f[11]], count: u[12],
+                    loaded: 0, coarse: u[13], file: u[14], first: u[15], base});
+        base += u[12];
+    }
+    return {cells, stride: header[3], points: base,
+            coarseAt: HEADER_BYTES + 4 * CELL_WORDS * header[2]};
+}
+
+export class Cloud {
+    constructor(device, data)
+    {
+        const gl = device.gl, read = readCells(data);
+        this.gl = gl;
+        Object.assign(this, read);
+        this.bytes = read.points * read.stride;
+        this.buffer = gl.createBuffer();
+        this.vertices = gl.createVertexArray();
+        gl.bindVertexArray(this.vertices);
+        gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+        gl.bufferData(gl.ARRAY_BUFFER, this.bytes, gl.STATIC_DRAW);
+        const rows = [[3, gl.UNSIGNED_SHORT, 0], [2, gl.BYTE, 6], [4, gl.UNSIGNED_BYTE, 8]];
+        rows.forEach(([count, type, at], i) => {
+            gl.enableVertexAttribArray(i);
+            gl.vertexAttribPointer(i, count, type, true, this.stride, at);
+        });
+        gl.bindVertexArray(null);
+        this.coarseData = new Uint8Array(data, this.coarseAt);
+        let at = 0;
+        for (const cell of this.cells) {
+            this.append(cell, this.coarseData, at, cell.coarse);
+            at += cell.coarse * this.stride;
+        }
+    }
+
+    append(cell, bytes, at, count)
+    {
+        const gl = this.gl;
+        gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+        gl.bufferSubData(gl.ARRAY_BUFFER, (cell.base + cell.loaded) * this.stride, bytes, at,
+                         count * this.stride);
+        cell.loaded += count;
+    }
+
+    // The rest of the cells of one file.
+    addFile(number, data)
+    {
+        const bytes = new Uint8Array(data);
+        for (const cell of this.cells)
+            if (cell.file === number && cell.loaded < cell.count)
+                this.append(cell, bytes, cell.first * this.stride, cell.count - cell.loaded);
+    }
+
+    get loaded() { return this.cells.reduce((sum, cell) => sum + cell.loaded, 0); }
+
+    // Coarse points for a map: position and colour of each.
+    forEachCoarse(visit)
+    {
+        const view = new DataView(this.coarseData.buffer, this.coarseData.byteOffset);
+        let at = 0;
+        for (const cell of this.cells) {
+            for (let i = 0; i < cell.coarse; i++, at += this.stride) {
+                const p = [0, 1, 2].map(k => cell.low[k] + cell.size[k] *
+                                             view.getUint16(at + 2 * k, true) / 65535);
+                visit(p, [view.getUint8(at + 8), view.getUint8(at + 9), view.getUint8(at + 10)]);
+            }
+        }
+    }
+
+    // Cells that the camera may see, with how many of their points to draw and what their radii are
+    // multiplied by: where points fall several to a pixel, a first part stands for all.
+    visible(camera, pointsPerPixel)
+    {
+        const list = [];
+        for (const cell of this.cells) {
+            const share = visibleShare(cell, camera, pointsPerPixel);
+            const count = Math.min(cell.loaded, Math.ceil(cell.count * share));
+            if (count > 0)
+                list.push({cell, count, enlarged: Math.sqrt(cell.count / count)});
+        }
+        return list;
+    }
+}
+
+// 0: out of sight. As shaders/proxy/splat_cull.comp.
+function visibleShare(cell, camera, pointsPerPixel)
+{
+    const half = scale(cell.size, 0.5), middle = sub(add(cell.low, half), camera.eye);
+    const m = rotate(camera.r, middle), {fx, fy, cx, cy, width, height} = camera;
+    const e = [0, 1, 2].map(i => row(camera.r, i).reduce((s, x, k) => s + Math.abs(x) * half[k], 0));
+    const outside = plane => dot(plane, m) + dot(plane.map(Math.abs), e) < 0;
+    if (m[2] + e[2] <= 0 || outside([fx, 0, cx]) || outside([-fx, 0, width - cx]) ||
+        outside([0, fy, cy]) || outside([0, -fy, height - cy]))
+        return 0;
+    if (!(pointsPerPixel > 0))
+        return 1;
+    let facing = Math.abs(dot(cell.normal, middle)) / Math.max(length(middle), 1e-30);
+    facing = Math.min(Math.max(facing + 1 - length(cell.normal), 0.1), 1);
+    const pixel = Math.max(m[2] - e[2], 0) / Math.min(fx, fy);
+    return Math.min(pointsPerPixel / Math.max(cell.density * pixel * pixel / facing, 1e-30), 1);
+}

@@ -1,0 +1,318 @@
+// A frame: depth from points, then colour from photographs. What each pass does is said in its
+// shader; the same passes, by compute shaders, make Oriel's own frames (src/render).
+import {add, dot, rotate, scale, sub} from "oriel/math.js";
+import {PhotoStore} from "oriel/photos.js";
+
+// The page's own and, in folders, those that it shares with the renderer.
+const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "level0.glsl", "pull.frag",
+    "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
+    "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "gather/photo.glsl", "choose.frag",
+    "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag",
+    "compose.frag", "show.frag", "gather/guess_blur.glsl", "gather/hidden.glsl",
+    "gather/penalty.glsl", "gather/sample/srgb.glsl", "proxy/octahedron.glsl", "proxy/surfel.glsl",
+    "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
+const TILE = 16;           // pixels that share a list of photographs
+const LEVELS_MOST = 9;     // of the surfel pyramid
+const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
+export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points"];
+const POINTS_LAYER = LAYERS.indexOf("points");
+
+export async function loadShaders(files)
+{
+    const texts = await Promise.all(SHADERS.map(name => files.text(`shaders/${name}`)));
+    return Object.fromEntries(SHADERS.map((name, i) => [name, texts[i]]));
+}
+
+function makePrograms(device, sources)
+{
+    const screen = (file, defines) => device.program(sources, "screen.vert", file, defines);
+    return {
+        splats: device.program(sources, "points.vert", "splats.frag"),
+        layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
+        pullFinest: screen("pull.frag", {FINEST: 1}), pull: screen("pull.frag"),
+        push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}),
+        support: screen("support.frag"), seedDepth: screen("fill_seed_depth.frag"),
+        fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
+        fillDepth: screen("fill_depth.frag"), depthUnpack: screen("depth_unpack.frag"),
+        choose: screen("choose.frag", {TILE}), vote: screen("silhouette_vote.frag", {TILE}),
+        cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
+        seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
+        show: screen("show.frag", {FLIP: 1}), capture: screen("show.frag"),
+    };
+}
+
+const half = side => (side + 1) >> 1;
+
+// Everything that depends on the frame's size.
+class Frame {
+    constructor(device, width, height)
+    {
+        this.device = device;
+        this.width = width;
+        this.height = height;
+        this.targets = [];
+        const make = (...args) => {
+            const target = device.target(...args);
+            this.targets.push(target);
+            return target;
+        };
+        this.level0 = make(width, height, ["RGBA32F", "R32UI", "RGBA8"], {depth: true});
+        this.layer = make(width, height, ["RG16F"]);
+        this.pulled = [null];
+        this.pushed = [null];
+        for (let w = half(width), h = half(height); this.pulled.length < LEVELS_MOST; w = half(w), h = half(h)) {
+            this.pulled.push(make(w, h, ["RGBA32F", "RG32UI"]));
+            this.pushed.push(make(w, h, ["RGBA32F", "RG32UI"]));
+            if (w === 1 && h === 1)
+                break;
+        }
+        this.surface = make(width, height, ["R32F", "RGBA8"]);
+        this.supported = make(width, height, ["R32F", "RGBA8"]);
+        this.depth = make(width, height, ["R32F"]);
+        this.votes = make(width, height, ["RG32F"]);
+        this.cut = make(width, height, ["R32F", "RGBA8"]);
+        this.fillDepth = this.pyramid(make, "RGBA32F");
+        this.fillColor = this.pyramid(make, "RGBA16F");
+        this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
+        this.painted = make(width, height, ["RGBA16F", "RGBA8"]);
+        const w = half(width), h = half(height);
+        this.guesses = device.texture("RGBA16F", w, h, {levels: 1 + Math.floor(Math.log2(Math.max(w, h)))});
+        this.seeds = make(w, h, [this.fillColor.pulled[0].textures[0], this.guesses]);
+        this.composed = make(width, height, ["RGBA16F"]);
+    }
+
+    pyramid(make, format)
+    {
+        const pulled = [], pushed = [];
+        for (let w = half(this.width), h = half(this.height);; w = half(w), h = half(h)) {
+            pulled.push(make(w, h, [format]));
+            pushed.push(make(w, h, [format]));
+            if (w === 1 && h === 1)
+                return {pulled, pushed};
+        }
+    }
+
+    release()
+    {
+        this.targets.forEach(target => this.device.releaseTarget(target));
+        this.device.release(this.guesses);
+    }
+}
+
+export class Renderer {
+    constructor(device, sources, manifest, photos, cloud, photoBytes)
+    {
+        this.device = device;
+        this.manifest = manifest;
+        this.cloud = cloud;
+        this.programs = makePrograms(device, sources);
+        this.photos = new PhotoStore(device, this.programs, photos, photoBytes);
+        this.frame = null;
+        this.used = 0; // photographs of the last frame
+        this.drawn = 0; // points
+    }
+
+    resize(width, height)
+    {
+        if (this.frame && this.frame.width === width && this.frame.height === height)
+            return;
+        if (this.frame)
+            this.frame.release();
+        this.frame = new Frame(this.device, width, height);
+    }
+
+    // Everything but showing it. `layer`: one of LAYERS.
+    draw(camera, layer)
+    {
+        this.resize(camera.width, camera.height);
+        const o = this.manifest.options, f = this.frame;
+        this.camera = camera;
+        this.values = {view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
+                       front_layer: Math.max(o.front_layer, 1e-9), typical: this.manifest.distance,
+                       ground: this.groundAlongRays(camera)};
+        this.splat(camera, o);
+        this.pullPush();
+        const pointsOnly = LAYERS[layer] === "points" || this.photos.ready.length === 0;
+        this.fillIn(f.fillDepth, this.programs.seedDepth,
+                    {known: this.supported, typical: this.values.typical}, f.fillDepth.pulled[0], 1);
+        this.device.pass(this.programs.fillDepth, f.depth,
+                         {...this.values, known: this.supported,
+                          filled: f.fillDepth.pushed[0].textures[0]});
+        this.depth = f.depth;
+        this.used = pointsOnly ? 0 : this.gather(camera, o);
+        this.compose(pointsOnly);
+    }
+
+    groundAlongRays(camera)
+    {
+        const ground = this.manifest.ground;
+        if (!ground)
+            return [0, 0, 0, 0];
+        const normal = ground.plane.slice(0, 3), height = dot(normal, camera.eye) + ground.plane[3];
+        if (!(height > 0))
+            return [0, 0, 0, 0];
+        return [...scale(rotate(camera.r, normal), -1 / height), 1 / (GROUND_REACH * ground.height)];
+    }
+
+    splat(camera, options)
+    {
+        const gl = this.device.gl, f = this.frame, list = this.cloud.visible(camera, options.points_per_pixel);
+        this.drawn = list.reduce((sum, {count}) => sum + count, 0);
+        const common = {...this.values, rotation: camera.r, size: [camera.width, camera.height],
+                        cell_low: [0, 0, 0], cell_size: [1, 1, 1], cell_radius: [1, 0]};
+        gl.enable(gl.DEPTH_TEST);
+        gl.depthFunc(gl.LESS);
+        this.device.clear(f.level0);
+        this.drawCells(this.programs.splats, f.level0, common, list, options.splat_scale);
+        gl.disable(gl.DEPTH_TEST);
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.ONE, gl.ONE);
+        this.device.clear(f.layer);
+        this.drawCells(this.programs.layer, f.layer, {...common, nearest: f.level0.textures[0]}, list,
+                       options.splat_scale);
+        gl.disable(gl.BLEND);
+    }
+
+    drawCells(program, target, common, list, radiusScale)
+    {
+        const gl = this.device.gl, places = name => program.uniforms.get(name);
+        this.device.begin(target);
+        program.use(common);
+        gl.bindVertexArray(this.cloud.vertices);
+        for (const {cell, count, enlarged} of list) {
+            program.set(places("cell_low"), sub(cell.low, this.camera.eye));
+            program.set(places("cell_size"), cell.size);
+            if (places("cell_radius"))
+                program.set(places("cell_radius"), [cell.radiusLow * radiusScale * enlarged,
+                                                    cell.radiusOctaves]);
+            gl.drawArrays(gl.POINTS, cell.base, count);
+        }
+    }
+
+    pullPush()
+    {
+        const {device, programs, frame: f, values} = this, top = f.pulled.length - 1;
+        const level0 = {...values, splats: f.level0.textures[0], splat_normals: f.level0.textures[1],
+                        layers: f.layer.textures[0]};
+        const fine = t => ({fine_a: t.textures[0], fine_b: t.textures[1]});
+        const coarse = t => ({coarse_a: t.textures[0], coarse_b: t.textures[1]});
+        device.pass(programs.pullFinest, f.pulled[1], {...level0, level: 1});
+        for (let i = 2; i <= top; i++)
+            device.pass(programs.pull, f.pulled[i], {...level0, ...fine(f.pulled[i - 1]), level: i});
+        let above = f.pulled[top];
+        for (let i = top - 1; i >= 1; i--) {
+            device.pass(programs.push, f.pushed[i],
+                        {...level0, ...fine(f.pulled[i]), ...coarse(above), level: i});
+            above = f.pushed[i];
+        }
+        device.pass(programs.pushLast, f.surface, {...level0, ...coarse(above)});
+        this.supported = f.surface.textures[0];
+        this.normals = f.surface.textures[1];
+        const support = Math.floor(this.manifest.options.min_support);
+        if (support > 0) {
+            device.pass(programs.support, f.supported, {depth_in: this.supported, normal_in: this.normals,
+                                                        min_support: support});
+            [this.supported, this.normals] = f.supported.textures;
+        }
+    }
+
+    // Gortler's pull and push from seeds: pyramid.pushed[0] is filled everywhere if anything is known.
+    fillIn(pyramid, seed, values, seeds, factor)
+    {
+        const {device, programs} = this, {pulled, pushed} = pyramid, top = pulled.length - 1;
+        device.pass(seed, seeds, values);
+        for (let i = 1; i <= top; i++)
+            device.pass(programs.fillPull, pulled[i], {fine: pulled[i - 1].textures[0], factor});
+        let above = pulled[top].textures[0];
+        for (let i = top - 1; i >= 0; i--) {
+            device.pass(programs.fillPush, pushed[i], {fine: pulled[i].textures[0], coarse: above});
+            above = pushed[i].textures[0];
+        }
+        if (top === 0)
+            pyramid.pushed[0] = pulled[0];
+    }
+
+    gather(camera, o)
+    {
+        const f = this.frame, store = this.photos, count = store.describe(camera, this.values.typical);
+        const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
+                        photo_depth: store.depth, slot_size: [store.width, store.height],
+                        last_mip: store.levels - 1, border_px: o.border_px, photos: count,
+                        blur_per_radian: o.guess_blur, silhouette: Math.round(o.silhouette),
+                        candidates: Math.round(o.candidates), outliers: o.outliers,
+                        photos_per_pixel: Math.round(o.photos_per_pixel),
+                        view_depth: f.depth.textures[0], tiles: f.tiles.textures[0]};
+        for (const [key, value] of Object.entries(o))
+            values[`opt.${key}`] = value;
+        this.device.pass(this.programs.choose, f.tiles, values);
+        if (values.silhouette > 0) {
+            this.device.pass(this.programs.vote, f.votes, values);
+            this.device.pass(this.programs.cut, f.cut, {...values, votes: f.votes.textures[0],
+                                                        normal_in: this.normals});
+            this.depth = f.cut;
+            this.normals = f.cut.textures[1];
+            values.view_depth = f.cut.textures[0];
+        }
+        this.device.pass(this.programs.gather, f.painted, values);
+        return count;
+    }
+
+    compose(pointsOnly)
+    {
+        const gl = this.device.gl, f = this.frame;
+        const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
+                        normals: this.normals, points_only: pointsOnly};
+        this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, 0.25);
+        gl.bindTexture(gl.TEXTURE_2D, f.guesses.id);
+        gl.generateMipmap(gl.TEXTURE_2D);
+        this.device.pass(this.programs.compose, f.composed,
+                         {...colors, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});
+    }
+
+    // The last frame onto a target; null: the canvas, whatever its size.
+    show(layer, target = null)
+    {
+        const gl = this.device.gl, f = this.frame;
+        const width = target ? target.width : gl.drawingBufferWidth;
+        const height = target ? target.height : gl.drawingBufferHeight;
+        this.device.pass(target ? this.programs.capture : this.programs.show, target,
+                         {composed: f.composed.textures[0], depth: this.depth.textures[0],
+                          normals: this.normals, source: f.painted.textures[1],
+                          layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
+                          scale: [f.width / width, f.height / height]});
+    }
+
+    // A frame of its own as RGBA bytes, top row first.
+    capture(camera, layer)
+    {
+        const gl = this.device.gl, {width, height} = camera;
+        this.draw(camera, layer);
+        const target = this.device.target(width, height, ["RGBA8"]);
+        this.show(layer, target);
+        const bytes = new Uint8ClampedArray(4 * width * height);
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+        this.device.releaseTarget(target);
+        return new ImageData(bytes, width, height);
+    }
+
+    // Depth of the last frame under a pixel of it, guesses too; 0: none.
+    depthAt(x, y)
+    {
+        const gl = this.device.gl, f = this.frame, pixel = new Float32Array(4);
+        if (!f || x < 0 || y < 0 || x >= f.width || y >= f.height)
+            return 0;
+        this.device.begin(this.depth);
+        gl.readPixels(Math.floor(x), Math.floor(y), 1, 1, gl.RGBA, gl.FLOAT, pixel);
+        return Math.abs(pixel[0]);
+    }
+
+    // What that pixel shows, in the world; null: nothing.
+    pointAt(x, y)
+    {
+        const z = this.depthAt(x, y), c = this.camera;
+        if (!(z > 0))
+            return null;
+        const q = [(x - c.cx) / c.fx * z, (y - c.cy) / c.fy * z, z];
+        return add(c.eye, [0, 1, 2].map(k => c.r[k] * q[0] + c.r[3 + k] * q[1] + c.r[6 + k] * q[2]));
+    }
+}

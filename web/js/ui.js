@@ -1,0 +1,198 @@
+// Everything around the picture: tools, panel, photographs, help, comparison.
+import {icons} from "oriel/icons.js";
+import {text} from "oriel/strings.js";
+import {frameHeight} from "oriel/view.js";
+
+export const byId = id => document.getElementById(id);
+
+function make(tag, properties = {}, ...children)
+{
+    const element = Object.assign(document.createElement(tag), properties);
+    element.append(...children);
+    return element;
+}
+
+function icon(name)
+{
+    const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
+    svg.setAttribute("viewBox", "0 0 24 24");
+    svg.setAttribute("aria-hidden", "true");
+    path.setAttribute("d", icons[name]);
+    svg.append(path);
+    return svg;
+}
+
+// actions: {id: {run, key, pressed}}; pressed() for those that are on or off.
+export class Tools {
+    constructor(actions)
+    {
+        const bar = byId("tools");
+        bar.setAttribute("aria-label", text.toolbar);
+        this.toggles = [];
+        for (const [id, action] of Object.entries(actions)) {
+            const label = `${text.actions[id]} (${action.key.toUpperCase()})`;
+            const button = make("button", {type: "button", title: label, id: `tool-${id}`}, icon(id));
+            button.setAttribute("aria-label", label);
+            button.addEventListener("click", action.run);
+            bar.append(button);
+            if (action.pressed)
+                this.toggles.push([button, action.pressed]);
+        }
+    }
+
+    update()
+    {
+        for (const [button, pressed] of this.toggles)
+            button.setAttribute("aria-pressed", String(pressed()));
+    }
+}
+
+// --- panel ---
+
+export class Panel {
+    constructor({layers, layer, onLayer})
+    {
+        this.element = byId("panel");
+        this.choices = layers.map((id, i) => {
+            const input = make("input", {type: "radio", name: "layer", value: id, checked: i === layer});
+            input.addEventListener("change", () => onLayer(i));
+            return input;
+        });
+        const labels = this.choices.map((input, i) => make("label", {}, input, text.layers[layers[i]]));
+        const list = make("dl");
+        this.figures = {};
+        for (const [id, label] of Object.entries(text.figure)) {
+            this.figures[id] = make("dd", {id: `figure-${id}`});
+            list.append(make("dt", {textContent: label}), this.figures[id]);
+        }
+        this.element.setAttribute("aria-label", text.actions.panel);
+        this.element.append(make("fieldset", {}, make("legend", {textContent: text.layerLegend}), ...labels),
+                            make("h2", {textContent: text.figures}), list,
+                            make("p", {textContent: text.madeBy}));
+    }
+
+    setLayer(layer) { this.choices[layer].checked = true; }
+
+    show(figures)
+    {
+        for (const [id, value] of Object.entries(figures))
+            this.figures[id].textContent = value;
+    }
+}
+
+// --- photographs ---
+
+export class Thumbs {
+    constructor(photos, files, goTo)
+    {
+        this.element = byId("thumbs");
+        this.element.setAttribute("aria-label", text.photographs);
+        this.buttons = photos.map(photo => {
+            const image = make("img", {alt: "", loading: "lazy", width: 64 * photo.width / photo.height,
+                                       height: 64});
+            const button = make("button", {type: "button", title: photo.name}, image);
+            button.setAttribute("aria-label", text.thumb(photo.number + 1, photo.name));
+            button.addEventListener("click", () => goTo(photo));
+            return {button, image, file: photo.thumb.file};
+        });
+        this.files = files;
+        this.current = null;
+        this.element.append(...this.buttons.map(b => b.button));
+    }
+
+    async open()
+    {
+        for (const b of this.buttons)
+            if (!b.image.src)
+                b.image.src = await this.files.address(b.file);
+    }
+
+    mark(photo)
+    {
+        if (photo === this.current)
+            return;
+        for (const [i, b] of this.buttons.entries())
+            b.button.setAttribute("aria-current", String(photo !== null && i === photo.number));
+        this.current = photo;
+        if (photo && !this.element.hidden)
+            this.buttons[photo.number].button.scrollIntoView({block: "nearest", inline: "nearest"});
+    }
+}
+
+// --- comparison ---
+
+// The photograph that the viewer stands at, over the part of the picture right of a slider.
+export class Compare {
+    constructor(files)
+    {
+        this.files = files;
+        this.element = byId("compare");
+        this.image = this.element.querySelector("img");
+        this.slider = this.element.querySelector("input");
+        this.slider.setAttribute("aria-label", text.compareSlider);
+        this.slider.addEventListener("input", () => this.split());
+        this.on = false;
+        this.photo = null;
+    }
+
+    split()
+    {
+        const share = Number(this.slider.value), box = this.image.getBoundingClientRect();
+        const x = window.innerWidth * share / 100 - box.left;
+        this.element.style.setProperty("--share", `${share}%`);
+        this.image.style.clipPath = `inset(0 0 0 ${x}px)`;
+    }
+
+    // photo: that the viewer is at; null: none
+    async update(photo, view)
+    {
+        const shows = this.on && photo !== null;
+        this.element.hidden = !shows;
+        if (!shows)
+            return;
+        if (photo !== this.photo) {
+            this.photo = photo;
+            this.image.src = await this.files.address(photo.picture.file);
+        }
+        const width = window.innerWidth, height = window.innerHeight;
+        const h = frameHeight(view.frame, width, height), w = h * view.frame.aspect;
+        Object.assign(this.image.style, {left: `${(width - w) / 2}px`, top: `${(height - h) / 2}px`,
+                                         width: `${w}px`, height: `${h}px`});
+        this.split();
+    }
+}
+
+// --- words ---
+
+export function buildHelp()
+{
+    const dialog = byId("help"), list = make("dl");
+    for (const [keys, what] of text.help)
+        list.append(make("dt", {textContent: keys}), make("dd", {textContent: what}));
+    const close = make("button", {type: "button", textContent: text.close});
+    close.addEventListener("click", () => dialog.close());
+    dialog.setAttribute("aria-label", text.helpTitle);
+    dialog.append(make("h2", {textContent: text.helpTitle}), list,
+                  make("p", {textContent: text.helpShare}), close);
+    return dialog;
+}
+
+export function showHint(message, isError = false)
+{
+    const hint = byId("hint");
+    if (hint.classList.contains("error") && !isError)
+        return;
+    hint.classList.toggle("error", isError);
+    if (hint.textContent !== message)
+        hint.textContent = message;
+}
+
+export function showProgress(share)
+{
+    const bar = byId("progress");
+    bar.classList.toggle("done", share >= 1);
+    bar.setAttribute("aria-valuenow", Math.round(100 * share));
+    bar.setAttribute("aria-label", share < 1 ? text.loadingShare(share) : text.loading);
+    bar.firstElementChild.style.width = `${100 * share}%`;
+}

@@ -1,0 +1,70 @@
+// Views: where the viewer is, where they look, and what part of it the window frames.
+// A frame is a picture of height 1: focal lengths and the principal point's offset from the
+// middle in that unit, so that a photograph's own framing survives any window.
+import {mix, mix3, normalize, quatFromRotation, rotateBack, rotationFromQuat, row, scale, slerp}
+    from "oriel/math.js";
+
+export function photoView(photo)
+{
+    const h = photo.height;
+    return {eye: photo.eye, r: photo.r, frame: {aspect: photo.width / h, fx: photo.fx / h,
+            fy: photo.fy / h, x: (photo.cx - photo.width / 2) / h, y: photo.cy / h - 0.5}};
+}
+
+// Pixels of the frame's height in a window: all of the frame shows, but in upright windows, where
+// that would widen the field of view beyond use, it is cut as much as the window is filled up.
+export function frameHeight(frame, width, height)
+{
+    const contain = Math.min(width / frame.aspect, height);
+    const cover = Math.max(width / frame.aspect, height);
+    return width < height && frame.aspect > 1 ? Math.sqrt(contain * cover) : contain;
+}
+
+// The camera of a view for a picture of this many pixels, as the renderer takes it.
+export function cameraOf(view, width, height)
+{
+    const s = frameHeight(view.frame, width, height), {r, eye} = view;
+    return {width, height, r, eye, fx: view.frame.fx * s, fy: view.frame.fy * s,
+            cx: width / 2 + view.frame.x * s, cy: height / 2 + view.frame.y * s};
+}
+
+export const forwardOf = view => row(view.r, 2);
+export const rightOf = view => row(view.r, 0);
+export const upOf = view => scale(row(view.r, 1), -1);
+
+export function mixViews(a, b, t)
+{
+    const frame = {};
+    for (const key of Object.keys(a.frame))
+        frame[key] = mix(a.frame[key], b.frame[key], t);
+    return {eye: mix3(a.eye, b.eye, t), frame,
+            r: rotationFromQuat(slerp(quatFromRotation(a.r), quatFromRotation(b.r), t))};
+}
+
+// What a pixel (of the camera) looks along, in the world, unit length.
+export function rayOf(camera, x, y)
+{
+    return normalize(rotateBack(camera.r, [(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1]));
+}
+
+// --- in the address ---
+
+const digits = x => String(Number(x.toPrecision(6)));
+
+export function viewToText(view)
+{
+    return [...view.eye, ...quatFromRotation(view.r), view.frame.fy].map(digits).join(",");
+}
+
+// null unless it is one; the frame is that of `home`, its focal length aside.
+export function viewFromText(text, home)
+{
+    const n = text.split(",").map(Number);
+    if (n.length !== 8 || !n.every(Number.isFinite) || !(n[7] > 0.05 && n[7] < 50))
+        return null;
+    if (!(Math.hypot(...n.slice(3, 7)) > 0.1))
+        return null;
+    const q = n.slice(3, 7), size = Math.hypot(...q);
+    return {eye: n.slice(0, 3), r: rotationFromQuat(q.map(x => x / size)),
+            frame: {...home.frame, fx: n[7], fy: n[7], x: 0, y: 0}};
+}

@@ -1,0 +1,56 @@
+// The photographs that can paint a tile of the screen best, as shaders/gather/choose.comp lists
+// them: eight bytes, best first, 255: none.
+#include "gather/penalty.glsl"
+#include "gather/hidden.glsl"
+
+uniform sampler2D view_depth; // < 0: guessed
+uniform int photos;
+layout(location = 0) out uvec2 chosen;
+
+const int ACROSS = 3, CANDIDATES = 8;
+
+void main()
+{
+    ivec2 tile = ivec2(gl_FragCoord.xy), area = textureSize(view_depth, 0);
+    vec3 points[9];
+    for (int i = 0; i < 9; i++) {
+        ivec2 at = tile * TILE + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * TILE / (2 * ACROSS);
+        at = min(at, area - 1);
+        float depth = abs(texelFetch(view_depth, at, 0).x);
+        points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
+    }
+    float best[CANDIDATES];
+    uint index[CANDIDATES];
+    for (int c = 0; c < CANDIDATES; c++) {
+        best[c] = NOT_SEEN;
+        index[c] = 255u;
+    }
+    for (int i = 0; i < photos; i++) {
+        float least = NOT_SEEN, seen = 0.0;
+        photo shot = photo_at(i);
+        for (int s = 0; s < 9; s++) {
+            vec2 pixel;
+            float z;
+            if (!(points[s].z > 0.0) || !photo_project(shot, points[s], pixel, z))
+                continue;
+            float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
+            float hidden = share > 0.9 ? 1.0 : 8.0;
+            least = min(least, photo_penalty(shot, points[s]) * hidden);
+            seen += 1.0 / hidden;
+        }
+        least = seen == 0.0 ? NOT_SEEN : least * (1.0 + 1.0 / max(seen, 0.1));
+        uint candidate = uint(i);
+        for (int c = 0; c < CANDIDATES; c++) {
+            if (least < best[c]) {
+                float b = best[c];
+                uint n = index[c];
+                best[c] = least;
+                index[c] = candidate;
+                least = b;
+                candidate = n;
+            }
+        }
+    }
+    chosen = uvec2(index[0] | index[1] << 8 | index[2] << 16 | index[3] << 24,
+                   index[4] | index[5] << 8 | index[6] << 16 | index[7] << 24);
+}

@@ -1,0 +1,113 @@
+// Asking a photograph about a surface point: what shaders/gather/photo.glsl is for compute, for
+// WebGL 2. The files of shaders/gather that stand on it are the same for both.
+uniform sampler2D photo_rows; // a row of 9 texels for each photograph of the frame
+uniform mediump sampler2DArray photo_color; // mipmapped, sRGB: reads are linear light
+uniform sampler2DArray photo_depth; // parts of its nearest depth; < 0: guessed, 0: none
+uniform vec4 view_focal;
+uniform float border_px, last_mip, blur_per_radian;
+uniform vec2 slot_size; // of photo_color, pixels
+uniform vec4 ground;    // dot(xyz, ray) is its inverse depth
+uniform struct {
+    float depth_tolerance, unknown_trust, sharpness, guess_sharpness;
+} opt;
+
+const float NOT_SEEN = 1e30; // penalty of a photograph that cannot paint a pixel
+
+struct photo {
+    vec4 from_view[3]; // rows: rotation | translation, photograph's camera from the view's
+    vec4 eye;          // its centre in the view's camera frame; w: slot
+    vec4 focal;
+    vec4 size;         // width, height; of its depth
+    vec4 gain;
+    vec4 lens;         // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
+    vec4 file;         // number among all photographs, nearest depth
+};
+
+photo photo_at(int i)
+{
+    return photo(vec4[3](texelFetch(photo_rows, ivec2(0, i), 0), texelFetch(photo_rows, ivec2(1, i), 0),
+                         texelFetch(photo_rows, ivec2(2, i), 0)),
+                 texelFetch(photo_rows, ivec2(3, i), 0), texelFetch(photo_rows, ivec2(4, i), 0),
+                 texelFetch(photo_rows, ivec2(5, i), 0), texelFetch(photo_rows, ivec2(6, i), 0),
+                 texelFetch(photo_rows, ivec2(7, i), 0), texelFetch(photo_rows, ivec2(8, i), 0));
+}
+
+// Number c of a tile's list (choose.frag); -1: there are no more.
+int photo_listed(uvec2 list, int c)
+{
+    uint i = (c < 4 ? list.x : list.y) >> uint(8 * (c & 3)) & 255u;
+    return i == 255u ? -1 : int(i);
+}
+
+bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
+{
+    vec4 ph = vec4(p, 1.0);
+    vec3 q = vec3(dot(shot.from_view[0], ph), dot(shot.from_view[1], ph),
+                  dot(shot.from_view[2], ph));
+    z = q.z;
+    pixel = vec2(-1.0);
+    if (!(q.z > 0.0))
+        return false;
+    pixel = shot.focal.xy * q.xy / q.z + shot.focal.zw;
+    vec2 border = min(pixel, shot.size.xy - pixel);
+    return min(border.x, border.y) > 0.5;
+}
+
+const float GUESS_BORDERS = 4.0;
+
+float photo_border(photo shot, vec2 pixel, bool guessed)
+{
+    vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
+    float width = max(guessed ? GUESS_BORDERS * border_px : border_px, 0.5);
+    return clamp(min(border.x, border.y) / width, 0.0, 1.0);
+}
+
+// The photograph's own depth at the four texels around a pixel.
+vec4 photo_depths(photo shot, vec2 pixel)
+{
+    vec2 at = clamp(pixel * shot.size.zw / shot.size.xy, vec2(0.5), shot.size.zw - 0.5);
+    ivec2 low = ivec2(floor(at - 0.5)), high = min(low + 1, ivec2(shot.size.zw) - 1);
+    int slot = int(shot.eye.w);
+    return shot.file.y * vec4(texelFetch(photo_depth, ivec3(low, slot), 0).x,
+                              texelFetch(photo_depth, ivec3(high.x, low.y, slot), 0).x,
+                              texelFetch(photo_depth, ivec3(low.x, high.y, slot), 0).x,
+                              texelFetch(photo_depth, ivec3(high, slot), 0).x);
+}
+
+float photo_mip(photo shot, float z, float view_depth)
+{
+    return clamp(log2(shot.focal.x * view_depth / (z * view_focal.x)), 0.0, last_mip);
+}
+
+vec4 photo_texel(vec2 at, float slot, float lod)
+{
+    return textureLod(photo_color, vec3(at, slot), lod);
+}
+
+vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
+{
+    return photo_texel(pixel / slot_size, shot.eye.w, mip);
+}
+
+// Catmull-Rom from bilinear fetches (Sigg and Hadwiger 2005).
+vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
+{
+    float lod = floor(mip + 0.5), slot = shot.eye.w;
+    vec2 size_at = max(floor(slot_size / exp2(lod)), vec2(1.0));
+    vec2 at = pixel / slot_size * size_at - 0.5;
+    vec2 base = floor(at), f = at - base;
+    vec2 w0 = f * (-0.5 + f * (1.0 - 0.5 * f));
+    vec2 w1 = 1.0 + f * f * (-2.5 + 1.5 * f);
+    vec2 w2 = f * (0.5 + f * (2.0 - 1.5 * f));
+    vec2 w3 = f * f * (-0.5 + 0.5 * f);
+    vec2 w12 = w1 + w2;
+    vec2 p0 = (base - 0.5) / size_at, p3 = (base + 2.5) / size_at;
+    vec2 p12 = (base + 0.5 + w2 / w12) / size_at;
+    vec4 sum = photo_texel(vec2(p12.x, p0.y), slot, lod) * (w12.x * w0.y) +
+               photo_texel(vec2(p0.x, p12.y), slot, lod) * (w0.x * w12.y) +
+               photo_texel(p12, slot, lod) * (w12.x * w12.y) +
+               photo_texel(vec2(p3.x, p12.y), slot, lod) * (w3.x * w12.y) +
+               photo_texel(vec2(p12.x, p3.y), slot, lod) * (w12.x * w3.y);
+    float total = w12.x * w0.y + w0.x * w12.y + w12.x * w12.y + w3.x * w12.y + w12.x * w3.y;
+    return max(sum / total, 0.0);
+}

@@ -1,0 +1,74 @@
+// One layer of the finished frame as sRGB. The canvas has its bottom row first: FLIP.
+#include "shared/srgb.glsl"
+uniform sampler2D composed, depth, normals, source;
+uniform int layer;     // as LAYERS of renderer.js
+uniform float typical; // depth
+uniform vec2 scale;    // pixels of the frame per pixel of the target
+layout(location = 0) out vec4 color;
+
+// Second differences of inverse depth, parts of the largest: from none of it to all.
+const float STEP_FROM = 0.004, STEP_FULL = 0.012;
+
+float inverse_at(ivec2 at)
+{
+    float z = texelFetch(depth, at, 0).x;
+    return z > 0.0 ? 1.0 / z : 0.0;
+}
+
+// Where depth steps, a pixel shows what is on both sides, as shaders/edges/antialias.comp makes it.
+vec3 antialiased(ivec2 at)
+{
+    vec3 own = texelFetch(composed, at, 0).rgb;
+    if (min(at.x, at.y) < 1 || any(greaterThanEqual(at, textureSize(depth, 0) - 1)))
+        return own;
+    float middle = inverse_at(at), bend = 0.0, most = middle;
+    ivec2 along[4] = ivec2[4](ivec2(1, 0), ivec2(-1, 1), ivec2(0, 1), ivec2(1, 1));
+    for (int n = 0; n < 4; n++) {
+        float before = inverse_at(at - along[n]), after = inverse_at(at + along[n]);
+        bend = max(bend, abs(before + after - 2.0 * middle));
+        most = max(most, max(before, after));
+    }
+    float share = clamp((bend / max(most, 1e-30) - STEP_FROM) / (STEP_FULL - STEP_FROM), 0.0, 1.0);
+    if (!(share > 0.0))
+        return own;
+    float aside = 0.35 * share;
+    vec3 sum = vec3(0.0);
+    for (int n = 0; n < 9; n++) {
+        ivec2 off = ivec2(n % 3, n / 3) - 1;
+        sum += sqrt(texelFetch(composed, at + off, 0).rgb) * (off.x != 0 ? aside : 1.0) *
+               (off.y != 0 ? aside : 1.0);
+    }
+    sum /= (1.0 + 2.0 * aside) * (1.0 + 2.0 * aside);
+    return sum * sum;
+}
+
+// Far apart for numbers that are near one another.
+vec3 distinct(float number)
+{
+    float hue = fract(number * 0.618034);
+    return clamp(abs(fract(hue + vec3(0.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
+}
+
+void main()
+{
+    ivec2 area = textureSize(depth, 0);
+    vec2 place = gl_FragCoord.xy * scale;
+#ifdef FLIP
+    place.y = float(area.y) - place.y;
+#endif
+    ivec2 at = clamp(ivec2(place), ivec2(0), area - 1);
+    vec3 plain = srgb_encode(scale == vec2(1.0) ? antialiased(at)
+                                                : texture(composed, place / vec2(area)).rgb);
+    float z = texelFetch(depth, at, 0).x;
+    vec4 normal = texelFetch(normals, at, 0), from = texelFetch(source, at, 0);
+    float near = 1.0 / (1.0 + abs(z) / typical);
+    color = vec4(plain, 1.0);
+    if (layer == 1)
+        color.rgb = z > 0.0 ? vec3(near) : vec3(0.0, 0.0, 0.25 * near);
+    else if (layer == 2)
+        color.rgb = normal.a > 0.0 ? normal.rgb : vec3(0.0);
+    else if (layer == 3)
+        color.rgb = texelFetch(composed, at, 0).a > 0.5 ? plain : mix(plain, vec3(0.9, 0.2, 0.1), 0.6);
+    else if (layer == 4)
+        color.rgb = from.a > 0.5 ? mix(distinct(round(from.r * 255.0) * 256.0 + round(from.g * 255.0)), plain, 0.4) : plain * 0.3;
+}
