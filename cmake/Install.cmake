@@ -5,18 +5,8 @@ install(TARGETS oriel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS liboriel EXPORT oriel-targets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-get_property(modules GLOBAL PROPERTY ORL_MODULES)
-foreach(folder src datasets)
-    install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/oriel/$<IF:$<STREQUAL:${folder},src>,.,${folder}>
-            FILES_MATCHING PATTERN "*.h" PATTERN "*internal.h" EXCLUDE PATTERN "cli" EXCLUDE
-            PATTERN "*_table.h" EXCLUDE)
-endforeach()
-# Of preprocess only what a program may call; the stages are its own affair.
-foreach(header prepare.h job/prepare_params.h densify/densify.h)
-    get_filename_component(folder ${header} DIRECTORY)
-    install(FILES preprocess/${header}
-            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/oriel/preprocess/${folder})
-endforeach()
+# The public headers, as <oriel/NAME.h>.
+install(DIRECTORY include/oriel DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT oriel-targets NAMESPACE oriel:: FILE oriel-targets.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oriel)
 configure_package_config_file(cmake/oriel-config.cmake.in oriel-config.cmake

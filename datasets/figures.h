@@ -3,9 +3,9 @@
 #ifndef ORL_DATASETS_FIGURES_H
 #define ORL_DATASETS_FIGURES_H
 
-#include "core/image.h"
-#include "core/progress.h"
-#include "scene/camera.h"
+#include "oriel/image.h"
+#include "oriel/progress.h"
+#include "oriel/camera.h"
 #include "scene/mesh.h"
 
 enum {

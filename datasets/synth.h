@@ -3,10 +3,10 @@
 #ifndef ORL_DATASETS_SYNTH_H
 #define ORL_DATASETS_SYNTH_H
 
-#include "core/image.h"
-#include "core/progress.h"
-#include "gpu/gpu.h"
-#include "scene/camera.h"
+#include "oriel/image.h"
+#include "oriel/progress.h"
+#include "oriel/gpu.h"
+#include "oriel/camera.h"
 
 enum {
     ORL_SYNTH_COUNT_MAX = 999,

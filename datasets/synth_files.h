@@ -2,7 +2,7 @@
 #ifndef ORL_DATASETS_SYNTH_FILES_H
 #define ORL_DATASETS_SYNTH_FILES_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 // ORL_ERR_ARGUMENT unless `path` is new or an empty folder.
 enum orl_result orl_synth_check_free(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;

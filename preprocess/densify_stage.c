@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "gpu/gpu.h"
+#include "oriel/gpu.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/job/colmap_run.h"
 

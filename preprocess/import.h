@@ -3,7 +3,7 @@
 #ifndef ORL_PREPROCESS_IMPORT_H
 #define ORL_PREPROCESS_IMPORT_H
 
-#include "core/progress.h"
+#include "oriel/progress.h"
 #include "preprocess/import/import_params.h"
 
 // Makes the scene, whole or not at all. ORL_IMPORT_DENSIFY needs COLMAP, as orl_prepare does.

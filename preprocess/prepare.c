@@ -1,8 +1,9 @@
-#include "preprocess/prepare.h"
+#include "oriel/prepare.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "core/file.h"
 #include "core/process.h"
 #include "preprocess/photos/collect.h"
 #include "preprocess/scene_json.h"

@@ -1,4 +1,5 @@
 #include "preprocess/results.h"
+#include "core/file.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/photos/advice.h"

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "preprocess/job/colmap_run.h"
 #include "scene/point_radii.h"

@@ -3,7 +3,7 @@
 #define ORL_PREPROCESS_GROUND_H
 
 #include "preprocess/job/job.h"
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 // Shifts and tilts scene->ground a little, so that training photographs agree better on what lies
 // on it where they have no stereo depth; held-out photographs are not read. Left as it is

@@ -4,8 +4,8 @@
 #define ORL_PREPROCESS_DENSIFY_H
 
 #include "core/file.h"
-#include "core/progress.h"
-#include "gpu/gpu.h"
+#include "oriel/progress.h"
+#include "oriel/gpu.h"
 #include "scene/colmap.h"
 
 // Raised when the same photographs and settings give other maps than before.

@@ -2,7 +2,7 @@
 #ifndef ORL_PREPROCESS_CHOLESKY_H
 #define ORL_PREPROCESS_CHOLESKY_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 // Solves a x = b in place by Cholesky's factorisation; a: n x n, row-major, its lower half
 // is used and overwritten. False when a is not positive definite.

@@ -8,7 +8,7 @@
 #include "preprocess/expose/align.h"
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/expose/response.h"
-#include "scene/points.h"
+#include "oriel/points.h"
 
 static int compare_doubles(const void *a, const void *b)
 {

@@ -2,7 +2,7 @@
 #ifndef ORL_PREPROCESS_GAIN_GUESS_H
 #define ORL_PREPROCESS_GAIN_GUESS_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 // A photograph whose gain is known, or wanted.
 struct orl_gain_view {

@@ -3,7 +3,7 @@
 #define ORL_PREPROCESS_RESPONSE_H
 
 #include "preprocess/expose/samples.h"
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 enum orl_response_verdict {
     ORL_RESPONSE_FOUND,

@@ -2,9 +2,9 @@
 #ifndef ORL_PREPROCESS_SAMPLES_H
 #define ORL_PREPROCESS_SAMPLES_H
 
-#include "core/progress.h"
-#include "scene/camera.h"
-#include "scene/points.h"
+#include "oriel/progress.h"
+#include "oriel/camera.h"
+#include "oriel/points.h"
 
 // A photograph to take samples from.
 struct orl_sample_photo {

@@ -2,8 +2,8 @@
 #ifndef ORL_PREPROCESS_IMPORT_INTERNAL_H
 #define ORL_PREPROCESS_IMPORT_INTERNAL_H
 
-#include "core/image.h"
-#include "core/progress.h"
+#include "oriel/image.h"
+#include "oriel/progress.h"
 #include "preprocess/import/import_params.h"
 #include "scene/known_cameras.h"
 

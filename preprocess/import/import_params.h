@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "io/video.h"
-#include "preprocess/job/prepare_params.h"
+#include "oriel/prepare_params.h"
 
 enum orl_import_silhouettes {
     ORL_SILHOUETTES_NONE,

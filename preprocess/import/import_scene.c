@@ -12,7 +12,7 @@
 #include "scene/colmap_internal.h"
 #include "scene/hull.h"
 #include "scene/manifest.h"
-#include "scene/points.h"
+#include "oriel/points.h"
 #include "scene/point_radii.h"
 
 char *orl_import_path(const struct import_job *job, const char *format, ...)

@@ -8,6 +8,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/lock.h"
 #include "core/memory.h"
 

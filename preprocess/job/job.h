@@ -5,10 +5,10 @@
 
 #include <jansson.h>
 
-#include "core/progress.h"
+#include "oriel/progress.h"
 #include "io/picture.h"
 #include "preprocess/job/exposure_list.h"
-#include "preprocess/job/prepare_params.h"
+#include "oriel/prepare_params.h"
 #include "scene/colmap.h"
 
 // In the order in which they run.

@@ -1,4 +1,4 @@
-#include "preprocess/job/prepare_params.h"
+#include "oriel/prepare_params.h"
 
 const char *const orl_quality_names[] = {"draft", "standard", "high", NULL};
 const char *const orl_camera_sharing_names[] = {"auto", "single", "each", NULL};

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "preprocess/photos/develop.h"
 

@@ -9,6 +9,7 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "preprocess/photos/advice.h"
 #include "preprocess/photos/develop.h"

@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "core/color.h"
+#include "core/file.h"
 #include "core/memory.h"
 
 enum { TWIN_QUALITY = 98 };

@@ -76,7 +76,7 @@ struct photo_data {
 #endif
 
 // The options of struct orl_render_params, as member `opt`. C has struct render_options of
-// src/render/option_list.h, which must be included first. In GLSL the define RENDER_OPTIONS
+// include/oriel/option_list.h, which must be included first. In GLSL the define RENDER_OPTIONS
 // declares the same members; src/render/gather.c generates it from the same list.
 #if defined(BLOCK_GATHER)
 struct render_options {

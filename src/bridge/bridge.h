@@ -3,7 +3,7 @@
 #ifndef ORL_BRIDGE_BRIDGE_H
 #define ORL_BRIDGE_BRIDGE_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 #ifdef __cplusplus
 extern "C" {

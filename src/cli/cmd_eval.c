@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "eval/eval.h"
 #include "eval/stability.h"
-#include "hdr/hdr.h"
+#include "oriel/hdr.h"
 
 struct options {
     const char *method, *json, *images, *truth, *vary;

@@ -8,7 +8,7 @@
 #include "cli/command_output.h"
 #include "core/memory.h"
 #include "eval/choice.h"
-#include "hdr/hdr.h"
+#include "oriel/hdr.h"
 #include "render/sequence.h"
 #include "scene/view_choice.h"
 

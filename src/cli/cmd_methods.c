@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 static void print_list(void)
 {

@@ -3,7 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/summary.h"
-#include "preprocess/prepare.h"
+#include "oriel/prepare.h"
 
 enum { INPUTS_MAX = 4096 };
 

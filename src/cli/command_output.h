@@ -4,7 +4,7 @@
 
 #include "cli/args.h"
 #include "render/output.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 struct output_options {
     const char *tone_names[ORL_TONE_COUNT + 1];

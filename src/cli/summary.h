@@ -2,7 +2,7 @@
 #ifndef ORL_CLI_SUMMARY_H
 #define ORL_CLI_SUMMARY_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 // Prints counts, stages with time and memory, and what was left out of
 // DIR/scene.json to stdout.

@@ -2,8 +2,8 @@
 #ifndef ORL_CLI_TERMINAL_H
 #define ORL_CLI_TERMINAL_H
 
-#include "core/log.h"
-#include "core/progress.h"
+#include "oriel/log.h"
+#include "oriel/progress.h"
 
 struct terminal {
     bool quiet, tty;

@@ -2,7 +2,7 @@
 #ifndef ORL_CORE_COLOR_H
 #define ORL_CORE_COLOR_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 // Linear light to an sRGB value, both 1 at white; clamped to [0, 1], NaN is 0.
 float orl_srgb_encode(float linear);

@@ -4,7 +4,8 @@
 
 #include <stdio.h>
 
-#include "core/log.h"
+#include "oriel/log.h"
+#include "oriel/names.h"
 
 // "dir/name", released with free(); NULL, logged, when memory runs out.
 char *orl_path_join(const struct orl_log *log, const char *dir, const char *name);
@@ -55,18 +56,8 @@ enum orl_result orl_dir_make(const struct orl_log *log, const char *path) ORL_CH
 // removed, never followed.
 enum orl_result orl_dir_remove(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 
-// Names sorted bytewise, without "." and "..".
-struct orl_names {
-    size_t count, capacity;
-    char **items; // owned, each too
-};
 enum orl_result orl_dir_list(const struct orl_log *log, const char *path,
                              struct orl_names *names) ORL_CHECK_RESULT;
-enum orl_result orl_names_add(const struct orl_log *log, struct orl_names *names,
-                              const char *name) ORL_CHECK_RESULT;
-bool orl_names_contain(const struct orl_names *names, const char *name);
-void orl_names_sort(struct orl_names *names);
-void orl_names_finish(struct orl_names *names);
 
 // XXH3 64-bit of the file's bytes, for change detection, not for security.
 enum orl_result orl_file_hash(const struct orl_log *log, const char *path,

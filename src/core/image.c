@@ -1,4 +1,4 @@
-#include "core/image.h"
+#include "oriel/image.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 // Parses text of any kind, released with json_decref. Errors name `path`, the line, the byte
 // and the reason.

@@ -2,7 +2,7 @@
 #ifndef ORL_CORE_LOCK_H
 #define ORL_CORE_LOCK_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 // Locks a folder, or a file that is made where it is not there; *fd holds the lock until it is
 // closed, also by the process's end. *taken: another process holds it, and *fd is -1; this is

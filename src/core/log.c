@@ -1,4 +1,4 @@
-#include "core/log.h"
+#include "oriel/log.h"
 
 #include <stdarg.h>
 #include <stdio.h>

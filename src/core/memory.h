@@ -4,7 +4,7 @@
 
 #include <stdarg.h>
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 // Zeroed array of count * size bytes, released with free(). NULL, logged, when
 // the product overflows or memory runs out. count 0 gives a valid pointer.

@@ -2,8 +2,8 @@
 #ifndef ORL_CORE_PROCESS_H
 #define ORL_CORE_PROCESS_H
 
-#include "core/log.h"
-#include "core/progress.h"
+#include "oriel/log.h"
+#include "oriel/progress.h"
 
 struct orl_process_params {
     const char *const *argv;   // NULL-terminated; argv[0] is looked up on PATH

@@ -1,4 +1,4 @@
-#include "core/progress.h"
+#include "oriel/progress.h"
 
 void orl_progress_report(const struct orl_progress *progress, const char *step,
                          double done, double total, const char *detail)

@@ -1,4 +1,4 @@
-#include "core/result.h"
+#include "oriel/result.h"
 
 static const struct {
     const char *name, *message;

@@ -2,7 +2,7 @@
 #ifndef ORL_CORE_TEXT_H
 #define ORL_CORE_TEXT_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 // Bytes of the UTF-8 character that `text` begins with; 0: it begins with none.
 size_t orl_utf8_length(const char *text);

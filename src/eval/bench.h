@@ -3,10 +3,10 @@
 #ifndef ORL_EVAL_BENCH_H
 #define ORL_EVAL_BENCH_H
 
-#include "core/progress.h"
+#include "oriel/progress.h"
 #include "eval/choice.h"
 #include "eval/timing.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 enum { ORL_BENCH_MEMORY_MAX = 64 };
 

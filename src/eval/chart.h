@@ -4,8 +4,8 @@
 #define ORL_EVAL_CHART_H
 
 #include "core/file.h"
-#include "core/progress.h"
-#include "gpu/gpu.h"
+#include "oriel/progress.h"
+#include "oriel/gpu.h"
 
 // Pictures that another program rendered at the held-out cameras: DIR/SCENE/NAME.png or .jpg,
 // or, without that folder, DIR/NAME.png or .jpg.

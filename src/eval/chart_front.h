@@ -2,7 +2,7 @@
 #ifndef ORL_EVAL_CHART_FRONT_H
 #define ORL_EVAL_CHART_FRONT_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 struct orl_chart_point {
     const char *method, *setting; // setting "": the method as it is

@@ -4,7 +4,7 @@
 #define ORL_EVAL_CHOICE_H
 
 #include "core/file.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 struct orl_choice {
     const struct orl_method *method;

@@ -3,12 +3,12 @@
 #ifndef ORL_EVAL_EVAL_H
 #define ORL_EVAL_EVAL_H
 
-#include "core/progress.h"
+#include "oriel/progress.h"
 #include "eval/metrics.h"
 #include "eval/radiance_metrics.h"
 #include "eval/timing.h"
 #include "eval/truth.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 struct orl_eval_view {
     size_t photo; // index in the scene

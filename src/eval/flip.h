@@ -2,7 +2,7 @@
 #ifndef ORL_EVAL_FLIP_H
 #define ORL_EVAL_FLIP_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 // LDR-FLIP of Andersson et al. 2020 ("FLIP: A Difference Evaluator for Alternating Images"),
 // 67 pixels per degree of visual angle as in the authors' program. a, b: U8 x3, sRGB, of one

@@ -3,7 +3,7 @@
 #ifndef ORL_EVAL_HELDOUT_H
 #define ORL_EVAL_HELDOUT_H
 
-#include "render/render.h"
+#include "oriel/render.h"
 
 // A photograph that a rendering is compared with.
 struct orl_heldout {

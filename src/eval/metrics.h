@@ -2,7 +2,7 @@
 #ifndef ORL_EVAL_METRICS_H
 #define ORL_EVAL_METRICS_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 struct orl_metrics {
     double psnr_db;         // RGB, 8-bit sRGB values, whole picture; 100 when identical

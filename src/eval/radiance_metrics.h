@@ -2,7 +2,7 @@
 #ifndef ORL_EVAL_RADIANCE_METRICS_H
 #define ORL_EVAL_RADIANCE_METRICS_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 // cd/m2 that radiance 1, white at the scene's middle exposure, is taken to be: an ordinary
 // display's white. PU21 then spans 14.3 stops below it and 6.6 above.

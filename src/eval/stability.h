@@ -3,10 +3,10 @@
 #ifndef ORL_EVAL_STABILITY_H
 #define ORL_EVAL_STABILITY_H
 
-#include "core/progress.h"
+#include "oriel/progress.h"
 #include "eval/choice.h"
-#include "render/render.h"
-#include "scene/path.h"
+#include "oriel/render.h"
+#include "oriel/path.h"
 
 // Side of the blocks whose mean colours are compared, pixels.
 enum { ORL_STABILITY_BLOCK = 16 };

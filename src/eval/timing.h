@@ -4,8 +4,8 @@
 #ifndef ORL_EVAL_TIMING_H
 #define ORL_EVAL_TIMING_H
 
-#include "core/progress.h"
-#include "gpu/gpu.h"
+#include "oriel/progress.h"
+#include "oriel/gpu.h"
 
 enum { ORL_TIMING_PASSES_MAX = 32, ORL_TIMING_FRAMES_MIN = 3 };
 

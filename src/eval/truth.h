@@ -2,9 +2,9 @@
 #ifndef ORL_EVAL_TRUTH_H
 #define ORL_EVAL_TRUTH_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 #include "scene/colmap.h"
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 struct orl_truth {
     const struct orl_scene *scene;  // not owned

@@ -3,8 +3,8 @@
 #ifndef ORL_EVAL_TUNE_H
 #define ORL_EVAL_TUNE_H
 
-#include "core/progress.h"
-#include "render/render.h"
+#include "oriel/progress.h"
+#include "oriel/render.h"
 
 // One set of values, measured.
 struct orl_tune_trial {

@@ -1,4 +1,4 @@
-#include "gpu/gpu.h"
+#include "oriel/gpu.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include <epoxy/egl.h>
 
-#include "gpu/gpu.h"
+#include "oriel/gpu.h"
 
 enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256, ORL_MEMORY_ROWS_MAX = 64 };
 

@@ -3,7 +3,7 @@
 #ifndef ORL_GPU_POINT_RASTER_H
 #define ORL_GPU_POINT_RASTER_H
 
-#include "gpu/gpu.h"
+#include "oriel/gpu.h"
 
 struct orl_point_raster;
 

@@ -2,7 +2,7 @@
 #ifndef ORL_GPU_RASTER_H
 #define ORL_GPU_RASTER_H
 
-#include "gpu/gpu.h"
+#include "oriel/gpu.h"
 
 enum { ORL_RASTER_TARGETS_MAX = 4, ORL_RASTER_INPUTS_MAX = 4 };
 

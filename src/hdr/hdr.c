@@ -1,4 +1,4 @@
-#include "hdr/hdr.h"
+#include "oriel/hdr.h"
 
 #include <math.h>
 #include <stdlib.h>

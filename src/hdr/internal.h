@@ -2,8 +2,8 @@
 #ifndef ORL_HDR_INTERNAL_H
 #define ORL_HDR_INTERNAL_H
 
-#include "hdr/hdr.h"
-#include "scene/scene.h"
+#include "oriel/hdr.h"
+#include "oriel/scene.h"
 
 // --- a picture from each series, merged (series.c) ---
 

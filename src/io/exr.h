@@ -2,8 +2,8 @@
 #ifndef ORL_IO_EXR_H
 #define ORL_IO_EXR_H
 
-#include "core/image.h"
-#include "scene/camera.h"
+#include "oriel/image.h"
+#include "oriel/camera.h"
 
 enum { ORL_EXR_CHANNELS_MAX = 32 };
 

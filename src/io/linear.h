@@ -3,8 +3,8 @@
 #ifndef ORL_IO_LINEAR_H
 #define ORL_IO_LINEAR_H
 
-#include "core/image.h"
-#include "scene/scene.h"
+#include "oriel/image.h"
+#include "oriel/scene.h"
 
 // The undistorted photograph, F32 x3, in the units of its 8-bit twin: 1 is that one's
 // white before any response curve or exposure. When there is none (photo->linear false)

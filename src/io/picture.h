@@ -3,7 +3,7 @@
 #ifndef ORL_IO_PICTURE_H
 #define ORL_IO_PICTURE_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 // What the file's header says.
 struct orl_picture_info {

@@ -2,7 +2,7 @@
 #ifndef ORL_IO_REMAP_H
 #define ORL_IO_REMAP_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 #include "scene/colmap.h"
 
 // What camera `to` would have seen from the same place, of any pixel type. `image` has the

@@ -2,7 +2,7 @@
 #ifndef ORL_IO_SVG_PLOT_H
 #define ORL_IO_SVG_PLOT_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 struct orl_plot_series {
     const char *name;

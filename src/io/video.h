@@ -2,8 +2,8 @@
 #ifndef ORL_IO_VIDEO_H
 #define ORL_IO_VIDEO_H
 
-#include "core/log.h"
-#include "core/progress.h"
+#include "oriel/log.h"
+#include "oriel/progress.h"
 
 // Encodes FRAMES_DIR/%05d.png, from 00000.png on, to `path` (.mp4, H.264). Written whole
 // or not at all. ORL_ERR_NOT_FOUND when ffmpeg is not installed.

@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_CLOUD_H
 #define ORL_RENDER_CLOUD_H
 
-#include "render/render.h"
+#include "oriel/render.h"
 #include "shared/render_blocks.h"
 
 // A part of the points, small enough that no buffer exceeds the device's limits. It consists of

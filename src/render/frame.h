@@ -3,7 +3,7 @@
 #define ORL_RENDER_FRAME_H
 
 #include "render/proxy.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 struct photos;
 struct gather;

@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_METHOD_H
 #define ORL_RENDER_METHOD_H
 
-#include "render/render.h"
+#include "oriel/render.h"
 
 struct frame;
 

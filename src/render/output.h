@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_OUTPUT_H
 #define ORL_RENDER_OUTPUT_H
 
-#include "render/render.h"
+#include "oriel/render.h"
 #include "io/exr.h"
 #include "render/tone.h"
 

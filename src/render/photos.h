@@ -3,7 +3,7 @@
 #define ORL_RENDER_PHOTOS_H
 
 #include "render/frame.h"
-#include "render/radiance.h"
+#include "oriel/radiance.h"
 
 // Where a photograph is stored. All photographs share two texture arrays. A slot is one layer of
 // both, and holds the photograph in its top left corner.

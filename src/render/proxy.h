@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_PROXY_H
 #define ORL_RENDER_PROXY_H
 
-#include "render/render.h"
+#include "oriel/render.h"
 
 // The result of a proxy, which is all that later passes see of it.
 struct surface {

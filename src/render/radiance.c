@@ -1,4 +1,4 @@
-#include "render/radiance.h"
+#include "oriel/radiance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #ifndef ORL_RENDER_REEXPOSE_H
 #define ORL_RENDER_REEXPOSE_H
 
-#include "core/image.h"
-#include "scene/scene.h"
+#include "oriel/image.h"
+#include "oriel/scene.h"
 
 // The 8-bit picture that a photograph of the scene would have shown of `light`: F32 x3 in the
 // scene's units (1 is white at the middle exposure), seen by the photograph's camera or one with

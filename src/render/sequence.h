@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_SEQUENCE_H
 #define ORL_RENDER_SEQUENCE_H
 
-#include "core/progress.h"
+#include "oriel/progress.h"
 #include "render/output.h"
 
 struct orl_sequence {

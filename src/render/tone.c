@@ -7,7 +7,7 @@
 
 #include "bridge/bridge.h"
 #include "core/color.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 const struct orl_tone_info orl_tones[ORL_TONE_COUNT] = {
     [ORL_TONE_SRGB] = {"srgb", "clips at white, as a photograph does", false},

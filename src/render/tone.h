@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_TONE_H
 #define ORL_RENDER_TONE_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 enum orl_tone_curve {
     ORL_TONE_SRGB,     // clips at white, like a photograph of this exposure

@@ -1,9 +1,9 @@
-#include "scene/camera.h"
+#include "oriel/camera.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/image.h"
+#include "oriel/image.h"
 #include "core/vec3.h"
 
 static bool focal_valid(double focal, double side)

@@ -4,8 +4,8 @@
 #ifndef ORL_SCENE_COLMAP_H
 #define ORL_SCENE_COLMAP_H
 
-#include "core/image.h"
-#include "scene/camera.h"
+#include "oriel/image.h"
+#include "oriel/camera.h"
 
 struct orl_colmap_camera {
     uint32_t id;

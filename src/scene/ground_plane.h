@@ -3,7 +3,7 @@
 #define ORL_SCENE_GROUND_PLANE_H
 
 #include "core/vec3.h"
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 // Looks for a plane that the training photographs, evenly at most 64 of them, were taken from at
 // about one height above, along their horizontal, with hardly a point beneath and some on it; few

@@ -2,8 +2,8 @@
 #ifndef ORL_SCENE_HULL_H
 #define ORL_SCENE_HULL_H
 
-#include "core/image.h"
-#include "scene/camera.h"
+#include "oriel/image.h"
+#include "oriel/camera.h"
 #include "scene/mesh.h"
 
 // A silhouette: U8 x1, not 0 where the subject is.

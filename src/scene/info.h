@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 // Bounds of the points, which must not be none.
 void orl_points_bounds(const struct orl_points *points, double low[3], double high[3]);

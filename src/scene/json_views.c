@@ -1,6 +1,6 @@
 #include "scene/json_views.h"
 
-#include "core/image.h"
+#include "oriel/image.h"
 #include "core/json.h"
 
 bool orl_json_rows(const json_t *array, size_t rows, size_t columns, double *out)

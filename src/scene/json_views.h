@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "scene/camera.h"
+#include "oriel/camera.h"
 
 // An array of `rows` arrays of `columns` finite numbers, row by row; false when it is anything else.
 bool orl_json_rows(const json_t *array, size_t rows, size_t columns, double *out);

@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 #define ORL_MANIFEST_VERSION 1
 

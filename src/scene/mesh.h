@@ -2,7 +2,7 @@
 #ifndef ORL_SCENE_MESH_H
 #define ORL_SCENE_MESH_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 struct orl_mesh {
     size_t vertex_count, triangle_count;

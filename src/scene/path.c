@@ -1,4 +1,4 @@
-#include "scene/path.h"
+#include "oriel/path.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef ORL_SCENE_PLY_H
 #define ORL_SCENE_PLY_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 enum orl_ply_type {
     ORL_PLY_INT8, ORL_PLY_UINT8, ORL_PLY_INT16, ORL_PLY_UINT16, ORL_PLY_INT32, ORL_PLY_UINT32,

@@ -2,9 +2,9 @@
 #ifndef ORL_SCENE_POINT_RADII_H
 #define ORL_SCENE_POINT_RADII_H
 
-#include "core/progress.h"
-#include "scene/camera.h"
-#include "scene/points.h"
+#include "oriel/progress.h"
+#include "oriel/camera.h"
+#include "oriel/points.h"
 
 struct orl_radii_params {
     int neighbours;   // k, [1, 64]

@@ -1,4 +1,4 @@
-#include "scene/points.h"
+#include "oriel/points.h"
 
 #include <errno.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "scene/camera.h"
+#include "oriel/camera.h"
 
 enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points, size_t count)
 {

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "scene/ply.h"
-#include "scene/points.h"
+#include "oriel/points.h"
 
 // What a property is to us.
 enum role {

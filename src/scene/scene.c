@@ -1,4 +1,4 @@
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 #include <math.h>
 #include <stdio.h>

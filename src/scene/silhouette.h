@@ -2,7 +2,7 @@
 #ifndef ORL_SCENE_SILHOUETTE_H
 #define ORL_SCENE_SILHOUETTE_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 // Values of a silhouette, U8 x1: outside, on the boundary (inside, next to outside), inside.
 enum { ORL_ALPHA_OUT = 0, ORL_ALPHA_EDGE = 128, ORL_ALPHA_IN = 255 };

@@ -2,7 +2,7 @@
 #ifndef ORL_SCENE_TEXT_LINES_H
 #define ORL_SCENE_TEXT_LINES_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 struct orl_text_lines {
     const struct orl_log *log;

@@ -2,10 +2,10 @@
 #ifndef ORL_SCENE_THIN_H
 #define ORL_SCENE_THIN_H
 
-#include "core/image.h"
-#include "core/progress.h"
-#include "scene/camera.h"
-#include "scene/points.h"
+#include "oriel/image.h"
+#include "oriel/progress.h"
+#include "oriel/camera.h"
+#include "oriel/points.h"
 
 struct orl_thin_params {
     float spacing;       // a thin point needs this much room, in its own radii, (0, 64]

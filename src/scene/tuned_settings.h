@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 // Sets scene->tuned from the manifest `root`, which is the file `path`.
 enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, const json_t *root,

@@ -3,7 +3,7 @@
 #define ORL_SCENE_VIEW_CHOICE_H
 
 #include "core/file.h"
-#include "scene/path.h"
+#include "oriel/path.h"
 
 struct orl_view_choice {
     const char *at;     // a photograph's name; or

@@ -2,8 +2,8 @@
 #ifndef ORL_WALK_CONTENT_INTERNAL_H
 #define ORL_WALK_CONTENT_INTERNAL_H
 
-#include "core/log.h"
-#include "scene/scene.h"
+#include "oriel/log.h"
+#include "oriel/scene.h"
 
 struct content {
     const struct orl_log *log;

@@ -2,8 +2,8 @@
 #ifndef ORL_WALK_PUBLISH_H
 #define ORL_WALK_PUBLISH_H
 
-#include "core/progress.h"
-#include "render/render.h"
+#include "oriel/progress.h"
+#include "oriel/render.h"
 
 struct orl_publish_params {
     const char *out;   // the folder of the site, or with single_file its HTML file

@@ -2,8 +2,8 @@
 #ifndef ORL_WALK_SERVER_H
 #define ORL_WALK_SERVER_H
 
-#include "core/progress.h"
-#include "render/render.h"
+#include "oriel/progress.h"
+#include "oriel/render.h"
 
 struct orl_walk_params {
     const char *host;  // address to listen on; any but 127.0.0.1 asks for a token

@@ -6,7 +6,7 @@
 #include "bridge/bridge.h"
 #include "core/memory.h"
 #include "io/picture.h"
-#include "scene/path.h"
+#include "oriel/path.h"
 #include "walk/internal.h"
 
 enum {

@@ -11,7 +11,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/colmap.h"
-#include "scene/points.h"
+#include "oriel/points.h"
 
 struct similarity { // x_truth = scale * rotation * x + offset
     double scale, rotation[3][3], offset[3];

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "core/process.h"
-#include "hdr/hdr.h"
+#include "oriel/hdr.h"
 
 static enum orl_result time_view(struct orl_hdr *const hdr[ORL_HDR_MERGE_COUNT],
                                  const struct orl_view *view, int rounds,

@@ -9,8 +9,8 @@
 
 #include "core/memory.h"
 #include "core/process.h"
-#include "render/render.h"
-#include "scene/path.h"
+#include "oriel/render.h"
+#include "oriel/path.h"
 
 enum { FEW = 20, ROUNDS = 7, STEPS = 12 };
 

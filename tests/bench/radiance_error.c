@@ -14,7 +14,7 @@
 #include "core/memory.h"
 #include "datasets/synth.h"
 #include "eval/truth.h"
-#include "hdr/hdr.h"
+#include "oriel/hdr.h"
 #include "io/picture.h"
 
 enum { EDGE_PX = 2 };

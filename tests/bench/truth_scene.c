@@ -14,7 +14,7 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "scene/colmap.h"
-#include "scene/points.h"
+#include "oriel/points.h"
 
 struct job {
     struct orl_log log;

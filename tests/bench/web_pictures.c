@@ -8,7 +8,7 @@
 
 #include "eval/metrics.h"
 #include "io/picture.h"
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 static json_t *camera_json(const struct orl_photo *photo)
 {

@@ -1,7 +1,7 @@
 // Prints docs/reference/options.md from the option table.
 #include <stdio.h>
 
-#include "render/render.h"
+#include "oriel/render.h"
 
 static void print_reader(const char *readers)
 {
@@ -74,7 +74,7 @@ int main(void)
     printf("# Options of rendering\n\n"
            "`--set KEY=VALUE` of `oriel render`, `eval`, `bench` and `hdr` takes these. An option "
            "that nothing reads with the\nmethod's choices is an error that names its readers. This "
-           "page is made from the option table\n(`src/render/option_list.h`) by the program "
+           "page is made from the option table\n(`include/oriel/option_list.h`) by the program "
            "`options_page` of the tests; a test fails when the two differ.\n\n"
            "## What each option means\n\n");
     print_options();

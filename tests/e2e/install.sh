@@ -18,8 +18,8 @@ target_link_libraries(user PRIVATE oriel::oriel)
 END
 cat >user/user.c <<'END'
 #include <stdio.h>
-#include "render/render.h"
-#include "scene/scene.h"
+#include <oriel/render.h>
+#include <oriel/scene.h>
 int main(void)
 {
     struct orl_scene *scene = NULL;

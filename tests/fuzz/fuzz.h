@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 struct fuzz_target {
     const char *name;                               // of its folder of inputs, too

@@ -7,7 +7,7 @@
 #include "fuzz.h"
 #include "gpu/internal.h"
 #include "gpu/shader_table.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 // What was set prints, and sets the same again.
 static void print_all(const struct orl_render_params *params)

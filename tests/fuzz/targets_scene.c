@@ -11,7 +11,7 @@
 #include "preprocess/job/exposure_list.h"
 #include "scene/colmap.h"
 #include "scene/manifest.h"
-#include "scene/path.h"
+#include "oriel/path.h"
 #include "scene/point_radii.h"
 #include "scene/thin.h"
 #include "scene/tuned_settings.h"

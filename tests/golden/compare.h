@@ -2,7 +2,7 @@
 #ifndef ORL_TESTS_COMPARE_H
 #define ORL_TESTS_COMPARE_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 // A sample agrees when |actual - expected| <= absolute + relative * |expected|; a pixel
 // when all its samples do; pictures when at most `fraction` of the pixels disagree and

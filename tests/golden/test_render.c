@@ -5,7 +5,7 @@
 
 #include "compare.h"
 #include "core/memory.h"
-#include "render/render.h"
+#include "oriel/render.h"
 #include "render_tolerance.h"
 #include "tiny_scene.h"
 

@@ -3,8 +3,8 @@
 #ifndef ORL_TESTS_TINY_SCENE_H
 #define ORL_TESTS_TINY_SCENE_H
 
-#include "core/image.h"
-#include "scene/scene.h"
+#include "oriel/image.h"
+#include "oriel/scene.h"
 
 enum { TINY_PHOTOS = 5, TINY_TEST_PHOTO = 2, TINY_WIDTH = 64, TINY_HEIGHT = 48 };
 

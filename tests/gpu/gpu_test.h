@@ -2,7 +2,7 @@
 #ifndef ORL_TESTS_GPU_TEST_H
 #define ORL_TESTS_GPU_TEST_H
 
-#include "gpu/gpu.h"
+#include "oriel/gpu.h"
 #include "test.h"
 
 // A device for the whole test program, GL errors being failures.

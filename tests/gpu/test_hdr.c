@@ -4,7 +4,7 @@
 
 #include "core/color.h"
 #include "gpu_test.h"
-#include "hdr/hdr.h"
+#include "oriel/hdr.h"
 #include "io/exr.h"
 #include "io/picture.h"
 

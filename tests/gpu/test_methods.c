@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "render/select.h"
-#include "scene/points.h"
+#include "oriel/points.h"
 #include "wall_scene.h"
 
 enum { SIDE = 48 };

@@ -1,7 +1,7 @@
 // The method of Princ 2014 against answers found by hand.
 #include <math.h>
 
-#include "scene/points.h"
+#include "oriel/points.h"
 #include "wall_scene.h"
 
 enum { SIDE = 48, MIDDLE = SIDE / 2, GRID = 60 };

@@ -6,7 +6,7 @@
 
 #include "gpu_test.h"
 #include "io/picture.h"
-#include "render/render.h"
+#include "oriel/render.h"
 
 enum { PHOTOS_MAX = 80 };
 

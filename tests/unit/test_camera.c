@@ -1,5 +1,5 @@
 // Views: from the world into the picture and back.
-#include "scene/camera.h"
+#include "oriel/camera.h"
 #include "test.h"
 
 static void test_unproject_known(void **state)

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#include "core/image.h"
+#include "oriel/image.h"
 #include "core/memory.h"
-#include "core/progress.h"
+#include "oriel/progress.h"
 
 static void result_names(void **state)
 {

@@ -1,6 +1,6 @@
 #include "test.h"
 
-#include "core/log.h"
+#include "oriel/log.h"
 #include "core/text.h"
 
 static void utf8(void **state)

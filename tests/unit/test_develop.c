@@ -11,7 +11,7 @@
 #include "io/linear.h"
 #include "io/picture.h"
 #include "opencv_files.h"
-#include "preprocess/prepare.h"
+#include "oriel/prepare.h"
 
 enum { W = 96, H = 80 }; // the stand-in's camera
 

@@ -8,7 +8,7 @@
 #include "io/picture.h"
 #include "preprocess/import.h"
 #include "preprocess/import/import_internal.h"
-#include "scene/scene.h"
+#include "oriel/scene.h"
 #include "scene/silhouette.h"
 #include "test.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/lock.h"
 #include "preprocess/job/job.h"
-#include "preprocess/prepare.h"
+#include "oriel/prepare.h"
 #include "test.h"
 
 static int flock_errno, symlink_errno; // 0: it works

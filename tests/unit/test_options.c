@@ -2,7 +2,7 @@
 // refused, and scenes' settings are used.
 #include <string.h>
 
-#include "render/render.h"
+#include "oriel/render.h"
 #include "test.h"
 
 static void tries_can_be_set(void **state)

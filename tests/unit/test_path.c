@@ -2,7 +2,7 @@
 #include <math.h>
 #include <unistd.h>
 
-#include "scene/path.h"
+#include "oriel/path.h"
 #include "test.h"
 
 static char *dir;

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
-#include "scene/points.h"
+#include "oriel/points.h"
 #include "test.h"
 
 static void save(const char *path, const void *data, size_t size)

@@ -8,7 +8,7 @@
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/photos/advice.h"
 #include "preprocess/photos/collect.h"
-#include "preprocess/prepare.h"
+#include "oriel/prepare.h"
 #include "test.h"
 
 static void reads_progress(void **state)

@@ -1,7 +1,7 @@
 // From pixels to radiance and trust, without a device.
 #include <math.h>
 
-#include "render/radiance.h"
+#include "oriel/radiance.h"
 #include "test.h"
 
 static const struct orl_sensor sensor = {ORL_SENSOR_DEFAULTS};

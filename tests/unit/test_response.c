@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "core/color.h"
-#include "core/image.h"
+#include "oriel/image.h"
 #include "io/picture.h"
 #include "opencv_response.h"
 #include "preprocess/expose/response.h"

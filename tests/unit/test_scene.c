@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "scene/scene.h"
+#include "oriel/scene.h"
 #include "test.h"
 
 static void save(const char *dir, const char *name, const char *text)

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "core/color.h"
-#include "render/render.h"
+#include "oriel/render.h"
 #include "render/tone.h"
 
 static struct orl_image pixels(const float (*rgb)[3], int count)

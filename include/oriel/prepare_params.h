@@ -1,8 +1,8 @@
 // What oriel prepare is asked to do.
-#ifndef ORL_PREPROCESS_PREPARE_PARAMS_H
-#define ORL_PREPROCESS_PREPARE_PARAMS_H
+#ifndef ORIEL_PREPARE_PARAMS_H
+#define ORIEL_PREPARE_PARAMS_H
 
-#include "core/file.h"
+#include "oriel/names.h"
 
 struct orl_gpu;
 

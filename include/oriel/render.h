@@ -1,11 +1,11 @@
 // Renders a view: depth from points, visibility, colour from photographs.
-#ifndef ORL_RENDER_RENDER_H
-#define ORL_RENDER_RENDER_H
+#ifndef ORIEL_RENDER_H
+#define ORIEL_RENDER_H
 
-#include "core/image.h"
-#include "gpu/gpu.h"
-#include "render/option_list.h"
-#include "scene/scene.h"
+#include "oriel/image.h"
+#include "oriel/gpu.h"
+#include "oriel/option_list.h"
+#include "oriel/scene.h"
 
 // --- methods and options ---
 

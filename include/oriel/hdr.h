@@ -1,9 +1,9 @@
 // Radiance views of a scene photographed at several exposures.
-#ifndef ORL_HDR_HDR_H
-#define ORL_HDR_HDR_H
+#ifndef ORIEL_HDR_H
+#define ORIEL_HDR_H
 
-#include "render/radiance.h"
-#include "render/render.h"
+#include "oriel/radiance.h"
+#include "oriel/render.h"
 
 enum orl_hdr_merge {
     // One gather in radiance. The weight of each photograph is its geometric weight times how well

@@ -1,7 +1,7 @@
 // Every option of rendering, one row each; render.h makes fields of them, options.c the table
 // behind --set, oriel tune and docs/reference/options.md, gather.c the shaders' parameters.
-#ifndef ORL_RENDER_OPTION_LIST_H
-#define ORL_RENDER_OPTION_LIST_H
+#ifndef ORIEL_OPTION_LIST_H
+#define ORIEL_OPTION_LIST_H
 
 // SLOT(field, default, readers, help): a part of the method that is chosen by name.
 // CHOICE(field, type, names, default, readers, help): one of a few names, of an enum.

@@ -3,12 +3,12 @@
 //
 // Thread safety: everything made from an orl_gpu belongs to the thread that created it. All objects
 // must be destroyed before their orl_gpu.
-#ifndef ORL_GPU_GPU_H
-#define ORL_GPU_GPU_H
+#ifndef ORIEL_GPU_H
+#define ORIEL_GPU_H
 
 #include <epoxy/gl.h>
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 struct orl_gpu;
 

@@ -1,8 +1,8 @@
 // Camera paths: sequences of views to render.
-#ifndef ORL_SCENE_PATH_H
-#define ORL_SCENE_PATH_H
+#ifndef ORIEL_PATH_H
+#define ORIEL_PATH_H
 
-#include "scene/scene.h"
+#include "oriel/scene.h"
 
 struct orl_path {
     struct orl_view *views;

@@ -1,8 +1,8 @@
 // The point cloud: one oriented disc (splat) per point.
-#ifndef ORL_SCENE_POINTS_H
-#define ORL_SCENE_POINTS_H
+#ifndef ORIEL_POINTS_H
+#define ORIEL_POINTS_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 struct orl_points {
     size_t count;

@@ -1,8 +1,8 @@
 // Progress and cancellation, passed down into every long job.
-#ifndef ORL_CORE_PROGRESS_H
-#define ORL_CORE_PROGRESS_H
+#ifndef ORIEL_PROGRESS_H
+#define ORIEL_PROGRESS_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 struct orl_progress {
     // step: short name ("densify"); done of total units; detail: what is being

@@ -1,8 +1,8 @@
 // A picture in host memory.
-#ifndef ORL_CORE_IMAGE_H
-#define ORL_CORE_IMAGE_H
+#ifndef ORIEL_IMAGE_H
+#define ORIEL_IMAGE_H
 
-#include "core/log.h"
+#include "oriel/log.h"
 
 enum orl_pixel {
     ORL_PIXEL_U8,  // sRGB-encoded colour, or a mask

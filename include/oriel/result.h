@@ -1,8 +1,8 @@
 // Result codes: one table gives the enum, the name and the default message.
-#ifndef ORL_CORE_RESULT_H
-#define ORL_CORE_RESULT_H
+#ifndef ORIEL_RESULT_H
+#define ORIEL_RESULT_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 #define ORL_RESULTS(X)                                                    \
     X(ORL_OK, "success")                                                  \

@@ -1,9 +1,9 @@
 // Cameras and poses. Conventions are COLMAP's: x right, y down, z forward;
 // pixel centres at +0.5; a point's depth is its z in camera space.
-#ifndef ORL_SCENE_CAMERA_H
-#define ORL_SCENE_CAMERA_H
+#ifndef ORIEL_CAMERA_H
+#define ORIEL_CAMERA_H
 
-#include "core/common.h"
+#include "oriel/common.h"
 
 // Pinhole without distortion. u = fx x/z + cx, v = fy y/z + cy, in pixels.
 struct orl_camera {

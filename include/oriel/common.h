@@ -10,8 +10,8 @@
 // - Strings are UTF-8. Angles are radians. Images are row-major, top row first.
 // - Objects are not thread-safe; different objects may be used by different
 //   threads, except those of one orl_gpu, which belong to its creating thread.
-#ifndef ORL_CORE_COMMON_H
-#define ORL_CORE_COMMON_H
+#ifndef ORIEL_COMMON_H
+#define ORIEL_COMMON_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,9 +1,9 @@
 // A scene folder (docs/reference/files.md): photographs with cameras, and points.
-#ifndef ORL_SCENE_SCENE_H
-#define ORL_SCENE_SCENE_H
+#ifndef ORIEL_SCENE_H
+#define ORIEL_SCENE_H
 
-#include "scene/camera.h"
-#include "scene/points.h"
+#include "oriel/camera.h"
+#include "oriel/points.h"
 
 struct orl_colmap_model;
 struct orl_names;

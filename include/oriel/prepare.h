@@ -1,10 +1,10 @@
 // From a folder of photographs to a scene: the stages of preprocess/stages.c in their order
 // (docs/how/pipeline.md).
-#ifndef ORL_PREPROCESS_PREPARE_H
-#define ORL_PREPROCESS_PREPARE_H
+#ifndef ORIEL_PREPARE_H
+#define ORIEL_PREPARE_H
 
-#include "core/progress.h"
-#include "preprocess/job/prepare_params.h"
+#include "oriel/progress.h"
+#include "oriel/prepare_params.h"
 
 // Makes the scene. COLMAP is found on PATH or named by $ORIEL_COLMAP; its output
 // goes to OUT/logs/colmap.log. Whatever fails, OUT does not open as a scene until

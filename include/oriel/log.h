@@ -1,8 +1,8 @@
 // Messages to the caller. The library never prints by itself.
-#ifndef ORL_CORE_LOG_H
-#define ORL_CORE_LOG_H
+#ifndef ORIEL_LOG_H
+#define ORIEL_LOG_H
 
-#include "core/result.h"
+#include "oriel/result.h"
 
 enum orl_log_level {
     ORL_LOG_ERROR,   // the call fails

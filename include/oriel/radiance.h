@@ -1,9 +1,9 @@
 // Photographs as radiance: the radiance of each pixel and its confidence weight ("trust" in
 // identifiers). Radiance is relative to the scene's middle exposure, where 1 is white.
-#ifndef ORL_RENDER_RADIANCE_H
-#define ORL_RENDER_RADIANCE_H
+#ifndef ORIEL_RADIANCE_H
+#define ORIEL_RADIANCE_H
 
-#include "core/image.h"
+#include "oriel/image.h"
 
 // Noise and clipping model of a photograph's sensor.
 struct orl_sensor {
