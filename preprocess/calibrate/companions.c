@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-#include "io/linear.h"
-#include "io/remap.h"
+#include "scene/linear.h"
+#include "scene/remap.h"
 #include "preprocess/photos/develop.h"
 
 // To the pixels that the photograph has in `model`.

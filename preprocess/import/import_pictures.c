@@ -4,9 +4,9 @@
 #include <strings.h>
 
 #include "core/memory.h"
-#include "io/linear.h"
+#include "scene/linear.h"
 #include "io/picture.h"
-#include "io/remap.h"
+#include "scene/remap.h"
 #include "preprocess/import/import_internal.h"
 #include "scene/silhouette.h"
 

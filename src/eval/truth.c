@@ -8,7 +8,7 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "io/exr.h"
-#include "io/remap.h"
+#include "scene/remap.h"
 
 // Length of a name without its extension.
 static size_t stem_length(const char *name)

@@ -32,9 +32,9 @@ find include $folders -name '*.[ch]' -o -name '*.cpp' | sort -u |
             public["oriel/" names[i] ".h"] = module
     }
     BEGIN {
-        add_public("core", "common result log progress image names")
+        add_public("core", "common result log progress image names camera")
         add_public("gpu", "gpu")
-        add_public("scene", "camera points scene path")
+        add_public("scene", "points scene path")
         add_public("render", "option_list render radiance")
         add_public("hdr", "hdr")
         add_public("preprocess/job", "prepare_params")

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "eval/truth.h"
 #include "io/exr.h"
-#include "io/linear.h"
+#include "scene/linear.h"
 #include "io/picture.h"
 #include "opencv_files.h"
 #include "oriel/prepare.h"

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "datasets/figures.h"
-#include "io/linear.h"
+#include "scene/linear.h"
 #include "io/picture.h"
 #include "preprocess/import.h"
 #include "preprocess/import/import_internal.h"

@@ -5,7 +5,7 @@
 
 #include "core/process.h"
 #include "io/picture.h"
-#include "io/remap.h"
+#include "scene/remap.h"
 
 static char *dir;
 

@@ -1,4 +1,4 @@
-#include "io/remap.h"
+#include "scene/remap.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 // Pictures without the lens's distortion, as COLMAP's image_undistorter makes them.
-#ifndef ORL_IO_REMAP_H
-#define ORL_IO_REMAP_H
+#ifndef ORL_SCENE_REMAP_H
+#define ORL_SCENE_REMAP_H
 
 #include "oriel/image.h"
 #include "scene/colmap.h"

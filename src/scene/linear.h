@@ -1,7 +1,7 @@
 // A scene's photographs as linear light, where they were given with more than 8 bits
 // (docs/reference/files.md, images_linear).
-#ifndef ORL_IO_LINEAR_H
-#define ORL_IO_LINEAR_H
+#ifndef ORL_SCENE_LINEAR_H
+#define ORL_SCENE_LINEAR_H
 
 #include "oriel/image.h"
 #include "oriel/scene.h"

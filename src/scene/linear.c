@@ -1,4 +1,4 @@
-#include "io/linear.h"
+#include "scene/linear.h"
 
 #include <stdlib.h>
 #include <string.h>
