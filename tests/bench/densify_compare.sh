@@ -47,13 +47,18 @@ measure() {
     return $status
 }
 
+# The same files in another folder; links out of a scene are refused.
+share() { # FROM TO
+    cp -rl "$1" "$2" 2>/dev/null || { rm -rf "$2" && cp -r "$1" "$2"; }
+}
+
 # workspace NAME: a fresh one with the scene's photographs and cameras.
 workspace() {
     ws=$out/$1
     rm -rf "$ws"
     mkdir -p "$ws/stereo"
-    ln -s "$scene/images" "$ws/images"
-    ln -s "$scene/sparse" "$ws/sparse"
+    share "$scene/images" "$ws/images"
+    share "$scene/sparse" "$ws/sparse"
     cp "$scene/stereo/fusion.cfg" "$ws/stereo/" 2>/dev/null || names train >"$ws/stereo/fusion.cfg"
 }
 
@@ -78,7 +83,7 @@ run_colmap() {
 
 # OpenMVS takes all photographs of the model, so the held-out ones are taken out of it.
 run_openmvs() {
-    rm "$ws/sparse"
+    rm -r "$ws/sparse"
     mkdir -p "$ws/sparse" "$ws/mvs"
     if [ -n "$held_out" ]; then
         names test >"$ws/held-out.txt"
@@ -93,7 +98,7 @@ run_openmvs() {
         -o "$ws/mvs/dense.mvs" -w "$ws/mvs" || return
     cp "$ws/mvs/dense.ply" "$ws/fused.ply"
     rm -r "$ws/sparse"
-    ln -s "$scene/sparse" "$ws/sparse"
+    share "$scene/sparse" "$ws/sparse"
 }
 
 number() { # KEY FILE: in the report's mean
