@@ -100,7 +100,8 @@ enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_rend
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params) ORL_CHECK_RESULT;
 
-// The method's parameters with the values that oriel tune found for the scene. ORL_ERR_FORMAT if
+// The method's parameters as they suit the scene: with the values that oriel tune found for it, and
+// with the mesh as the proxy if the scene has no points. ORL_ERR_FORMAT if
 // the scene has settings that are unknown to this program.
 enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
                                         const struct orl_scene *scene,

@@ -173,6 +173,9 @@ enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct 
 {
     enum orl_result result = ORL_OK;
     *params = method->params;
+    // Silhouettes leave a mesh and no points.
+    if (scene->points.count == 0 && strcmp(params->paint, "points") != 0)
+        snprintf(params->proxy, sizeof params->proxy, "%s", orl_proxy_mesh.name);
     for (size_t i = 0; result == ORL_OK && i < scene->tuned_count; i++) {
         const struct orl_tuned *tuned = &scene->tuned[i];
         char assignment[128];

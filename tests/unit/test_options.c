@@ -96,6 +96,24 @@ static void choices_must_go_together(void **state)
     assert_int_equal(orl_render_params_assign(NULL, &params, generic, 3), ORL_OK);
 }
 
+// A scene of silhouettes has a mesh and no points.
+static void scenes_without_points_use_their_mesh(void **state)
+{
+    (void)state;
+    struct orl_scene scene = {.dir = (char *)"a scene"};
+    struct orl_render_params params;
+    const struct orl_method *method = orl_method_find(NULL, "orzan-view");
+    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    assert_string_equal(params.proxy, "mesh");
+    scene.points.count = 1;
+    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    assert_string_equal(params.proxy, "splats");
+    scene.points.count = 0;
+    method = orl_method_find(NULL, "points");
+    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    assert_string_equal(params.proxy, "splats");
+}
+
 static void scenes_settings_are_used(void **state)
 {
     (void)state;
@@ -103,7 +121,8 @@ static void scenes_settings_are_used(void **state)
     struct orl_tuned tuned[] = {{(char *)"other", (char *)"min_support", 3},
                                 {(char *)method->name, (char *)"min_support", 5},
                                 {(char *)method->name, (char *)"front_layer", 0.05}};
-    struct orl_scene scene = {.dir = (char *)"a scene", .tuned = tuned, .tuned_count = 3};
+    struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
+                              .tuned_count = 3};
     struct orl_render_params params;
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
     assert_float_equal(params.min_support, 5, 0);
@@ -126,6 +145,7 @@ int main(void)
         cmocka_unit_test(options_that_nothing_reads_are_refused),
         cmocka_unit_test(several_are_set_at_once),
         cmocka_unit_test(choices_must_go_together),
+        cmocka_unit_test(scenes_without_points_use_their_mesh),
         cmocka_unit_test(scenes_settings_are_used),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
