@@ -99,7 +99,7 @@
         "Keeps Airieau's difference of distances away from zero.") \
     NUMBER(border_px, 8, 0, 1024, "pixels of the photograph", "paint=gather paint=tiled", \
         ORL_TRIES(4, 8, 16, 48), \
-        "Photographs fade out over this width at their border.") \
+        "Photographs fade out over this width at their border; with 0 they do not.") \
     NUMBER(points_per_pixel, 4, 0, 64, "points", "proxy=splats", ORL_NO_TRIES, \
         "Where more points than this fall into a pixel, splats are thinned and enlarged. With " \
         "0 all are drawn.") \
