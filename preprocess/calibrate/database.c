@@ -29,7 +29,7 @@ enum orl_result orl_database_open(const struct orl_log *log, const char *path,
                                   struct orl_database **out)
 {
     static const char sql[] =
-        "SELECT k.rows, k.cols, k.data, d.rows, d.cols, d.data FROM images AS i "
+        "SELECT k.rows, k.cols, k.data, d.rows, d.cols, d.data, i.image_id FROM images AS i "
         "LEFT JOIN keypoints AS k ON k.image_id = i.image_id "
         "LEFT JOIN descriptors AS d ON d.image_id = i.image_id WHERE i.name = ?";
     *out = NULL;
@@ -131,35 +131,120 @@ static enum orl_result take_largest(const struct orl_database *db, const struct 
     return ORL_OK;
 }
 
+// Leaves the statement at the photograph's row, to be reset when the tables are done with.
+static enum orl_result find_features(struct orl_database *db, const char *name,
+                                     struct table *keypoints, struct table *descriptors)
+{
+    sqlite3_bind_text(db->features, 1, name, -1, SQLITE_STATIC);
+    int step = sqlite3_step(db->features);
+    if (step == SQLITE_DONE)
+        return orl_fail(db->log, ORL_ERR_DATA, "%s: COLMAP has no features of %s", db->path, name);
+    if (step != SQLITE_ROW)
+        return fail(db);
+    if (get_table(db->features, 0, sizeof(float), keypoints) &&
+        get_table(db->features, 3, 1, descriptors) && keypoints->rows == descriptors->rows &&
+        (!descriptors->rows || (descriptors->columns == ORL_SIFT_SIZE &&
+                                (keypoints->columns == 4 || keypoints->columns == 6))))
+        return ORL_OK;
+    return orl_fail(db->log, ORL_ERR_FORMAT, "%s: the features of %s are damaged", db->path, name);
+}
+
 enum orl_result orl_database_descriptors(struct orl_database *db, const char *name, size_t limit,
                                          uint8_t **descriptors, size_t *count)
 {
     struct table keypoints, all;
-    enum orl_result result = ORL_OK;
     *descriptors = NULL;
     *count = 0;
-    sqlite3_bind_text(db->features, 1, name, -1, SQLITE_STATIC);
-    int step = sqlite3_step(db->features);
-    if (step == SQLITE_DONE)
-        result = orl_fail(db->log, ORL_ERR_DATA, "%s: COLMAP has no features of %s", db->path,
-                          name);
-    else if (step != SQLITE_ROW)
-        result = fail(db);
-    else if (!get_table(db->features, 0, sizeof(float), &keypoints) ||
-             !get_table(db->features, 3, 1, &all) || keypoints.rows != all.rows ||
-             (all.rows && (all.columns != ORL_SIFT_SIZE ||
-                           (keypoints.columns != 4 && keypoints.columns != 6))))
-        result = orl_fail(db->log, ORL_ERR_FORMAT, "%s: the features of %s are damaged", db->path,
-                          name);
-    else if (all.rows)
+    enum orl_result result = find_features(db, name, &keypoints, &all);
+    if (result == ORL_OK && all.rows)
         result = take_largest(db, &keypoints, &all, limit, descriptors, count);
     sqlite3_reset(db->features);
     return result;
 }
 
+enum orl_result orl_database_features(struct orl_database *db, const char *name,
+                                      struct orl_features *features)
+{
+    struct table keypoints, all;
+    *features = (struct orl_features){0};
+    enum orl_result result = find_features(db, name, &keypoints, &all);
+    if (result == ORL_OK && !(features->descriptors = orl_array(db->log, all.rows, ORL_SIFT_SIZE)))
+        result = ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        features->id = (uint32_t)sqlite3_column_int64(db->features, 6);
+        features->count = all.rows;
+        if (all.rows)
+            memcpy(features->descriptors, all.data, all.rows * ORL_SIFT_SIZE);
+    }
+    sqlite3_reset(db->features);
+    return result;
+}
+
+// --- matches ---
+
+// COLMAP's key of a pair, the smaller id first.
+static sqlite3_int64 pair_id(uint32_t a, uint32_t b)
+{
+    return (sqlite3_int64)INT32_MAX * (a < b ? a : b) + (a < b ? b : a);
+}
+
+enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, uint32_t b,
+                                         bool *has)
+{
+    sqlite3_stmt *statement = NULL;
+    int step = SQLITE_ERROR;
+    if (sqlite3_prepare_v2(db->handle, "SELECT 1 FROM matches WHERE pair_id = ?", -1, &statement,
+                           NULL) == SQLITE_OK) {
+        sqlite3_bind_int64(statement, 1, pair_id(a, b));
+        step = sqlite3_step(statement);
+    }
+    *has = step == SQLITE_ROW;
+    enum orl_result result = *has || step == SQLITE_DONE ? ORL_OK : fail(db);
+    sqlite3_finalize(statement);
+    return result;
+}
+
+enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, uint32_t b,
+                                           uint32_t (*matches)[2], size_t count)
+{
+    static const char sql[] = "INSERT INTO matches (pair_id, rows, cols, data) VALUES (?, ?, 2, ?)";
+    sqlite3_stmt *statement = NULL;
+    for (size_t i = 0; i < count && a > b; i++) {
+        uint32_t first = matches[i][0];
+        matches[i][0] = matches[i][1];
+        matches[i][1] = first;
+    }
+    enum orl_result result = ORL_OK;
+    if (sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK) {
+        sqlite3_bind_int64(statement, 1, pair_id(a, b));
+        sqlite3_bind_int64(statement, 2, (sqlite3_int64)count);
+        sqlite3_bind_blob(statement, 3, matches, (int)(count * sizeof *matches), SQLITE_STATIC);
+        if (sqlite3_step(statement) != SQLITE_DONE)
+            result = fail(db);
+    } else {
+        result = fail(db);
+    }
+    sqlite3_finalize(statement);
+    return result;
+}
+
+static enum orl_result run_sql(struct orl_database *db, const char *sql)
+{
+    return sqlite3_exec(db->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? ORL_OK : fail(db);
+}
+
+enum orl_result orl_database_begin(struct orl_database *db)
+{
+    return run_sql(db, "BEGIN");
+}
+
+enum orl_result orl_database_commit(struct orl_database *db)
+{
+    return run_sql(db, "COMMIT");
+}
+
 enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide)
 {
-    const char *sql = hide ? "UPDATE images SET name = replace(name, ' ', '/')"
-                           : "UPDATE images SET name = replace(name, '/', ' ')";
-    return sqlite3_exec(db->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? ORL_OK : fail(db);
+    return run_sql(db, hide ? "UPDATE images SET name = replace(name, ' ', '/')"
+                            : "UPDATE images SET name = replace(name, '/', ' ')");
 }

@@ -7,13 +7,15 @@
 #include "core/process.h"
 #include "preprocess/calibrate/database.h"
 #include "preprocess/calibrate/pairs.h"
+#include "preprocess/calibrate/raw_matches.h"
 #include "preprocess/job/colmap_run.h"
 
 enum {
     EXHAUSTIVE_MAX = 25,                      // photographs up to which auto matches all pairs
     FEATURES = 2 * ORL_PREEMPT_FEATURES,      // of a photograph, for choosing pairs
-    RUN_PAIRS_MIN = 64, RUNS_MAX = 32,        // COLMAP runs, each of which shows progress
+    RUN_PAIRS = 64,                           // pairs whose features are in memory at once
 };
+static const double VERIFYING = 0.1; // of the time that matching a pair takes
 
 enum orl_matching orl_match_way(const struct orl_job *job)
 {
@@ -81,24 +83,50 @@ static enum orl_result name_pairs(const struct orl_job *job, const struct orl_pa
     return result;
 }
 
-static enum orl_result hide_spaces(const struct orl_job *job, bool hide)
+static enum orl_result open_database(const struct orl_job *job, struct orl_database **db)
 {
-    struct orl_database *db = NULL;
+    *db = NULL;
     char *path = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    enum orl_result result = path ? orl_database_open(job->log, path, &db) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_database_hide_spaces(db, hide);
-    orl_database_close(&db);
+    enum orl_result result = path ? orl_database_open(job->log, path, db) : ORL_ERR_MEMORY;
     free(path);
     return result;
 }
 
-// Matches pairs first to first + count - 1 in one run of COLMAP.
-static enum orl_result match_some(struct orl_job *job, const struct orl_pair_list *list,
-                                  size_t first, size_t count)
+static enum orl_result hide_spaces(const struct orl_job *job, bool hide)
+{
+    struct orl_database *db;
+    enum orl_result result = open_database(job, &db);
+    if (result == ORL_OK)
+        result = orl_database_hide_spaces(db, hide);
+    orl_database_close(&db);
+    return result;
+}
+
+static enum orl_result match_features(const struct orl_job *job, const struct orl_pair_list *list,
+                                      size_t first, size_t count)
+{
+    struct orl_database *db = NULL;
+    const char **names = orl_array(job->log, job->source_count, sizeof *names);
+    enum orl_result result = names ? open_database(job, &db) : ORL_ERR_MEMORY;
+    for (size_t i = 0; names && i < job->source_count; i++)
+        names[i] = job->sources[i].name;
+    if (result == ORL_OK)
+        result = orl_raw_matches_write(job->log, &(struct orl_raw_matches_progress){
+            .progress = job->progress, .done = (double)first,
+            .share = (1 - VERIFYING) * (double)count, .total = (double)list->count}, db, names,
+            job->source_count, list->items + first, count);
+    orl_database_close(&db);
+    free(names);
+    return result;
+}
+
+// COLMAP verifies the matches of pairs first to first + count - 1, and finds those that are missing.
+static enum orl_result verify(struct orl_job *job, const struct orl_pair_list *list, size_t first,
+                              size_t count)
 {
     struct orl_colmap_args args = {0};
     struct orl_names lines = {0};
+    double share = job->colmap_cuda ? 1 : VERIFYING;
     char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
     char *path = orl_job_path(job, ORL_CALIBRATE_WORK "/pairs.txt");
     enum orl_result result = database && path ? ORL_OK : ORL_ERR_MEMORY;
@@ -106,14 +134,19 @@ static enum orl_result match_some(struct orl_job *job, const struct orl_pair_lis
         result = name_pairs(job, list->items + first, count, &lines);
     if (result == ORL_OK)
         result = orl_job_write_list(job, path, &lines);
+    if (result == ORL_OK)
+        result = hide_spaces(job, true);
     if (result == ORL_OK) {
         matcher_settings(job, database, false, &args);
         orl_colmap_arg(&args, "--match_list_path", "%s", path);
         orl_colmap_arg(&args, "--match_type", "pairs");
         result = orl_job_colmap(job, &(struct orl_colmap_run){
-            .command = "matches_importer", .step = "matching", .done = (double)first,
-            .share = (double)count, .total = (double)list->count}, &args);
+            .command = "matches_importer", .step = "matching",
+            .done = (double)first + (1 - share) * (double)count, .share = share * (double)count,
+            .total = (double)list->count}, &args);
     }
+    if (result == ORL_OK)
+        result = hide_spaces(job, false);
     orl_names_finish(&lines);
     free(database);
     free(path);
@@ -122,23 +155,22 @@ static enum orl_result match_some(struct orl_job *job, const struct orl_pair_lis
 
 static enum orl_result match_list(struct orl_job *job, const struct orl_pair_list *list)
 {
-    size_t runs = list->count / RUN_PAIRS_MIN;
-    runs = runs < 1 ? 1 : runs > RUNS_MAX ? RUNS_MAX : runs;
-    enum orl_result result = hide_spaces(job, true);
-    for (size_t i = 0; result == ORL_OK && list->count && i < runs; i++) {
-        size_t first = i * list->count / runs, end = (i + 1) * list->count / runs;
-        result = match_some(job, list, first, end - first);
+    enum orl_result result = ORL_OK;
+    for (size_t first = 0; result == ORL_OK && first < list->count; first += RUN_PAIRS) {
+        size_t count = list->count - first < RUN_PAIRS ? list->count - first : RUN_PAIRS;
+        // A CUDA build of COLMAP matches faster on its GPU.
+        if (!job->colmap_cuda)
+            result = match_features(job, list, first, count);
+        if (result == ORL_OK)
+            result = verify(job, list, first, count);
     }
-    if (result == ORL_OK)
-        result = hide_spaces(job, false);
     return result;
 }
 
 static enum orl_result read_photos(const struct orl_job *job, struct orl_pair_photo *photos)
 {
-    struct orl_database *db = NULL;
-    char *path = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    enum orl_result result = path ? orl_database_open(job->log, path, &db) : ORL_ERR_MEMORY;
+    struct orl_database *db;
+    enum orl_result result = open_database(job, &db);
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
         const struct orl_exif *exif = &job->sources[i].exif;
         uint8_t *data;
@@ -150,7 +182,6 @@ static enum orl_result read_photos(const struct orl_job *job, struct orl_pair_ph
             .longitude = exif->placed ? exif->longitude : NAN};
     }
     orl_database_close(&db);
-    free(path);
     return result;
 }
 

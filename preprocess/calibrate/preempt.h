@@ -5,16 +5,11 @@
 
 #include "core/log.h"
 #include "core/progress.h"
+#include "preprocess/calibrate/sift_match.h"
 
 enum { ORL_PREEMPT_FEATURES = 256 };
 
-// Descriptors of SIFT, 128 bytes each, of length 512 as COLMAP stores them.
-struct orl_descriptors {
-    const uint8_t *data;
-    size_t count; // at most ORL_PREEMPT_FEATURES are looked at
-};
-
-// Features of `a` and `b` that are each other's nearest, each nearer than 0.8 times the next nearest.
+// Matches (orl_sift_is_match) among the first ORL_PREEMPT_FEATURES of both.
 int orl_preempt_matches(const struct orl_descriptors *a, const struct orl_descriptors *b);
 
 struct orl_preempt_pair {

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "preprocess/calibrate/database.h"
 
 enum { WORDS = ORL_VLAD_WORDS, SIZE = ORL_SIFT_SIZE, SAMPLES_MAX = 1 << 13, ITERATIONS = 11 };
 

@@ -1,7 +1,8 @@
 // Reading COLMAP's database.
 #include <sqlite3.h>
 
-#include "preprocess/calibrate/database.h"
+#include "preprocess/calibrate/raw_matches.h"
+#include "sift_like.h"
 #include "test.h"
 
 static char *dir, *file;
@@ -34,7 +35,9 @@ static void make_tables(void)
             "CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, "
             "data BLOB);"
             "CREATE TABLE descriptors (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, "
-            "data BLOB);");
+            "data BLOB);"
+            "CREATE TABLE matches (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL, "
+            "cols INTEGER NOT NULL, data BLOB);");
 }
 
 static void insert_blob(const char *table, int id, int rows, int columns, const void *data,
@@ -209,6 +212,115 @@ static void says_when_it_is_cut_off(void **state)
     orl_database_close(&db);
 }
 
+// --- matches ---
+
+enum { MANY = 200 };
+
+// A photograph that sees these features of the world.
+static void insert_view(int id, const char *name, const int *features, int count)
+{
+    static float keypoints[MANY * 6];
+    static uint8_t descriptors[MANY * SIFT_SIZE];
+    char sql[300];
+    uint32_t noise = (uint32_t)id;
+    for (int i = 0; i < count; i++)
+        sift_write(descriptors + i * SIFT_SIZE, (uint32_t)features[i], 0.95f, &noise);
+    snprintf(sql, sizeof sql, "INSERT INTO images VALUES (%d, '%s', 1)", id, name);
+    run_sql(sql);
+    insert_blob("keypoints", id, count, 6, keypoints, (size_t)count * 6 * sizeof *keypoints);
+    insert_blob("descriptors", id, count, SIFT_SIZE, descriptors, (size_t)count * SIFT_SIZE);
+}
+
+// Matches of the pair as COLMAP finds them in the database.
+static int stored(long long pair_id, uint32_t (*matches)[2])
+{
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    int rows = -1;
+    assert_int_equal(sqlite3_open(file, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT rows, cols, data FROM matches WHERE pair_id = ?",
+                                        -1, &statement, NULL), SQLITE_OK);
+    sqlite3_bind_int64(statement, 1, pair_id);
+    if (sqlite3_step(statement) == SQLITE_ROW) {
+        rows = sqlite3_column_int(statement, 0);
+        assert_int_equal(sqlite3_column_int(statement, 1), 2);
+        assert_int_equal(sqlite3_column_bytes(statement, 2), rows * 8);
+        if (rows)
+            memcpy(matches, sqlite3_column_blob(statement, 2), (size_t)rows * 8);
+    }
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+    return rows;
+}
+
+// Photograph `i` sees features 100 i to 100 i + 149, in an order that differs; COLMAP's ids fall.
+static void matches_are_written_for_colmap(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.jpg", "b.jpg", "c.jpg", "dark.jpg"};
+    static const struct orl_pair pairs[] = {{0, 1}, {0, 2}, {1, 2}, {2, 3}};
+    const struct orl_raw_matches_progress progress = {.share = 1, .total = 1};
+    uint32_t matches[MANY][2];
+    make_tables();
+    for (int i = 0; i < 3; i++) {
+        int features[150];
+        for (int k = 0; k < 150; k++)
+            features[k] = 100 * i + k * 7 % 150;
+        insert_view(9 - i, names[i], features, 150);
+    }
+    insert_view(1, names[3], NULL, 0);
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    const long long base = 2147483647; // COLMAP's: the smaller id times this, plus the larger
+    assert_int_equal(stored(7 * base + 9, matches), 0);
+    assert_int_equal(stored(1 * base + 7, matches), 0);
+    for (int low = 7; low <= 8; low++) {
+        assert_int_equal(stored(low * base + low + 1, matches), 50);
+        for (int i = 0; i < 50; i++) { // of the smaller id first, which sees what lies further on
+            int here = 100 * (9 - low) + (int)matches[i][0] * 7 % 150;
+            int there = 100 * (8 - low) + (int)matches[i][1] * 7 % 150;
+            assert_int_equal(here, there);
+        }
+    }
+    // What is there stays, whatever it says.
+    run_sql("UPDATE matches SET rows = 0, data = x''");
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    assert_int_equal(stored(7 * base + 8, matches), 0);
+    run_sql("DELETE FROM matches WHERE pair_id < 17000000000");
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    assert_int_equal(stored(7 * base + 8, matches), 50);
+    assert_int_equal(stored(8 * base + 9, matches), 0);
+    orl_database_close(&db);
+}
+
+static bool cancelled(void *priv)
+{
+    (void)priv;
+    return true;
+}
+
+static void matching_can_be_interrupted(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.jpg", "b.jpg"};
+    static const struct orl_pair pairs[] = {{0, 1}};
+    const struct orl_progress cancel = {.cancelled = cancelled};
+    const struct orl_raw_matches_progress progress = {&cancel, 0, 1, 1};
+    uint32_t matches[MANY][2];
+    static const int features[] = {1, 2, 3};
+    make_tables();
+    insert_view(1, names[0], features, 3);
+    insert_view(2, names[1], features, 3);
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 2, pairs, 1),
+                     ORL_ERR_CANCELLED);
+    assert_int_equal(stored(2147483647LL + 2, matches), -1);
+    run_sql("DROP TABLE matches");
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 2, pairs, 1),
+                     ORL_ERR_FORMAT);
+    orl_database_close(&db);
+}
+
 static void spaces_are_hidden_and_come_back(void **state)
 {
     (void)state;
@@ -235,6 +347,7 @@ int main(void)
         FILE_TEST(largest_scales_come_first), FILE_TEST(no_features_is_no_error),
         FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
+        FILE_TEST(matches_are_written_for_colmap), FILE_TEST(matching_can_be_interrupted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
