@@ -60,7 +60,7 @@ finish() {
 }
 
 step dependencies "checking dependencies"
-extra=(libcmocka-dev openexr imagemagick chromium chromium-driver python3-selenium)
+extra=(libcmocka-dev openexr imagemagick sqlite3 chromium chromium-driver python3-selenium)
 [ "$quick" ] || extra+=(clang llvm libclang-rt-dev)
 install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }
 

@@ -107,7 +107,7 @@ struct stage {
 
 static const struct stage stages[ORL_STAGE_COUNT] = {
     [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, {0}, NULL, true},
-    [ORL_STAGE_CALIBRATE] = {"calibrate", 1, ORL_STAGE_COLLECT, calibrate_settings,
+    [ORL_STAGE_CALIBRATE] = {"calibrate", 2, ORL_STAGE_COLLECT, calibrate_settings,
                              orl_stage_calibrate, {".oriel/calibrate/model"}, "left_out", false},
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
                              orl_stage_undistort,

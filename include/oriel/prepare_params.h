@@ -9,9 +9,15 @@ struct orl_gpu;
 enum orl_quality { ORL_QUALITY_DRAFT, ORL_QUALITY_STANDARD, ORL_QUALITY_HIGH };
 // auto: photographs of one size and one EXIF camera and focal length share a camera.
 enum orl_camera_sharing { ORL_SHARING_AUTO, ORL_SHARING_SINGLE, ORL_SHARING_EACH };
-// auto: exhaustive up to 120 photographs, then neighbours by name, then exhaustive
-// after all when too few of them register.
-enum orl_matching { ORL_MATCHING_AUTO, ORL_MATCHING_EXHAUSTIVE, ORL_MATCHING_SEQUENTIAL };
+// auto: exhaustive up to 25 photographs, retrieval above. sequential: neighbours by name.
+// retrieval: pairs that a quick look at their features finds to overlap. When too few register,
+// exhaustive after all.
+enum orl_matching {
+    ORL_MATCHING_AUTO,
+    ORL_MATCHING_EXHAUSTIVE,
+    ORL_MATCHING_SEQUENTIAL,
+    ORL_MATCHING_RETRIEVAL,
+};
 // auto: COLMAP's when it was built with CUDA, else the built-in one.
 enum orl_densifier { ORL_DENSIFIER_AUTO, ORL_DENSIFIER_GL, ORL_DENSIFIER_COLMAP };
 

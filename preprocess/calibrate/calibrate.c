@@ -7,15 +7,19 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "preprocess/calibrate/match.h"
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/photos/advice.h"
 #include "preprocess/photos/normalise.h"
 
-#define WORK ".oriel/calibrate.tmp"
+#define WORK ORL_CALIBRATE_WORK
 #define NORMALISED WORK "/normalised" // what features are taken from
 #define DONE ".oriel/calibrate"
 
-enum { EXHAUSTIVE_MAX = 120, COSTLY_MAX = 60 };
+enum {
+    COSTLY_MAX = 60,   // photographs up to which affine-shape features are tried
+    LEFT_OUT_MAX = 20, // photographs left out that are matched with all others
+};
 
 // A model that the mapper made.
 struct candidate {
@@ -29,6 +33,8 @@ struct calibration {
     int *group;          // per photograph: its camera
     int group_count;
     struct candidate best; // so far
+    enum orl_matching way; // of choosing pairs
+    struct orl_match_summary pairs;
     bool straight;       // distortion is taken to be none from now on
     int tries;           // mapper runs, for folder names
 };
@@ -75,7 +81,7 @@ static enum orl_result group_photos(struct calibration *c)
     return ORL_OK;
 }
 
-// --- features and matches ---
+// --- features ---
 
 static enum orl_result link_masks(const struct calibration *c, char **masks)
 {
@@ -123,7 +129,7 @@ static enum orl_result extract(const struct calibration *c, const struct orl_nam
     struct orl_job *job = c->job;
     struct orl_colmap_args args = {0};
     char *list = orl_job_path(job, WORK "/list.txt"), *masks = NULL;
-    char *database = orl_job_path(job, WORK "/database.db");
+    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
     char *photos = orl_job_path(job, orl_job_has(job, NORMALISED) ? NORMALISED : ".oriel/photos");
     enum orl_result result = list && database && photos ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
@@ -191,33 +197,6 @@ static enum orl_result extract_all(const struct calibration *c, bool costly)
     return result;
 }
 
-static enum orl_result match(const struct calibration *c, bool sequential, bool guided)
-{
-    struct orl_job *job = c->job;
-    struct orl_colmap_args args = {0};
-    char *database = orl_job_path(job, WORK "/database.db");
-    if (!database)
-        return ORL_ERR_MEMORY;
-    orl_colmap_arg(&args, "--database_path", "%s", database);
-    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
-    orl_colmap_arg(&args, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
-    orl_colmap_arg(&args, "--SiftMatching.guided_matching", "%d", guided);
-    if (sequential) {
-        orl_colmap_arg(&args, "--SequentialMatching.overlap", "20");
-    } else {
-        // Smaller blocks than COLMAP's 50 show progress; their cost is the same.
-        size_t block = job->source_count / 8;
-        orl_colmap_arg(&args, "--ExhaustiveMatching.block_size", "%zu", block < 5 ? 5 : block);
-    }
-    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = sequential ? "sequential_matcher" : "exhaustive_matcher", .step = "matching",
-        .share = 1, .total = 1}, &args);
-    free(database);
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "matching", 1, 1, NULL);
-    return result;
-}
-
 // --- the mapper ---
 
 static void candidate_finish(struct candidate *candidate)
@@ -281,8 +260,8 @@ static enum orl_result map(struct calibration *c, bool loose, const char *from)
     struct orl_colmap_args args = {0};
     char name[64];
     snprintf(name, sizeof name, WORK "/models-%d", c->tries++);
-    char *database = orl_job_path(job, WORK "/database.db"), *out = orl_job_path(job, "%s", name);
-    char *photos = orl_job_path(job, ".oriel/photos");
+    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
+    char *out = orl_job_path(job, "%s", name), *photos = orl_job_path(job, ".oriel/photos");
     enum orl_result result = database && out && photos ? orl_job_fresh_dir(job, name)
                                                        : ORL_ERR_MEMORY;
     if (result != ORL_OK)
@@ -370,12 +349,22 @@ static enum orl_result restart_database(const struct calibration *c)
 static enum orl_result try_costly(struct calibration *c)
 {
     enum orl_result result;
+    struct orl_match_summary pairs;
     say(c, "trying affine-shape features and guided matching");
     if ((result = set_mark(c, false)) != ORL_OK || (result = restart_database(c)) != ORL_OK ||
         (result = extract_all(c, true)) != ORL_OK ||
-        (result = match(c, false, true)) != ORL_OK || (result = map(c, false, NULL)) != ORL_OK)
+        (result = orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, &pairs)) != ORL_OK ||
+        (result = map(c, false, NULL)) != ORL_OK)
         return result;
     return enough(c) ? ORL_OK : map(c, true, NULL);
+}
+
+static enum orl_result go_on_mapping(struct calibration *c, bool loose)
+{
+    char *from = orl_strdup(c->job->log, c->best.path);
+    enum orl_result result = from ? map(c, loose, from) : ORL_ERR_MEMORY;
+    free(from);
+    return result;
 }
 
 // The poses of the model found are good: photographs with fewer matches may join it.
@@ -384,21 +373,47 @@ static enum orl_result join_more(struct calibration *c)
     if (registered(c) < 3 || all(c))
         return ORL_OK;
     say(c, "letting photographs with fewer matches join");
-    char *from = orl_strdup(c->job->log, c->best.path);
-    enum orl_result result = from ? map(c, true, from) : ORL_ERR_MEMORY;
-    free(from);
-    return result;
+    return go_on_mapping(c, true);
 }
 
-static enum orl_result try_hard(struct calibration *c, bool sequential)
+// What retrieval gave too few of the right partners, if there are few such photographs.
+static enum orl_result match_left_out(struct calibration *c)
 {
-    enum orl_result result = join_more(c);
-    if (result == ORL_OK && !enough(c) && sequential) {
-        say(c, "matching all pairs");
-        result = match(c, false, false);
-        if (result == ORL_OK)
-            result = map(c, false, NULL);
-    }
+    size_t left_out = c->job->source_count - registered(c);
+    if (c->way != ORL_MATCHING_RETRIEVAL || !enough(c) || !left_out || left_out > LEFT_OUT_MAX)
+        return ORL_OK;
+    say(c, "matching the others with all");
+    bool *marked = orl_array(c->job->log, c->job->source_count, sizeof *marked);
+    if (!marked)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < c->job->source_count; i++)
+        marked[i] = !orl_colmap_image_by_name(&c->best.model, c->job->sources[i].name);
+    enum orl_result result = set_mark(c, false);
+    if (result == ORL_OK)
+        result = orl_match_marked(c->job, marked);
+    if (result == ORL_OK)
+        result = set_mark(c, true);
+    free(marked);
+    return result == ORL_OK ? go_on_mapping(c, false) : result;
+}
+
+static enum orl_result match_all(struct calibration *c)
+{
+    struct orl_match_summary pairs;
+    if (c->way == ORL_MATCHING_EXHAUSTIVE || enough(c))
+        return ORL_OK;
+    say(c, "matching all pairs");
+    enum orl_result result = orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, &pairs);
+    return result == ORL_OK ? map(c, false, NULL) : result;
+}
+
+static enum orl_result try_hard(struct calibration *c)
+{
+    enum orl_result result = match_left_out(c);
+    if (result == ORL_OK)
+        result = join_more(c);
+    if (result == ORL_OK)
+        result = match_all(c);
     // Where most are missing another pair may be the better start.
     if (result == ORL_OK && 5 * registered(c) < 4 * c->job->source_count) {
         say(c, "starting from narrower baselines and fewer inliers");
@@ -456,7 +471,7 @@ static enum orl_result normalise(const struct calibration *c)
 }
 
 // Features and matches survive an interruption of the mapper.
-static enum orl_result begin_database(struct calibration *c, bool sequential)
+static enum orl_result begin_database(struct calibration *c)
 {
     enum orl_result result;
     if (is_marked(c)) {
@@ -465,7 +480,7 @@ static enum orl_result begin_database(struct calibration *c, bool sequential)
     }
     if ((result = orl_job_fresh_dir(c->job, WORK)) != ORL_OK ||
         (result = normalise(c)) != ORL_OK || (result = extract_all(c, false)) != ORL_OK ||
-        (result = match(c, sequential, false)) != ORL_OK)
+        (result = orl_match(c->job, c->way, false, &c->pairs)) != ORL_OK)
         return result;
     return set_mark(c, true);
 }
@@ -532,27 +547,32 @@ static void name_left_out(const struct calibration *c, json_t *record)
 
 enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
 {
-    struct calibration c = {.job = job};
+    static const char *const ways[] = {
+        [ORL_MATCHING_EXHAUSTIVE] = "all pairs", [ORL_MATCHING_SEQUENTIAL] = "neighbours by name",
+        [ORL_MATCHING_RETRIEVAL] = "pairs that look alike"};
+    struct calibration c = {.job = job, .way = orl_match_way(job)};
     enum orl_result result = orl_job_find_colmap(job);
-    bool sequential = job->params->matching == ORL_MATCHING_SEQUENTIAL ||
-                      (job->params->matching == ORL_MATCHING_AUTO &&
-                       job->source_count > EXHAUSTIVE_MAX);
     if (result != ORL_OK)
         return result;
     if ((result = group_photos(&c)) != ORL_OK)
         goto end;
-    orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu photographs, %d camera%s, %s matching",
+    orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu photographs, %d camera%s, %s matching (%s)",
              job->source_count, c.group_count, c.group_count == 1 ? "" : "s",
-             sequential ? "sequential (neighbours by name)" : "exhaustive");
-    if ((result = begin_database(&c, sequential)) != ORL_OK ||
+             orl_matching_names[c.way], ways[c.way]);
+    if ((result = begin_database(&c)) != ORL_OK ||
         (result = map(&c, false, NULL)) != ORL_OK ||
-        (!all(&c) && (result = try_hard(&c, sequential)) != ORL_OK) ||
+        (!all(&c) && (result = try_hard(&c)) != ORL_OK) ||
         (result = straighten(&c)) != ORL_OK ||
         (result = finish(&c)) != ORL_OK)
         goto end;
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
     json_object_set_new(record, "cameras", json_integer(c.group_count));
-    json_object_set_new(record, "matching", json_string(sequential ? "sequential" : "exhaustive"));
+    json_object_set_new(record, "matching", json_string(orl_matching_names[c.way]));
+    if (c.pairs.tried)
+        json_object_set_new(record, "pairs",
+                            json_pack("{s:I, s:I, s:f}", "tried", (json_int_t)c.pairs.tried,
+                                      "chosen", (json_int_t)c.pairs.chosen, "choosing_s",
+                                      c.pairs.choosing_s));
     name_left_out(&c, record);
     orl_job_set_calibrated(job, &c.best.model);
 end:

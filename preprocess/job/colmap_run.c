@@ -45,6 +45,7 @@ double orl_colmap_line_progress(const char *line, double total)
         return b / total;
     bool counted = sscanf(line, "Processed file [%u/%u]", &a, &b) == 2 ||
                    sscanf(line, "Matching image [%u/%u]", &a, &b) == 2 ||
+                   sscanf(line, "Matching block [%u/%u]", &a, &b) == 2 ||
                    sscanf(line, "Undistorting image [%u/%u]", &a, &b) == 2 ||
                    sscanf(line, "Fusing image [%u/%u]", &a, &b) == 2 ||
                    sscanf(line, "Processing view %u / %u", &a, &b) == 2;

@@ -2,7 +2,8 @@
 
 const char *const orl_quality_names[] = {"draft", "standard", "high", NULL};
 const char *const orl_camera_sharing_names[] = {"auto", "single", "each", NULL};
-const char *const orl_matching_names[] = {"auto", "exhaustive", "sequential", NULL};
+const char *const orl_matching_names[] = {"auto", "exhaustive", "sequential", "retrieval",
+                                           NULL};
 const char *const orl_densifier_names[] = {"auto", "gl", "colmap", NULL};
 const char *const orl_keep_names[] = {"minimal", "all", NULL};
 

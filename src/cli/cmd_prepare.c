@@ -59,7 +59,7 @@ int cmd_prepare(int argc, char **argv)
         {"camera-sharing", ARG_ENUM, &o.sharing, "HOW",
          "which photographs are of one camera; auto: by size and EXIF", 0, 0},
         {"matching", ARG_ENUM, &o.matching, "HOW",
-         "which pairs are matched; sequential: photographs in order of name", 0, 0},
+         "which pairs are matched; sequential: neighbours by name; retrieval: by look", 0, 0},
         {"densifier", ARG_ENUM, &o.densifier, "NAME",
          "gl is built in, colmap needs CUDA", 0, 0},
         {"keep", ARG_ENUM, &o.keep, "WHAT",

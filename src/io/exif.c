@@ -1,8 +1,10 @@
 // EXIF blocks through libexif.
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <libexif/exif-data.h>
 
@@ -11,28 +13,29 @@
 
 // --- reading ---
 
-// The first value of a numeric entry; false when there is none or it is no number.
-static bool get_number(ExifData *data, ExifIfd ifd, ExifTag tag, double *value)
+// One value of a numeric entry; false when there is none or it is no number.
+static bool get_nth_number(ExifData *data, ExifIfd ifd, ExifTag tag, size_t n, double *value)
 {
     ExifEntry *entry = exif_content_get_entry(data->ifd[ifd], tag);
     ExifByteOrder order = exif_data_get_byte_order(data);
-    if (!entry || !entry->data || entry->components < 1 ||
-        entry->size < exif_format_get_size(entry->format))
+    size_t size = entry ? exif_format_get_size(entry->format) : 0;
+    if (!entry || !entry->data || entry->components <= n || entry->size < (n + 1) * size)
         return false;
+    const unsigned char *bytes = entry->data + n * size;
     switch (entry->format) {
     case EXIF_FORMAT_SHORT:
-        *value = exif_get_short(entry->data, order);
+        *value = exif_get_short(bytes, order);
         break;
     case EXIF_FORMAT_LONG:
-        *value = exif_get_long(entry->data, order);
+        *value = exif_get_long(bytes, order);
         break;
     case EXIF_FORMAT_RATIONAL: {
-        ExifRational r = exif_get_rational(entry->data, order);
+        ExifRational r = exif_get_rational(bytes, order);
         *value = (double)r.numerator / (double)r.denominator;
         break;
     }
     case EXIF_FORMAT_SRATIONAL: {
-        ExifSRational r = exif_get_srational(entry->data, order);
+        ExifSRational r = exif_get_srational(bytes, order);
         *value = (double)r.numerator / (double)r.denominator;
         break;
     }
@@ -42,6 +45,11 @@ static bool get_number(ExifData *data, ExifIfd ifd, ExifTag tag, double *value)
     return isfinite(*value);
 }
 
+static bool get_number(ExifData *data, ExifIfd ifd, ExifTag tag, double *value)
+{
+    return get_nth_number(data, ifd, tag, 0, value);
+}
+
 // 0 when missing, zero or negative: EXIF's quantities here are all positive.
 static double get_positive(ExifData *data, ExifIfd ifd, ExifTag tag)
 {
@@ -49,9 +57,9 @@ static double get_positive(ExifData *data, ExifIfd ifd, ExifTag tag)
     return get_number(data, ifd, tag, &value) && value > 0 ? value : 0;
 }
 
-static void get_text(ExifData *data, ExifTag tag, char *text, size_t size)
+static void get_text(ExifData *data, ExifIfd ifd, ExifTag tag, char *text, size_t size)
 {
-    ExifEntry *entry = exif_content_get_entry(data->ifd[EXIF_IFD_0], tag);
+    ExifEntry *entry = exif_content_get_entry(data->ifd[ifd], tag);
     size_t length = 0;
     if (entry && entry->data && entry->format == EXIF_FORMAT_ASCII)
         while (length < entry->size && length + 1 < size && entry->data[length])
@@ -64,6 +72,48 @@ static void get_text(ExifData *data, ExifTag tag, char *text, size_t size)
     text[length] = '\0';
 }
 
+static double get_time(ExifData *data)
+{
+    char text[32];
+    struct tm t = {0};
+    get_text(data, EXIF_IFD_EXIF, EXIF_TAG_DATE_TIME_ORIGINAL, text, sizeof text);
+    if (sscanf(text, "%d:%d:%d %d:%d:%d", &t.tm_year, &t.tm_mon, &t.tm_mday, &t.tm_hour, &t.tm_min,
+               &t.tm_sec) != 6 || t.tm_year < 1971 || t.tm_year > 9999)
+        return 0; // cameras whose clock was never set write zeroes or spaces
+    t.tm_year -= 1900;
+    t.tm_mon -= 1;
+    return (double)timegm(&t);
+}
+
+// Degrees, minutes and seconds; `negative` is the letter of the other side. False: unknown.
+static bool get_angle(ExifData *data, ExifTag tag, ExifTag side_tag, char negative, double limit,
+                      double *angle)
+{
+    double parts[3] = {0};
+    char side[4];
+    if (!get_nth_number(data, EXIF_IFD_GPS, tag, 0, &parts[0]))
+        return false;
+    // Some write the degrees alone.
+    for (size_t i = 1; i < 3; i++)
+        if (!get_nth_number(data, EXIF_IFD_GPS, tag, i, &parts[i]))
+            parts[i] = 0;
+    get_text(data, EXIF_IFD_GPS, side_tag, side, sizeof side);
+    *angle = parts[0] + parts[1] / 60 + parts[2] / 3600;
+    if (side[0] == negative)
+        *angle = -*angle;
+    return side[0] && fabs(*angle) <= limit;
+}
+
+static void get_place(ExifData *data, struct orl_exif *exif)
+{
+    exif->placed = get_angle(data, (ExifTag)EXIF_TAG_GPS_LATITUDE,
+                             (ExifTag)EXIF_TAG_GPS_LATITUDE_REF, 'S', 90, &exif->latitude) &&
+                   get_angle(data, (ExifTag)EXIF_TAG_GPS_LONGITUDE,
+                             (ExifTag)EXIF_TAG_GPS_LONGITUDE_REF, 'W', 180, &exif->longitude);
+    if (!exif->placed)
+        exif->latitude = exif->longitude = 0;
+}
+
 enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, const uint8_t *bytes,
                                 size_t size, struct orl_exif *exif)
 {
@@ -74,8 +124,8 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
     // Only what the file says, without defaults that the specification asks for.
     exif_data_unset_option(data, EXIF_DATA_OPTION_FOLLOW_SPECIFICATION);
     exif_data_load_data(data, bytes, (unsigned)size);
-    get_text(data, EXIF_TAG_MAKE, exif->make, sizeof exif->make);
-    get_text(data, EXIF_TAG_MODEL, exif->model, sizeof exif->model);
+    get_text(data, EXIF_IFD_0, EXIF_TAG_MAKE, exif->make, sizeof exif->make);
+    get_text(data, EXIF_IFD_0, EXIF_TAG_MODEL, exif->model, sizeof exif->model);
     double apex;
     exif->exposure_s = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_TIME);
     if (!(exif->exposure_s > 0) &&
@@ -96,6 +146,8 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
     exif->focal_35mm = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM);
     double turn = get_positive(data, EXIF_IFD_0, EXIF_TAG_ORIENTATION);
     exif->orientation = turn <= 8 ? (int)turn : 0;
+    exif->taken_s = get_time(data);
+    get_place(data, exif);
     exif_data_unref(data);
     return ORL_OK;
 }
@@ -143,11 +195,11 @@ static ExifEntry *add_entry(ExifData *data, ExifIfd ifd, ExifTag tag, ExifFormat
     return entry;
 }
 
-static bool add_text(ExifData *data, ExifTag tag, const char *text)
+static bool add_text(ExifData *data, ExifIfd ifd, ExifTag tag, const char *text)
 {
     if (!*text)
         return true;
-    ExifEntry *entry = add_entry(data, EXIF_IFD_0, tag, EXIF_FORMAT_ASCII, strlen(text) + 1);
+    ExifEntry *entry = add_entry(data, ifd, tag, EXIF_FORMAT_ASCII, strlen(text) + 1);
     if (entry)
         memcpy(entry->data, text, strlen(text));
     return entry != NULL;
@@ -179,6 +231,41 @@ static bool add_number(ExifData *data, ExifIfd ifd, ExifTag tag, ExifFormat form
     return true;
 }
 
+static bool add_time(ExifData *data, const struct orl_exif *exif)
+{
+    char text[32] = "";
+    struct tm t;
+    time_t taken = (time_t)exif->taken_s;
+    if (exif->taken_s > 0 && gmtime_r(&taken, &t))
+        strftime(text, sizeof text, "%Y:%m:%d %H:%M:%S", &t);
+    return add_text(data, EXIF_IFD_EXIF, EXIF_TAG_DATE_TIME_ORIGINAL, text);
+}
+
+static bool add_angle(ExifData *data, ExifTag tag, ExifTag side_tag, const char *side, double angle)
+{
+    ExifEntry *entry = add_entry(data, EXIF_IFD_GPS, tag, EXIF_FORMAT_RATIONAL, 3);
+    if (!entry)
+        return false;
+    // Degrees, minutes, and seconds to a thousandth, which is 3 cm.
+    uint64_t ms = (uint64_t)llround(fabs(angle) * 3600000);
+    const ExifRational parts[] = {{(ExifLong)(ms / 3600000), 1},
+                                  {(ExifLong)(ms / 60000 % 60), 1},
+                                  {(ExifLong)(ms % 60000), 1000}};
+    for (size_t i = 0; i < ORL_COUNT(parts); i++)
+        exif_set_rational(entry->data + i * sizeof parts[i], exif_data_get_byte_order(data),
+                          parts[i]);
+    return add_text(data, EXIF_IFD_GPS, side_tag, side);
+}
+
+static bool add_place(ExifData *data, const struct orl_exif *exif)
+{
+    return !exif->placed ||
+           (add_angle(data, (ExifTag)EXIF_TAG_GPS_LATITUDE, (ExifTag)EXIF_TAG_GPS_LATITUDE_REF,
+                      exif->latitude < 0 ? "S" : "N", exif->latitude) &&
+            add_angle(data, (ExifTag)EXIF_TAG_GPS_LONGITUDE, (ExifTag)EXIF_TAG_GPS_LONGITUDE_REF,
+                      exif->longitude < 0 ? "W" : "E", exif->longitude));
+}
+
 static bool add_all(ExifData *data, const struct orl_exif *exif)
 {
     const struct {
@@ -197,7 +284,9 @@ static bool add_all(ExifData *data, const struct orl_exif *exif)
         {EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH, EXIF_FORMAT_RATIONAL, exif->focal_mm},
         {EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, EXIF_FORMAT_SHORT, exif->focal_35mm},
     };
-    if (!add_text(data, EXIF_TAG_MAKE, exif->make) || !add_text(data, EXIF_TAG_MODEL, exif->model))
+    if (!add_text(data, EXIF_IFD_0, EXIF_TAG_MAKE, exif->make) ||
+        !add_text(data, EXIF_IFD_0, EXIF_TAG_MODEL, exif->model) || !add_time(data, exif) ||
+        !add_place(data, exif))
         return false;
     for (size_t i = 0; i < ORL_COUNT(rows); i++)
         if (!add_number(data, rows[i].ifd, rows[i].tag, rows[i].format, rows[i].value))

@@ -40,6 +40,9 @@ struct orl_exif {
     double exposure_s, aperture, iso, bias_ev;
     double focal_mm, focal_35mm;
     int orientation; // 1 to 8
+    double taken_s;  // when, by the camera's own clock, in seconds; 0: unknown
+    bool placed;     // is its position known?
+    double latitude, longitude; // degrees, north and east positive
 };
 // ORL_OK with zeroes for a file without EXIF; errors only for unreadable files.
 enum orl_result orl_exif_read(const struct orl_log *log, const char *path,

@@ -25,7 +25,7 @@ static void settings_win_over_tuned_over_own(void **state)
     (void)state;
     struct orl_tuned tuned[] = {{(char[]){"oriel"}, (char[]){"depth_tolerance"}, 0.25},
                                 {(char[]){"oriel"}, (char[]){"splat_scale"}, 2}};
-    const struct orl_scene scene = {.dir = (char[]){"somewhere"}, .tuned = tuned,
+    const struct orl_scene scene = {.dir = (char[]){"somewhere"}, .points.count = 1, .tuned = tuned,
                                     .tuned_count = 2};
     struct orl_names none = {0}, settings = names_of("splat_scale=3", NULL);
     struct orl_choice choice;

@@ -36,7 +36,8 @@ static void everything_comes_back(void **state)
     const struct orl_exif exif = {.make = "A Maker", .model = "Model 5 \"x\"",
                                   .exposure_s = 1 / 800., .aperture = 6.3, .iso = 400,
                                   .bias_ev = -2 / 3., .focal_mm = 50.5, .focal_35mm = 75,
-                                  .orientation = 8};
+                                  .orientation = 8, .taken_s = 1718973296, .placed = true,
+                                  .latitude = -33.8567844, .longitude = 151.2152967};
     struct orl_exif back = through_file(&exif);
     assert_string_equal(back.make, exif.make);
     assert_string_equal(back.model, exif.model);
@@ -47,6 +48,20 @@ static void everything_comes_back(void **state)
     assert_float_equal(back.focal_mm, 50.5, 0);
     assert_float_equal(back.focal_35mm, 75, 0);
     assert_int_equal(back.orientation, 8);
+    assert_float_equal(back.taken_s, 1718973296, 0);
+    assert_true(back.placed);
+    assert_float_equal(back.latitude, exif.latitude, 1.5e-7); // a thousandth of a second
+    assert_float_equal(back.longitude, exif.longitude, 1.5e-7);
+}
+
+static void north_and_west_come_back(void **state)
+{
+    (void)state;
+    struct orl_exif back = through_file(
+        &(struct orl_exif){.placed = true, .latitude = 48.8582602, .longitude = -2.2944991});
+    assert_float_equal(back.latitude, 48.8582602, 1.5e-7);
+    assert_float_equal(back.longitude, -2.2944991, 1.5e-7);
+    assert_float_equal(back.taken_s, 0, 0);
 }
 
 // Geometry needs pixels as stored: a photograph on its side stays so.
@@ -168,7 +183,7 @@ static void photographs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(everything_comes_back),
+        cmocka_unit_test(everything_comes_back), cmocka_unit_test(north_and_west_come_back),
         cmocka_unit_test(orientation_does_not_turn_pixels),
         cmocka_unit_test(extreme_values_survive),
         cmocka_unit_test(silence_reads_as_zeroes),

@@ -1,0 +1,250 @@
+#include "preprocess/calibrate/database.h"
+
+#include <math.h>
+#include <sqlite3.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+struct orl_database {
+    const struct orl_log *log;
+    char *path; // owned
+    sqlite3 *handle;
+    sqlite3_stmt *features; // of a photograph: its keypoints and descriptors
+};
+
+static enum orl_result fail(const struct orl_database *db)
+{
+    int code = sqlite3_errcode(db->handle);
+    enum orl_result result = code == SQLITE_NOMEM                          ? ORL_ERR_MEMORY
+                             : code == SQLITE_NOTADB || code == SQLITE_CORRUPT ||
+                                     code == SQLITE_ERROR                  ? ORL_ERR_FORMAT
+                                                                           : ORL_ERR_IO;
+    return orl_fail(db->log, result, "%s: cannot be used as COLMAP's database: %s", db->path,
+                    sqlite3_errmsg(db->handle));
+}
+
+enum orl_result orl_database_open(const struct orl_log *log, const char *path,
+                                  struct orl_database **out)
+{
+    static const char sql[] =
+        "SELECT k.rows, k.cols, k.data, d.rows, d.cols, d.data, i.image_id FROM images AS i "
+        "LEFT JOIN keypoints AS k ON k.image_id = i.image_id "
+        "LEFT JOIN descriptors AS d ON d.image_id = i.image_id WHERE i.name = ?";
+    *out = NULL;
+    struct orl_database *db = orl_array(log, 1, sizeof *db);
+    if (!db)
+        return ORL_ERR_MEMORY;
+    db->log = log;
+    db->path = orl_strdup(log, path);
+    enum orl_result result = db->path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK &&
+        (sqlite3_open_v2(path, &db->handle, SQLITE_OPEN_READWRITE, NULL) != SQLITE_OK ||
+         sqlite3_prepare_v2(db->handle, sql, -1, &db->features, NULL) != SQLITE_OK))
+        result = fail(db);
+    if (result == ORL_OK)
+        *out = db;
+    else
+        orl_database_close(&db);
+    return result;
+}
+
+void orl_database_close(struct orl_database **db)
+{
+    if (!*db)
+        return;
+    sqlite3_finalize((*db)->features);
+    sqlite3_close((*db)->handle);
+    free((*db)->path);
+    free(*db);
+    *db = NULL;
+}
+
+// --- features ---
+
+struct ranked {
+    float scale;
+    size_t row;
+};
+
+static int by_scale(const void *a, const void *b)
+{
+    const struct ranked *x = a, *y = b;
+    if (x->scale != y->scale)
+        return x->scale < y->scale ? 1 : -1;
+    return x->row < y->row ? -1 : x->row > y->row;
+}
+
+// A keypoint is x, y, scale, orientation or x, y and a 2x2 matrix.
+static float scale_of(const float *keypoint, size_t columns)
+{
+    return columns == 4 ? keypoint[2] : hypotf(keypoint[2], keypoint[4]);
+}
+
+// A blob of rows x columns values; 0 rows where there is none.
+struct table {
+    size_t rows, columns;
+    const void *data;
+};
+
+static bool get_table(sqlite3_stmt *statement, int column, size_t value_size, struct table *table)
+{
+    sqlite3_int64 rows = sqlite3_column_int64(statement, column);
+    sqlite3_int64 columns = sqlite3_column_int64(statement, column + 1);
+    size_t size = (size_t)sqlite3_column_bytes(statement, column + 2);
+    *table = (struct table){0};
+    if (rows < 0 || rows > INT32_MAX || columns < 0 || columns > ORL_SIFT_SIZE)
+        return false;
+    table->rows = (size_t)rows;
+    table->columns = (size_t)columns;
+    table->data = sqlite3_column_blob(statement, column + 2);
+    return size == table->rows * table->columns * value_size;
+}
+
+static enum orl_result take_largest(const struct orl_database *db, const struct table *keypoints,
+                                    const struct table *all, size_t limit, uint8_t **descriptors,
+                                    size_t *count)
+{
+    struct ranked *order = orl_array(db->log, all->rows, sizeof *order);
+    size_t kept = all->rows < limit ? all->rows : limit;
+    uint8_t *out = orl_array(db->log, kept, ORL_SIFT_SIZE);
+    if (!order || !out) {
+        free(order);
+        free(out);
+        return ORL_ERR_MEMORY;
+    }
+    for (size_t i = 0; i < all->rows; i++) {
+        float keypoint[6];
+        memcpy(keypoint, (const float *)keypoints->data + i * keypoints->columns,
+               keypoints->columns * sizeof *keypoint);
+        float scale = scale_of(keypoint, keypoints->columns);
+        order[i] = (struct ranked){isfinite(scale) ? scale : 0, i};
+    }
+    qsort(order, all->rows, sizeof *order, by_scale);
+    for (size_t i = 0; i < kept; i++)
+        memcpy(out + i * ORL_SIFT_SIZE,
+               (const uint8_t *)all->data + order[i].row * ORL_SIFT_SIZE, ORL_SIFT_SIZE);
+    free(order);
+    *descriptors = out;
+    *count = kept;
+    return ORL_OK;
+}
+
+// Leaves the statement at the photograph's row, to be reset when the tables are done with.
+static enum orl_result find_features(struct orl_database *db, const char *name,
+                                     struct table *keypoints, struct table *descriptors)
+{
+    sqlite3_bind_text(db->features, 1, name, -1, SQLITE_STATIC);
+    int step = sqlite3_step(db->features);
+    if (step == SQLITE_DONE)
+        return orl_fail(db->log, ORL_ERR_DATA, "%s: COLMAP has no features of %s", db->path, name);
+    if (step != SQLITE_ROW)
+        return fail(db);
+    if (get_table(db->features, 0, sizeof(float), keypoints) &&
+        get_table(db->features, 3, 1, descriptors) && keypoints->rows == descriptors->rows &&
+        (!descriptors->rows || (descriptors->columns == ORL_SIFT_SIZE &&
+                                (keypoints->columns == 4 || keypoints->columns == 6))))
+        return ORL_OK;
+    return orl_fail(db->log, ORL_ERR_FORMAT, "%s: the features of %s are damaged", db->path, name);
+}
+
+enum orl_result orl_database_descriptors(struct orl_database *db, const char *name, size_t limit,
+                                         uint8_t **descriptors, size_t *count)
+{
+    struct table keypoints, all;
+    *descriptors = NULL;
+    *count = 0;
+    enum orl_result result = find_features(db, name, &keypoints, &all);
+    if (result == ORL_OK && all.rows)
+        result = take_largest(db, &keypoints, &all, limit, descriptors, count);
+    sqlite3_reset(db->features);
+    return result;
+}
+
+enum orl_result orl_database_features(struct orl_database *db, const char *name,
+                                      struct orl_features *features)
+{
+    struct table keypoints, all;
+    *features = (struct orl_features){0};
+    enum orl_result result = find_features(db, name, &keypoints, &all);
+    if (result == ORL_OK && !(features->descriptors = orl_array(db->log, all.rows, ORL_SIFT_SIZE)))
+        result = ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        features->id = (uint32_t)sqlite3_column_int64(db->features, 6);
+        features->count = all.rows;
+        if (all.rows)
+            memcpy(features->descriptors, all.data, all.rows * ORL_SIFT_SIZE);
+    }
+    sqlite3_reset(db->features);
+    return result;
+}
+
+// --- matches ---
+
+// COLMAP's key of a pair, the smaller id first.
+static sqlite3_int64 pair_id(uint32_t a, uint32_t b)
+{
+    return (sqlite3_int64)INT32_MAX * (a < b ? a : b) + (a < b ? b : a);
+}
+
+enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, uint32_t b,
+                                         bool *has)
+{
+    sqlite3_stmt *statement = NULL;
+    int step = SQLITE_ERROR;
+    if (sqlite3_prepare_v2(db->handle, "SELECT 1 FROM matches WHERE pair_id = ?", -1, &statement,
+                           NULL) == SQLITE_OK) {
+        sqlite3_bind_int64(statement, 1, pair_id(a, b));
+        step = sqlite3_step(statement);
+    }
+    *has = step == SQLITE_ROW;
+    enum orl_result result = *has || step == SQLITE_DONE ? ORL_OK : fail(db);
+    sqlite3_finalize(statement);
+    return result;
+}
+
+enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, uint32_t b,
+                                           uint32_t (*matches)[2], size_t count)
+{
+    static const char sql[] = "INSERT INTO matches (pair_id, rows, cols, data) VALUES (?, ?, 2, ?)";
+    sqlite3_stmt *statement = NULL;
+    for (size_t i = 0; i < count && a > b; i++) {
+        uint32_t first = matches[i][0];
+        matches[i][0] = matches[i][1];
+        matches[i][1] = first;
+    }
+    enum orl_result result = ORL_OK;
+    if (sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK) {
+        sqlite3_bind_int64(statement, 1, pair_id(a, b));
+        sqlite3_bind_int64(statement, 2, (sqlite3_int64)count);
+        sqlite3_bind_blob(statement, 3, matches, (int)(count * sizeof *matches), SQLITE_STATIC);
+        if (sqlite3_step(statement) != SQLITE_DONE)
+            result = fail(db);
+    } else {
+        result = fail(db);
+    }
+    sqlite3_finalize(statement);
+    return result;
+}
+
+static enum orl_result run_sql(struct orl_database *db, const char *sql)
+{
+    return sqlite3_exec(db->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? ORL_OK : fail(db);
+}
+
+enum orl_result orl_database_begin(struct orl_database *db)
+{
+    return run_sql(db, "BEGIN");
+}
+
+enum orl_result orl_database_commit(struct orl_database *db)
+{
+    return run_sql(db, "COMMIT");
+}
+
+enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide)
+{
+    return run_sql(db, hide ? "UPDATE images SET name = replace(name, ' ', '/')"
+                            : "UPDATE images SET name = replace(name, '/', ' ')");
+}

@@ -1,0 +1,37 @@
+// COLMAP's database of features (SQLite).
+#ifndef ORL_PREPROCESS_DATABASE_H
+#define ORL_PREPROCESS_DATABASE_H
+
+#include "oriel/log.h"
+#include "preprocess/calibrate/sift_match.h"
+
+struct orl_database;
+// Opens a database that is there. ORL_ERR_FORMAT when it is not a database of COLMAP's.
+enum orl_result orl_database_open(const struct orl_log *log, const char *path,
+                                  struct orl_database **db) ORL_CHECK_RESULT;
+void orl_database_close(struct orl_database **db);
+// Descriptors of the `limit` features of largest scale of the photograph `name`, the largest first:
+// *descriptors is released with free(). Without features *count is 0.
+enum orl_result orl_database_descriptors(struct orl_database *db, const char *name, size_t limit,
+                                         uint8_t **descriptors, size_t *count) ORL_CHECK_RESULT;
+// All features of a photograph, in COLMAP's order.
+struct orl_features {
+    uint32_t id;          // COLMAP's, of the photograph; 0: not read
+    uint8_t *descriptors; // owned
+    size_t count;
+};
+enum orl_result orl_database_features(struct orl_database *db, const char *name,
+                                      struct orl_features *features) ORL_CHECK_RESULT;
+// Matches of two photographs, by COLMAP's ids: indices of their features.
+enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, uint32_t b,
+                                         bool *has) ORL_CHECK_RESULT;
+enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, uint32_t b,
+                                           uint32_t (*matches)[2], size_t count) ORL_CHECK_RESULT;
+// What is written between the two is written at once, or not at all.
+enum orl_result orl_database_begin(struct orl_database *db) ORL_CHECK_RESULT;
+enum orl_result orl_database_commit(struct orl_database *db) ORL_CHECK_RESULT;
+// COLMAP splits the lines of its pair lists at spaces. While a list is read, names in the database
+// have '/' in place of ' ', which no name of a photograph holds otherwise.
+enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,242 @@
+#include "preprocess/calibrate/match.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/process.h"
+#include "preprocess/calibrate/database.h"
+#include "preprocess/calibrate/pairs.h"
+#include "preprocess/calibrate/raw_matches.h"
+#include "preprocess/job/colmap_run.h"
+
+enum {
+    EXHAUSTIVE_MAX = 25,                      // photographs up to which auto matches all pairs
+    FEATURES = 2 * ORL_PREEMPT_FEATURES,      // of a photograph, for choosing pairs
+    RUN_PAIRS = 64,                           // pairs whose features are in memory at once
+};
+static const double VERIFYING = 0.1; // of the time that matching a pair takes
+
+enum orl_matching orl_match_way(const struct orl_job *job)
+{
+    if (job->params->matching != ORL_MATCHING_AUTO)
+        return job->params->matching;
+    return job->source_count <= EXHAUSTIVE_MAX ? ORL_MATCHING_EXHAUSTIVE : ORL_MATCHING_RETRIEVAL;
+}
+
+static void matcher_settings(const struct orl_job *job, const char *database, bool guided,
+                             struct orl_colmap_args *args)
+{
+    orl_colmap_arg(args, "--database_path", "%s", database);
+    orl_colmap_arg(args, "--random_seed", "%u", job->params->seed);
+    orl_colmap_arg(args, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
+    orl_colmap_arg(args, "--SiftMatching.guided_matching", "%d", guided);
+}
+
+// Pairs that COLMAP chooses: all, or neighbours by name.
+static enum orl_result match_by_colmap(struct orl_job *job, bool sequential, bool guided)
+{
+    struct orl_colmap_args args = {0};
+    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
+    if (!database)
+        return ORL_ERR_MEMORY;
+    matcher_settings(job, database, guided, &args);
+    if (sequential) {
+        orl_colmap_arg(&args, "--SequentialMatching.overlap", "20");
+    } else {
+        // Smaller blocks than COLMAP's 50 show progress; their cost is the same.
+        size_t block = job->source_count / 8;
+        orl_colmap_arg(&args, "--ExhaustiveMatching.block_size", "%zu", block < 5 ? 5 : block);
+    }
+    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = sequential ? "sequential_matcher" : "exhaustive_matcher", .step = "matching",
+        .share = 1, .total = 1}, &args);
+    free(database);
+    return result;
+}
+
+// --- pairs that Oriel chooses ---
+
+static char *without_spaces(const struct orl_log *log, const char *name)
+{
+    char *copy = orl_strdup(log, name);
+    for (char *c = copy; c && *c; c++)
+        if (*c == ' ')
+            *c = '/';
+    return copy;
+}
+
+// Pairs first to first + count - 1 of the list, a line each.
+static enum orl_result name_pairs(const struct orl_job *job, const struct orl_pair *pairs,
+                                  size_t count, struct orl_names *lines)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        char *a = without_spaces(job->log, job->sources[pairs[i].a].name);
+        char *b = without_spaces(job->log, job->sources[pairs[i].b].name);
+        char *line = a && b ? orl_format(job->log, "%s %s", a, b) : NULL;
+        result = line ? orl_names_add(job->log, lines, line) : ORL_ERR_MEMORY;
+        free(a);
+        free(b);
+        free(line);
+    }
+    return result;
+}
+
+static enum orl_result open_database(const struct orl_job *job, struct orl_database **db)
+{
+    *db = NULL;
+    char *path = orl_job_path(job, ORL_CALIBRATE_DATABASE);
+    enum orl_result result = path ? orl_database_open(job->log, path, db) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static enum orl_result hide_spaces(const struct orl_job *job, bool hide)
+{
+    struct orl_database *db;
+    enum orl_result result = open_database(job, &db);
+    if (result == ORL_OK)
+        result = orl_database_hide_spaces(db, hide);
+    orl_database_close(&db);
+    return result;
+}
+
+static enum orl_result match_features(const struct orl_job *job, const struct orl_pair_list *list,
+                                      size_t first, size_t count)
+{
+    struct orl_database *db = NULL;
+    const char **names = orl_array(job->log, job->source_count, sizeof *names);
+    enum orl_result result = names ? open_database(job, &db) : ORL_ERR_MEMORY;
+    for (size_t i = 0; names && i < job->source_count; i++)
+        names[i] = job->sources[i].name;
+    if (result == ORL_OK)
+        result = orl_raw_matches_write(job->log, &(struct orl_raw_matches_progress){
+            .progress = job->progress, .done = (double)first,
+            .share = (1 - VERIFYING) * (double)count, .total = (double)list->count}, db, names,
+            job->source_count, list->items + first, count);
+    orl_database_close(&db);
+    free(names);
+    return result;
+}
+
+// COLMAP verifies the matches of pairs first to first + count - 1, and finds those that are missing.
+static enum orl_result verify(struct orl_job *job, const struct orl_pair_list *list, size_t first,
+                              size_t count)
+{
+    struct orl_colmap_args args = {0};
+    struct orl_names lines = {0};
+    double share = job->colmap_cuda ? 1 : VERIFYING;
+    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
+    char *path = orl_job_path(job, ORL_CALIBRATE_WORK "/pairs.txt");
+    enum orl_result result = database && path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = name_pairs(job, list->items + first, count, &lines);
+    if (result == ORL_OK)
+        result = orl_job_write_list(job, path, &lines);
+    if (result == ORL_OK)
+        result = hide_spaces(job, true);
+    if (result == ORL_OK) {
+        matcher_settings(job, database, false, &args);
+        orl_colmap_arg(&args, "--match_list_path", "%s", path);
+        orl_colmap_arg(&args, "--match_type", "pairs");
+        result = orl_job_colmap(job, &(struct orl_colmap_run){
+            .command = "matches_importer", .step = "matching",
+            .done = (double)first + (1 - share) * (double)count, .share = share * (double)count,
+            .total = (double)list->count}, &args);
+    }
+    if (result == ORL_OK)
+        result = hide_spaces(job, false);
+    orl_names_finish(&lines);
+    free(database);
+    free(path);
+    return result;
+}
+
+static enum orl_result match_list(struct orl_job *job, const struct orl_pair_list *list)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t first = 0; result == ORL_OK && first < list->count; first += RUN_PAIRS) {
+        size_t count = list->count - first < RUN_PAIRS ? list->count - first : RUN_PAIRS;
+        // A CUDA build of COLMAP matches faster on its GPU.
+        if (!job->colmap_cuda)
+            result = match_features(job, list, first, count);
+        if (result == ORL_OK)
+            result = verify(job, list, first, count);
+    }
+    return result;
+}
+
+static enum orl_result read_photos(const struct orl_job *job, struct orl_pair_photo *photos)
+{
+    struct orl_database *db;
+    enum orl_result result = open_database(job, &db);
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
+        const struct orl_exif *exif = &job->sources[i].exif;
+        uint8_t *data;
+        size_t count;
+        result = orl_database_descriptors(db, job->sources[i].name, FEATURES, &data, &count);
+        photos[i] = (struct orl_pair_photo){
+            .descriptors = {data, count}, .taken_s = exif->taken_s > 0 ? exif->taken_s : NAN,
+            .latitude = exif->placed ? exif->latitude : NAN,
+            .longitude = exif->placed ? exif->longitude : NAN};
+    }
+    orl_database_close(&db);
+    return result;
+}
+
+static enum orl_result match_retrieved(struct orl_job *job, struct orl_match_summary *summary)
+{
+    struct orl_pair_list list = {0};
+    struct orl_pair_photo *photos = orl_array(job->log, job->source_count, sizeof *photos);
+    if (!photos)
+        return ORL_ERR_MEMORY;
+    double start = orl_time_s();
+    orl_progress_report(job->progress, "pairs", 0, 1, NULL);
+    enum orl_result result = read_photos(job, photos);
+    if (result == ORL_OK)
+        result = orl_pairs_choose(job->log, job->progress, photos, job->source_count,
+                                  job->params->seed, &list);
+    for (size_t i = 0; i < job->source_count; i++)
+        free((void *)photos[i].descriptors.data);
+    free(photos);
+    if (result == ORL_OK) {
+        orl_progress_report(job->progress, "pairs", 1, 1, NULL);
+        orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu of %zu pairs are worth matching",
+                 list.count, job->source_count * (job->source_count - 1) / 2);
+        *summary = (struct orl_match_summary){list.tried, list.count, orl_time_s() - start};
+        result = match_list(job, &list);
+    }
+    orl_pairs_finish(&list);
+    return result;
+}
+
+enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
+                          struct orl_match_summary *summary)
+{
+    *summary = (struct orl_match_summary){0};
+    enum orl_result result = way == ORL_MATCHING_RETRIEVAL
+                                 ? match_retrieved(job, summary)
+                                 : match_by_colmap(job, way == ORL_MATCHING_SEQUENTIAL, guided);
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "matching", 1, 1, NULL);
+    return result;
+}
+
+enum orl_result orl_match_marked(struct orl_job *job, const bool *marked)
+{
+    size_t n = job->source_count, count = 0;
+    struct orl_pair_list list = {.items = orl_array(job->log, n * (n - 1) / 2, sizeof *list.items)};
+    if (!list.items)
+        return ORL_ERR_MEMORY;
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = a + 1; b < n; b++)
+            if (marked[a] || marked[b])
+                list.items[count++] = (struct orl_pair){(uint32_t)a, (uint32_t)b};
+    list.count = count;
+    enum orl_result result = match_list(job, &list);
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "matching", 1, 1, NULL);
+    orl_pairs_finish(&list);
+    return result;
+}

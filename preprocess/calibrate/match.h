@@ -1,0 +1,22 @@
+// Matches between the photographs' features, by COLMAP, for the pairs that are worth it.
+#ifndef ORL_PREPROCESS_MATCH_H
+#define ORL_PREPROCESS_MATCH_H
+
+#include "preprocess/job/job.h"
+
+#define ORL_CALIBRATE_WORK ".oriel/calibrate.tmp" // where calibrate works, inside the scene
+#define ORL_CALIBRATE_DATABASE ORL_CALIBRATE_WORK "/database.db"
+
+// The way that these parameters and this many photographs ask for; never auto.
+enum orl_matching orl_match_way(const struct orl_job *job);
+// What retrieval did. Zeroes for the other ways, whose pairs COLMAP chooses.
+struct orl_match_summary {
+    size_t tried, chosen; // pairs
+    double choosing_s;
+};
+enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
+                          struct orl_match_summary *summary) ORL_CHECK_RESULT;
+// Matches the marked photographs with all others. Pairs that have matches keep them.
+enum orl_result orl_match_marked(struct orl_job *job, const bool *marked) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,353 @@
+// Reading COLMAP's database.
+#include <sqlite3.h>
+
+#include "preprocess/calibrate/raw_matches.h"
+#include "sift_like.h"
+#include "test.h"
+
+static char *dir, *file;
+
+static int set_up(void **state)
+{
+    (void)state;
+    return test_file_make("database.db", &dir, &file);
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    return test_file_remove(dir, file);
+}
+
+static void run_sql(const char *sql)
+{
+    sqlite3 *db;
+    assert_int_equal(sqlite3_open(file, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, sql, NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+}
+
+// The tables of COLMAP that are read.
+static void make_tables(void)
+{
+    run_sql("CREATE TABLE images (image_id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, "
+            "camera_id INTEGER NOT NULL);"
+            "CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, "
+            "data BLOB);"
+            "CREATE TABLE descriptors (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, "
+            "data BLOB);"
+            "CREATE TABLE matches (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL, "
+            "cols INTEGER NOT NULL, data BLOB);");
+}
+
+static void insert_blob(const char *table, int id, int rows, int columns, const void *data,
+                        size_t size)
+{
+    char sql[200];
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    snprintf(sql, sizeof sql, "INSERT INTO %s VALUES (%d, %d, %d, ?)", table, id, rows, columns);
+    assert_int_equal(sqlite3_open(file, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &statement, NULL), SQLITE_OK);
+    sqlite3_bind_blob(statement, 1, data, (int)size, SQLITE_STATIC);
+    assert_int_equal(sqlite3_step(statement), SQLITE_DONE);
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+}
+
+// Photograph `id` has features of these scales; all bytes of descriptor n are n.
+static void insert_photo(int id, const char *name, int columns, const float *scales, int count)
+{
+    float keypoints[8 * 6] = {0};
+    uint8_t descriptors[8 * ORL_SIFT_SIZE];
+    char sql[300];
+    assert_true(count <= 8);
+    for (int i = 0; i < count; i++) {
+        float *k = &keypoints[i * columns];
+        k[0] = k[1] = 99;
+        // Half a turn or so: scale is the length of the matrix's first column.
+        k[2] = columns == 4 ? scales[i] : 0.6f * scales[i];
+        if (columns == 6)
+            k[4] = -0.8f * scales[i], k[3] = k[5] = 50;
+        memset(descriptors + i * ORL_SIFT_SIZE, i, ORL_SIFT_SIZE);
+    }
+    snprintf(sql, sizeof sql, "INSERT INTO images VALUES (%d, '%s', 1)", id, name);
+    run_sql(sql);
+    insert_blob("keypoints", id, count, columns, keypoints,
+                (size_t)(count * columns) * sizeof *keypoints);
+    insert_blob("descriptors", id, count, ORL_SIFT_SIZE, descriptors,
+                (size_t)count * ORL_SIFT_SIZE);
+}
+
+static struct orl_database *open_database(void)
+{
+    struct orl_database *db;
+    assert_int_equal(orl_database_open(NULL, file, &db), ORL_OK);
+    return db;
+}
+
+static void largest_scales_come_first(void **state)
+{
+    (void)state;
+    static const float scales[] = {2, 8, 1, 4, 8};
+    make_tables();
+    insert_photo(1, "four.jpg", 4, scales, 5);
+    insert_photo(2, "six.jpg", 6, scales, 5);
+    struct orl_database *db = open_database();
+    static const char *const names[] = {"four.jpg", "six.jpg"};
+    for (int i = 0; i < 2; i++) {
+        static const uint8_t order[] = {1, 4, 3, 0, 2};
+        uint8_t *data;
+        size_t count;
+        for (size_t limit = 1; limit <= 8; limit++) {
+            assert_int_equal(orl_database_descriptors(db, names[i], limit, &data, &count), ORL_OK);
+            assert_int_equal(count, limit < 5 ? limit : 5);
+            for (size_t k = 0; k < count * ORL_SIFT_SIZE; k++)
+                assert_int_equal(data[k], order[k / ORL_SIFT_SIZE]);
+            free(data);
+        }
+    }
+    orl_database_close(&db);
+    assert_null(db);
+}
+
+static void no_features_is_no_error(void **state)
+{
+    (void)state;
+    uint8_t *data;
+    size_t count;
+    make_tables();
+    insert_photo(1, "dark.jpg", 6, NULL, 0);
+    run_sql("INSERT INTO images VALUES (2, 'none.jpg', 1)");
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_database_descriptors(db, "dark.jpg", 9, &data, &count), ORL_OK);
+    assert_int_equal(count, 0);
+    assert_int_equal(orl_database_descriptors(db, "none.jpg", 9, &data, &count), ORL_OK);
+    assert_int_equal(count, 0);
+    orl_database_close(&db);
+}
+
+static void says_what_is_wrong_with_features(void **state)
+{
+    (void)state;
+    static const float scales[] = {2, 8};
+    static const struct {
+        const char *damage;
+        enum orl_result result;
+        const char *says;
+    } cases[] = {
+        {"UPDATE images SET name = 'other.jpg'", ORL_ERR_DATA, "has no features of a.jpg"},
+        {"UPDATE descriptors SET rows = 3", ORL_ERR_FORMAT, "the features of a.jpg are damaged"},
+        {"UPDATE descriptors SET rows = -1", ORL_ERR_FORMAT, "are damaged"},
+        {"UPDATE descriptors SET data = x'00'", ORL_ERR_FORMAT, "are damaged"},
+        {"UPDATE descriptors SET rows = 4, cols = 64", ORL_ERR_FORMAT, "are damaged"},
+        {"UPDATE keypoints SET rows = 1", ORL_ERR_FORMAT, "are damaged"},
+        {"UPDATE keypoints SET cols = 5", ORL_ERR_FORMAT, "are damaged"},
+        {"UPDATE keypoints SET rows = 4611686018427387904", ORL_ERR_FORMAT, "are damaged"},
+        {"DELETE FROM keypoints", ORL_ERR_FORMAT, "are damaged"},
+    };
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        struct said said;
+        struct orl_log log = log_to(&said);
+        struct orl_database *db;
+        uint8_t *data;
+        size_t count;
+        remove(file);
+        make_tables();
+        insert_photo(1, "a.jpg", 6, scales, 2);
+        run_sql(cases[i].damage);
+        assert_int_equal(orl_database_open(&log, file, &db), ORL_OK);
+        assert_int_equal(orl_database_descriptors(db, "a.jpg", 9, &data, &count), cases[i].result);
+        assert_null(data);
+        assert_non_null(strstr(said.text, cases[i].says));
+        assert_non_null(strstr(said.text, file));
+        orl_database_close(&db);
+    }
+}
+
+static void says_what_is_no_database(void **state)
+{
+    (void)state;
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_database *db;
+    assert_int_equal(orl_database_open(&log, file, &db), ORL_ERR_IO); // it is not there
+    assert_non_null(strstr(said.text, file));
+    assert_int_equal(orl_path_is_file(file), false);
+    assert_int_equal(orl_file_write(NULL, file, "neither SQLite nor COLMAP wrote this", 36), ORL_OK);
+    assert_int_equal(orl_database_open(&log, file, &db), ORL_ERR_FORMAT);
+    assert_non_null(strstr(said.text, "cannot be used as COLMAP's database"));
+    assert_null(db);
+    // A database, but of something else.
+    remove(file);
+    run_sql("CREATE TABLE images (image_id INTEGER)");
+    assert_int_equal(orl_database_open(&log, file, &db), ORL_ERR_FORMAT);
+    assert_non_null(strstr(said.text, "no such"));
+}
+
+// Cut off, as by a full disk.
+static void says_when_it_is_cut_off(void **state)
+{
+    (void)state;
+    static const float scales[] = {1, 2, 3, 4, 5, 6, 7, 8};
+    struct said said;
+    struct orl_log log = log_to(&said);
+    uint8_t *bytes, *data;
+    size_t size, count;
+    struct orl_database *db = NULL;
+    make_tables();
+    for (int i = 1; i < 40; i++) {
+        char name[20];
+        snprintf(name, sizeof name, "%d.jpg", i);
+        insert_photo(i, name, 6, scales, 8);
+    }
+    assert_int_equal(orl_file_read(NULL, file, 1 << 24, &bytes, &size), ORL_OK);
+    assert_int_equal(orl_file_write(NULL, file, bytes, size / 2 / 4096 * 4096), ORL_OK);
+    free(bytes);
+    enum orl_result result = orl_database_open(&log, file, &db);
+    if (result == ORL_OK)
+        result = orl_database_descriptors(db, "39.jpg", 9, &data, &count);
+    assert_int_equal(result, ORL_ERR_FORMAT);
+    assert_non_null(strstr(said.text, "cannot be used as COLMAP's database"));
+    orl_database_close(&db);
+}
+
+// --- matches ---
+
+enum { MANY = 200 };
+
+// A photograph that sees these features of the world.
+static void insert_view(int id, const char *name, const int *features, int count)
+{
+    static float keypoints[MANY * 6];
+    static uint8_t descriptors[MANY * SIFT_SIZE];
+    char sql[300];
+    uint32_t noise = (uint32_t)id;
+    for (int i = 0; i < count; i++)
+        sift_write(descriptors + i * SIFT_SIZE, (uint32_t)features[i], 0.95f, &noise);
+    snprintf(sql, sizeof sql, "INSERT INTO images VALUES (%d, '%s', 1)", id, name);
+    run_sql(sql);
+    insert_blob("keypoints", id, count, 6, keypoints, (size_t)count * 6 * sizeof *keypoints);
+    insert_blob("descriptors", id, count, SIFT_SIZE, descriptors, (size_t)count * SIFT_SIZE);
+}
+
+// Matches of the pair as COLMAP finds them in the database.
+static int stored(long long pair_id, uint32_t (*matches)[2])
+{
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    int rows = -1;
+    assert_int_equal(sqlite3_open(file, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT rows, cols, data FROM matches WHERE pair_id = ?",
+                                        -1, &statement, NULL), SQLITE_OK);
+    sqlite3_bind_int64(statement, 1, pair_id);
+    if (sqlite3_step(statement) == SQLITE_ROW) {
+        rows = sqlite3_column_int(statement, 0);
+        assert_int_equal(sqlite3_column_int(statement, 1), 2);
+        assert_int_equal(sqlite3_column_bytes(statement, 2), rows * 8);
+        if (rows)
+            memcpy(matches, sqlite3_column_blob(statement, 2), (size_t)rows * 8);
+    }
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+    return rows;
+}
+
+// Photograph `i` sees features 100 i to 100 i + 149, in an order that differs; COLMAP's ids fall.
+static void matches_are_written_for_colmap(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.jpg", "b.jpg", "c.jpg", "dark.jpg"};
+    static const struct orl_pair pairs[] = {{0, 1}, {0, 2}, {1, 2}, {2, 3}};
+    const struct orl_raw_matches_progress progress = {.share = 1, .total = 1};
+    uint32_t matches[MANY][2];
+    make_tables();
+    for (int i = 0; i < 3; i++) {
+        int features[150];
+        for (int k = 0; k < 150; k++)
+            features[k] = 100 * i + k * 7 % 150;
+        insert_view(9 - i, names[i], features, 150);
+    }
+    insert_view(1, names[3], NULL, 0);
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    const long long base = 2147483647; // COLMAP's: the smaller id times this, plus the larger
+    assert_int_equal(stored(7 * base + 9, matches), 0);
+    assert_int_equal(stored(1 * base + 7, matches), 0);
+    for (int low = 7; low <= 8; low++) {
+        assert_int_equal(stored(low * base + low + 1, matches), 50);
+        for (int i = 0; i < 50; i++) { // of the smaller id first, which sees what lies further on
+            int here = 100 * (9 - low) + (int)matches[i][0] * 7 % 150;
+            int there = 100 * (8 - low) + (int)matches[i][1] * 7 % 150;
+            assert_int_equal(here, there);
+        }
+    }
+    // What is there stays, whatever it says.
+    run_sql("UPDATE matches SET rows = 0, data = x''");
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    assert_int_equal(stored(7 * base + 8, matches), 0);
+    run_sql("DELETE FROM matches WHERE pair_id < 17000000000");
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    assert_int_equal(stored(7 * base + 8, matches), 50);
+    assert_int_equal(stored(8 * base + 9, matches), 0);
+    orl_database_close(&db);
+}
+
+static bool cancelled(void *priv)
+{
+    (void)priv;
+    return true;
+}
+
+static void matching_can_be_interrupted(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.jpg", "b.jpg"};
+    static const struct orl_pair pairs[] = {{0, 1}};
+    const struct orl_progress cancel = {.cancelled = cancelled};
+    const struct orl_raw_matches_progress progress = {&cancel, 0, 1, 1};
+    uint32_t matches[MANY][2];
+    static const int features[] = {1, 2, 3};
+    make_tables();
+    insert_view(1, names[0], features, 3);
+    insert_view(2, names[1], features, 3);
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 2, pairs, 1),
+                     ORL_ERR_CANCELLED);
+    assert_int_equal(stored(2147483647LL + 2, matches), -1);
+    run_sql("DROP TABLE matches");
+    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 2, pairs, 1),
+                     ORL_ERR_FORMAT);
+    orl_database_close(&db);
+}
+
+static void spaces_are_hidden_and_come_back(void **state)
+{
+    (void)state;
+    static const float scales[] = {2, 8};
+    uint8_t *data;
+    size_t count;
+    make_tables();
+    insert_photo(1, "one day in may.jpg", 6, scales, 2);
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_database_hide_spaces(db, true), ORL_OK);
+    assert_int_equal(orl_database_descriptors(db, "one/day/in/may.jpg", 9, &data, &count), ORL_OK);
+    free(data);
+    assert_int_equal(orl_database_hide_spaces(db, false), ORL_OK);
+    assert_int_equal(orl_database_descriptors(db, "one day in may.jpg", 9, &data, &count), ORL_OK);
+    free(data);
+    orl_database_close(&db);
+}
+
+#define FILE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FILE_TEST(largest_scales_come_first), FILE_TEST(no_features_is_no_error),
+        FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
+        FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
+        FILE_TEST(matches_are_written_for_colmap), FILE_TEST(matching_can_be_interrupted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
