@@ -1,12 +1,12 @@
 // General rules, stated once for every header of Oriel:
 //
-// - A function that touches files, memory or GL returns enum orl_result; the
-//   first detector logs once, callers pass the code on.
-// - struct orl_log * and struct orl_progress * may be NULL: silence.
+// - A function that touches files, memory or GL returns enum orl_result. The function
+//   that detects an error logs it once; its callers pass the code on.
+// - struct orl_log * and struct orl_progress * may be NULL: nothing is reported then.
 // - create/destroy allocate; init/finish do not. Every destroy takes a pointer
 //   to the handle, accepts NULL and half-built objects, and sets it to NULL.
 // - Parameter structs need to live only until the call returns.
-// - On failure an out parameter is left NULL or zeroed; nothing leaks.
+// - On failure an out parameter is left NULL or zeroed, and owns nothing.
 // - Strings are UTF-8. Angles are radians. Images are row-major, top row first.
 // - Objects are not thread-safe; different objects may be used by different
 //   threads, except those of one orl_gpu, which belong to its creating thread.

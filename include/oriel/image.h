@@ -9,7 +9,7 @@ enum orl_pixel {
     ORL_PIXEL_F32, // scene-linear colour, or any other quantity
 };
 
-// Row-major, top row first, channels interleaved, no padding.
+// Pixels are row-major, top row first, with interleaved channels and no padding.
 struct orl_image {
     int width, height, channels; // channels 1 to 4
     enum orl_pixel type;

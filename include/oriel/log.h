@@ -1,4 +1,4 @@
-// Messages to the caller. The library never prints by itself.
+// Messages to the caller. The library prints only through the callback of struct orl_log.
 #ifndef ORIEL_LOG_H
 #define ORIEL_LOG_H
 
@@ -7,18 +7,18 @@
 enum orl_log_level {
     ORL_LOG_ERROR,   // the call fails
     ORL_LOG_WARNING, // the call goes on with less than was asked for
-    ORL_LOG_INFO,    // what a user wants to know of a run
-    ORL_LOG_DEBUG,   // what a developer wants to know of a run
+    ORL_LOG_INFO,    // what a user wants to know about a run
+    ORL_LOG_DEBUG,   // what a developer wants to know about a run
 };
 
 struct orl_log {
     enum orl_log_level level; // messages above this level are dropped
-    // `message` is UTF-8 without control characters but newline and tab.
+    // `message` is UTF-8; newline and tab are its only control characters.
     void (*print)(void *priv, enum orl_log_level level, const char *message);
     void *priv;
 };
 
-// Logs to stderr with a word before warnings and errors.
+// A log that prints to stderr and marks warnings and errors with a prefix.
 struct orl_log orl_log_stderr(enum orl_log_level level);
 
 void orl_logf(const struct orl_log *log, enum orl_log_level level,
@@ -28,8 +28,8 @@ void orl_logf(const struct orl_log *log, enum orl_log_level level,
 enum orl_result orl_fail(const struct orl_log *log, enum orl_result result,
                          const char *format, ...) ORL_PRINTF(3, 4);
 
-// A caller's mistake: logs the expression and line and returns
-// ORL_ERR_ARGUMENT; aborts in debug builds. Never for bad data.
+// Checks for a caller's mistake: logs the expression and line and returns
+// ORL_ERR_ARGUMENT; aborts in debug builds. Bad data must use orl_fail instead.
 #define ORL_REQUIRE(log, expr)                                                \
     do {                                                                      \
         if (!(expr))                                                          \

@@ -8,30 +8,30 @@ struct orl_points {
     size_t count;
     float (*position)[3]; // world, scene units
     float (*normal)[3];   // world, unit length, towards the photographs; 0 0 0: unknown
-    float *radius;        // scene units, > 0; 0: not known yet
+    float *radius;        // scene units, > 0; 0: unknown so far
     uint8_t (*color)[3];  // sRGB
-    uint8_t *photographs; // how many agree on the point, 255: as many or more;
-                          // 0: not known
+    uint8_t *photographs; // how many agree on the point, 255: at least 255;
+                          // 0: unknown
 };
 
-// Room for `count` points, zeroed.
+// Allocates `count` zeroed points.
 enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points,
                                 size_t count) ORL_CHECK_RESULT;
 void orl_points_finish(struct orl_points *points);
-// All of one point. `to` may be `from`.
+// Copies all attributes of point i of `from` to point k of `to`. `to` may be `from`.
 void orl_points_copy(const struct orl_points *from, size_t i, struct orl_points *to, size_t k);
-// Is it finite, and within ORL_WORLD_MAX?
+// True when the position is finite and within ORL_WORLD_MAX.
 bool orl_point_usable(const float position[3]);
-// Drops points that are not, and counts them in a warning.
+// Drops points that are not usable and counts them in a warning.
 void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *points);
 
-// PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue,
-// radius, photographs, in any order and scalar type; other properties and elements after
-// `vertex` are skipped. Points that are not finite or beyond ORL_WORLD_MAX are
-// dropped and counted in a warning, as are negative radii (set to 0).
+// Reads PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue, radius,
+// photographs, in any order and scalar type. Other properties and elements are skipped. Points that
+// are not finite or beyond ORL_WORLD_MAX are dropped, and negative radii are set to 0; a warning
+// counts both.
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,
                                 struct orl_points *points) ORL_CHECK_RESULT;
-// Binary little-endian PLY: x y z nx ny nz red green blue radius photographs.
+// Writes binary little-endian PLY: x y z nx ny nz red green blue radius photographs.
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
                                  const struct orl_points *points) ORL_CHECK_RESULT;
 

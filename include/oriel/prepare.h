@@ -6,9 +6,9 @@
 #include "oriel/progress.h"
 #include "oriel/prepare_params.h"
 
-// Makes the scene. COLMAP is found on PATH or named by $ORIEL_COLMAP; its output
-// goes to OUT/logs/colmap.log. Whatever fails, OUT does not open as a scene until
-// all is done, and `resume` goes on after the last whole stage.
+// Makes the scene in the folder OUT (params->out). COLMAP is found on PATH or named by
+// $ORIEL_COLMAP; its output goes to OUT/logs/colmap.log. OUT opens as a scene only after all
+// stages are complete. After a failure `resume` continues after the last complete stage.
 // ORL_ERR_ARGUMENT: OUT exists already without `resume`, or bad settings.
 // ORL_ERR_NOT_FOUND, ORL_ERR_DATA: too few photographs, or too few that register.
 // ORL_ERR_EXTERNAL: COLMAP is missing or failed.

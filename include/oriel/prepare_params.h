@@ -7,7 +7,7 @@
 struct orl_gpu;
 
 enum orl_quality { ORL_QUALITY_DRAFT, ORL_QUALITY_STANDARD, ORL_QUALITY_HIGH };
-// auto: photographs of one size and one EXIF camera and focal length share a camera.
+// auto: photographs share a camera when size, EXIF camera model and focal length are equal.
 enum orl_camera_sharing { ORL_SHARING_AUTO, ORL_SHARING_SINGLE, ORL_SHARING_EACH };
 // auto: exhaustive up to 25 photographs, retrieval above. sequential: neighbours by name.
 // retrieval: pairs that a quick look at their features finds to overlap. When too few register,
@@ -18,10 +18,11 @@ enum orl_matching {
     ORL_MATCHING_SEQUENTIAL,
     ORL_MATCHING_RETRIEVAL,
 };
-// auto: COLMAP's when it was built with CUDA, else the built-in one.
+// auto: COLMAP's densifier when COLMAP was built with CUDA, else Oriel's own.
 enum orl_densifier { ORL_DENSIFIER_AUTO, ORL_DENSIFIER_GL, ORL_DENSIFIER_COLMAP };
 
-// minimal: only what commands read; all: depth, normal and confidence maps (stereo/) too.
+// minimal: only the files that commands read. all: also depth, normal and confidence maps
+// (stereo/).
 enum orl_keep { ORL_KEEP_MINIMAL, ORL_KEEP_ALL };
 
 // Names of the values above, in their order; NULL after the last.
@@ -46,14 +47,14 @@ struct orl_prepare_params {
     enum orl_keep keep;
     const char *masks_dir;     // NAME.png or NAME.EXT.png, black = ignore; NULL: none
     const char *exposures;     // CSV that overrides EXIF (exposure_list.h); NULL: none
-    bool resume;               // go on with what is there
+    bool resume;               // continue after the stages that are complete
     uint32_t seed;
     struct orl_gpu *gpu;       // NULL: opened when densify needs it
     size_t max_vram_bytes;     // device memory that densify keeps to; 0: no limit
-    const char *shader_dir;    // for that; NULL: the embedded shaders
+    const char *shader_dir;    // for a GPU opened here; NULL: the embedded shaders
 };
 
-// Larger side of the undistorted photographs, as asked for or by quality.
+// Larger side of the undistorted photographs in pixels: max_size, or by quality where that is 0.
 int orl_prepare_max_size(const struct orl_prepare_params *params);
 
 #endif

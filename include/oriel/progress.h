@@ -5,11 +5,11 @@
 #include "oriel/common.h"
 
 struct orl_progress {
-    // step: short name ("densify"); done of total units; detail: what is being
-    // worked on, may be NULL. Called often; must be cheap.
+    // step: a short name ("densify"). done, total: units of work. detail: the current item, may
+    // be NULL. Called often, so it must be cheap.
     void (*report)(void *priv, const char *step, double done, double total,
                    const char *detail);
-    // True once the job should stop; the job then returns ORL_ERR_CANCELLED.
+    // Returns true once the job should stop; the job then returns ORL_ERR_CANCELLED.
     bool (*cancelled)(void *priv);
     void *priv;
 };

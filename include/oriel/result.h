@@ -24,9 +24,9 @@ enum orl_result {
     ORL_RESULT_COUNT
 };
 
-// "ORL_ERR_IO"; "unknown" outside the table.
+// The code's name, such as "ORL_ERR_IO"; "unknown" outside the table.
 const char *orl_result_name(enum orl_result result);
-// "cannot read or write a file"; "unknown" outside the table.
+// The code's default message, such as "cannot read or write a file"; "unknown" outside the table.
 const char *orl_result_message(enum orl_result result);
 
 #endif

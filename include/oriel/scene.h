@@ -11,35 +11,35 @@ struct orl_names;
 struct orl_photo {
     char *name;           // owned; file SCENE/images/<name>
     struct orl_view view; // size and intrinsics as of the undistorted file
-    bool test;            // held out: calibration only
-    bool linear;          // there is a linear version too: orl_scene_read_linear
-    bool masked;          // there is a mask: orl_scene_mask_path
+    bool test;            // held out: used for calibration only
+    bool linear;          // has a linear version (orl_scene_read_linear)
+    bool masked;          // has a mask (orl_scene_mask_path)
     double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
     float gain[3];        // multiplies linear colour; 1 1 1 unless aligned
-    // Relative illumination 1 + v[0] r^2 + v[1] r^4 + v[2] r^6 at distance r from the
-    // principal point in units of half the picture's diagonal; 0 0 0: none.
+    // Relative illumination is 1 + v[0] r^2 + v[1] r^4 + v[2] r^6 at distance r from the
+    // principal point, in units of half the picture's diagonal; 0 0 0: no vignetting.
     float vignette[3];
     int response; // index into orl_scene.responses; -1: sRGB
 };
 
 // How a camera turns exposure into 8-bit values.
 struct orl_response {
-    float linear[3][256]; // per channel and value: linear exposure, increasing, 255 is 1
+    float linear[3][256]; // linear exposure per channel and value; increasing, 1 at value 255
 };
 
-// A method's option as oriel tune found it best for the scene.
+// The value of a method's option that oriel tune found best for the scene.
 struct orl_tuned {
     char *method, *key; // owned
     double value;
 };
 
-// A plane: where the photographer stood.
+// The ground plane that the photographer stood on.
 struct orl_ground {
     double plane[4]; // world: dot(plane, (X, 1)) is X's height above it, in scene units
-    double height;   // mean of the photographs' above it; 0: there is none
-    bool known;      // looked for, or told by scene.json
+    double height;   // mean height of the photographs above the plane; 0: no plane was found
+    bool known;      // the plane was searched for, or scene.json states it
 };
 
 struct orl_scene {
@@ -51,9 +51,9 @@ struct orl_scene {
     size_t response_count;
     struct orl_tuned *tuned;
     size_t tuned_count;
-    size_t frame_count;    // moments of a sequence; 0: a still scene
-    int frame;             // the moment that its photographs show, -1: SCENE/images
-    double photo_distance; // median distance from training photographs to points they see
+    size_t frame_count;    // frames of a sequence; 0: a still scene
+    int frame;             // the frame that the photographs show; -1: SCENE/images
+    double photo_distance; // median distance from training photographs to the points they see
     struct orl_ground ground;
 };
 
@@ -62,35 +62,36 @@ struct orl_scene {
 // finished is refused with ORL_ERR_DATA, naming the missing stage.
 enum orl_result orl_scene_open(const struct orl_log *log, const char *dir,
                                struct orl_scene **out) ORL_CHECK_RESULT;
-// The same of a folder that is being prepared, from its sparse model and points.ply: nothing
-// is known of exposures, photographs named in `test` (NULL: none) are held out, and the ground
-// is that which points tell of.
+// Opens a folder that is still being prepared, from its sparse model and points.ply. Exposures are
+// unknown, photographs named in `test` (NULL: none) are held out, and the ground plane is
+// estimated from the points.
 enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char *dir,
                                           const struct orl_colmap_model *model,
                                           const struct orl_names *test,
                                           struct orl_scene **out) ORL_CHECK_RESULT;
 void orl_scene_destroy(struct orl_scene **scene);
-// Index of the photograph of this name (with or without extension), -1 if none.
+// Index of the photograph of this name (with or without extension), -1 if there is none.
 int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
-// Photographs and silhouettes are those of moment `frame` from now on; cameras and all else stay.
-// -1: those of the scene itself. ORL_ERR_ARGUMENT: there is no such moment; ORL_ERR_NOT_FOUND: a
-// photograph of it is missing. Then the scene stays as it was.
+// Selects the photographs and silhouettes of `frame`, or with -1 those of the scene itself. Cameras
+// and everything else stay. On failure the scene is unchanged.
+// ORL_ERR_ARGUMENT: there is no such frame. ORL_ERR_NOT_FOUND: one of its photographs is missing.
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene,
                                     int frame) ORL_CHECK_RESULT;
-// "SCENE/images/<name>", or of the chosen moment "SCENE/frames/<number>/images/<name>"; released
-// with free().
+// "SCENE/images/<name>", or "SCENE/frames/<number>/images/<name>" when a frame is selected. This
+// and the paths below are released with free().
 char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene,
                            size_t photo);
-// Its mask or silhouette (silhouette.h), "SCENE/masks/<name>.png" or of the chosen moment "SCENE/
-// frames/<number>/masks/<name>.png": as large as the photograph, 0 where it does not show the
-// subject. There when photo->masked.
+// The photograph's mask or silhouette (silhouette.h): "SCENE/masks/<name>.png", or
+// "SCENE/frames/<number>/masks/<name>.png" when a frame is selected. The mask is as large as the
+// photograph and 0 outside the subject. The file exists when photo->masked.
 char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
-// The place without the subject: "SCENE/background/<name>.png", there or not.
+// A picture of the place without the subject: "SCENE/background/<name>.png". The file may be
+// missing.
 char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,
                                 size_t photo);
-// "SCENE/mesh.ply", there or not.
+// "SCENE/mesh.ply". The file may be missing.
 char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene);
-// "SCENE/images_linear/<name>.exr", there or not.
+// "SCENE/images_linear/<name>.exr". The file may be missing.
 char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene,
                             size_t photo);
 

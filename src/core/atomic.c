@@ -1,4 +1,4 @@
-// Files that appear under their final name only when they are whole.
+// Files that appear under their final name only when they are complete.
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -15,10 +15,10 @@
 #include "core/memory.h"
 
 enum {
-    LINKS_MAX = 40,     // as the kernel has it
-    NAME_TAIL_MAX = 64, // of the final name in the temporary one, which must fit NAME_MAX
+    LINKS_MAX = 40,     // Linux's own limit
+    NAME_TAIL_MAX = 64, // bytes of the final name kept in the temporary name (below NAME_MAX)
     TRIES_MAX = 16,
-    STALE_AFTER_S = 60, // a temporary file may be younger than its lock
+    STALE_AFTER_S = 60, // a writer locks its temporary file only after creating it
 };
 
 static const char part_prefix[] = ".oriel-part-";
@@ -28,7 +28,7 @@ static enum orl_result fail_errno(const struct orl_log *log, const char *path)
     return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
 }
 
-// The name at the end of a chain of symbolic links, there or not.
+// The name at the end of a chain of symbolic links. The file may be missing.
 static enum orl_result follow_links(const struct orl_log *log, const char *path, char **target)
 {
     char *current = orl_strdup(log, path), to[PATH_MAX];
@@ -51,7 +51,8 @@ static enum orl_result follow_links(const struct orl_log *log, const char *path,
     return ORL_ERR_MEMORY;
 }
 
-// "--json /dev/stdout >FILE": the shell's file must be added to, not replaced.
+// With "--json /dev/stdout >FILE" output must go into the file that the shell opened, which a
+// rename would replace.
 static bool is_standard_stream(const struct stat *st)
 {
     struct stat stream;
@@ -75,10 +76,10 @@ static enum orl_result begin_direct(const struct orl_log *log, const char *path,
 
 static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_file *file)
 {
-    // The suffix keeps the extension last: writers may choose a format by it.
+    // The final name comes last and keeps the extension, since writers may choose a format by it.
     const char *name = orl_path_name(file->path);
     size_t length = strlen(name), cut = length > NAME_TAIL_MAX ? length - NAME_TAIL_MAX : 0;
-    while (((unsigned char)name[cut] & 0xc0) == 0x80) // some drives take whole characters only
+    while (((unsigned char)name[cut] & 0xc0) == 0x80) // some file systems refuse partial characters
         cut++;
     for (int tries = 0; tries < TRIES_MAX; tries++) {
         unsigned long long number;
@@ -98,7 +99,8 @@ static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_fi
     }
     if (!file->temp)
         return fail_errno(log, file->path);
-    // Tells orl_dir_sweep that somebody is writing. Drives without locks go without.
+    // The lock tells orl_dir_sweep that a writer is active. File systems without locks lack this
+    // protection.
     (void)!flock(file->fd, LOCK_EX | LOCK_NB);
     return ORL_OK;
 }
@@ -115,7 +117,7 @@ enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
     else if ((result = follow_links(log, path, &file->path)) == ORL_OK)
         result = open_part(log, file);
     if (result == ORL_OK && there && !file->direct)
-        (void)!fchmod(file->fd, st.st_mode & 0777); // what replaces a file is as private as it was
+        (void)!fchmod(file->fd, st.st_mode & 0777); // the new file keeps the old permissions
     if (result != ORL_OK)
         orl_atomic_abort(file);
     return result;
@@ -131,7 +133,7 @@ FILE *orl_atomic_stream(struct orl_atomic_file *file)
     return stream;
 }
 
-// Some drives know no fsync: nothing can be flushed there.
+// File systems without fsync count as flushed.
 static bool flush_to_disk(int fd)
 {
     return fsync(fd) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP;
@@ -150,7 +152,7 @@ enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_f
             result = fail_errno(log, file->path);
     }
     if (result == ORL_OK)
-        file->direct = true; // nothing is left to remove
+        file->direct = true; // the abort below then removes nothing
     orl_atomic_abort(file);
     return result;
 }
@@ -185,7 +187,7 @@ enum orl_result orl_file_write(const struct orl_log *log, const char *path, cons
     return result;
 }
 
-// Nobody writes to it any more: its lock is free.
+// True when no writer is active: the file is old enough and its lock is free.
 static bool is_stale(const char *path)
 {
     struct stat st;

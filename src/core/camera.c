@@ -8,7 +8,7 @@
 
 static bool focal_valid(double focal, double side)
 {
-    return focal >= 1e-3 * side && focal <= 1e5 * side; // false for NaN
+    return focal >= 1e-3 * side && focal <= 1e5 * side; // false also for NaN
 }
 
 bool orl_camera_valid(const struct orl_camera *c)
@@ -96,7 +96,7 @@ bool orl_pose_from_opengl(const double m[16], struct orl_pose *pose)
 
 void orl_pose_to_quat(const struct orl_pose *pose, double q[4])
 {
-    // Shepperd: divide by the largest component for accuracy.
+    // Shepperd's method: dividing by the largest component keeps accuracy.
     const double (*r)[3] = pose->r;
     double trace = r[0][0] + r[1][1] + r[2][2];
     double squares[4] = {trace, r[0][0], r[1][1], r[2][2]};
@@ -140,7 +140,7 @@ struct orl_pose orl_pose_look_at(const double eye[3], const double target[3], co
     if (!(orl_normalize3(z) > 0))
         z[0] = 0, z[1] = 0, z[2] = 1;
     orl_cross3(z, up, x);
-    if (!(orl_normalize3(x) > 0)) { // looking along `up`: any horizontal axis will do
+    if (!(orl_normalize3(x) > 0)) { // looking along `up`: any horizontal axis works
         const double other[3] = {fabs(z[0]) < 0.5, fabs(z[0]) >= 0.5, 0};
         orl_cross3(z, other, x);
         orl_normalize3(x);
@@ -231,7 +231,7 @@ void orl_ray_meeting_add(struct orl_ray_meeting *meeting, const double eye[3], c
         }
 }
 
-// Cramer's rule.
+// Solves the 3x3 system by Cramer's rule.
 bool orl_ray_meeting_point(const struct orl_ray_meeting *meeting, double point[3])
 {
     const double (*a)[3] = meeting->a, *b = meeting->b;

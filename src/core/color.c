@@ -4,7 +4,7 @@
 
 float orl_srgb_encode(float c)
 {
-    if (!(c > 0)) // also NaN
+    if (!(c > 0)) // true also for NaN
         return 0;
     if (c >= 1)
         return 1;

@@ -4,9 +4,10 @@
 
 #include "oriel/common.h"
 
-// Linear light to an sRGB value, both 1 at white; clamped to [0, 1], NaN is 0.
+// Converts linear light to an sRGB value, both 1 at white. The result is clamped to [0, 1]; NaN
+// gives 0.
 float orl_srgb_encode(float linear);
-// The way back, for any value from 0 on.
+// The inverse of orl_srgb_encode, extended to all values from 0 on.
 float orl_srgb_decode(float encoded);
 // Luminance of linear Rec. 709 colour.
 float orl_luminance(const float rgb[3]);

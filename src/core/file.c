@@ -42,7 +42,7 @@ bool orl_path_is_inside(const char *dir, const char *path)
 {
     char *real_dir = realpath(dir, NULL), *real_path = realpath(path, NULL);
     size_t length = real_dir ? strlen(real_dir) : 0;
-    length -= length == 1; // "/"
+    length -= length == 1; // the root "/" already ends with the separator
     bool inside = real_dir && real_path && strncmp(real_dir, real_path, length) == 0 &&
                   (real_path[length] == '/' || real_path[length] == '\0');
     free(real_dir);
@@ -53,7 +53,7 @@ bool orl_path_is_inside(const char *dir, const char *path)
 static enum orl_result open_to_read(const struct orl_log *log, const char *path, int *fd,
                                     size_t *size)
 {
-    // Opening a FIFO would wait for a writer, perhaps for ever.
+    // O_NONBLOCK: opening a FIFO would otherwise wait for a writer, perhaps for ever.
     *fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (*fd < 0)
         return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,

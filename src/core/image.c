@@ -18,7 +18,7 @@ enum orl_result orl_image_init(const struct orl_log *log, struct orl_image *imag
         channels < 1 || channels > 4)
         return orl_fail(log, ORL_ERR_ARGUMENT, "image of %dx%d pixels, %d channels", width,
                         height, channels);
-    // At most 2^32 pixels of 16 bytes: no overflow in 64 bits.
+    // At most 2^32 pixels of 16 bytes each, which fits 64 bits.
     void *data = orl_array(log, (size_t)width * (size_t)height,
                            (size_t)channels * pixel_size(type));
     if (!data)

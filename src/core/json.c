@@ -75,7 +75,7 @@ static enum orl_result refuse_range(const struct orl_json_place *place, const ch
     return orl_json_refuse(place, key, text);
 }
 
-// NULL: absent or null.
+// NULL when the value is absent or null.
 static const json_t *find(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);

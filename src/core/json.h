@@ -1,4 +1,4 @@
-// JSON files, and values in them that are checked as they are read.
+// JSON files, and access to their values with checks of type and range.
 #ifndef ORL_CORE_JSON_H
 #define ORL_CORE_JSON_H
 
@@ -6,33 +6,33 @@
 
 #include "oriel/log.h"
 
-// Parses text of any kind, released with json_decref. Errors name `path`, the line, the byte
-// and the reason.
+// Parses text into a value of any JSON type, released with json_decref. Errors name `path`, the
+// line, the byte and the reason.
 enum orl_result orl_json_parse(const struct orl_log *log, const char *path, const void *text,
                                size_t size, json_t **out) ORL_CHECK_RESULT;
 // Parses a JSON object of at most 64 MiB, released with json_decref.
 enum orl_result orl_json_read(const struct orl_log *log, const char *path,
                               json_t **out) ORL_CHECK_RESULT;
-// Indented, keys in order of insertion; written whole or not at all.
+// Writes indented JSON with keys in order of insertion. The file is written atomically.
 enum orl_result orl_json_write(const struct orl_log *log, const char *path,
                                const json_t *value) ORL_CHECK_RESULT;
 
-// A string, which JSON wants in UTF-8: other bytes of `text`, which names of files may have, become
-// "\xNN". NULL: no memory.
+// A JSON string, which must be UTF-8. Bytes of `text` that are not UTF-8, as file names may have,
+// become "\xNN". NULL when memory runs out.
 json_t *orl_json_string(const char *text);
 
-// Where values are read from, for errors: "PATH: WHAT: "key" is not ...".
+// Where values are read from, for error messages of the form PATH: WHAT: "key" is not ...
 struct orl_json_place {
     const struct orl_log *log;
     const char *path;
-    const char *what; // "photograph 0001.jpg"; NULL: the file itself
+    const char *what; // such as "photograph 0001.jpg"; NULL: the file itself
 };
-// ORL_ERR_FORMAT: `key` is not what `wanted` says.
+// Logs that `key` is not what `wanted` describes, and returns ORL_ERR_FORMAT.
 enum orl_result orl_json_refuse(const struct orl_json_place *place, const char *key,
                                 const char *wanted) ORL_CHECK_RESULT;
 
-// Values of `object`. One that is absent or null leaves *value as it is and counts as read;
-// one of another type or range is refused.
+// Read values of `object`. An absent or null value leaves *value unchanged and counts as success.
+// A value of another type or outside the range is refused.
 enum orl_result orl_json_number(const struct orl_json_place *place, const json_t *object,
                                 const char *key, double low, double high,
                                 double *value) ORL_CHECK_RESULT;
@@ -40,14 +40,14 @@ enum orl_result orl_json_integer(const struct orl_json_place *place, const json_
                                  const char *key, int low, int high, int *value) ORL_CHECK_RESULT;
 enum orl_result orl_json_bool(const struct orl_json_place *place, const json_t *object,
                               const char *key, bool *value) ORL_CHECK_RESULT;
-// An array of that many.
+// Reads an array of exactly `count` numbers.
 enum orl_result orl_json_numbers(const struct orl_json_place *place, const json_t *object,
                                  const char *key, size_t count, double low, double high,
                                  double *values) ORL_CHECK_RESULT;
 
-// Is it an array of `count` finite numbers? Then they are in `values`.
+// Copies an array of `count` finite numbers to `values`. False when it is anything else.
 bool orl_json_read_numbers(const json_t *array, size_t count, double *values);
-// NULL where it is absent or no text.
+// The text of `key`; NULL when it is absent or not a string.
 const char *orl_json_text(const json_t *object, const char *key);
 
 #endif

@@ -9,8 +9,8 @@
 
 enum { TRIES = 100 };
 
-// Is the file that is open still the one of this name? The one who held the lock before may
-// have removed it.
+// True while the open file still has this name: the previous holder of the lock may have removed
+// the file.
 static bool is_there(const char *path, int fd)
 {
     struct stat there, ours;
@@ -22,7 +22,7 @@ enum orl_result orl_lock(const struct orl_log *log, const char *path, int *fd, b
 {
     *taken = false;
     for (int i = 0; i < TRIES; i++) {
-        // Network drives lock only what is open for writing.
+        // Network file systems lock only files that are open for writing.
         *fd = open(path, O_RDWR | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
         if (*fd < 0 && errno == EISDIR)
             *fd = open(path, O_RDONLY | O_CLOEXEC);

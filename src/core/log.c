@@ -25,7 +25,7 @@ static void log_va(const struct orl_log *log, enum orl_log_level level,
         return;
     char message[4096], shown[4096];
     vsnprintf(message, sizeof message, format, args);
-    orl_text_escape(message, shown, sizeof shown); // names of files may hold anything
+    orl_text_escape(message, shown, sizeof shown); // file names may contain any bytes
     log->print(log->priv, level, shown);
 }
 

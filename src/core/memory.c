@@ -38,7 +38,7 @@ enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capaci
     return ORL_OK;
 }
 
-// The number after `key` at the start of a line; UINT64_MAX when it is not there.
+// The number after `key` at the start of a line; UINT64_MAX when there is none.
 static uint64_t read_number(const char *path, const char *key)
 {
     char line[256];
@@ -62,7 +62,7 @@ uint64_t orl_memory_available(void)
 {
     uint64_t kib = read_number("/proc/meminfo", "MemAvailable:");
     uint64_t bytes = kib < UINT64_MAX >> 10 ? kib << 10 : UINT64_MAX;
-    uint64_t most = read_number("/sys/fs/cgroup/memory.max", ""); // "max": no number
+    uint64_t most = read_number("/sys/fs/cgroup/memory.max", ""); // "max": unlimited
     uint64_t used = read_number("/sys/fs/cgroup/memory.current", "");
     uint64_t cached = read_number("/sys/fs/cgroup/memory.stat", "inactive_file ");
     if (most != UINT64_MAX && used != UINT64_MAX) {

@@ -15,7 +15,7 @@
 
 enum { TAIL_LINES = 8, LINE_MAX_BYTES = 1024, EXIT_NO_PROGRAM = 127 };
 
-// The last lines that the program printed, and the one being assembled.
+// The last lines that the program printed, and the line being assembled.
 struct output {
     char tail[TAIL_LINES][LINE_MAX_BYTES];
     size_t lines;
@@ -62,15 +62,15 @@ static void take_output(struct output *out, const struct orl_process_params *par
 static void exec_child(const struct orl_process_params *params, int output_fd)
 {
     setpgid(0, 0); // so that cancellation reaches the program's own children
-    // A killed Oriel must not leave a program behind that still writes its files.
+    // The program ends with Oriel, so that a killed Oriel leaves no writer of its files behind.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(output_fd, STDOUT_FILENO);
     dup2(output_fd, STDERR_FILENO);
     int null_fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (null_fd >= 0)
         dup2(null_fd, STDIN_FILENO);
-    // The program gets neither our files (those of libraries among them, which may lack
-    // O_CLOEXEC) nor our signals: one that ignores SIGPIPE writes to nobody for ever.
+    // The program inherits neither open files (libraries may open theirs without O_CLOEXEC) nor
+    // signal settings: a program that ignores SIGPIPE would write to a closed pipe for ever.
     close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
     signal(SIGPIPE, SIG_DFL);
     sigset_t none;
@@ -82,7 +82,7 @@ static void exec_child(const struct orl_process_params *params, int output_fd)
     _exit(errno == ENOENT ? EXIT_NO_PROGRAM : 126);
 }
 
-// Copies output until the program closes it. True when cancelled.
+// Copies the program's output until the program closes it. True when the job was cancelled.
 static bool pump(const struct orl_process_params *params, struct output *out, int fd, pid_t pid,
                  FILE *log_file)
 {

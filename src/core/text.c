@@ -14,7 +14,7 @@ size_t orl_utf8_length(const char *text)
     for (size_t i = 1; i < length; i++)
         if ((c[i] & 0xc0) != 0x80)
             return 0;
-    // No longer than needed, no surrogates, nothing above U+10FFFF.
+    // Overlong forms, surrogates and values above U+10FFFF are invalid (RFC 3629).
     bool bad = (c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f) ||
                (c[0] == 0xf0 && c[1] < 0x90) || (c[0] == 0xf4 && c[1] > 0x8f);
     return bad ? 0 : length;
@@ -43,7 +43,7 @@ void orl_text_escape(const char *text, char *out, size_t size)
         char coded[5];
         const char *from = text;
         bool escaped = length == 0 || controls_terminal(c);
-        if (escaped) { // a C1 control's second byte is no UTF-8 by itself and follows suit
+        if (escaped) { // the second byte of a C1 control is invalid alone: escaped next
             snprintf(coded, sizeof coded, "\\x%02x", c[0]);
             from = coded;
         }

@@ -1,16 +1,16 @@
-// Text that comes from elsewhere: names of files, what a file says.
+// Text from untrusted sources: names and contents of files.
 #ifndef ORL_CORE_TEXT_H
 #define ORL_CORE_TEXT_H
 
 #include "oriel/common.h"
 
-// Bytes of the UTF-8 character that `text` begins with; 0: it begins with none.
+// Length in bytes of the UTF-8 character at the start of `text`; 0 when there is none.
 size_t orl_utf8_length(const char *text);
 bool orl_utf8_valid(const char *text);
 
-// Copies what fits. Control characters other than newline and tab, which could make a terminal
-// lie, and bytes that are not UTF-8 become "\xNN".
-enum { ORL_TEXT_SHOWN = 1024 }; // bytes that show most names of files whole
+// Copies as much of `text` as fits into `size` bytes. Control characters other than newline and
+// tab, which could manipulate a terminal, and bytes that are not UTF-8 become "\xNN".
+enum { ORL_TEXT_SHOWN = 1024 }; // buffer size in bytes; holds most file names completely
 void orl_text_escape(const char *text, char *out, size_t size);
 
 #endif

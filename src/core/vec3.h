@@ -9,7 +9,7 @@ static inline double orl_dot3(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// `out` must be neither of the two.
+// `out` must differ from a and b.
 static inline void orl_cross3(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -17,7 +17,7 @@ static inline void orl_cross3(const double a[3], const double b[3], double out[3
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-// Makes v a unit vector; leaves a zero vector as it is. The length that it had.
+// Makes v a unit vector and returns its previous length. A zero vector stays zero.
 static inline double orl_normalize3(double v[3])
 {
     double length = sqrt(orl_dot3(v, v));

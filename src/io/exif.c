@@ -13,7 +13,7 @@
 
 // --- reading ---
 
-// One value of a numeric entry; false when there is none or it is no number.
+// Value n of a numeric entry; false when it is missing or not a number.
 static bool get_nth_number(ExifData *data, ExifIfd ifd, ExifTag tag, size_t n, double *value)
 {
     ExifEntry *entry = exif_content_get_entry(data->ifd[ifd], tag);
@@ -64,7 +64,7 @@ static void get_text(ExifData *data, ExifIfd ifd, ExifTag tag, char *text, size_
     if (entry && entry->data && entry->format == EXIF_FORMAT_ASCII)
         while (length < entry->size && length + 1 < size && entry->data[length])
             length++;
-    // Cameras pad these with spaces; control characters would upset reports.
+    // Cameras pad texts with spaces, and control characters would break reports.
     while (length && entry->data[length - 1] == ' ')
         length--;
     for (size_t i = 0; i < length; i++)
@@ -121,7 +121,7 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
     ExifData *data = size <= UINT_MAX ? exif_data_new() : NULL;
     if (!data)
         return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory to read EXIF", path);
-    // Only what the file says, without defaults that the specification asks for.
+    // Without this libexif adds defaults that the specification asks for and the file lacks.
     exif_data_unset_option(data, EXIF_DATA_OPTION_FOLLOW_SPECIFICATION);
     exif_data_load_data(data, bytes, (unsigned)size);
     get_text(data, EXIF_IFD_0, EXIF_TAG_MAKE, exif->make, sizeof exif->make);
@@ -136,7 +136,7 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
         get_number(data, EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE, &apex) && fabs(apex) < 32)
         exif->aperture = exp2(apex / 2);
     exif->iso = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS);
-    // 65535 in the 16-bit entry means "see the 32-bit one" (EXIF 2.3, 4.6.5).
+    // 65535 in the 16-bit entry refers to the 32-bit entry (EXIF 2.3, 4.6.5).
     double wide = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED);
     if (wide > 0 && (!(exif->iso > 0) || exif->iso >= 65535))
         exif->iso = wide;
@@ -154,7 +154,7 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
 
 // --- writing ---
 
-// The simplest fraction within a billionth of value (continued fraction), so that
+// The simplest fraction within a billionth of value, by continued fractions, so that
 // 0.004 is written as 1/250.
 static ExifSRational to_rational(double value)
 {
@@ -173,7 +173,7 @@ static ExifSRational to_rational(double value)
     return (ExifSRational){.numerator = (ExifSLong)(sign * p1), .denominator = (ExifSLong)q1};
 }
 
-// An entry with room for `count` values, owned by `data`. NULL: no memory.
+// Adds an entry with room for `count` values, owned by `data`. NULL when memory runs out.
 static ExifEntry *add_entry(ExifData *data, ExifIfd ifd, ExifTag tag, ExifFormat format,
                             size_t count)
 {

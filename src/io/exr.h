@@ -14,20 +14,20 @@ struct orl_exr_channel {
     size_t stride;     // floats from one pixel to the next
 };
 
-// OpenEXR's standard attributes. What is zero or NULL is not known and not written.
+// OpenEXR's standard attributes. Zero and NULL mean unknown; such attributes are left out.
 struct orl_exr_view_attributes {
-    // worldToCamera (row vectors, left-handed, +z forward, y up, as OpenEXR defines it)
+    // Gives worldToCamera (row vectors, left-handed, +z forward, y up, as OpenEXR defines it)
     // and worldToNDC.
     const struct orl_view *view;
     double exposure_s, iso, aperture; // expTime in seconds, isoSpeed, aperture as f-number
     double white_luminance;           // whiteLuminance: cd/m2 of RGB (1, 1, 1)
     bool srgb_primaries;              // chromaticities of Rec. 709 / sRGB
-    bool latlong; // envmap: all directions, as OpenEXR's latitude-longitude map has them;
-                  // of `view` only its pose counts
+    bool latlong; // envmap: OpenEXR's latitude-longitude map of all directions; only the
+                  // pose of `view` is used
     const char *comments;
 };
 
-// Both lossless: ZIP packs rows of renderings and layers well, PIZ grainy photographs.
+// Both are lossless. ZIP compresses renderings and layers well, PIZ grainy photographs.
 enum orl_exr_compression { ORL_EXR_ZIP, ORL_EXR_PIZ };
 
 struct orl_exr_params {
@@ -38,14 +38,14 @@ struct orl_exr_params {
     struct orl_exr_view_attributes attributes;
 };
 
-// Adds the interleaved channel `index` of an F32 image, which must outlive params, under
+// Adds channel `index` of an interleaved F32 image, which must outlive params, under
 // this name. False when there is no room or the name is too long.
 bool orl_exr_add_channel(struct orl_exr_params *params, const char *name, bool half,
                          const struct orl_image *image, int index);
-// Scanlines. Written whole or not at all.
+// Writes a file of scanlines, atomically.
 enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
                               const struct orl_exr_params *params) ORL_CHECK_RESULT;
-// Size of the first part's data window, from the header.
+// Reads the size of the first part's data window from the header.
 enum orl_result orl_exr_size(const struct orl_log *log, const char *path, int *width,
                              int *height) ORL_CHECK_RESULT;
 // Reads `count` named channels into an interleaved float image (at most 4).

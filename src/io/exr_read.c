@@ -9,7 +9,7 @@
 #include "io/exr.h"
 #include "io/internal.h"
 
-// A tile is decoded whole: a few hostile bytes must not ask for much memory.
+// Tiles and chunks are decoded whole, so a few hostile bytes could make Oriel allocate much memory.
 enum { EXR_MAX_TILE_SIDE = 4096, EXR_MAX_CHUNK_MIB = 2048 };
 
 struct exr_reader {
@@ -66,8 +66,8 @@ static enum orl_result find_channels(const struct exr_reader *reader)
     return result;
 }
 
-// A header may claim any size: every chunk of it takes 8 bytes in the chunk table
-// and 8 of its own, which the file must have.
+// A header may claim any size, but each chunk takes 8 bytes in the chunk table and at least 8
+// bytes of its own, so the file must be large enough for them.
 static enum orl_result check_window(struct exr_reader *reader, int *width_out, int *height_out)
 {
     struct stat st;
@@ -100,7 +100,7 @@ static exr_result_t read_chunk(struct exr_reader *reader, const exr_chunk_info_t
 {
     exr_decode_pipeline_t *pipe = &reader->pipe;
     struct orl_image *image = reader->image;
-    // A chunk is decoded whole, with channels that nobody asked for.
+    // The limit covers the whole chunk: channels that are not read are decoded too.
     if (chunk->unpacked_size > (uint64_t)EXR_MAX_CHUNK_MIB << 20)
         return EXR_ERR_OUT_OF_MEMORY;
     if (chunk->width > image->width - x || chunk->height > image->height - y)
@@ -146,7 +146,7 @@ static exr_result_t read_scanlines(struct exr_reader *reader)
     return code;
 }
 
-// The finest level only.
+// Reads the tiles of the finest level.
 static exr_result_t read_tiles(struct exr_reader *reader)
 {
     int32_t width = 0, height = 0;
@@ -203,7 +203,7 @@ static enum orl_result start(struct exr_reader *reader)
     init.max_image_height = ORL_IMAGE_MAX_SIDE;
     init.max_tile_width = EXR_MAX_TILE_SIDE;
     init.max_tile_height = EXR_MAX_TILE_SIDE;
-    // A file that was cut off is damaged, not something to guess about.
+    // A truncated file must be refused rather than reconstructed.
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     return check(reader, exr_start_read(&reader->context, reader->path, &init));
 }

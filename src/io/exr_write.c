@@ -19,12 +19,12 @@ struct exr_writer {
     exr_context_t context;
     exr_encode_pipeline_t pipe;
     bool pipe_ready;
-    exr_result_t (*compress)(exr_encode_pipeline_t *); // the library's
-    float *rows; // one chunk's samples, channel after channel
+    exr_result_t (*compress)(exr_encode_pipeline_t *); // OpenEXRCore's own
+    float *rows; // samples of one chunk, channel after channel
 };
 
-// OpenEXR holds the context's lock while it reports an error in writing, so that asking the
-// context for anything, even for our own data, would wait for ever. The code says enough.
+// OpenEXR holds the context's lock while it reports a write error, so any call that uses the
+// context, even for our own data, would deadlock. The result code is reported instead.
 static void drop_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context;
@@ -43,15 +43,15 @@ static enum orl_result check(const struct exr_writer *writer, exr_result_t code)
 
 // --- camera attributes ---
 
-// OpenEXR multiplies row vectors from the left, and its camera space has y up
-// where ours has y down (ImfStandardAttributes.h, worldToCamera).
+// OpenEXR multiplies row vectors from the left, and its camera space has y up,
+// whereas ours has y down (ImfStandardAttributes.h, worldToCamera).
 static exr_attr_m44f_t world_to_camera(const struct orl_pose *pose)
 {
     exr_attr_m44f_t m = {{0}};
     const double sign[3] = {1, -1, 1};
     for (int out = 0; out < 3; out++) {
         for (int in = 0; in < 3; in++)
-            m.m[4 * in + out] = (float)(sign[out] * pose->r[out][in] + 0.0); // no -0
+            m.m[4 * in + out] = (float)(sign[out] * pose->r[out][in] + 0.0); // -0 becomes 0
         m.m[12 + out] = (float)(sign[out] * pose->t[out] + 0.0);
     }
     m.m[15] = 1;
@@ -144,8 +144,8 @@ static const struct orl_exr_channel *find_channel(const struct orl_exr_params *p
     return NULL;
 }
 
-// Copies the chunk's samples to `to`. A radiance above half's range becomes its
-// largest value: infinities would spread through any filter that reads the file.
+// Copies the chunk's samples to `to`. Values outside the range of half are clamped to it,
+// since infinities would spread through any filter that reads the file.
 static void gather(const struct orl_exr_params *params, const struct orl_exr_channel *channel,
                    int first_row, int rows, float *to)
 {
@@ -159,8 +159,8 @@ static void gather(const struct orl_exr_params *params, const struct orl_exr_cha
     }
 }
 
-// OpenEXRCore before 3.2 leaves a chunk compressed when that takes exactly as many
-// bytes as the samples themselves, which every reader takes to mean: not compressed.
+// When the compressed chunk is exactly as large as its samples, OpenEXRCore before 3.2 stores it
+// compressed, but every reader takes a chunk of that size as uncompressed.
 static exr_result_t compress(exr_encode_pipeline_t *pipe)
 {
     const struct exr_writer *writer = pipe->encoding_user_data;

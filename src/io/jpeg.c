@@ -1,5 +1,5 @@
-// JPEG through libjpeg-turbo. libjpeg reports errors by longjmp: whatever must
-// survive one lives in struct jpeg_job, owned by the caller of the function that
+// JPEG through libjpeg-turbo. libjpeg reports errors by longjmp. State that must
+// survive a longjmp is in struct jpeg_job, owned by the caller of the function that
 // calls setjmp.
 #include <setjmp.h>
 #include <stdio.h>
@@ -14,9 +14,9 @@
 #include "io/internal.h"
 
 enum {
-    // Coefficients of a progressive picture at ORL_PICTURE_MAX_PIXELS.
+    // Enough for the coefficients of a progressive picture of ORL_PICTURE_MAX_PIXELS.
     MAX_MEMORY_GIB = 8,
-    // More scans than any encoder writes; each costs time in every pixel.
+    // More scans than any encoder writes. Each scan costs time for every pixel.
     MAX_SCANS = 200,
     // A JPEG block of 8x8 samples takes at least one bit of each component's data.
     MAX_PIXELS_PER_BYTE = 1024,
@@ -38,8 +38,8 @@ static void stop(j_common_ptr info)
     longjmp(job->on_error, 1);
 }
 
-// libjpeg goes on after damage and paints the rest grey; here damage is an error.
-// Padding before the end marker, and oddities of optional markers, lose nothing.
+// libjpeg continues after damage and paints the rest grey; here damage is an error. Padding before
+// the end marker and irregular optional markers lose no pixels and are accepted.
 static void take_message(j_common_ptr info, int level)
 {
     if (level >= 0)
@@ -138,7 +138,7 @@ enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path
 static enum orl_result check_header(const struct jpeg_job *job,
                                     const struct jpeg_decompress_struct *info, size_t size)
 {
-    // A progressive picture is kept as coefficients of two bytes until its last scan.
+    // libjpeg keeps a progressive picture as two-byte coefficients until its last scan.
     uint64_t pixel = 3 + (jpeg_has_multiple_scans((j_decompress_ptr)(uintptr_t)info)
                               ? 2 * (uint64_t)info->num_components : 0);
     enum orl_result result = orl_picture_check_memory(job->log, job->path, info->image_width,
@@ -178,7 +178,7 @@ static enum orl_result decode(struct jpeg_job *job, j_decompress_ptr info, const
                        (size_t)info->output_scanline * (size_t)image->width * (size_t)channels;
         jpeg_read_scanlines(info, &row, 1);
     }
-    jpeg_finish_decompress(info); // reads up to the end marker: its absence is found here
+    jpeg_finish_decompress(info); // reads up to the end marker and reports when it is missing
     return ORL_OK;
 }
 
@@ -200,7 +200,7 @@ struct jpeg_output {
     int quality;
     uint8_t *exif;
     size_t exif_size;
-    FILE *stream; // NULL: to memory
+    FILE *stream; // NULL: write to memory
     uint8_t *data; // owned by the caller, also after an error
     unsigned long size;
 };
@@ -221,7 +221,7 @@ static enum orl_result encode(struct jpeg_job *job, j_compress_ptr info, struct 
     info->in_color_space = image->channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
     jpeg_set_defaults(info);
     jpeg_set_quality(info, out->quality, TRUE);
-    info->optimize_coding = out->stream != NULL; // a second pass over the picture
+    info->optimize_coding = out->stream != NULL; // costs a second pass over the picture
     if (out->quality >= 90 && image->channels == 3) {
         info->comp_info[0].h_samp_factor = 1;
         info->comp_info[0].v_samp_factor = 1;

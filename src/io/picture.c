@@ -1,4 +1,4 @@
-// Which reader a file needs, and what 8-bit and linear pictures have in common.
+// Selects the reader of a file and converts between 8-bit and linear pictures.
 #include "io/picture.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ static enum format format_of(const char *path, const uint8_t *data, size_t size)
         {FORMAT_PNG, 8, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}},
         {FORMAT_EXR, 4, {0x76, 0x2f, 0x31, 0x01}},
         {FORMAT_TIFF, 4, {'I', 'I', 42, 0}}, {FORMAT_TIFF, 4, {'M', 'M', 0, 42}},
-        {FORMAT_TIFF, 4, {'I', 'I', 43, 0}}, {FORMAT_TIFF, 4, {'M', 'M', 0, 43}}, // above 4 GiB
+        {FORMAT_TIFF, 4, {'I', 'I', 43, 0}}, {FORMAT_TIFF, 4, {'M', 'M', 0, 43}}, // BigTIFF
     };
     enum format format = FORMAT_UNKNOWN;
     for (size_t i = 0; i < ORL_COUNT(known) && format == FORMAT_UNKNOWN; i++)
@@ -72,7 +72,7 @@ enum orl_result orl_picture_check_memory(const struct orl_log *log, const char *
                                          uint64_t width, uint64_t height,
                                          uint64_t bytes_per_pixel)
 {
-    const uint64_t small = 64 << 20; // not worth the look
+    const uint64_t small = 64 << 20; // too small to be worth the check
     const double gib = 1 << 30;
     enum orl_result result = orl_picture_check_size(log, path, width, height);
     uint64_t asked = width * height * bytes_per_pixel;
@@ -195,7 +195,7 @@ static enum orl_result read_exr(const struct orl_log *log, const char *path,
     if (orl_exr_read(NULL, path, rgb, 3, image) == ORL_OK)
         return ORL_OK;
     if (orl_exr_read(NULL, path, gray, 1, &luma) != ORL_OK)
-        return orl_exr_read(log, path, rgb, 3, image); // for its message
+        return orl_exr_read(log, path, rgb, 3, image); // to get its error message
     enum orl_result result = orl_image_init(log, image, luma.width, luma.height, 3, ORL_PIXEL_F32);
     size_t count = result == ORL_OK ? orl_image_bytes(&luma) / sizeof(float) : 0;
     for (size_t i = 0; i < 3 * count; i++)
@@ -264,7 +264,7 @@ enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *p
     return result;
 }
 
-// Linear light as 8-bit sRGB, or luma of that.
+// Converts linear light to 8-bit sRGB, or to the luma of that.
 static enum orl_result encode_eight(const struct orl_log *log, const struct orl_image *linear,
                                     int channels, struct orl_image *image)
 {

@@ -1,5 +1,5 @@
-// PNG through libpng, which reports errors by longjmp: whatever must survive one
-// lives in struct png_job, owned by the caller of the function that calls setjmp.
+// PNG through libpng, which reports errors by longjmp. State that must survive a longjmp
+// is in struct png_job, owned by the caller of the function that calls setjmp.
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,10 +17,10 @@ struct png_job {
     const char *path;
     png_structp png;
     png_infop info;
-    const uint8_t *data; // what is left to read
+    const uint8_t *data; // next byte to read
     size_t size;
     png_bytepp rows;     // owned
-    bool wide, linear;   // what was decoded: 16 bits a sample, linear light
+    bool wide, linear;   // the decoded samples: 16 bits each, linear light
 };
 
 static void stop(png_structp png, png_const_charp message)
@@ -107,8 +107,8 @@ enum orl_result orl_png_read_header(const struct orl_log *log, const char *path,
 
 // --- pixels ---
 
-// Linear light is stored only when the file's gamma says so: cameras' and converters'
-// 16-bit files are sRGB-encoded like others.
+// Samples are linear only when the file's gamma says so: 16-bit files of cameras and converters
+// are sRGB-encoded like other files.
 static bool is_linear(const struct png_job *job)
 {
     double gamma = 0;
@@ -117,11 +117,11 @@ static bool is_linear(const struct png_job *job)
            png_get_gAMA(job->png, job->info, &gamma) && fabs(gamma - 1) < 0.01;
 }
 
-// 8-bit samples, or with `deep` those of the file's depth in this machine's byte order.
+// Decodes 8-bit samples, or with `deep` samples of the file's depth in the machine's byte order.
 static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool deep,
                                   struct orl_image *rgb)
 {
-    // Deflate reaches 1032 to 1 at most (zlib's technical notes).
+    // Deflate compresses at most 1032 to 1 (zlib's technical notes).
     const uint64_t max_ratio = 1032;
     if (setjmp(png_jmpbuf(job->png)))
         return ORL_ERR_FORMAT;
@@ -151,7 +151,8 @@ static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool de
     size_t row = (size_t)width * (job->wide ? 6 : 3);
     if (png_get_rowbytes(job->png, job->info) != row)
         png_error(job->png, "unexpected row size");
-    // Wide samples lie at the end of their pixels' room as floats.
+    // With `deep` the samples go to the end of the image, where they are converted to floats
+    // in place.
     result = orl_image_init(job->log, rgb, (int)width, (int)height, 3,
                             deep ? ORL_PIXEL_F32 : ORL_PIXEL_U8);
     if (result != ORL_OK)
@@ -166,8 +167,8 @@ static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool de
     return ORL_OK;
 }
 
-// Not libpng's conversion, which works in linear light when the file has a gamma
-// chunk and so would depend on it.
+// Converts RGB to luma. libpng's own conversion works in linear light when the file has a gamma
+// chunk, so its result would depend on that chunk.
 static enum orl_result to_luma(const struct orl_log *log, struct orl_image *image)
 {
     struct orl_image luma;
@@ -206,7 +207,7 @@ enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *pat
     end_reading(&job);
     if (result != ORL_OK)
         return result;
-    // From the front: a float is written only over samples that were read before.
+    // From the front, a float overwrites only samples that were already read.
     size_t count = (size_t)image->width * (size_t)image->height * 3;
     size_t sample = job.wide ? 2 : 1;
     const uint8_t *from = image->u8 + orl_image_bytes(image) - count * sample;
@@ -233,7 +234,8 @@ static enum orl_result encode(struct png_job *job, FILE *stream, const struct or
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (image->channels == 3)
         png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
-    // Renders are written by the hundred: twice as fast as level 6, a few percent larger.
+    // Renderings are written by the hundred. Level 4 is twice as fast as level 6, and files are a
+    // few percent larger.
     png_set_compression_level(job->png, 4);
     png_write_info(job->png, job->info);
     size_t stride = (size_t)image->width * (size_t)image->channels;

@@ -1,5 +1,5 @@
-// Netpbm's binary pictures: PBM (P4), PGM (P5) and PPM (P6) of 8 bits, as silhouettes and
-// frames of videos come (netpbm.sourceforge.net/doc).
+// Netpbm's binary pictures: PBM (P4), PGM (P5) and PPM (P6) of 8 bits, the formats of silhouettes
+// and of video frames (netpbm.sourceforge.net/doc).
 #include <ctype.h>
 #include <string.h>
 
@@ -8,10 +8,10 @@
 struct pnm {
     int kind; // 4, 5 or 6
     uint64_t width, height, white;
-    size_t start; // of the samples
+    size_t start; // byte offset of the samples
 };
 
-// The next number of the header; comments and white space before it are skipped.
+// Reads the next number of the header, after any comments and white space.
 static bool take_number(const uint8_t *data, size_t size, size_t *at, uint64_t *value)
 {
     while (*at < size && (isspace(data[*at]) || data[*at] == '#')) {
@@ -65,7 +65,7 @@ enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path,
     return result;
 }
 
-// Of a bitmap 1 is black.
+// In a bitmap (P4) 1 is black.
 static uint8_t sample(const struct pnm *pnm, const uint8_t *row, size_t i)
 {
     if (pnm->kind == 4)

@@ -11,7 +11,7 @@ struct orl_profile {
     cmsHTRANSFORM transform;
 };
 
-// D65, Rec. 709 primaries, no curve.
+// A profile with white point D65, Rec. 709 primaries and a linear curve.
 static cmsHPROFILE linear_rec709(cmsContext context)
 {
     const cmsCIExyY white = {0.3127, 0.3290, 1};
@@ -27,7 +27,7 @@ static cmsHPROFILE linear_rec709(cmsContext context)
 
 static bool make_transform(struct orl_profile *profile, const void *icc, size_t size)
 {
-    profile->context = cmsCreateContext(NULL, NULL); // its messages are dropped
+    profile->context = cmsCreateContext(NULL, NULL); // without a handler messages are dropped
     if (!profile->context || size > UINT32_MAX)
         return false;
     cmsHPROFILE from = cmsOpenProfileFromMemTHR(profile->context, icc, (cmsUInt32Number)size);

@@ -20,7 +20,7 @@ static enum orl_result check(const struct orl_log *log, const char *path, int co
                     code > 0 ? strerror(code) : libraw_strerror(code));
 }
 
-// LibRaw prints to stderr otherwise.
+// Records damage; without a handler LibRaw prints to stderr.
 static void drop_damage(void *priv, const char *file, const int offset)
 {
     (void)file;
@@ -42,7 +42,7 @@ static enum orl_result open_raw(const struct orl_log *log, const char *path, boo
     p->output_color = 1;         // sRGB's primaries
     p->use_camera_wb = 1;
     p->no_auto_bright = 1;
-    p->adjust_maximum_thr = 0; // else white would depend on what the picture shows
+    p->adjust_maximum_thr = 0; // otherwise white would depend on the picture
     p->user_flip = 0;          // pixels as stored
     return check(log, path, libraw_open_file(raw, path));
 }
@@ -63,12 +63,12 @@ static double positive(float value)
 enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
                                 struct orl_picture_info *info, struct orl_exif *exif)
 {
-    // LibRaw's flip to EXIF's orientation.
+    // EXIF orientation for each of LibRaw's flip values.
     static const int orientations[8] = {[0] = 1, [3] = 3, [5] = 8, [6] = 6};
     libraw_data_t *raw = NULL;
     bool damaged = false;
     enum orl_result result = open_raw(log, path, &damaged, &raw);
-    int flip = raw ? raw->sizes.flip : 0; // before it takes user_flip
+    int flip = raw ? raw->sizes.flip : 0; // read before LibRaw replaces it by user_flip
     if (result == ORL_OK)
         result = check(log, path, libraw_adjust_sizes_info_only(raw));
     if (result == ORL_OK)
@@ -117,7 +117,8 @@ enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *pat
     bool damaged = false;
     int code = LIBRAW_SUCCESS;
     enum orl_result result = open_raw(log, path, &damaged, &raw);
-    if (result == ORL_OK) // raw samples, four of 16 bits a pixel, a bitmap of three, and ours
+    // Bytes per pixel: a raw sample, four 16-bit samples, a bitmap of three, and three floats.
+    if (result == ORL_OK)
         result = orl_picture_check_memory(log, path, raw->sizes.raw_width, raw->sizes.raw_height,
                                           2 + 8 + 6 + 3 * sizeof(float));
     if (result == ORL_OK)

@@ -7,7 +7,7 @@
 
 enum { WIDTH = 760, LEFT = 78, RIGHT = 24, TOP = 96, PLOT_HEIGHT = 330, BOTTOM = 58 };
 
-// Okabe and Ito's colours: told apart without seeing red or green.
+// Okabe and Ito's palette, which colour-blind readers can distinguish.
 static const char *const colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                      "#e69f00", "#56b4e9", "#666666", "#b8a900"};
 
@@ -40,7 +40,7 @@ static void put_text(FILE *out, double x, double y, const char *anchor, const ch
     fputs("</text>\n", out);
 }
 
-// "2.5", "400", "12 k", "1.5 M".
+// Writes numbers such as "2.5", "400", "12 k", "1.5 M".
 static void format_number(double value, char text[32])
 {
     double size = fabs(value);
@@ -58,7 +58,7 @@ enum { TICKS_MAX = 24 };
 
 struct axis {
     bool log;
-    double low, high;      // of the data's space: logarithms where log
+    double low, high;      // range in data space; logarithms on a logarithmic axis
     double from, to;       // pixels
     double ticks[TICKS_MAX]; // values
     size_t tick_count;
@@ -89,7 +89,7 @@ static void set_linear(struct axis *axis, double low, double high)
         axis->ticks[axis->tick_count++] = k * step;
 }
 
-// Ticks at 1, 2, 5 of each decade, or at decades when these are many.
+// Ticks at 1, 2 and 5 of each decade, or only at decades when there are many.
 static void set_log(struct axis *axis, double low, double high)
 {
     static const double steps[] = {1, 2, 5};
@@ -182,7 +182,7 @@ static void put_x_axis(FILE *out, const struct axis *x, double top, double botto
         double at = place(x, x->ticks[i]);
         put_line(out, at, top, at, bottom, "#e4e4e4");
         format_number(x->ticks[i], text);
-        if (at - last < 44) // no room for its number
+        if (at - last < 44) // no room for the label
             continue;
         put_text(out, at, bottom + 18, "middle", SMALL, text);
         last = at;
@@ -243,7 +243,7 @@ static void put_series(FILE *out, const struct orl_plot_series *s, const struct 
     }
 }
 
-// The stream's text is where `text` says only once it is closed.
+// Closes the stream, which sets *text (open_memstream).
 static char *finish(const struct orl_log *log, FILE *out, char **text)
 {
     fputs("</svg>\n", out);

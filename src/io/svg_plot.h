@@ -7,32 +7,32 @@
 struct orl_plot_series {
     const char *name;
     const double *x, *y;
-    const char *const *labels; // beside each dot; NULL: none
+    const char *const *labels; // text beside each dot; NULL: none
     size_t count;
-    bool line;                 // dots are joined in their order
+    bool line;                 // joins the dots in their order
 };
 
 struct orl_plot {
     const char *title, *subtitle, *x_label, *y_label; // labels with units
-    bool x_log, y_log; // values must be positive; else the axis starts at 0, or below
-    bool y_fit;        // a linear y axis need not start at 0
+    bool x_log, y_log; // logarithmic, for positive values; linear axes start at 0 or below
+    bool y_fit;        // a linear y axis may start above 0
     const struct orl_plot_series *series;
     size_t series_count;
     const struct orl_plot_series *behind; // a grey line without dots, behind the others; or NULL
 };
 
-// Rows of bars, each of the same parts one after another.
+// Rows of stacked bars; all rows have the same parts.
 struct orl_bars {
     const char *title, *subtitle, *x_label;
     const char *const *parts;
     size_t part_count;
     const char *const *rows;
-    const double *values; // row_count * part_count, row by row, not negative
+    const double *values; // row_count * part_count, row by row, >= 0
     size_t row_count;
 };
 
-// SVG, released with free(). NULL, logged: no memory. Dots that are not finite, or not
-// positive on a logarithmic axis, are left out.
+// These return SVG text, released with free(); NULL, logged, when memory runs out. Dots that are
+// not finite, or not positive on a logarithmic axis, are left out.
 char *orl_plot_svg(const struct orl_log *log, const struct orl_plot *plot);
 char *orl_bars_svg(const struct orl_log *log, const struct orl_bars *bars);
 

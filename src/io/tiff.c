@@ -1,4 +1,4 @@
-// TIFF through libtiff: 8 or 16 bits of sRGB or of the colour space of a profile inside,
+// TIFF through libtiff: 8 or 16 bits in sRGB or in the space of an embedded colour profile,
 // or 32-bit floats of linear light.
 #include <math.h>
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 #include "core/memory.h"
 #include "io/internal.h"
 
-// What compression may gain at most: more is a header that lies about its size.
+// Largest accepted compression ratio; a header that implies more states a false size.
 enum { MAX_RATIO = 20000 };
 
 struct tiff_job {
@@ -22,8 +22,8 @@ struct tiff_job {
     TIFF *tiff;
     uint32_t width, height;
     uint16_t bits, samples, format, photometric, planar;
-    bool encoded; // samples stay as stored, in [0, 1], for a profile to make light of
-    char message[512]; // the first error of libtiff
+    bool encoded; // samples stay as stored, in [0, 1], to be converted by a profile
+    char message[512]; // libtiff's first error
 };
 
 static int take_error(TIFF *tiff, void *priv, const char *module, const char *format, va_list args)
@@ -33,7 +33,7 @@ static int take_error(TIFF *tiff, void *priv, const char *module, const char *fo
     struct tiff_job *job = priv;
     if (!*job->message)
         vsnprintf(job->message, sizeof job->message, format, args);
-    return 1; // handled
+    return 1; // the error is handled
 }
 
 static int take_warning(TIFF *tiff, void *priv, const char *module, const char *format,
@@ -125,7 +125,7 @@ static double positive(TIFF *tiff, uint32_t tag)
     return TIFFGetField(tiff, tag, &value) && isfinite(value) && value > 0 ? (double)value : 0;
 }
 
-// Leaves the directory of the picture.
+// Changes the current directory from the picture to its EXIF block, so it must come last.
 static void read_exif(struct tiff_job *job, struct orl_exif *exif)
 {
     TIFF *t = job->tiff;
@@ -183,7 +183,7 @@ static float light(const struct tiff_job *job, const uint8_t *sample)
     return value;
 }
 
-// `count` pixels from a buffer into a row of the image. plane -1: samples are interleaved.
+// Copies `count` pixels from a buffer into a row of the image. plane -1: samples are interleaved.
 static void take_pixels(const struct tiff_job *job, const uint8_t *from, size_t count, int plane,
                         float *rgb)
 {
@@ -256,8 +256,8 @@ static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
     return result;
 }
 
-// The colour profile of a file of integer RGB samples, NULL when there is none: what
-// converters of RAW files write is often in a wider space than sRGB.
+// The colour profile of a file of integer RGB samples; NULL when there is none. Converters of RAW
+// files often write a wider colour space than sRGB.
 static const void *find_profile(const struct tiff_job *job, uint32_t *size)
 {
     const void *profile = NULL;

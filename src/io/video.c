@@ -16,7 +16,7 @@ enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_pro
     char *pattern = orl_path_join(log, frames_dir, "%05d.png");
     enum orl_result result = pattern ? orl_atomic_begin(log, path, &file) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
-        // Even sizes and 4:2:0, since most players take nothing else.
+        // Most players support only even sizes and 4:2:0 chroma subsampling.
         const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y",
                                     "-framerate", rate, "-i", pattern,
                                     "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2",
