@@ -11,9 +11,9 @@
 
 enum { COLMAP_SOURCES = 20 };
 
-// --- COLMAP's lists: training photographs only ---
+// --- COLMAP's lists, of training photographs only ---
 
-// Photographs of `names` that share most sparse points with image `ref`, best first.
+// Chooses photographs of `names` that share most sparse points with image `ref`, best first.
 static size_t best_sources(const struct orl_colmap_model *model, const struct orl_names *names,
                            size_t ref, bool *seen, size_t best[COLMAP_SOURCES])
 {
@@ -68,7 +68,7 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
     return ORL_OK;
 }
 
-// COLMAP's own lists would take held-out photographs as sources.
+// COLMAP's own lists would include held-out photographs as sources.
 static enum orl_result write_stereo_lists(struct orl_job *job, const struct orl_names *train)
 {
     struct orl_atomic_file file = {0};
@@ -165,7 +165,7 @@ static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
     return result;
 }
 
-// Maps of an interrupted run are kept when they were made with the same settings.
+// Keeps the maps of an interrupted run when they were made with the same settings.
 static enum orl_result begin_stereo(const struct orl_job *job)
 {
     const char *key = job->keys[ORL_STAGE_DENSIFY];

@@ -32,7 +32,7 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
     return ORL_OK;
 }
 
-// The folder appears under its name only when it is whole.
+// Creates the folder that is filled, OUT.part. It takes the name OUT once it is complete.
 static enum orl_result begin(struct import_job *job)
 {
     const char *out = job->params->out;
@@ -53,7 +53,7 @@ static enum orl_result begin(struct import_job *job)
     job->dir = orl_format(job->log, "%.*s.part", (int)length, out);
     if (!job->dir)
         return ORL_ERR_MEMORY;
-    // What an interrupted import left.
+    // An interrupted import may have left its folder.
     result = orl_dir_remove(job->log, job->dir);
     return result == ORL_OK ? orl_dir_make(job->log, job->dir) : result;
 }
@@ -71,7 +71,7 @@ static enum orl_result fill(struct import_job *job)
 {
     size_t points = 0, triangles = 0;
     enum orl_result result = orl_import_pictures(job);
-    // A hull that cannot be made is found out before the long work.
+    // Bad silhouettes for the hull must be reported before the long work.
     if (result == ORL_OK)
         result = orl_import_write_mesh(job, &triangles);
     if (result == ORL_OK)

@@ -9,7 +9,7 @@
 #include "preprocess/scene_json.h"
 #include "preprocess/stages.h"
 
-// --- a job of prepare whose photographs are there already ---
+// --- a prepare job on existing photographs ---
 
 static enum orl_result add_source(struct orl_job *job, const struct import_job *import,
                                   const struct import_view *view)
@@ -26,7 +26,7 @@ static enum orl_result add_source(struct orl_job *job, const struct import_job *
     if (!source->name || !source->given || !source->path ||
         (job->params->masks_dir && !source->mask))
         return ORL_ERR_MEMORY;
-    // A frame of a clip says nothing.
+    // A frame of a clip has no EXIF.
     return view->picture.kind == IMPORT_PICTURE
                ? orl_exif_read(job->log, view->picture.path, &source->exif)
                : ORL_OK;
@@ -57,7 +57,7 @@ static enum orl_result begin(struct orl_job *job, const struct import_job *impor
 
 // --- sparse points ---
 
-// Paths that COLMAP's commands need.
+// Paths for COLMAP's commands.
 struct paths {
     char *database, *images, *list, *in, *out; // owned
 };
@@ -70,8 +70,8 @@ static enum orl_result find_features(struct orl_job *job, const struct paths *pa
     orl_colmap_arg(&args, "--image_list_path", "%s", paths->list);
     orl_colmap_arg(&args, "--ImageReader.camera_model", "PINHOLE");
     orl_colmap_arg(&args, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda);
-    // Its database numbers photographs as they are finished, and the triangulation asks that the
-    // known cameras have the same numbers: with one thread both are in order of name.
+    // COLMAP's database numbers photographs as they are finished, and triangulation requires that
+    // the known cameras have the same numbers. With one thread, both are in order of name.
     orl_colmap_arg(&args, "--SiftExtraction.num_threads", "1");
     return orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "feature_extractor", .step = "features", .share = 1, .total = 1}, &args);
@@ -93,7 +93,8 @@ static enum orl_result triangulate(struct orl_job *job, const struct paths *path
     orl_colmap_arg(&args, "--image_path", "%s", paths->images);
     orl_colmap_arg(&args, "--input_path", "%s", paths->in);
     orl_colmap_arg(&args, "--output_path", "%s", paths->out);
-    // It stops like this where there is not one point, which take_points says better.
+    // COLMAP stops with this message when it triangulates no point; take_points reports that
+    // clearly.
     return orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "point_triangulator", .step = "triangulate", .share = 1, .total = 1,
         .tolerated = "bundle_adjuster.Solve"}, &args);
@@ -112,7 +113,7 @@ static enum orl_result write_train_list(const struct orl_job *job, const char *p
     return result;
 }
 
-// Poses stay as they are: only the points are taken over.
+// Takes the points alone: the poses are known and stay unchanged.
 static enum orl_result take_points(const struct import_job *import, const struct paths *paths)
 {
     struct orl_colmap_model model = {0};
@@ -178,7 +179,7 @@ enum orl_result orl_import_densify(struct import_job *import)
         result = orl_scene_json_write(&job);
     if (result == ORL_OK && params.keep == ORL_KEEP_MINIMAL)
         result = orl_job_remove(&job, "stereo");
-    // There is nothing to resume.
+    // An import cannot be resumed, so the job's own files are of no use.
     if (result == ORL_OK)
         result = orl_job_remove(&job, ".oriel");
     orl_job_close(&job);

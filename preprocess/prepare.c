@@ -32,7 +32,7 @@ static enum orl_result read_exposures(struct orl_job *job)
     return result;
 }
 
-// Collect runs always: it is what finds out whether anything has changed.
+// Collect always runs, because it finds out whether anything has changed.
 static enum orl_result begin(struct orl_job *job)
 {
     double start = orl_time_s();
@@ -58,7 +58,7 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
         result = orl_stages_run(&job);
     if (result == ORL_OK)
         result = orl_scene_json_write(&job);
-    // Once the scene is whole: fuse and ground alone read the maps.
+    // Only fuse and ground read the depth maps, so the maps can go once the scene is complete.
     if (result == ORL_OK && params->keep == ORL_KEEP_MINIMAL)
         result = orl_job_remove(&job, "stereo");
     orl_job_close(&job);

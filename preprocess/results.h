@@ -1,16 +1,16 @@
-// The files that a stage left, by what is in them: what a later run finds damaged, or not at
-// all, is made again.
+// Checksums of the files that a stage wrote. A later run finds damaged and missing files by them
+// and makes these again.
 #ifndef ORL_PREPROCESS_RESULTS_H
 #define ORL_PREPROCESS_RESULTS_H
 
 #include "preprocess/job/job.h"
 
-// Adds {name in the scene: checksum} of each file `names` (files, and folders with all in them;
-// NULL ends the list) to `files`. What is not there is left out.
+// Adds {name in the scene: checksum} to `files`, for each file of `names` and for all files in its
+// folders. NULL ends `names`. Missing files are left out.
 enum orl_result orl_results_sum(const struct orl_job *job, const char *const *names,
                                 json_t *files) ORL_CHECK_RESULT;
-// Is each file there as it was summed up? The first that is not is in *damaged, with what is
-// wrong in *why.
+// Compares each file with its checksum. *damaged is the first that differs or is missing, *why the
+// reason.
 enum orl_result orl_results_check(const struct orl_job *job, const json_t *files,
                                   const char **damaged, const char **why) ORL_CHECK_RESULT;
 

@@ -22,7 +22,7 @@ static json_t *settings(const struct orl_prepare_params *p)
                      "seed", (int)p->seed, "masks", p->masks_dir != NULL);
 }
 
-// The records of the stages, in their order, without what has a place of its own.
+// The stages' records in order, without the parts that scene.json has elsewhere.
 static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
@@ -39,8 +39,8 @@ static json_t *copy_stages(const json_t *plan, const json_t *done)
     return stages;
 }
 
-// Of all files of the scene, as the stages summed them up when they made them. What is below
-// .oriel is not part of it.
+// Checksums of all files of the scene, as the stages recorded them. Files below .oriel are not part
+// of the scene.
 static json_t *checksums(const json_t *plan, const json_t *done)
 {
     json_t *sums = json_object(), *sum;
@@ -60,7 +60,7 @@ static int compare_photos(const void *a, const void *b)
                   orl_json_text(*(json_t *const *)b, "name"));
 }
 
-// Sorted by name, like everything else that lists photographs.
+// Sorted by name, like every list of photographs.
 static json_t *list_photos(const struct orl_job *job, const json_t *photos)
 {
     size_t count = json_array_size(photos);
@@ -109,12 +109,12 @@ static json_t *left_out(const struct orl_job *job, const json_t *done)
     return list;
 }
 
-// What oriel tune found, in a scene that is still the same. A manifest that cannot be read has
-// nothing to keep: it is written anew.
+// Keeps the result of oriel tune while the scene is the same. A manifest that cannot be read holds
+// nothing to keep and is written anew.
 static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
 {
     json_t *old = NULL;
-    if (!orl_path_is_file(path)) // removed before a stage was done again
+    if (!orl_path_is_file(path)) // removed before a stage ran again
         return ORL_OK;
     enum orl_result result = ORL_OK;
     if (orl_json_read(NULL, path, &old) != ORL_OK)

@@ -1,5 +1,5 @@
-// scene.json: what the stages found, in one place. Its being there makes the folder a scene, so
-// it is written last.
+// scene.json: the results of the stages in one file. It makes the folder a scene, so it is written
+// last.
 #ifndef ORL_PREPROCESS_SCENE_JSON_H
 #define ORL_PREPROCESS_SCENE_JSON_H
 

@@ -1,5 +1,5 @@
-// What the stages are, what the result of each depends on, and what is known of those done
-// before (.oriel/stages.json).
+// The stages, what each one's result depends on, and the records of earlier runs
+// (.oriel/stages.json).
 #include "preprocess/stages.h"
 
 #include <inttypes.h>
@@ -24,7 +24,7 @@
 #include "preprocess/results.h"
 #include "scene/manifest.h"
 
-// --- what the result of a stage depends on, besides the stages before it ---
+// --- what a stage's result depends on, besides the stages before it ---
 
 static json_t *photo_hashes(const struct orl_job *job)
 {
@@ -72,7 +72,7 @@ static json_t *undistort_settings(const struct orl_job *job)
 static json_t *densify_settings(const struct orl_job *job)
 {
     const struct orl_prepare_params *p = job->params;
-    // Without a limit the key stays what it was before there was one.
+    // Without a limit there is no "max_vram" in the key, so older keys stay valid.
     return json_pack("{s:s, s:s, s:i, s:o, s:o*}", "quality", orl_quality_names[p->quality],
                      "densifier", orl_densifier_names[p->densifier], "seed", (int)p->seed, "test",
                      test_names(job), "max_vram",
@@ -100,9 +100,9 @@ struct stage {
     enum orl_stage_id needs;
     json_t *(*settings)(const struct orl_job *job);
     enum orl_result (*run)(struct orl_job *job, json_t *record);
-    const char *results[RESULTS_MAX + 1]; // files and folders that it leaves
-    const char *tells; // of the record: what scene.json cannot be written without
-    bool repeatable;   // made again it should be the same, and then what builds on it stays
+    const char *results[RESULTS_MAX + 1]; // files and folders that it writes
+    const char *tells; // part of the record that scene.json needs
+    bool repeatable;   // a repeated run gives the same result, so that later stages stay valid
 };
 
 static const struct stage stages[ORL_STAGE_COUNT] = {
@@ -112,7 +112,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
                              orl_stage_undistort,
                              {"sparse", "images", "images_linear", "masks"}, "largest", true},
-    // Its maps may be deleted once they are read, and COLMAP's differ from run to run.
+    // Depth maps may be deleted once they are read, and COLMAP's differ from run to run.
     [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
                            orl_stage_densify, {0}, "tool", false},
     [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
@@ -155,7 +155,7 @@ static enum orl_result save_stages(const struct orl_job *job)
     return result;
 }
 
-// A file that cannot be read, or is none of ours, tells nothing: all is done again.
+// An unreadable or foreign file counts as empty: all stages run again.
 static json_t *read_stages(const struct orl_job *job, const char *path)
 {
     json_t *root = NULL;
@@ -173,7 +173,7 @@ static json_t *read_stages(const struct orl_job *job, const char *path)
 enum orl_result orl_stages_load(struct orl_job *job)
 {
     char *path = orl_job_path(job, ".oriel/stages.json");
-    // The plan is this program's, whatever wrote the file.
+    // The plan is always this program's, not that of the file.
     json_t *plan = json_array();
     for (int i = 0; i < ORL_STAGE_COUNT; i++)
         json_array_append_new(plan, json_string(stages[i].name));
@@ -201,7 +201,7 @@ static bool has_same_key(const struct orl_job *job, int id)
     return has_key(job, id) && strcmp(old_key(job, id), job->keys[id]) == 0;
 }
 
-// Does the record say all that is asked of it later? A file that was edited or damaged may not.
+// True when the record holds all that later steps need. An edited or damaged file may lack it.
 static bool is_sound(const json_t *record, enum orl_stage_id id)
 {
     const json_t *told = json_object_get(record, stages[id].tells);
@@ -212,7 +212,7 @@ static bool is_sound(const json_t *record, enum orl_stage_id id)
     return sound && (!stages[id].results[0] || json_object_size(files) > 0);
 }
 
-// Was the stage done with these inputs and settings, and is its result there as it was left?
+// Sets *there when the stage was done with these inputs and settings and its result is unchanged.
 static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id, bool *there)
 {
     const json_t *record = json_object_get(done_stages(job), stages[id].name);
@@ -232,7 +232,7 @@ static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id,
 static enum orl_result find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])
 {
     bool there[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
-    // As if done: what is made again will be what it was.
+    // Settled: done, or made again with the same result.
     bool settled[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
     current[ORL_STAGE_COLLECT] = true;
     for (int i = 1; i < ORL_STAGE_COUNT; i++) {
@@ -240,7 +240,7 @@ static enum orl_result find_current(const struct orl_job *job, bool current[ORL_
         if (result != ORL_OK)
             return result;
     }
-    // Fuse and ground read the depth maps, which are gone when both were done.
+    // Fuse and ground read the depth maps, which may be deleted after both.
     bool read = !there[ORL_STAGE_FUSE] || !there[ORL_STAGE_GROUND] ||
                 job->params->keep == ORL_KEEP_ALL;
     if (read && !orl_job_has(job, "stereo/.oriel-key"))
@@ -253,8 +253,8 @@ static enum orl_result find_current(const struct orl_job *job, bool current[ORL_
     return ORL_OK;
 }
 
-// Before anything of a stage changes, the folder stops being a scene, and the records
-// of the stage and of all that builds on it go.
+// Before a stage changes any file, scene.json goes, which makes the folder a scene, and so do the
+// records of the stage and of all later stages that depend on it.
 static enum orl_result invalidate(const struct orl_job *job, const bool *current)
 {
     bool all = true, changed = false;
@@ -287,7 +287,7 @@ static void add_usage(const struct orl_job *job, double start_s, const struct ru
     json_object_set_new(record, "wall_s", json_real(orl_time_s() - start_s));
     json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(before) +
                                                    job->child_cpu_s));
-    // Of Oriel it is the peak since it started; children are new processes.
+    // ru_maxrss is Oriel's peak since its start; child processes are new.
     json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
     json_object_set_new(record, "child_peak_rss_mib",
                         json_real((double)job->child_peak_bytes / (1 << 20)));
@@ -312,7 +312,7 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
     return result;
 }
 
-// What was made from another result than this is not current, whatever it was thought to be.
+// A stage made from an outdated result is outdated too.
 static void drop_dependents(const struct orl_job *job, enum orl_stage_id id, bool *current)
 {
     bool depends[ORL_STAGE_COUNT] = {0};
@@ -325,8 +325,8 @@ static void drop_dependents(const struct orl_job *job, enum orl_stage_id id, boo
     }
 }
 
-// `before`: the records of earlier runs. A stage's new record and the end of those that it makes
-// obsolete are saved as one.
+// `before`: the records of earlier runs. The stage's new record and the removal of the records that
+// it outdates are saved together.
 static enum orl_result redo_stage(struct orl_job *job, enum orl_stage_id id, const json_t *before,
                                   bool *current)
 {

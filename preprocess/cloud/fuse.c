@@ -10,14 +10,14 @@
 #include "scene/point_radii.h"
 #include "scene/thin.h"
 
-// Of depth: a photograph that sees so much farther sees past a point.
+// Fraction of depth by which a photograph must see past a point to call the point an outlier.
 static const float STRAY_TOLERANCE = 0.01f;
 
 static double available_gib(void)
 {
     long pages = sysconf(_SC_AVPHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
     double gib = pages > 0 && size > 0 ? (double)pages * (double)size / (1 << 30) : 4;
-    // The kernel's own figure counts the file cache, which it can give up.
+    // The kernel's own estimate counts the file cache as available, since it can free the cache.
     FILE *info = fopen("/proc/meminfo", "r");
     char line[256];
     unsigned long kib;
@@ -29,7 +29,7 @@ static double available_gib(void)
     return gib;
 }
 
-// Depth, normal and colour of all photographs, as COLMAP keeps them.
+// Size of the depth, normal and colour maps of all photographs as COLMAP keeps them, GiB.
 static double maps_gib(const struct orl_colmap_model *model)
 {
     double bytes = 0;
@@ -41,7 +41,7 @@ static double maps_gib(const struct orl_colmap_model *model)
     return bytes / (1 << 30);
 }
 
-// GiB of COLMAP's cache of maps; 0: they all fit in memory.
+// Size of COLMAP's cache of maps in GiB; 0 when all maps fit into memory.
 static double plan_cache(const struct orl_job *job, const struct orl_colmap_model *model)
 {
     double need = maps_gib(model), have = available_gib();
@@ -61,7 +61,7 @@ static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_p
     orl_colmap_arg(args, "--output_path", "%s", out);
     orl_colmap_arg(args, "--input_type", "geometric");
     orl_colmap_arg(args, "--StereoFusion.min_num_pixels", "%d", min_pixels);
-    // With several threads the points depend on which is faster; fusion is quick enough.
+    // With several threads the points depend on thread timing. Fusion is fast enough with one.
     orl_colmap_arg(args, "--StereoFusion.num_threads", "1");
     if (job->params->masks_dir) {
         char *masks = orl_job_path(job, "masks");
@@ -76,7 +76,7 @@ static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_p
     return ORL_OK;
 }
 
-// Reads the cloud that COLMAP fused, and how many photographs agree on each point.
+// Reads the cloud that COLMAP fused and, for each point, how many photographs agree on it.
 static enum orl_result read_cloud(const struct orl_job *job, const char *path,
                                   struct orl_points *points)
 {
@@ -90,8 +90,8 @@ static enum orl_result read_cloud(const struct orl_job *job, const char *path,
     return result;
 }
 
-// Runs COLMAP's fusion with that many photographs agreeing on a point. `done` of the
-// stage's work was done before.
+// Runs COLMAP's fusion for points that at least `min_pixels` photographs agree on. `done` is the
+// part of the stage's work that is finished already.
 static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double cache_gib,
                                   double done, struct orl_points *points)
 {
@@ -109,8 +109,8 @@ static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double ca
     return result;
 }
 
-// Points in front of what photographs see are strays: bright sky before a dark statue,
-// mostly. Reads the depth maps once each.
+// Removes outliers: points in front of the surfaces that photographs see, mostly bright sky around
+// a dark statue. Reads each depth map once.
 static enum orl_result drop_strays(const struct orl_job *job, const struct orl_colmap_model *model,
                                    struct orl_points *points)
 {
@@ -124,7 +124,7 @@ static enum orl_result drop_strays(const struct orl_job *job, const struct orl_c
         char *path = orl_job_path(job, "stereo/depth_maps/%s.geometric.bin", image->name);
         if (!path)
             result = ORL_ERR_MEMORY;
-        else if (orl_path_is_file(path)) // COLMAP makes none without sources
+        else if (orl_path_is_file(path)) // COLMAP writes no map without sources
             result = orl_colmap_map_read(job->log, path, &depth);
         if (depth.f32) {
             struct orl_view view = orl_colmap_image_view(model, image);
@@ -139,8 +139,9 @@ static enum orl_result drop_strays(const struct orl_job *job, const struct orl_c
     return result;
 }
 
-// What three photographs agree on is good; what only two do is noisier and strays more,
-// but it is all there is of places that few see (docs/how/pipeline.md).
+// Points that three photographs agree on are good. Points that only two agree on are noisier and
+// hold more outliers, but they are the only points of places that few photographs see
+// (docs/how/pipeline.md).
 static enum orl_result join_clouds(const struct orl_job *job, struct orl_points *pairs,
                                    struct orl_points *points)
 {
@@ -158,7 +159,7 @@ static enum orl_result write_cloud(struct orl_job *job, struct orl_points *point
 {
     char *path = orl_job_path(job, ".oriel/fused.ply");
     for (size_t i = 0; i < points->count; i++)
-        points->radius[i] = 0; // the next stage's
+        points->radius[i] = 0; // the next stage sets the radius
     enum orl_result result =
         path ? orl_points_write(job->log, path, points) : ORL_ERR_MEMORY;
     if (result == ORL_ERR_IO)

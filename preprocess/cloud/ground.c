@@ -14,33 +14,35 @@
 #include "scene/manifest.h"
 
 enum {
-    SIDE = 256,         // longer side that photographs are looked at in, pixels
+    SIDE = 256,         // longer side of the reduced photographs, pixels
     SHOTS_MAX = 24,
-    NEAR_MAX = 6,       // photographs that each is compared with
-    SPOTS = 12000,      // looked at in a photograph, about
+    NEAR_MAX = 6,       // photographs that each one is compared with
+    SPOTS = 12000,      // approximate number of pixels compared in a photograph
     SAMPLES_LEAST = 1000,
     BLUR_TAPS = 31,
-    STEPS = 5, ROUNDS_MAX = 4, // of the search: halvings, and moves of each length
+    STEPS = 5, ROUNDS_MAX = 4, // of the search: number of halvings, and moves of each length
 };
-static const double BLUR_SIGMA = 6.2;  // pixels: exposure and vignetting are coarser
-static const double REACH = 15;        // heights: farther ground is a few rows of pixels
-static const double QUIET = 0.005;     // contrast that means nothing, of white
-// First steps of the search, in shares of the height and in radians, and its bounds.
+static const double BLUR_SIGMA = 6.2;  // pixels; exposure and vignetting vary more slowly than this
+static const double REACH = 15;        // in camera heights; farther ground covers only a few rows
+                                       // of pixels
+static const double QUIET = 0.005;     // contrast that carries no information, as a fraction of
+                                       // white
+// First steps of the search and its bounds: shifts as fractions of the height, tilts in radians.
 static const double SHIFT = 0.15, TILT = 0.02, SHIFT_MOST = 0.5, TILT_MOST = 0.08;
-// Costs COST of disagreement: the points have their say.
+// A move by one sigma costs COST of disagreement, so that the plane stays near the points.
 static const double SHIFT_SIGMA = 0.2, TILT_SIGMA = 0.03, COST = 0.01;
 
-// A training photograph, small.
+// A training photograph at reduced size.
 struct shot {
     struct orl_view view;
     int width, height;
-    float *detail; // luma less its surroundings, of white
-    bool *open;    // no stereo depth
+    float *detail; // luma minus its local mean, as a fraction of white
+    bool *open;    // pixels without stereo depth
     double eye[3];
     int near[NEAR_MAX], near_count;
 };
 
-// Tilt and height of a plane, relative to the one that was found.
+// Height and tilt of a plane relative to the ground that was found first.
 struct move {
     double log_height, tilt[2];
 };
@@ -49,8 +51,8 @@ struct search {
     const struct orl_ground *found;
     struct shot shots[SHOTS_MAX];
     int shot_count;
-    double axes[2][3]; // that it tilts along
-    double eye[3];     // mean of the photographs'
+    double axes[2][3]; // the plane tilts about these
+    double eye[3];     // mean camera centre of the photographs
 };
 
 static enum orl_result find_detail(const struct orl_log *log, const struct orl_image *small,
@@ -119,7 +121,7 @@ static enum orl_result read_shot(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// At most SHOTS_MAX of the training photographs with depth maps, evenly.
+// Reads at most SHOTS_MAX of the training photographs with depth maps, evenly chosen.
 static enum orl_result read_shots(const struct orl_log *log, const struct orl_scene *scene,
                                   struct search *s)
 {
@@ -135,7 +137,7 @@ static enum orl_result read_shots(const struct orl_log *log, const struct orl_sc
                                 scene->photos[i].name);
         if (!path)
             result = ORL_ERR_MEMORY;
-        else if (orl_path_is_file(path)) // else deleted, as they may be
+        else if (orl_path_is_file(path)) // depth maps may have been deleted
             result = read_shot(log, scene, i, path, &s->shots[s->shot_count++]);
         free(path);
     }
@@ -186,13 +188,14 @@ static struct orl_ground moved(const struct search *s, const struct move *move)
     for (int k = 0; k < 3; k++)
         n[k] = s->found->plane[k] + move->tilt[0] * s->axes[0][k] + move->tilt[1] * s->axes[1][k];
     orl_normalize3(n);
-    // As far below the photographs' middle as it was, times exp(log_height).
+    // The plane's distance below the photographs' mean centre is scaled by exp(log_height).
     double was = orl_plane_height(s->found->plane, s->eye);
     n[3] = was * exp(move->log_height) - orl_dot3(n, s->eye);
     return ground;
 }
 
-// What a photograph shows of a point of the ground; false: nothing, or something else.
+// Reads the detail that a photograph shows at a point of the ground. Returns false where the
+// photograph does not show the point or has stereo depth.
 static bool look_up(const struct shot *shot, const double at[3], double *detail)
 {
     double pixel[2], depth;
@@ -217,7 +220,7 @@ struct tally {
     long samples;
 };
 
-// One photograph's open pixels on the ground against what its neighbours show there.
+// Compares one photograph's ground pixels without depth with what its neighbours show there.
 static void compare(const struct search *s, const struct shot *shot,
                     const struct orl_ground *ground, struct tally *tally)
 {
@@ -244,7 +247,8 @@ static void compare(const struct search *s, const struct shot *shot,
         }
 }
 
-// Relative to contrast, else the best ground would be where nothing is to be seen.
+// The disagreement is relative to the contrast: an absolute one would be least where the ground has
+// no texture.
 static double disagreement(const struct search *s, const struct move *move, long samples_least)
 {
     struct orl_ground ground = moved(s, move);
@@ -258,8 +262,8 @@ static double disagreement(const struct search *s, const struct move *move, long
            COST * (shift * shift + tilt * tilt / (TILT_SIGMA * TILT_SIGMA));
 }
 
-// The best of a move's 26 neighbours, if better; all at once, since height and tilt depend on
-// one another.
+// Finds the best of a move's 26 neighbours, if one is better than the move. Height and tilt vary
+// together because they depend on each other.
 static bool improve(const struct search *s, double length, long samples_least, struct move *best,
                     double *least)
 {
@@ -290,7 +294,7 @@ static void search(const struct orl_log *log, const struct search *s, struct orl
         compare(s, &s->shots[i], s->found, &tally);
     if (tally.samples < SAMPLES_LEAST)
         return;
-    // Fewer would be another ground, which less is seen of.
+    // A plane with fewer samples is a different plane, which the photographs see less of.
     long samples_least = tally.samples / 2;
     double before = disagreement(s, &best, samples_least), least = before, length = 1;
     for (int i = 0; i < STEPS; i++, length /= 2)

@@ -1,5 +1,5 @@
-// Densify: every photograph by its own looks, then again with its sources' depths, once or
-// more.
+// Densify: depth maps of every photograph by photometric matching, then refined one or more times
+// with the depth maps of its sources.
 #include "preprocess/densify/densify.h"
 
 #include <math.h>
@@ -13,29 +13,29 @@
 #include "preprocess/densify/densify_internal.h"
 
 enum {
-    LEVELS_MAX = 9, // of the reference; sources that show the scene finer have more
+    LEVELS_MAX = 9, // pyramid levels of the reference; sources that show the scene finer have more
     COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this
     GEOMETRIC_PASSES_MAX = 8,
     PASSES_MAX = GEOMETRIC_PASSES_MAX + 1,
-    SPECKLE_SHARE = 2000, // pieces of less than one in so many pixels are dropped
+    SPECKLE_SHARE = 2000, // connected pieces smaller than pixels / SPECKLE_SHARE are dropped
 };
 
-// One walk over the photographs: from the maps of the one before to its own, each in
+// One pass over the photographs. It reads the maps of the previous pass and writes its own, both in
 // stereo/*_maps/NAME.KIND.bin.
 struct pass {
     char kind[24];
-    bool geometric; // with the sources' depths of the pass before
+    bool geometric; // uses the sources' depths from the previous pass
 };
 
 struct densifier {
     const struct orl_log *log;
     struct orl_gpu *gpu;
-    struct orl_densify_params params; // sources: as many as fit
-    int shrink;                       // halvings of the photographs
+    struct orl_densify_params params; // params.sources: as many as fit
+    int shrink;                       // number of times that the photographs are halved
     const struct orl_progress *progress;
     char *images_dir, *depth_dir, *normal_dir, *confidence_dir, *sparse_dir; // owned
     const struct orl_colmap_model *model;
-    struct orl_colmap_model own_model; // where the caller gave none
+    struct orl_colmap_model own_model; // read here when the caller gives none
     struct densify_photos photos;
     struct densify_plan *plans;
     struct densify_device *device;
@@ -74,7 +74,7 @@ static char *map_path(const struct densifier *d, const char *dir, size_t photo,
                       pass->kind);
 }
 
-// Names may have folders.
+// A photograph's name may contain folders.
 static enum orl_result make_folder_of(const struct densifier *d, const char *path)
 {
     char *folder = orl_strdup(d->log, path);
@@ -111,7 +111,7 @@ static enum orl_result read_map(const struct densifier *d, const char *dir, size
     return result;
 }
 
-// The depth map is written last, so that a photograph with one has all.
+// The depth map is written last: a photograph with a depth map has all of its maps.
 static enum orl_result write_maps(const struct densifier *d, size_t photo,
                                   const struct pass *pass, const struct densify_maps *maps)
 {
@@ -159,7 +159,7 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
 
 // --- one photograph ---
 
-// FNV-1a, so that a photograph's result does not depend on which others take part.
+// FNV-1a hash of the name: a photograph's result is independent of the other photographs.
 static uint32_t name_seed(uint32_t seed, const char *name)
 {
     uint32_t hash = 2166136261u ^ seed;
@@ -168,8 +168,8 @@ static uint32_t name_seed(uint32_t seed, const char *name)
     return hash;
 }
 
-// Inverse depths of the photograph's sparse points at the coarsest level, spread to the
-// pixels nearest to them.
+// Inverse depths of the photograph's sparse points at the coarsest level, spread to the pixels
+// nearest to them.
 static enum orl_result make_seeds(const struct densifier *d, size_t photo, struct densify_job *job)
 {
     const struct orl_image *luma = &job->reference->levels[job->levels - 1];
@@ -286,7 +286,7 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, const s
     return result;
 }
 
-// Maps without any depth, for a photograph that nothing can be matched with.
+// Writes maps without depth for a photograph that has no sources.
 static enum orl_result write_empty(const struct densifier *d, size_t photo,
                                    const struct pass *pass)
 {
@@ -400,7 +400,7 @@ static void plan_passes(struct densifier *d)
     d->total = (double)d->photos.count * d->pass_count;
 }
 
-// Maps between the first and the last serve nothing once all are made.
+// Removes the maps between the first and the last pass, which are not needed after the run.
 static enum orl_result remove_intermediate(const struct densifier *d)
 {
     const char *dirs[] = {d->depth_dir, d->normal_dir};
@@ -442,7 +442,7 @@ static enum orl_result check_plans(const struct densifier *d)
                     "neighbours overlap by two thirds or more", d->photos.count);
 }
 
-// Settles how many sources and what size the device's memory allows, and says so.
+// Chooses the number of sources and the size that the device's memory allows, and logs both.
 static enum orl_result plan_memory(struct densifier *d)
 {
     struct densify_need need = {.padding = orl_densify_padding(&d->params),
@@ -513,7 +513,7 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     return result;
 }
 
-// Two at once would write one another's maps.
+// Two densifiers in one workspace would overwrite each other's maps.
 static enum orl_result lock_workspace(struct densifier *d, const char *workspace)
 {
     bool taken;

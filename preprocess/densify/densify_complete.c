@@ -1,6 +1,6 @@
-// Depth for what nothing can be matched on: plain walls and doors, from the surfaces around
-// them. The planar prior of Xu and Tao 2020 (ACMP) in its simplest form, and only where the
-// photograph itself shows no edge between a pixel and the surface that it is given to.
+// Depth for surfaces without texture, such as plain walls and doors, from the surfaces around them:
+// the planar prior of Xu and Tao 2020 (ACMP) in its simplest form. It applies only where the
+// photograph shows no edge between a pixel and the surface whose plane the pixel takes.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,20 +10,20 @@
 
 enum {
     DIRECTIONS = 8,
-    REACH_SHARE = 12, // of the photograph's longer side: how far a surface may be
-    STRIDE = 2,       // pixels from one place asked to the next
-    BEYOND = 4,       // pixels by which the surface must go on behind where it is met: the rim
-                      // around whatever stands before the sky is narrower
-    AGREEING_MIN = 3, // directions
-    LUMA_MAX = 10,    // of 255, by which the photograph may change on the way
+    REACH_SHARE = 12, // longest search, as a divisor of the photograph's longer side
+    STRIDE = 2,       // pixels between samples of the search
+    BEYOND = 4,       // pixels by which the surface must continue behind its first sample: the rim
+                      // of depth around an object before the sky is narrower
+    AGREEING_MIN = 3, // least number of agreeing directions
+    LUMA_MAX = 10,    // greatest change of luma along the way, of 255
 };
 
-static const float SAME_PLANE = 0.01f; // of depth
+static const float SAME_PLANE = 0.01f; // as a fraction of depth
 static const float CONFIDENCE = 0.2f;  // of a completed pixel
-// Of the surface: matches in the sky, which is as plain, are seldom surer.
+// Least confidence of the surface: false matches in the sky, which is as plain, rarely reach it.
 static const float CONFIDENCE_MIN = 0.6f;
 
-// A surface met in some direction, carried to the pixel that asked.
+// A surface found in some direction, extended to the pixel that is completed.
 struct met {
     float depth; // of its plane at that pixel; 0: none
     const float *normal;
@@ -32,13 +32,14 @@ struct met {
 
 struct completion {
     const struct densify_job *job;
-    const struct densify_maps *maps; // as matched: what is completed is no evidence
+    const struct densify_maps *maps; // before completion: completed pixels are no evidence
     const struct orl_image *luma;
     struct orl_camera camera;
-    int reach; // pixels
+    int reach; // longest search, pixels
 };
 
-// Depth of the plane of pixel `from` at pixel `to`; 0: seen edge on or behind the camera.
+// Depth of the plane of pixel `from` at pixel `to`; 0 when the plane is seen edge on or lies behind
+// the camera.
 static float depth_at(const struct completion *c, size_t from, size_t to)
 {
     const float *n = &c->maps->normal.f32[3 * from];
@@ -50,7 +51,7 @@ static float depth_at(const struct completion *c, size_t from, size_t to)
         float y = (float)(((double)(at / width) + 0.5 - c->camera.cy) / c->camera.fy);
         along[k] = n[0] * x + n[1] * y + n[2];
     }
-    // Towards the camera normals have along < 0.
+    // Normals towards the camera have along < 0.
     return along[0] < 0.0f && along[1] < 0.2f * along[0]
                ? c->maps->depth.f32[from] * along[0] / along[1] : 0.0f;
 }
@@ -90,7 +91,7 @@ static struct met look(const struct completion *c, int x, int y, int dx, int dy)
     return none;
 }
 
-// Does a source see through the place to something clearly farther?
+// True when a source sees through the point to something clearly farther.
 static bool seen_through(const struct completion *c, int x, int y, float depth)
 {
     const struct orl_view own = {c->camera, c->job->view.cam_from_world};
@@ -112,7 +113,8 @@ static bool seen_through(const struct completion *c, int x, int y, float depth)
     return false;
 }
 
-// From one side only, surfaces would grow into the sky: no half of the directions may be empty.
+// Surfaces seen on one side only would grow into the sky, so every half of the directions must hold
+// one that agrees.
 static bool surrounded(const bool agrees[DIRECTIONS])
 {
     int run = 0;
@@ -124,7 +126,7 @@ static bool surrounded(const bool agrees[DIRECTIONS])
     return true;
 }
 
-// The plane on which most directions agree; its depth, 0: too few.
+// Finds the plane on which most directions agree. Returns its depth, 0 when too few agree.
 static float agreed_plane(const struct met met[DIRECTIONS], float normal[3])
 {
     int best = 0, most = 0;

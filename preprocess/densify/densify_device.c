@@ -8,14 +8,14 @@
 #include "preprocess/densify/densify_internal.h"
 
 enum {
-    BAND_PIXELS = 1 << 17, // of one dispatch: bounded, so that no watchdog ends it
+    BAND_PIXELS = 1 << 17, // of one dispatch: short enough for the driver's watchdog
     VIEWS_COARSE = 8,      // sources judged at the coarsest level
-    VIEWS_FINE = 3,        // and at the others
+    VIEWS_FINE = 3,        // sources judged at the other levels
     RANDOM_TRIES = 6,
 };
 
-// Greatest costs of depth that is kept: without and with other photographs' depths that
-// confirm it.
+// Greatest matching costs of depths that are kept: without, and with, other photographs' depths
+// that confirm them.
 static const float COST_MATCHED = 0.7f, COST_AGREED = 0.9f;
 
 enum program {
@@ -57,7 +57,7 @@ struct densify_device {
 // The state of one level.
 struct level {
     struct orl_tex *reference, *sources, *source_depths, *planes, *costs, *view_costs;
-    struct orl_tex *extra; // what the first planes come from
+    struct orl_tex *extra; // the first planes are made from this texture
     bool extra_owned;
     struct densify_block block;
     int number; // 0 = full size
@@ -106,9 +106,9 @@ static struct orl_prog *program_of(const struct densify_device *device, enum pro
 {
     char defines[256];
     const struct orl_densify_params *p = &device->params;
-    // Coarser levels have told the rough shape, and agreement with other photographs holds
-    // planes in place, so that patches may be small: they then belong to one surface up to
-    // a pixel or two from its edge.
+    // Coarser levels have found the rough shape, and agreement with other photographs holds planes
+    // in place. Patches may therefore be small, so that a patch lies on one surface up to a pixel
+    // or two from its edge.
     bool fine = which == INIT_FINE || which == SWEEP_FINE;
     bool small = which == INIT_MAPS || which == SWEEP_GEOMETRIC || which == FINISH_AGREED ||
                  which == FINISH_LAST;
@@ -188,7 +188,7 @@ static int clamp_int(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
-// Each texel holds its 2x2 neighbourhood; the edge is repeated into the padding.
+// Each texel holds its 2x2 neighbourhood. Edge pixels are repeated into the padding.
 static void pack_quads(const struct orl_image *luma, int padding, uint32_t *quads)
 {
     int width = luma->width + 2 * padding, height = luma->height + 2 * padding;
@@ -301,8 +301,8 @@ static enum orl_result upload_seeds(struct orl_gpu *gpu, const struct densify_jo
 
 // --- parameters ---
 
-// Pixels by which matches move per unit of inverse depth at the picture's centre,
-// averaged over the sources.
+// Pixels by which matches move per unit of inverse depth at the image centre, averaged over the
+// sources.
 static double parallax(const struct densify_job *job, const struct orl_camera *camera,
                        const struct densify_block *block)
 {
@@ -341,7 +341,7 @@ static void set_block(const struct densify_device *device, const struct densify_
         block->extent[k][1] = (float)source.camera.height;
         block->extent[k][2] = (float)job->plan->sources[k].prior;
         block->extent[k][3] = (float)(1 << (shrunk - job->finest));
-        // Texel centres at whole numbers, behind the padding.
+        // Texel centres are at whole numbers, offset by the padding.
         source.camera.cx += device->padding - 0.5;
         source.camera.cy += device->padding - 0.5;
         orl_densify_transfer(&source, &ref, &block->forward[3 * k]);
@@ -354,7 +354,7 @@ static void set_block(const struct densify_device *device, const struct densify_
     block->range[2] = (float)(1.0 / parallax(job, c, block));
     block->area[0] = c->width;
     block->area[1] = c->height;
-    block->tune[2] = 0.2f; // Xu and Tao 2019, 3.3
+    block->tune[2] = 0.2f; // Xu and Tao 2019, section 3.3
     block->tune[3] = 3.0f;
     block->limit[0] = COST_AGREED;
     block->limit[1] = 1.5f;
@@ -478,7 +478,7 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-// Depth and normal changes tried, halved from sweep to sweep.
+// Sets the perturbations of depth and normal that are tried; they halve from sweep to sweep.
 static void set_steps(struct level *level, float pixels, float normal, int number)
 {
     level->block.tune[0] = fmaxf(pixels * exp2f((float)-number), 0.1f);
@@ -530,7 +530,7 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
     enum orl_result result = ORL_OK;
     int count = job->levels;
     for (int number = count - 1; number >= job->finest && result == ORL_OK; number--) {
-        // Each level has four times the pixels of the one before.
+        // Each level has four times the pixels of the previous one.
         double end = exp2(2.0 * (job->finest - number)), begin = 0.25 * end;
         level = (struct level){.number = number};
         result = level_open(device, job, &level);

@@ -1,4 +1,4 @@
-// Private to the densifier: choice of sources, one photograph's maps, clean-up.
+// Private to the densifier: choice of sources, maps of one photograph, clean-up of maps.
 #ifndef ORL_PREPROCESS_DENSIFY_INTERNAL_H
 #define ORL_PREPROCESS_DENSIFY_INTERNAL_H
 
@@ -8,19 +8,19 @@
 
 struct densify_source {
     size_t photo; // index into densify_photos
-    double score; // sum over shared sparse points of how good their angle is
+    double score; // sum of angle scores over shared sparse points
     double prior; // weight among the sources, (0, 1]
     int finer;    // levels by which it shows the scene finer than the reference, [0, 3]
 };
 
-// One photograph as reference.
+// One photograph as the reference.
 struct densify_plan {
     struct densify_source sources[ORL_DENSIFY_SOURCES_MAX]; // best first
     int count;
     double w_min, w_max; // range of inverse depth
 };
 
-// The photographs taking part: those asked for that the model has.
+// The photographs that take part: the requested ones that the model has.
 struct densify_photos {
     const struct orl_colmap_model *model; // not owned
     size_t count;
@@ -37,8 +37,8 @@ static inline const char *densify_photo_name(const struct densify_photos *photos
 {
     return photos->model->images[photos->images[photo]].name;
 }
-// Plans for all photographs, released with free(). Photographs without sources have
-// count 0.
+// Makes the plans of all photographs, which the caller releases with free(). Photographs without
+// sources have count 0.
 enum orl_result orl_densify_plans_make(const struct orl_log *log,
                                        const struct densify_photos *photos, int sources,
                                        struct densify_plan **plans);
@@ -46,8 +46,8 @@ enum orl_result orl_densify_plans_make(const struct orl_log *log,
 // --- device memory ---
 
 struct densify_need {
-    int width, height; // greatest of any photograph
-    int least_side;    // of any photograph
+    int width, height; // largest of any photograph
+    int least_side;    // smallest of any photograph
     int padding;       // texels around a source
     bool geometric;    // sources' depths are used
 };
@@ -55,30 +55,30 @@ struct densify_budget {
     int sources, shrink; // shrink: halvings of the photographs
     uint64_t bytes;
 };
-// Bytes on the device at most, with one photograph and its sources on it.
+// Upper bound of device memory in bytes, with one photograph and its sources loaded.
 uint64_t orl_densify_bytes(const struct densify_need *need, int sources, int shrink);
-// The largest photographs, then the most sources up to `sources`, that fit into `max_bytes`
-// (0: any number) and whose textures drivers accept; false: nothing does.
+// Chooses the largest photographs, then the most sources up to `sources`, that fit into `max_bytes`
+// (0: no limit) and whose textures drivers accept. Returns false when nothing fits.
 bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_bytes,
                      struct densify_budget *budget);
-// Takes the maps in WORKSPACE/stereo that were made from the same photographs and model
-// with the same settings (params as used, photographs halved `shrink` times) as this run's,
-// removes those of others, and leaves stereo/densify.json saying so. ORL_ERR_ARGUMENT:
-// there are maps without it, which may be another program's.
+// Keeps the maps in WORKSPACE/stereo that were made from the same photographs and model with the
+// same settings as this run's (params as used, photographs halved `shrink` times), removes maps
+// with other settings, and writes stereo/densify.json. ORL_ERR_ARGUMENT: there are maps without
+// that file, which another program may have made.
 enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *workspace,
                                        const struct densify_photos *photos,
                                        const struct orl_densify_params *params,
                                        int shrink) ORL_CHECK_RESULT;
 
-// Texels around each source: patches are up to three times as large there.
+// Texels of padding around each source. Patches in a source may be three times as large.
 int orl_densify_padding(const struct orl_densify_params *params);
 
-// Rows of matrix (x, y, 1, w) -> to's homogeneous pixels, for a pixel of `from` with
-// inverse depth w.
+// Rows of the matrix that maps (x, y, 1, w) to homogeneous pixels of `to`, for a pixel (x, y) of
+// `from` with inverse depth w.
 void orl_densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4]);
 
-// A photograph's luma at every level, halved by 2x2 boxes; an odd last row or column
-// is left out, so that a coarse pixel k covers exactly the pixels 2k and 2k + 1.
+// A photograph's luma at every level, each halved by 2x2 boxes. An odd last row or column is left
+// out, so that a coarse pixel k covers exactly the pixels 2k and 2k + 1.
 enum { DENSIFY_LEVELS_MAX = 12 };
 struct densify_pyramid {
     struct orl_image levels[DENSIFY_LEVELS_MAX];
@@ -91,8 +91,8 @@ enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *
 void orl_densify_pyramid_finish(struct densify_pyramid *pyramid);
 struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int level);
 
-// Photographs decoded once while memory lasts. A pyramid stays until the next turn at
-// least. `photos` and `images_dir` must outlive it.
+// A cache of decoded photographs, filled while memory lasts. A pyramid stays valid at least until
+// the next turn. `photos` and `images_dir` must outlive the cache.
 struct densify_cache;
 enum orl_result orl_densify_cache_create(const struct orl_log *log,
                                          const struct densify_photos *photos,
@@ -123,36 +123,36 @@ struct densify_job {
     const struct densify_plan *plan;
     struct orl_view source_views[ORL_DENSIFY_SOURCES_MAX];
     const struct densify_pyramid *reference, *sources[ORL_DENSIFY_SOURCES_MAX]; // not owned
-    int levels;                                             // of the reference that are used
+    int levels;                                             // levels of the reference in use
     struct orl_image mask;                                  // level 0; no data: none
     struct orl_image seeds;                                 // coarsest level: 1/z or 0
-    int finest;                                             // level of the maps: 0 = full size
-    const struct densify_maps *start;                       // geometric pass: own maps
+    int finest;                                             // level of the maps, 0: full size
+    const struct densify_maps *start;                       // geometric pass: own previous maps
     struct orl_image source_depths[ORL_DENSIFY_SOURCES_MAX]; // geometric pass
-    int draw;  // keeps the random numbers of different passes apart
-    bool last; // no pass goes on from these maps
+    int draw;  // separates the random numbers of passes
+    bool last; // no later pass reads these maps
     const struct orl_progress *progress;
     double done, total; // for the progress report; this job counts 1
 };
-// Does a pixel of a level belong to the subject? It does when any of its pixels does.
+// True when any full-size pixel under a pixel of a level belongs to the subject.
 bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y);
 
-// From coarse to fine; keeps only what matches.
+// Matches from the coarsest to the finest level and keeps only the depths that match well.
 enum orl_result orl_densify_photometric(struct densify_device *device,
                                         const struct densify_job *job,
                                         struct densify_maps *maps);
-// Refines job->start at its size, with the sources' depths; keeps only what matches
-// well and agrees with a source.
+// Refines job->start at its size with the sources' depths. Keeps only depths that match well and
+// agree with a source.
 enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
                                       struct densify_maps *maps);
 
-// Gives depth to holes in plain surfaces, which nothing can be matched on: where planes of
-// several directions agree and the photograph shows no edge on the way. For the last pass.
+// Fills holes in plain surfaces without texture, where the planes of several directions agree and
+// the photograph shows no edge on the way. Belongs to the last pass.
 enum orl_result orl_densify_complete(const struct orl_log *log, const struct densify_job *job,
                                      struct densify_maps *maps);
 
-// Removes connected pieces of less than `least` pixels; neighbours are connected when one
-// is off the other's plane by less than `tolerance` of its depth.
+// Removes connected pieces of fewer than `least` pixels. Neighbours are connected when one is off
+// the other's plane by less than `tolerance` of its depth.
 enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
                                             const struct orl_camera *camera,
                                             struct densify_maps *maps, size_t least,

@@ -1,13 +1,13 @@
-// Device memory of the densifier: what one photograph needs, and what to give up when
-// that is not there.
+// Device memory of the densifier: what one photograph needs, and which settings are reduced when
+// memory is short.
 #include "preprocess/densify/densify_internal.h"
 
 enum {
-    SOURCES_LEAST = 4, // fewer lose more than halving the size does
+    SOURCES_LEAST = 4, // fewer sources lose more than halving the size does
     SIDE_LEAST = 16, // of any photograph, so that it has as many levels as the others
 };
 
-// Drivers refuse larger ones, or are slow with them.
+// Drivers refuse larger textures, or are slow with them.
 static const uint64_t TEXTURE_MAX = (uint64_t)1 << 30;
 
 static uint64_t pixels(int width, int height, int padding)
@@ -24,13 +24,14 @@ uint64_t orl_densify_bytes(const struct densify_need *need, int sources, int shr
 {
     int width = need->width >> shrink, height = need->height >> shrink;
     uint64_t own = pixels(width, height, 0), padded = pixels(width, height, need->padding);
-    // Luma and mask 2, planes 16, costs 4, costs of views 16; each source a quad of 4.
+    // Bytes per pixel: luma and mask 2, planes 16, costs 4, costs of views 16; each source 4 (a
+    // quad).
     uint64_t level = 38 * own + 4 * (uint64_t)sources * padded;
     uint64_t coarser = 38 * pixels(width / 2, height / 2, 0) +
                        4 * (uint64_t)sources * pixels(width / 2, height / 2, need->padding);
-    // The coarser level goes before the maps (16) come.
+    // The coarser level is released before the maps (16 bytes) are allocated.
     uint64_t matching = level + (coarser > 16 * own ? coarser : 16 * own);
-    // First and finished maps, the sources' depths.
+    // First and finished maps 32 bytes per pixel, the sources' depths 4 each.
     uint64_t agreeing = level + 32 * own + 4 * (uint64_t)sources * own;
     return need->geometric && agreeing > matching ? agreeing : matching;
 }

@@ -1,5 +1,4 @@
-// Photographs as luma pyramids, decoded once while memory lasts, and clean-up of finished
-// maps.
+// Photographs as luma pyramids, decoded once while memory lasts, and clean-up of finished maps.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,12 +75,12 @@ void orl_densify_maps_finish(struct densify_maps *maps)
 
 // --- decoded photographs: each is the source of several, and serves every pass ---
 
-// Beyond this, only those of the photograph at work are held.
+// Above this size, only the pyramids of the current photograph are kept.
 static const size_t BYTES_MAX = (size_t)256 << 20;
 
 struct cache_entry {
-    struct densify_pyramid pyramid; // count 0: not here
-    uint64_t turn;                  // when it was last asked for
+    struct densify_pyramid pyramid; // count 0: not loaded
+    uint64_t turn;                  // turn of the last request
 };
 
 struct densify_cache {
@@ -136,7 +135,7 @@ static size_t pyramid_bytes(const struct densify_pyramid *pyramid)
     return bytes;
 }
 
-// Drops those not asked for longest until the rest fits; none of this turn.
+// Drops the least recently used pyramids until the rest fits, but none of the current turn.
 static void make_room(struct densify_cache *cache)
 {
     while (cache->bytes > BYTES_MAX) {
@@ -177,7 +176,7 @@ enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
 
 // --- speckles ---
 
-enum { REACH = 2 }; // pixels from one to the next of a piece, so that pinholes do not cut it
+enum { REACH = 2 }; // greatest step within a piece, pixels: pinholes do not cut it
 
 struct flood {
     const struct densify_maps *maps;
@@ -187,8 +186,8 @@ struct flood {
     float tolerance;
 };
 
-// Off the pixel's plane by less than `tolerance` of its depth. Depths alone would not do:
-// on ground seen at a flat angle they differ by several percent from row to row.
+// True when a pixel is off the other's plane by less than `tolerance` of its depth. Depths alone
+// are too strict: on ground seen at a grazing angle they differ by several percent from row to row.
 static bool connected(const struct flood *flood, size_t from, size_t to)
 {
     const struct orl_camera *c = flood->camera;

@@ -1,5 +1,5 @@
-// stereo/densify.json: what the maps beside it were made from and with, so that a run
-// that would make others does not take them for its own.
+// stereo/densify.json: the inputs and settings of the maps beside it, so that a run with others
+// makes the maps again.
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static void add_text(struct digest *digest, const char *text)
     XXH3_64bits_update(digest->state, text, strlen(text) + 1);
 }
 
-// A file's name and contents; one that is not there counts as such.
+// Adds a file's name and contents. A missing file has checksum 0.
 static enum orl_result add_file(struct digest *digest, const char *dir, const char *name,
                                 const char *suffix)
 {
@@ -94,7 +94,7 @@ static enum orl_result make_record(const struct orl_log *log, const char *worksp
     return result;
 }
 
-// Sets *any when a photograph taking part has a map of any kind.
+// Sets *any when a photograph of this run has a map of any kind.
 static enum orl_result find_maps(const struct orl_log *log, const char *workspace,
                                  const struct densify_photos *photos, bool *any)
 {
@@ -123,7 +123,7 @@ static enum orl_result remove_maps(const struct orl_log *log, const char *worksp
     return result;
 }
 
-// Maps are removed and written below the workspace only.
+// Maps must be removed and written only below the workspace, so links are refused.
 static enum orl_result refuse_links(const struct orl_log *log, const char *workspace)
 {
     enum orl_result result = ORL_OK;
@@ -162,14 +162,14 @@ enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *wo
                           "that kept no record of how; remove them to have them made", stereo);
         goto end;
     }
-    // A record that cannot be read says nothing of what the maps were made with.
+    // An unreadable record counts as a record of other settings.
     bool same = ours && orl_json_read(NULL, path, &old) == ORL_OK && json_equal(old, record);
     if (same)
         goto end;
     if (any)
         orl_logf(log, ORL_LOG_WARNING,
                  "densify: the maps there are of other photographs or settings: made again");
-    // In this order: interrupted, the old record stands for what is left of the old maps.
+    // The maps go first: after an interruption the old record still describes the remaining maps.
     if (ours)
         result = remove_maps(log, workspace);
     if (result == ORL_OK)

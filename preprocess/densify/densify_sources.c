@@ -1,4 +1,4 @@
-// Which photographs serve which, and how far each one's scene reaches.
+// Chooses each photograph's sources and its range of depth.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -113,7 +113,7 @@ static double smooth_step(double low, double high, double x)
     return t * t * (3.0 - 2.0 * t);
 }
 
-// Below a degree or two depth is ill determined, beyond 40 patches look different.
+// Depth is ill-conditioned below one degree; beyond 40 degrees patches look different.
 static double angle_score(const double a[3], const double b[3], const double point[3])
 {
     double dot = 0.0, aa = 0.0, bb = 0.0;
@@ -138,8 +138,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Range of inverse depth: sparse points cluster on what is well textured, so the range
-// goes well beyond them, above all behind, where inverse depth hardly costs anything.
+// Range of inverse depth. Sparse points cluster on well textured surfaces, so the range extends
+// well beyond them, mostly towards greater depth, where inverse depth changes little.
 static bool depth_range(double *depths, size_t count, struct densify_plan *plan)
 {
     if (!count)
@@ -211,7 +211,7 @@ static void make_plan(const struct densify_photos *photos, size_t ref, int sourc
                 continue;
             double finer = log2(source->camera.fx * cam[2] / (view->camera.fx * cam2[2]));
             struct tally *tally = &scratch->tallies[other];
-            // Twice as fine or coarse is fine; beyond, patches share less and less.
+            // A factor of two in scale matches well. Beyond it, patches share less and less.
             tally->score += angle_score(scratch->centres[ref], scratch->centres[other], position) /
                             (1.0 + 0.25 * finer * finer);
             tally->log_finer += finer;

@@ -10,19 +10,20 @@
 
 enum {
     ITERATIONS = 6,
-    TUKEY_ITERATIONS = 2, // the last ones: what does not fit has no say at all
-    ROUNDS = 3,           // again without photographs that were refused
-    SAMPLES_MIN = 20,     // fewer say nothing about a photograph
-    LENS_PHOTOS_MIN = 3,  // fewer cannot tell a lens from what it shows
+    TUKEY_ITERATIONS = 2, // the last iterations, which give outliers weight 0
+    ROUNDS = 3,           // fits, each without the photographs that were refused
+    SAMPLES_MIN = 20,     // fewer observations cannot determine a photograph's gain
+    LENS_PHOTOS_MIN = 3,  // fewer photographs cannot separate the lens from the scene
     LENS_TERMS = 3,
 };
 static const double LN2 = 0.69314718055994531;
-// Standard deviation of a sample's log colour: gloss, registration. Noise comes on top.
+// Standard deviation of a sample's log colour from gloss and misregistration, without noise.
 static const double SAMPLE_SIGMA = 0.1;
-// What thousands of samples share cannot make a photograph's gain surer than this.
+// Least standard deviation of a photograph's gain, however many samples it shares.
 static const double GAIN_SIGMA = 0.02;
 
-// --- the problem: log colour + log gain - log vignetting is the same for all of a point ---
+// --- the problem: log colour + log gain - log vignetting is equal for all observations of a point
+// ---
 
 struct problem {
     const struct orl_log *log;
@@ -31,7 +32,7 @@ struct problem {
     struct orl_align_photo *photos;
     size_t photo_count, lens_count;
     float (*value)[4];  // log of linear colour: r g b and their mean; per observation
-    float *sigma;       // of it; INFINITY: takes no part
+    float *sigma;       // of the value; INFINITY: takes no part
     float *weight;      // robust
     float *lens_log;    // log of the vignetting found so far
     float *scratch;     // per observation
@@ -40,7 +41,7 @@ struct problem {
     double (*lens)[LENS_TERMS]; // log vignetting = sum of lens[k] r^(2 k + 2)
 };
 
-// One observation's row: coefficients of unknowns.
+// The coefficients of the unknowns in one observation's equation.
 struct row {
     size_t index[1 + LENS_TERMS];
     double factor[1 + LENS_TERMS];
@@ -84,8 +85,8 @@ static void add_product(double *a, size_t n, const struct row *left, const struc
                 factor * left->factor[k] * right->factor[m];
 }
 
-// The colour of the point itself is eliminated: what counts are differences from the
-// weighted mean of its observations.
+// Adds a point's equations. Eliminating the point's own colour leaves differences from the weighted
+// mean of its observations.
 static void add_point(const struct problem *p, size_t point, int channel, bool with_lens,
                       double scale, double *a, double *b, size_t n)
 {
@@ -125,7 +126,7 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Of the `count` values in p->scratch, which are not negative.
+// Median of the first `count` values in p->scratch, which are not negative.
 static double median(struct problem *p, size_t count)
 {
     if (!count)
@@ -134,7 +135,7 @@ static double median(struct problem *p, size_t count)
     return (double)p->scratch[count / 2];
 }
 
-// Calls for every observation that takes part: its residual from its point's mean.
+// Writes, for every observation that takes part, the residual from its point's mean.
 static void residuals(struct problem *p, int channel, bool with_lens, float *out)
 {
     for (size_t point = 0; point < p->samples->point_count; point++) {
@@ -151,7 +152,7 @@ static void residuals(struct problem *p, int channel, bool with_lens, float *out
     }
 }
 
-// Robust standard deviation of the residuals, relative to their sigmas or absolute.
+// Robust standard deviation of the residuals, absolute or relative to their sigmas.
 static double spread(struct problem *p, const float *residual, bool relative)
 {
     size_t count = 0;
@@ -161,7 +162,7 @@ static double spread(struct problem *p, const float *residual, bool relative)
     return 1.4826 * median(p, count);
 }
 
-// Huber's weights, then Tukey's, which let outliers have no say at all.
+// Applies Huber's weights or Tukey's, which give outliers weight 0.
 static void reweigh(struct problem *p, const float *residual, bool tukey)
 {
     double scale = fmax(spread(p, residual, true), 0.1);
@@ -192,7 +193,7 @@ static bool step(struct problem *p, int channel, bool with_lens, double scale)
     return orl_cholesky_solve(p->matrix, p->x, n);
 }
 
-// Iteratively reweighted least squares; the unknowns are left in p->x.
+// Solves by iteratively reweighted least squares. The unknowns are left in p->x.
 static enum orl_result fit(struct problem *p, int channel, bool with_lens, float *residual)
 {
     double information = 0;
@@ -218,7 +219,7 @@ static double lens_log(const double terms[LENS_TERMS], double r2)
     return r2 * (terms[0] + r2 * (terms[1] + r2 * terms[2]));
 }
 
-// Light that falls off, and does so believably, as far out as there are samples.
+// True when the light falls off by a plausible amount as far out as there are samples.
 static bool is_lens(const double terms[LENS_TERMS], double r2_max)
 {
     double last = 0;
@@ -231,8 +232,8 @@ static bool is_lens(const double terms[LENS_TERMS], double r2_max)
     return true;
 }
 
-// exp(sum of terms[k] r^(2k+2)) as 1 + v0 r^2 + v1 r^4 + v2 r^6, by least squares; farther
-// out than there are samples it stays as it is there.
+// Fits exp(sum of terms[k] r^(2k+2)) by 1 + v0 r^2 + v1 r^4 + v2 r^6 in least squares. Beyond the
+// outermost sample, the vignetting stays constant.
 static void to_polynomial(const double terms[LENS_TERMS], double r2_max, float v[3])
 {
     double a[9] = {0}, b[3] = {0};
@@ -266,7 +267,7 @@ static enum orl_result fit_lenses(struct problem *p, float *residual,
     double before = spread(p, residual, false);
     if (result == ORL_OK)
         result = fit(p, 3, true, residual);
-    // A lens that explains less than a hundredth of the spread is not worth believing.
+    // Vignetting that explains less than a hundredth of the spread is rejected as noise.
     if (result != ORL_OK || spread(p, residual, false) > 0.99 * before)
         return result;
     for (size_t k = 0; k < p->lens_count; k++) {
@@ -287,7 +288,7 @@ static enum orl_result fit_lenses(struct problem *p, float *residual,
 
 // --- gains ---
 
-// Linear light of a value that may lie between two 8-bit ones.
+// Linear light of a value between two 8-bit values.
 static double decode(const float *linear, float value)
 {
     if (!linear)
@@ -313,7 +314,7 @@ static void set_values(struct problem *p)
                 noise = INFINITY;
                 break;
             }
-            // Half a step of the 8-bit values and what is lost in the dark.
+            // Relative noise, from the steps of the 8-bit values; it is largest in the dark.
             double more = decode(curve, fminf(item->value[c] + 1, 255));
             noise = fmax(noise, (more - light) / light);
             p->value[i][c] = (float)log(light);
@@ -347,7 +348,7 @@ static void set_prior(struct problem *p)
     }
 }
 
-// Brings the channel's gains to the reference exposure: known exposures undone on average.
+// Shifts the channel's gains so that known exposures are undone on average.
 static void set_gains(struct problem *p, int channel)
 {
     double shift = 0, count = 0;
@@ -380,12 +381,13 @@ static bool is_plausible(const struct problem *p, const struct orl_align_photo *
     for (int c = 0; c < 3; c++)
         if (!(fabs(log2((double)photo->gain[c]) - mean) <= p->params->colour_limit_ev))
             return false;
-    // Unknown exposures may be any; twice as much is plausible.
+    // A photograph of unknown exposure may differ from the reference by twice the limit.
     return fabs(mean + (photo->known ? photo->ev : 0)) <=
            (photo->known ? 1 : 2) * p->params->limit_ev;
 }
 
-// True when there is a new one to leave out. What has no samples has its prior's gain.
+// Refuses implausible gains and returns true when it refused another photograph. A photograph
+// without samples has the gain of its prior.
 static bool refuse(struct problem *p)
 {
     bool again = false;

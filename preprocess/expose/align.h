@@ -6,22 +6,22 @@
 #include "preprocess/expose/samples.h"
 
 struct orl_align_photo {
-    bool known; // ev is set
+    bool known; // true when ev is set
     double ev;  // log2 of exposure, relative to the scene's reference
-    int lens;   // photographs of one number share vignetting, from 0
+    int lens;   // index from 0; photographs with one lens share vignetting
     const float (*linear)[256]; // response of its camera, three channels; NULL: sRGB
-    // Out:
+    // Results:
     float gain[3];
-    size_t samples; // observations that it was aligned by
-    bool refused;   // its gain was not plausible: that of its exposure is used
+    size_t samples; // observations that its gain was fitted to
+    bool refused;   // its gain was not plausible, so that of its exposure is used
 };
 
 struct orl_align_params {
     bool vignetting;
-    double exposure_sigma_ev; // how far EXIF may be off
-    double gain_sigma_ev;     // how far photographs of unknown exposure may differ
-    double limit_ev;          // further off than this is not plausible
-    double colour_limit_ev;   // nor are colours that differ by more
+    double exposure_sigma_ev; // standard deviation of EXIF exposures
+    double gain_sigma_ev;     // that of the gains of photographs of unknown exposure
+    double limit_ev;          // greatest plausible difference from the known exposure
+    double colour_limit_ev;   // greatest plausible difference of a channel's gain from the mean
 };
 #define ORL_ALIGN_DEFAULTS .vignetting = true, .exposure_sigma_ev = 0.3, .gain_sigma_ev = 1.0, \
                            .limit_ev = 2.0, .colour_limit_ev = 1.0
@@ -32,9 +32,10 @@ struct orl_alignment {
     double spread_before_ev, spread_after_ev; // robust spread of a point's colours
 };
 
-// Robust least squares on log ratios of linear colour. Every photograph here takes part:
-// held-out ones must not be given. Gains multiply linear colour. Where exposures are known
-// gains are 2^-ev on average over those photographs, else 1 (geometric means, each channel).
+// Robust least squares on log ratios of linear colour. The caller must leave held-out photographs
+// out, since every photograph given takes part. Gains multiply linear colour. In each channel their
+// geometric mean is that of 2^-ev over photographs with known exposures, or 1 when no exposure is
+// known.
 enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
                           const struct orl_align_params *params, struct orl_align_photo *photos,
                           size_t photo_count, struct orl_alignment *alignment) ORL_CHECK_RESULT;

@@ -16,7 +16,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Series of a photograph: that of the nearest known exposure. `sorted` ascends.
+// The series of the nearest known exposure. `sorted` ascends.
 static int nearest_series(const double *sorted, size_t count, double step_ev, double ev)
 {
     int series = 0, best = 0;
@@ -43,13 +43,13 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposu
         if (exposures[i].known && !exposures[i].test)
             sorted[known++] = exposures[i].ev;
     qsort(sorted, known, sizeof *sorted, compare_doubles);
-    double median = known ? sorted[(known - 1) / 2] : 0; // an exposure that was really used
+    double median = known ? sorted[(known - 1) / 2] : 0; // the lower one: a photograph has it
     *series_count = 1;
     for (size_t i = 1; i < known; i++)
         *series_count += sorted[i] - sorted[i - 1] >= step_ev;
     for (size_t i = 0; i < count; i++) {
         struct orl_exposure *e = &exposures[i];
-        // Nothing to be relative to: as if unknown.
+        // Without a median, no exposure can be relative to it, so all count as unknown.
         e->known = e->known && known;
         e->series = nearest_series(sorted, known, step_ev, e->known ? e->ev : median);
         e->ev = e->known ? e->ev - median : 0;
@@ -58,7 +58,7 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposu
     return ORL_OK;
 }
 
-// --- what the stage works on ---
+// --- the state of the stage ---
 
 struct photo {
     const struct orl_source *source;
@@ -66,11 +66,11 @@ struct photo {
     struct orl_view view;
     enum orl_exposure_source from;
     int response; // index into the responses, -1: sRGB
-    int camera;   // photographs of one number may share a response, -1: none
+    int camera;   // photographs of one camera may share a response, -1: none
     float gain[3], vignette[3];
 };
 
-// Training photographs first, each part in order of name.
+// Training photographs come first; each part is sorted by name.
 struct exposing {
     struct orl_job *job;
     json_t *record;
@@ -83,7 +83,7 @@ struct exposing {
     size_t response_count;
     json_t *response_list;
     int series_count;
-    bool last; // nothing is fitted again after this
+    bool last; // the last fit
 };
 
 static bool same_camera(const struct orl_source *a, const struct orl_source *b)
@@ -91,7 +91,7 @@ static bool same_camera(const struct orl_source *a, const struct orl_source *b)
     return strcmp(a->exif.make, b->exif.make) == 0 && strcmp(a->exif.model, b->exif.model) == 0;
 }
 
-// Deep photographs are known to be sRGB: their 8-bit twins were made so.
+// The response of photographs with more than 8 bits is known: their 8-bit twins are sRGB.
 static void set_cameras(struct exposing *e)
 {
     int cameras = 0;
@@ -148,8 +148,8 @@ static enum orl_result set_exposures(struct exposing *e)
                                &e->series_count);
 }
 
-// Without EXIF or list, exposures are those that gains undo: relative, and good to the
-// tolerance of the samples. Where all are unknown they make series of their own.
+// Without EXIF or a list, exposures come from the gains. They are relative and as accurate as the
+// samples. Where all exposures are unknown, the estimated ones form series of their own.
 static enum orl_result estimate_exposures(struct exposing *e)
 {
     size_t known = 0, estimated = 0;
@@ -170,7 +170,7 @@ static enum orl_result estimate_exposures(struct exposing *e)
     orl_logf(e->job->log, ORL_LOG_INFO,
              "expose: exposures of %zu photographs are not told; estimated from the scene, "
              "relative to each other", estimated);
-    // Their scale stays that of the gains.
+    // The estimated exposures keep the scale of the gains.
     double *ev = orl_array(e->job->log, e->count, sizeof *ev);
     if (!ev)
         return ORL_ERR_MEMORY;
@@ -267,7 +267,7 @@ static enum orl_result fit_camera(struct exposing *e, int camera)
     }
     enum orl_result result = ORL_OK;
     if (!source)
-        goto end; // held-out photographs only
+        goto end; // all photographs of this camera are held out
     struct orl_response *response = &e->responses[e->response_count];
     result = orl_response_fit(e->job->log, &e->samples, photos, e->train, response, &fit);
     if (result != ORL_OK)
@@ -364,7 +364,7 @@ static enum orl_result align(struct exposing *e)
     return result;
 }
 
-// Responses and vignetting need each other: twice is enough, as vignetting is slight.
+// Responses and vignetting depend on each other. Two rounds are enough, as vignetting is slight.
 static enum orl_result fit_all(struct exposing *e)
 {
     enum orl_result result = ORL_OK;
@@ -381,7 +381,7 @@ static enum orl_result fit_all(struct exposing *e)
 
 // --- held-out photographs ---
 
-// Sparse points in common: calibration saw held-out photographs too.
+// Counts sparse points in common. Held-out photographs have them because they were calibrated too.
 static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, uint32_t *own)
 {
     bool *seen = orl_array(e->job->log, e->model->point_count, sizeof *seen);

@@ -1,25 +1,25 @@
-// Expose: exposure of each photograph and the series it belongs to, response of its camera,
-// and what brings photographs to one exposure and white balance.
+// Expose: the exposure of each photograph and its series, the response of its camera, and the gains
+// and vignetting that bring photographs to one exposure and white balance.
 #ifndef ORL_PREPROCESS_EXPOSE_H
 #define ORL_PREPROCESS_EXPOSE_H
 
 #include "preprocess/job/job.h"
 
 struct orl_exposure {
-    bool known;  // in: ev is set
-    bool test;   // in: has no say in the median or the series
+    bool known;  // in: true when ev is set
+    bool test;   // in: held out; excluded from the median and the series
     double ev;   // in: log2 of exposure; out: relative to the median, 0 if unknown
     int series;  // out: from 0, darkest first
 };
 
-// Photographs whose exposures differ by less than this, step by step, are one
-// series: half of the third of a stop that cameras set.
+// Sorted exposures whose steps are smaller than this form one series: half of the third of a stop
+// in which cameras are set.
 #define ORL_EXPOSURE_STEP_EV 0.17
-// The same for exposures estimated from the scene.
+// The same step for exposures that are estimated from the scene.
 #define ORL_ESTIMATED_STEP_EV 0.5
 
-// Median and series come from known exposures of photographs that are not held out;
-// the others join the series nearest to them. Returns the number of series.
+// The median and the series come from known exposures of photographs that are not held out. Other
+// photographs join the nearest series. Returns the number of series.
 enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
                                     size_t count, double step_ev,
                                     int *series_count) ORL_CHECK_RESULT;

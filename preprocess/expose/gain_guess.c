@@ -4,7 +4,7 @@
 #include <string.h>
 
 
-// A guess must be this much better than none.
+// A guess is used only when its error is less than this fraction of the error without a guess.
 static const double MUST_GAIN = 0.8;
 
 const char *orl_gain_guess_name(enum orl_gain_guess guess)
@@ -14,8 +14,8 @@ const char *orl_gain_guess_name(enum orl_gain_guess guess)
     return names[guess];
 }
 
-// Near in place, and with much in view that both show: automatic exposure and white balance
-// follow what is in view, vignetting and gloss change slowly.
+// Weights nearby views, and views that share much of their content: automatic exposure and white
+// balance follow the content, and vignetting and gloss change slowly with position.
 static double weight(const struct orl_gain_view *a, const struct orl_gain_view *b,
                      uint32_t shared, uint32_t own)
 {
@@ -25,7 +25,8 @@ static double weight(const struct orl_gain_view *a, const struct orl_gain_view *
     return common * common / squared;
 }
 
-// log2 of the gain of view `number`, which is one of the aligned (and then left out) or not.
+// log2 of the gain of view `number`. If the view is one of the aligned ones, its own gain is left
+// out.
 static void guess_one(enum orl_gain_guess guess, const struct orl_gain_view *aligned,
                       size_t count, const struct orl_gain_view *view, size_t number,
                       const uint32_t *shared, const uint32_t *own, double gain[3])

@@ -9,30 +9,32 @@
 #include "preprocess/expose/cholesky.h"
 
 enum {
-    NODES = 256,       // 8-bit values; 0 is not used: its logarithm has no bound
+    NODES = 256,       // 8-bit values; 0 is not used, since its logarithm is unbounded
     TERMS = 6,         // of the polynomial
     ITERATIONS = 12,
     TUKEY_ITERATIONS = 2,
-    POINTS_MIN = 200,  // seen at exposures that differ
-    BINS = 16,         // of values, that samples must span
+    POINTS_MIN = 200,  // least number of points seen at different exposures
+    BINS = 16,         // of 8-bit values; samples must cover BINS_MIN of them
     BINS_MIN = 12,
     PER_BIN_MIN = 20,
-    VALUE_MAX = 251,   // of those above, noise clips the brighter ones: what is left is biased
-    FLOOR_MAX = 64,    // a floor is below
+    VALUE_MAX = 251,   // above it noise clips the brighter samples, which biases the others
+    FLOOR_MAX = 64,    // a floor is below this value
 };
 static const double LN2 = 0.69314718055994531;
 static const double SAMPLE_SIGMA = 0.1; // of log colour, as in align.c
-static const double PAIR_MIN_EV = 0.4;  // exposures of a point that say something
-// Of a floor: values rise less than by this share of the exposure, which is at most
-// FLOOR_EV_MAX lower in the other photograph.
+static const double PAIR_MIN_EV = 0.4;  // least difference of exposure between two observations of
+                                        // a point
+// Values below the floor rise by less than FLAT_MAX of the difference in exposure to another
+// photograph, which is at most FLOOR_EV_MAX darker.
 static const double FLAT_MAX = 0.3, FLOOR_EV_MAX = 2.1;
-// Weight of the squared second derivative of the curve's logarithm, by what samples weigh.
+// Weight of the squared second derivative of the curve's logarithm, relative to the samples'
+// weight.
 static const double SMOOTHNESS = 1e-6;
-static const double PULL = 1e-3;        // on the terms: there is always a solution
-static const double OFFSET_SIGMA = 0.2; // of a photograph's log exposure from what is known
-static const double FIRM = 1e8;         // weight of what must hold
-static const double MUST_GAIN = 0.97;   // spread of the curve by that of sRGB
-// Log exposure per 8-bit value below which a curve may not rise: keeps it monotone.
+static const double PULL = 1e-3;        // regularization of the terms: a solution always exists
+static const double OFFSET_SIGMA = 0.2; // of a photograph's log exposure from the known value
+static const double FIRM = 1e8;         // weight of equality constraints
+static const double MUST_GAIN = 0.97;   // greatest ratio of the curve's spread to that of sRGB
+// The least rise of log exposure per 8-bit value, which keeps the curve monotone.
 static const double RISE_MIN = 1e-4;
 
 struct problem {
@@ -41,12 +43,12 @@ struct problem {
     float *sigma;    // per observation; INFINITY: takes no part
     float *weight, *residual, *scratch;
     float *light;    // log of vignetting times exposure
-    double floor;    // value at which the dark ends: what is there has no weight
-    double srgb[NODES], off[NODES]; // log exposure of sRGB; what the curve adds to it
+    double floor;    // 8-bit value; darker values have no weight
+    double srgb[NODES], off[NODES]; // log exposure of sRGB; the curve's difference from it
     int channel;
     size_t photo_count;
     double *matrix, *unknown, *offset; // offset: of each photograph's log exposure
-    double *share;   // of each photograph in what samples weigh, times photo_count
+    double *share;   // of each photograph in the weight of all samples, times photo_count
 };
 
 static double vignetting(const float v[3], double r2)
@@ -54,7 +56,7 @@ static double vignetting(const float v[3], double r2)
     return fmax(1 + r2 * ((double)v[0] + r2 * ((double)v[1] + r2 * (double)v[2])), 0.05);
 }
 
-// The nodes around a value, and the share of the upper one.
+// The nodes around a value, and the weight of the upper node.
 static size_t node_of(double value, double *upper)
 {
     double at = fmin(fmax(value, 1), NODES - 1);
@@ -85,7 +87,7 @@ static bool is_usable(const struct problem *p, const struct orl_observation *ite
            value <= VALUE_MAX;
 }
 
-// What the same point shows at the next lower exposure; NULL: nothing that says something.
+// The same point's observation at the next lower exposure; NULL: none is low enough.
 static const struct orl_observation *darker(const struct problem *p, size_t begin, size_t end,
                                             const struct orl_observation *item)
 {
@@ -101,8 +103,8 @@ static const struct orl_observation *darker(const struct problem *p, size_t begi
     return best;
 }
 
-// Where black is not 0 (scans of film, stray light), dark values hardly follow exposure.
-// Counts them by value, and those that say so.
+// Where black is not 0 (scans of film, stray light), dark values hardly follow exposure. Counts
+// samples by value: all of them, and those that do not follow exposure.
 static void count_flat(const struct problem *p, size_t flat[NODES], size_t all[NODES])
 {
     for (size_t point = 0; point < p->samples->point_count; point++) {
@@ -123,7 +125,7 @@ static void count_flat(const struct problem *p, size_t flat[NODES], size_t all[N
     }
 }
 
-// The darkest value from which on values follow exposure, less 1.
+// The largest dark value that does not follow exposure yet; 0: all values do.
 static double find_floor(const struct problem *p)
 {
     size_t flat[NODES] = {0}, all[NODES] = {0}, flat_sum = 0, sum = 0;
@@ -142,7 +144,7 @@ static double find_floor(const struct problem *p)
     return floor;
 }
 
-// Points count when exposures of theirs differ enough to say something. Returns how many do.
+// Chooses points whose exposures differ enough to constrain the curve. Returns their number.
 static size_t choose(struct problem *p)
 {
     size_t points = 0;
@@ -215,7 +217,7 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Robust standard deviation of the residuals, relative to their sigmas or absolute.
+// Robust standard deviation of the residuals, absolute or relative to their sigmas.
 static double spread(struct problem *p, bool relative)
 {
     size_t count = 0;
@@ -246,7 +248,7 @@ static void reweigh(struct problem *p, bool tukey)
     }
 }
 
-// Chebyshev polynomials of first to TERMS-th degree, 0 to 255 being their range.
+// Chebyshev polynomials of degree 1 to TERMS, with 0 to 255 mapped to their range.
 static void terms_at(double value, double t[TERMS])
 {
     double x = 2 * value / (NODES - 1) - 1, before = 1, now = x;
@@ -258,7 +260,7 @@ static void terms_at(double value, double t[TERMS])
     }
 }
 
-// Observation i: log exposure as sRGB less the exposure, and the polynomial's terms there.
+// Log exposure of observation i by sRGB less its known exposure; `t`: the polynomial's terms there.
 static double row_of(const struct problem *p, size_t i, double t[TERMS])
 {
     double value = (double)p->samples->items[i].value[p->channel];
@@ -266,8 +268,8 @@ static double row_of(const struct problem *p, size_t i, double t[TERMS])
     return log((double)orl_srgb_decode((float)value / 255)) - (double)p->light[i];
 }
 
-// The point's radiance is eliminated: what counts are differences from its mean. Unknowns:
-// the terms, then an offset of each photograph's log exposure.
+// Adds a point's equations. Eliminating the point's radiance leaves differences from its mean.
+// Unknowns: the terms, then an offset of each photograph's log exposure.
 static void add_point(const struct problem *p, size_t point, double *a, double *b)
 {
     size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
@@ -302,7 +304,7 @@ static void add_point(const struct problem *p, size_t point, double *a, double *
     }
 }
 
-// Integral of the squared second derivative over [0, 1].
+// Adds the integral of the squared second derivative over [0, 1].
 static void add_smoothness(double *a, size_t n, double weight)
 {
     enum { STEPS = 64 };
@@ -318,9 +320,10 @@ static void add_smoothness(double *a, size_t n, double weight)
     }
 }
 
-// Offsets neither shift nor stretch the exposures that are known: stretching them and the
-// curve's exponent alike would fit as well. Photographs count by what they show (`share`,
-// all ones' mean being 1): else nearly black ones would make up for a stretch of the rest.
+// Constrains the offsets so that they neither shift nor stretch the known exposures: a stretch of
+// the exposures and of the curve's exponent together would fit as well. Photographs are weighted by
+// their samples (`share`, with mean 1); otherwise nearly black ones would compensate for a stretch
+// of the rest.
 static void add_offsets(const struct problem *p, double *a, size_t n)
 {
     const double *share = p->share;
@@ -353,7 +356,7 @@ static void set_shares(struct problem *p)
         share[i] *= (double)p->photo_count / total;
 }
 
-// Without `curve` offsets alone are found, for sRGB.
+// Solves once. Without `curve`, only the offsets are unknown, for sRGB.
 static bool step(struct problem *p, bool curve)
 {
     size_t n = TERMS + p->photo_count;
@@ -381,13 +384,13 @@ static bool step(struct problem *p, bool curve)
     return true;
 }
 
-// Linear, rising, 1 at 255.
+// Converts the curve to linear light, monotone, with 1 at 255.
 static void finish_curve(const struct problem *p, float linear[256])
 {
     double g[NODES];
     for (size_t v = 1; v < NODES; v++)
         g[v] = p->srgb[v] + p->off[v];
-    // From the middle, which samples know best.
+    // Starts from the middle, where the samples constrain the curve best.
     for (size_t v = NODES / 2 + 1; v < NODES; v++)
         g[v] = fmax(g[v], g[v - 1] + RISE_MIN);
     for (size_t v = NODES / 2 - 1; v > 0; v--)
@@ -398,7 +401,7 @@ static void finish_curve(const struct problem *p, float linear[256])
     linear[NODES - 1] = 1;
 }
 
-// Iteratively reweighted least squares, and the spread that is left.
+// Iteratively reweighted least squares. *spread_ev: the spread of the residuals.
 static bool iterate(struct problem *p, bool curve, double *spread_ev)
 {
     reset_weights(p);

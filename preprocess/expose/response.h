@@ -1,4 +1,4 @@
-// A camera's response curve from scene points that were seen at several exposures.
+// A camera's response curve, from scene points that were seen at several exposures.
 #ifndef ORL_PREPROCESS_RESPONSE_H
 #define ORL_PREPROCESS_RESPONSE_H
 
@@ -8,29 +8,30 @@
 enum orl_response_verdict {
     ORL_RESPONSE_FOUND,
     ORL_RESPONSE_ONE_EXPOSURE, // exposures differ by less than ORL_RESPONSE_RANGE_EV
-    ORL_RESPONSE_FEW_SAMPLES,  // or they do not span the values
+    ORL_RESPONSE_FEW_SAMPLES,  // there are few, or they cover few values
     ORL_RESPONSE_SRGB,         // sRGB explains the samples as well
 };
 #define ORL_RESPONSE_RANGE_EV 0.5
 
 struct orl_response_photo {
-    bool use;        // of the camera in question, with a known exposure
+    bool use;        // true for photographs of this camera with a known exposure
     double ev;       // log2 of exposure
     float vignette[3]; // as in struct orl_photo
 };
 
 struct orl_response_fit {
     enum orl_response_verdict verdict;
-    size_t points; // scene points seen at exposures that differ
-    double spread_srgb_ev, spread_ev; // robust spread of a point's radiance, sRGB and curve
+    size_t points; // scene points seen at different exposures
+    double spread_srgb_ev, spread_ev; // robust spread of a point's radiance by sRGB and by the
+                                      // curve
 };
 
 // Debevec and Malik 1997, eq. 3, with points that only some photographs show, robust against
-// outliers. The curve is sRGB times the exponential of a smooth polynomial of the value: that
-// continues it sensibly where there are no samples, and keeps series that are equally far
-// apart from leaving it open (a ripple with their period would go unnoticed). Exposures may
-// be off in each photograph, as long as they are right on the whole. With another verdict
-// than ORL_RESPONSE_FOUND the curve is sRGB.
+// outliers. The curve is sRGB times the exponential of a smooth polynomial of the value. The
+// polynomial continues the curve where there are no samples. It also removes an ambiguity of series
+// with equal steps, which cannot show a ripple with the period of the step. Exposures may be wrong
+// in single photographs as long as they are right on average. With any verdict but
+// ORL_RESPONSE_FOUND the curve is sRGB.
 enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_samples *samples,
                                  const struct orl_response_photo *photos, size_t photo_count,
                                  struct orl_response *response,

@@ -10,21 +10,22 @@
 
 enum {
     DEPTH_SIDE = 512,     // larger side of the depth buffers
-    SPLAT_MAX = 6,        // largest half side of a splat in them
-    LEVELS_MAX = 8,       // of the pyramid of a photograph
-    PHOTOS_PER_POINT = 32, // more say little new and cost their square to align
+    SPLAT_MAX = 6,        // largest half side of a splat in the depth buffers
+    LEVELS_MAX = 8,       // of a photograph's pyramid
+    PHOTOS_PER_POINT = 32, // more observations add little, and the cost of alignment grows with
+                           // their square
 };
-// Fraction of depth. Splats are flat and face the camera, surfaces do not.
+// Fraction of depth. Splats are flat and face the camera, unlike the surfaces.
 static const double DEPTH_TOLERANCE = 0.02;
 static const uint8_t CLIPPED = 254, BLACK = 0;
-static const float SPOILT_MAX = 0.02f; // share of clipped pixels in a patch
+static const float SPOILT_MAX = 0.02f; // greatest fraction of clipped pixels in a patch
 
-// --- depth of all points, seen from one photograph ---
+// --- depth of all points from one photograph ---
 
 struct depth_buffer {
     int width, height;
-    double scale; // its pixels per pixel of the photograph
-    float *z;     // owned; INFINITY: nothing
+    double scale; // depth buffer pixels per pixel of the photograph
+    float *z;     // owned; INFINITY: no surface
 };
 
 static void splat(struct depth_buffer *buffer, const double pixel[2], double depth, double radius)
@@ -73,8 +74,8 @@ static enum orl_result draw_depth(const struct orl_log *log, const struct orl_vi
     return ORL_OK;
 }
 
-// Nothing stands clearly before it, nor beside it within a pixel: poses and depths are
-// not exact, and a patch needs room.
+// True when nothing is clearly nearer at the pixel or within one pixel of it: poses and depths are
+// inexact, and a patch needs room.
 static bool is_visible(const struct depth_buffer *buffer, const double pixel[2], double depth)
 {
     int x = (int)(pixel[0] * buffer->scale), y = (int)(pixel[1] * buffer->scale);
@@ -92,7 +93,7 @@ static bool is_visible(const struct depth_buffer *buffer, const double pixel[2],
 
 struct texel {
     float rgb[3];    // linear
-    float spoilt[3]; // share of pixels that are clipped or black, by channel
+    float spoilt[3]; // fraction of pixels that are clipped or black, by channel
 };
 
 struct pyramid {
@@ -166,7 +167,7 @@ static void finish_pyramid(struct pyramid *p)
         free(p->level[i]);
 }
 
-// Between texels: they step by 1, the mean must not.
+// Interpolates between texels, so that the mean is continuous in the position.
 static struct texel bilinear(const struct pyramid *p, int level, double x, double y)
 {
     int left = (int)floor(x - 0.5), top = (int)floor(y - 0.5);
@@ -183,9 +184,8 @@ static struct texel bilinear(const struct pyramid *p, int level, double x, doubl
     return sum;
 }
 
-// Mean of 3x3 texels that are as far apart as the patch is wide, by thirds. False when the
-// patch is spoilt in every channel, or too uneven for its mean to say what another
-// photograph would show.
+// Mean of 3x3 texels, a third of the patch's width apart. Returns false when every channel of the
+// patch is clipped, or when the patch is so uneven that another photograph would show another mean.
 static bool take_patch(const struct pyramid *p, const double pixel[2], double radius,
                        float contrast_max, struct orl_observation *item)
 {
@@ -214,7 +214,7 @@ static bool take_patch(const struct pyramid *p, const double pixel[2], double ra
     return true;
 }
 
-// --- all of them ---
+// --- samples of all photographs ---
 
 struct taking {
     const struct orl_log *log;
@@ -257,7 +257,7 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
         !faces(t->points, point, eye, (double)t->params->cosine_min) ||
         !is_visible(buffer, pixel, depth))
         return ORL_OK;
-    // Never less than the pixels that calibration may be off.
+    // The patch covers at least the pixels by which calibration may be wrong.
     double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 1.5);
     if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, &item))
         return ORL_OK;
@@ -317,8 +317,8 @@ enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_pro
     return result;
 }
 
-// Of `seen` observations of a point, is number `index` one of those kept? Evenly spaced, with
-// a phase that differs from point to point.
+// Is observation `index` of the `seen` ones of a point kept? The kept ones are evenly spaced, with
+// a phase that differs between points.
 static bool is_kept(size_t index, size_t seen, size_t point)
 {
     if (seen <= PHOTOS_PER_POINT)

@@ -1,4 +1,4 @@
-// Co-visible samples: the colour of one scene point in several photographs.
+// Co-visible samples: the colours of one scene point in several photographs.
 #ifndef ORL_PREPROCESS_SAMPLES_H
 #define ORL_PREPROCESS_SAMPLES_H
 
@@ -12,11 +12,11 @@ struct orl_sample_photo {
     struct orl_view view;
 };
 
-// What one photograph shows of a point: the mean of a patch that no edge crosses and that
-// does not clip in every channel.
+// What one photograph shows of a point: the mean of a patch without edges that does not clip in
+// every channel.
 struct orl_observation {
     uint32_t photo;
-    float value[3]; // 8-bit values, [0, 255]; of channels that clip they mean nothing
+    float value[3]; // 8-bit values, [0, 255]; undefined in channels that clip
     uint8_t clipped; // bit c: channel c has clipped or black pixels
     float r2;       // squared distance from the principal point, in half diagonals
 };
@@ -24,27 +24,27 @@ struct orl_observation {
 struct orl_samples {
     size_t point_count, count;
     size_t *first; // point_count + 1: where a point's observations begin
-    struct orl_observation *items; // by point, then photograph
+    struct orl_observation *items; // sorted by point, then by photograph
 };
 
 struct orl_sample_params {
-    size_t points_max;   // points looked at; 0: all
+    size_t points_max;   // greatest number of points examined; 0: all
     float contrast_max;  // (brightest - darkest) / mean within a patch, linear, (0, 10]
     float cosine_min;    // of the angle between normal and viewing direction
 };
 #define ORL_SAMPLE_DEFAULTS .points_max = 100000, .contrast_max = 0.5f, .cosine_min = 0.35f
 
-// Visibility is tested against a depth buffer of all points; patches have the same size
-// in the scene in every photograph, a point's radius to either side. Only points that two
-// photographs or more show are kept. Photographs are read one at a time.
+// Visibility is tested against a depth buffer of all points. A patch has the same size in the scene
+// in every photograph: the point's radius to either side. Only points that at least two photographs
+// show are kept. Photographs are read one at a time.
 enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_progress *progress,
                                  const struct orl_sample_photo *photos, size_t photo_count,
                                  const struct orl_points *points,
                                  const struct orl_sample_params *params,
                                  struct orl_samples *samples) ORL_CHECK_RESULT;
 void orl_samples_finish(struct orl_samples *samples);
-// Puts observations, each of point points[i] < point_limit, in order; of points with more
-// than 32 it keeps 32.
+// Sorts observations by their points, points[i] < point_limit. A point keeps at most 32
+// observations.
 enum orl_result orl_samples_collect(const struct orl_log *log,
                                     const struct orl_observation *observations,
                                     const uint32_t *points, size_t count, size_t point_limit,

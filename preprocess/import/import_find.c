@@ -1,4 +1,4 @@
-// Which files belong to which camera.
+// Finds the files that belong to each camera.
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +31,7 @@ static bool is_clip(const char *name)
     return has_extension(name, known);
 }
 
-// Length without the extension, if that is one of a picture or clip: names may have dots.
+// Length of the name without the extension of a picture or clip. Other dots belong to the name.
 static size_t stem_length(const char *name)
 {
     const char *dot = strrchr(name, '.');
@@ -43,7 +43,8 @@ static bool same_text(const char *a, size_t a_length, const char *b, size_t b_le
     return a_length == b_length && strncmp(a, b, a_length) == 0;
 }
 
-// "0001.png" and "0001.jpg.png" belong to the camera "0001.jpg" or "0001".
+// True for names such as "0001.png" and "0001.jpg.png", which belong to a camera "0001.jpg" or
+// "0001".
 static bool belongs(const char *file, const char *name)
 {
     size_t stem = stem_length(file);
@@ -51,7 +52,7 @@ static bool belongs(const char *file, const char *name)
            same_text(file, stem, name, stem_length(name));
 }
 
-// The camera's name stands in the file's, between characters that are not of names.
+// True when the file's name contains the camera's name between separators.
 static bool contains(const char *file, const char *name)
 {
     size_t length = stem_length(name), stem = stem_length(file);
@@ -93,7 +94,7 @@ enum orl_result orl_import_list_pictures(const struct orl_log *log, const char *
     return result;
 }
 
-// A camera's own folder: a clip named after the role, else its pictures, else its one clip.
+// Looks into a camera's own folder: for a clip named after the role, else pictures, else one clip.
 static enum orl_result look_inside(const struct orl_log *log, const char *dir, const char *role,
                                    struct import_found *found)
 {
@@ -179,7 +180,8 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
 
 // --- all cameras ---
 
-// Where pictures are: as told, else images/ beside the cameras, else beside them.
+// Chooses the folder of pictures: the given one, else images/ beside the cameras, else the cameras'
+// folder.
 static enum orl_result choose_folder(const struct import_job *job, char **dir)
 {
     const char *told = job->params->images_dir;
@@ -195,7 +197,7 @@ static enum orl_result choose_folder(const struct import_job *job, char **dir)
                                             "--images %s: no such folder", *dir);
 }
 
-// By its name; else where the file of cameras says that it is.
+// Finds a camera's picture by the camera's name, else by the path in the file of cameras.
 static enum orl_result find_picture(const struct import_job *job, const char *dir,
                                     const struct orl_colmap_image *image,
                                     struct import_found *found)
@@ -252,7 +254,7 @@ static enum orl_result find_pictures(struct import_job *job, const char *dir)
     return result;
 }
 
-// A photograph keeps its name if it is a JPEG or PNG, which every COLMAP tool reads.
+// A JPEG or PNG keeps its name, since every COLMAP tool reads these formats.
 static enum orl_result name_view(const struct import_job *job, struct import_view *view)
 {
     static const char *const kept[] = {"jpg", "jpeg", "png", NULL};
@@ -260,7 +262,7 @@ static enum orl_result name_view(const struct import_job *job, struct import_vie
     const char *file = orl_path_name(view->picture.path);
     const char *base = orl_path_name(name);
     bool keep = view->picture.kind == IMPORT_PICTURE && has_extension(file, kept);
-    // Folders in a name stay; its extension is the file's.
+    // The view keeps the folders in the camera's name and takes the extension of the file.
     view->name = keep ? orl_format(job->log, "%.*s%s", (int)(base - name), name, file)
                       : orl_format(job->log, "%.*s%.*s.jpg", (int)(base - name), name,
                                    (int)stem_length(base), base);
@@ -318,7 +320,7 @@ static enum orl_result hold_out(struct import_job *job)
                           "two must remain", test, job->view_count);
 }
 
-// Masks or backgrounds: every camera must have one.
+// Finds masks or backgrounds, of which every camera must have one.
 static enum orl_result find_companions(struct import_job *job, const char *option,
                                        const char *dir, const char *role)
 {

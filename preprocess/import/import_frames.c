@@ -1,4 +1,4 @@
-// Pictures of a folder or a clip, one after another.
+// Pictures of a folder or a clip, in their order.
 #include <stdlib.h>
 
 #include "core/memory.h"

@@ -1,4 +1,4 @@
-// What the steps of import share.
+// Private to import: what its steps share.
 #ifndef ORL_PREPROCESS_IMPORT_INTERNAL_H
 #define ORL_PREPROCESS_IMPORT_INTERNAL_H
 
@@ -7,7 +7,7 @@
 #include "preprocess/import/import_params.h"
 #include "scene/known_cameras.h"
 
-// What was found under a camera's name.
+// The kind of file that was found under a camera's name.
 enum import_kind { IMPORT_NOTHING, IMPORT_PICTURE, IMPORT_FOLDER, IMPORT_CLIP };
 struct import_found {
     enum import_kind kind;
@@ -16,9 +16,9 @@ struct import_found {
 
 // One camera with its pictures.
 struct import_view {
-    const struct orl_colmap_image *image; // of the known cameras
-    size_t camera;                        // index of its camera in their model
-    char *name;                           // of the photograph in the scene; owned
+    const struct orl_colmap_image *image; // one of the known cameras
+    size_t camera;                        // index of its camera in the known cameras' model
+    char *name;                           // name of the photograph in the scene; owned
     struct import_found picture, mask, background;
     bool test;
 };
@@ -27,13 +27,13 @@ struct import_job {
     const struct orl_log *log;
     const struct orl_progress *progress;
     const struct orl_import_params *params;
-    char *dir; // being filled; owned
+    char *dir; // the folder that is filled; owned
     struct orl_known_cameras known;
     struct orl_camera *targets; // undistorted, one for each known camera; owned
     struct import_view *views;  // sorted by name; owned
     size_t view_count;
-    bool sequence;      // the pictures are folders or clips
-    size_t frame_count; // moments written
+    bool sequence;      // true when the pictures are folders or clips
+    size_t frame_count; // frames of the sequence that were written
 };
 
 // --- import_scene.c: the folder ---
@@ -43,17 +43,18 @@ char *orl_import_path(const struct import_job *job, const char *format, ...) ORL
 
 // --- import_find.c ---
 
-// Looks in `dir` for what belongs to the camera `name`: a picture of this name, whatever its
-// extension; a folder of this name with pictures or a clip (`role` where there are several); a
-// clip of this name. `loosely`: also a picture whose name has it as a part. found->kind says.
+// Looks in `dir` for the files of the camera `name`: a picture of this name with any extension; a
+// folder of this name with pictures or a clip (the clip named `role` where there are several); or a
+// clip of this name. `loosely`: also a picture whose name contains the camera's. Sets found->kind.
 enum orl_result orl_import_find(const struct orl_log *log, const char *dir, const char *name,
                                 const char *role, bool loosely,
                                 struct import_found *found) ORL_CHECK_RESULT;
 void orl_import_found_finish(struct import_found *found);
-// Pictures in a folder, sorted by name.
+// Lists the pictures in a folder, sorted by name.
 enum orl_result orl_import_list_pictures(const struct orl_log *log, const char *dir,
                                          struct orl_names *names) ORL_CHECK_RESULT;
-// Finds each camera's picture, mask and background; names the photographs; holds out.
+// Finds each camera's picture, mask and background, names the photographs and marks the held-out
+// ones.
 enum orl_result orl_import_find_all(struct import_job *job) ORL_CHECK_RESULT;
 
 // --- import_frames.c: pictures of a folder or clip, one after another ---
@@ -61,7 +62,7 @@ enum orl_result orl_import_find_all(struct import_job *job) ORL_CHECK_RESULT;
 struct import_frames {
     char *dir; // owned
     struct orl_names names;
-    bool temporary; // decoded from a clip: `dir` is removed in the end
+    bool temporary; // decoded from a clip; `dir` is removed when the frames are released
     size_t first, step, count;
 };
 enum orl_result orl_import_frames_open(const struct import_job *job, const struct import_found *found,
@@ -73,35 +74,35 @@ void orl_import_frames_close(const struct import_job *job, struct import_frames 
 
 // --- import_target.c ---
 
-// The pinhole camera for the undistorted pictures: focal length as before, and the largest
-// rectangle around the principal point that the distorted picture covers without gaps.
+// The pinhole camera for the undistorted pictures: the same focal length, and the largest rectangle
+// around the principal point that the distorted picture covers without gaps.
 struct orl_camera orl_import_target(const struct orl_colmap_camera *from, int max_size);
-// Do pictures stay as they are?
+// True when undistortion leaves the pictures unchanged.
 bool orl_import_is_same(const struct orl_colmap_camera *from, const struct orl_camera *to);
 
 // --- import_pictures.c ---
 
-// Undistorted photographs, silhouettes and backgrounds, of all moments.
+// Writes undistorted photographs, silhouettes and backgrounds of all frames.
 enum orl_result orl_import_pictures(struct import_job *job) ORL_CHECK_RESULT;
 
 // --- import_scene.c ---
 
-// The model of the undistorted photographs, written to the folder `name`: all of them, or those
-// that are not held out. Points and what sees them are those of `points`, whose photographs have
-// the known cameras' names, or with `renamed` the scene's.
+// Writes the model of the undistorted photographs to the folder `name`: all photographs, or those
+// that are not held out. Points and their tracks come from `points`, whose photographs have the
+// known cameras' names, or with `renamed` the scene's.
 struct import_points {
     const struct orl_colmap_model *model;
     bool renamed;
 };
 enum orl_result orl_import_write_model(const struct import_job *job, const char *name, bool train_only,
                                        const struct import_points *points) ORL_CHECK_RESULT;
-// points.ply from a cloud, or empty.
+// Writes points.ply from a cloud, or without points.
 enum orl_result orl_import_write_points(const struct import_job *job, size_t *count) ORL_CHECK_RESULT;
 enum orl_result orl_import_write_mesh(const struct import_job *job, size_t *triangles) ORL_CHECK_RESULT;
-// scene.json, written last.
+// Writes scene.json, which must be the last file.
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
                                           size_t triangles) ORL_CHECK_RESULT;
-// What import has to say in a scene.json that the stages of prepare have left.
+// Adds the part of import to the scene.json that the stages of prepare wrote.
 enum orl_result orl_import_complete_manifest(const struct import_job *job,
                                              size_t triangles) ORL_CHECK_RESULT;
 

@@ -1,4 +1,4 @@
-// What oriel import is asked to do.
+// The settings of oriel import.
 #ifndef ORL_PREPROCESS_IMPORT_PARAMS_H
 #define ORL_PREPROCESS_IMPORT_PARAMS_H
 
@@ -9,8 +9,8 @@
 enum orl_import_silhouettes {
     ORL_SILHOUETTES_NONE,
     ORL_SILHOUETTES_GIVEN,      // files in masks_dir
-    ORL_SILHOUETTES_DARK,       // a subject before a dark ground
-    ORL_SILHOUETTES_BACKGROUND, // difference from pictures or clips of the empty place
+    ORL_SILHOUETTES_DARK,       // a subject in front of a dark background
+    ORL_SILHOUETTES_BACKGROUND, // difference from pictures or clips of the empty scene
 };
 
 enum orl_import_points {
@@ -20,26 +20,27 @@ enum orl_import_points {
 };
 
 struct orl_import_params {
-    const char *cameras;       // file or folder, as orl_known_cameras_read has it
+    const char *cameras;       // file or folder, as for orl_known_cameras_read
     const char *out;           // the scene folder: new or empty
-    const char *images_dir;    // pictures, folders of numbered ones, or clips, named as the
-                               // cameras; NULL: images/ beside the cameras, or there
-    double pixel_centre;       // see orl_known_cameras_read; negative: by format
+    const char *images_dir;    // pictures, folders of numbered ones, or clips, named like the
+                               // cameras; NULL: images/ beside the cameras, or their folder
+    double pixel_centre;       // as for orl_known_cameras_read; negative: by format
     int test_every;            // hold out photographs 0, N, 2N, ... by name; 0: none
     const struct orl_names *test_list; // hold out these (extension optional); NULL: none
-    int max_size;              // larger side of the photographs in the scene, pixels; 0: any
+    int max_size;              // greatest longer side of the scene's photographs, pixels; 0: any
     enum orl_import_silhouettes silhouettes;
     const char *masks_dir;     // of ORL_SILHOUETTES_GIVEN
-    const char *background;    // folder of backgrounds, named as the cameras; NULL: none
-    int dark_threshold;        // of ORL_SILHOUETTES_DARK, [0, 254]; negative: found
+    const char *background;    // folder of backgrounds, named like the cameras; NULL: none
+    int dark_threshold;        // of ORL_SILHOUETTES_DARK, [0, 254]; negative: chosen automatically
     struct orl_frame_range frames; // of a sequence
     enum orl_import_points points;
     const char *points_file;   // a PLY cloud
-    struct orl_prepare_params densify; // of ORL_IMPORT_DENSIFY: quality, densifier, seed, keep, gpu,
-                                       // max_vram_bytes and shader_dir are used
+    struct orl_prepare_params densify; // of ORL_IMPORT_DENSIFY: only quality, densifier, seed,
+                                       // keep, gpu, max_vram_bytes and shader_dir are used
     const char *mesh;          // a PLY or OBJ mesh; NULL: none
-    int hull_side;             // > 0: the mesh is the silhouettes' hull on so many voxels each way
-    int hull_triangles;        // at most, about; 0: as many as it takes
+    int hull_side;             // > 0: the mesh is the silhouettes' visual hull on hull_side^3
+                               // voxels
+    int hull_triangles;        // approximate limit; 0: none
 };
 #define ORL_IMPORT_DEFAULTS .pixel_centre = -1, .dark_threshold = -1, .frames = {0, 0, 1}, \
                             .densify = {.quality = ORL_QUALITY_STANDARD, .seed = 1}

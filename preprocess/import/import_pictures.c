@@ -1,4 +1,4 @@
-// Undistorted photographs, silhouettes and backgrounds, of one moment or many.
+// Undistorted photographs, silhouettes and backgrounds of a single picture or a sequence.
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -26,7 +26,7 @@ static enum orl_result make_parent(const struct orl_log *log, const char *path)
     return result;
 }
 
-// "images/NAME" or "frames/NNNNN/images/NAME", with its folder made; frame -1: the scene's own.
+// Path "images/NAME", or "frames/NNNNN/images/NAME" for frame >= 0. Makes its folder.
 static enum orl_result output_path(const struct import_job *job, const char *folder, int frame,
                                    const char *name, const char *ending, char **path)
 {
@@ -54,7 +54,7 @@ static bool is_png(const char *name)
     return dot && strcasecmp(dot, ".png") == 0;
 }
 
-// A picture that needs no change is copied byte by byte, so that nothing of it is lost.
+// A picture that needs no change is copied byte for byte, without loss.
 static bool may_copy(const struct import_job *job, const struct import_view *view)
 {
     return view->picture.kind == IMPORT_PICTURE &&
@@ -92,7 +92,7 @@ static enum orl_result write_photo(const struct import_job *job, const struct im
     return result;
 }
 
-// Linear light of a photograph with more than 8 bits a sample, beside its 8-bit twin.
+// Writes the linear light of a photograph with more than 8 bits a sample, beside its 8-bit twin.
 static enum orl_result write_linear(const struct import_job *job, const struct import_view *view)
 {
     struct orl_picture_info info;
@@ -115,7 +115,7 @@ static enum orl_result write_linear(const struct import_job *job, const struct i
     return result;
 }
 
-// The mask, 0 or not, of the picture as given.
+// Writes the mask of a picture as given (0 or not), undistorted.
 static enum orl_result write_mask(const struct import_job *job, const struct import_view *view,
                                   int frame, const char *path, const struct orl_image *mask)
 {
@@ -125,7 +125,7 @@ static enum orl_result write_mask(const struct import_job *job, const struct imp
     if (result == ORL_OK)
         result = undistort(job, view, path, mask, &image);
     size_t count = result == ORL_OK ? orl_image_bytes(&image) : 0;
-    for (size_t i = 0; i < count; i++) // resampling leaves greys
+    for (size_t i = 0; i < count; i++) // resampling makes intermediate values
         image.u8[i] = image.u8[i] >= 128;
     if (result == ORL_OK) {
         orl_silhouette_mark_edges(&image);
@@ -153,7 +153,7 @@ static enum orl_result learn_background(const struct import_job *job,
                                         const struct import_view *view,
                                         struct orl_background *background)
 {
-    // All of a folder or clip, whatever part of the sequence is wanted.
+    // All frames of the background count, whatever range of the sequence is wanted.
     const struct orl_frame_range all = {0, 0, 1};
     struct import_frames frames;
     if (view->background.kind == IMPORT_PICTURE)
@@ -225,7 +225,7 @@ static enum orl_result import_picture(const struct import_job *job,
     enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
     if (result == ORL_OK)
         result = write_photo(job, view, frame, path, &picture);
-    // What shows a sequence before a moment is chosen is its first.
+    // The scene's own pictures, shown before a frame is chosen, are those of the first frame.
     if (result == ORL_OK && frame == 0)
         result = write_photo(job, view, -1, path, &picture);
     if (result == ORL_OK && job->params->silhouettes != ORL_SILHOUETTES_NONE) {
@@ -248,7 +248,7 @@ static enum orl_result settle_camera(struct import_job *job, struct import_view 
     int width, height;
     struct orl_camera *target = &job->targets[view->camera];
     enum orl_result result = orl_picture_size(job->log, path, &width, &height);
-    if (result != ORL_OK || target->width) // by an earlier picture of the same camera
+    if (result != ORL_OK || target->width) // known from an earlier picture of the same camera
         return result;
     result = orl_known_camera_settle(job->log, &job->known, view->camera, path, width, height);
     if (result == ORL_OK)
@@ -287,7 +287,7 @@ static enum orl_result import_sequence(struct import_job *job, struct import_vie
 {
     struct import_frames frames = {0}, masks = {0};
     const struct orl_frame_range *range = &job->params->frames;
-    // Masks of a clip would be decoded into the pictures' folder.
+    // Masks of a clip would be decoded into the same folder as the pictures.
     if (view->mask.kind == IMPORT_CLIP)
         return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: masks of a sequence must be folders of "
                         "pictures, as a clip's coding blurs them", view->mask.path);
@@ -331,7 +331,7 @@ static enum orl_result import_view(struct import_job *job, struct import_view *v
     return result;
 }
 
-// Moments that some cameras lack.
+// Removes frames that some cameras lack.
 static enum orl_result drop_surplus(const struct import_job *job)
 {
     enum orl_result result = ORL_OK;

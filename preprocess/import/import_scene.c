@@ -1,4 +1,4 @@
-// The scene around the photographs: sparse model, points, mesh, manifest.
+// The scene's files besides the photographs: sparse model, points, mesh, manifest.
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -34,7 +34,7 @@ static struct orl_colmap_camera pinhole_camera(uint32_t id, const struct orl_cam
                                       .params = {c->fx, c->fy, c->cx, c->cy}, .param_count = 4};
 }
 
-// Which points a photograph sees, of a model that may not have it.
+// Sets the points that a photograph sees, if their model has the photograph.
 static void set_points(const struct import_points *points, const char *known_name,
                        struct orl_colmap_image *image)
 {
@@ -62,7 +62,7 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
     enum orl_result result = model.cameras && model.images && dir ? orl_dir_make(job->log, dir)
                                                                   : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < known->camera_count; i++)
-        if (job->targets[i].width) // a picture was there
+        if (job->targets[i].width) // true when the camera has a picture
             model.cameras[model.camera_count++] =
                 pinhole_camera(known->cameras[i].id, &job->targets[i]);
     for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
@@ -72,7 +72,8 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
         struct orl_colmap_image *image = &model.images[model.image_count];
         *image = *view->image;
         image->name = view->name;
-        image->id = (uint32_t)++model.image_count; // by name, as COLMAP's database numbers them
+        image->id = (uint32_t)++model.image_count; // in order of name, as COLMAP's database numbers
+                                                   // them
         set_points(points, view->image->name, image);
     }
     if (result == ORL_OK)
@@ -91,7 +92,7 @@ static struct orl_view view_of(const struct import_job *job, size_t i)
                              job->views[i].image->cam_from_world};
 }
 
-// Radii and normals where the file has none.
+// Estimates radii and normals where the file has none.
 static enum orl_result complete_points(const struct import_job *job, struct orl_points *points)
 {
     const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};

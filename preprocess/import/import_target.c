@@ -1,10 +1,10 @@
-// The camera that undistorted pictures are made for.
+// The camera of the undistorted pictures.
 #include <math.h>
 
 #include "preprocess/import/import_internal.h"
 #include "scene/colmap_internal.h"
 
-// What the picture covers to the left, top, right and bottom of the axis, as tangents.
+// Tangents of the angles from the axis to the picture's left, top, right and bottom side.
 struct extent {
     double side[4];
 };
@@ -13,15 +13,16 @@ static bool in_picture(const struct orl_colmap_camera *camera, const double ray[
 {
     double pixel[2];
     orl_colmap_camera_project(camera, ray, pixel);
-    // Half a pixel of the border may be repeated: its centre is in the picture.
+    // Up to half a pixel of the border may be repeated: the position lies within the picture.
     return pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] <= camera->pinhole.width &&
            pixel[1] <= camera->pinhole.height;
 }
 
-// Along one direction from the axis, while pixels move outward and stay in the picture.
+// The greatest tangent along one direction from the axis for which pixels move outward and stay in
+// the picture.
 static double reach(const struct orl_colmap_camera *camera, const double direction[2])
 {
-    // COLMAP lets a picture grow to twice its size at most.
+    // COLMAP enlarges a picture to twice its size at most.
     const struct orl_camera *c = &camera->pinhole;
     double room = fabs(direction[0]) * (direction[0] < 0 ? c->cx : c->width - c->cx) / c->fx +
                   fabs(direction[1]) * (direction[1] < 0 ? c->cy : c->height - c->cy) / c->fy;
@@ -40,7 +41,7 @@ static double reach(const struct orl_colmap_camera *camera, const double directi
     return at;
 }
 
-// Does the distorted picture cover the whole border of the rectangle?
+// True when the distorted picture covers the rectangle's whole border.
 static bool covered(const struct orl_colmap_camera *camera, const struct extent *e)
 {
     enum { SAMPLES = 64 };
@@ -66,7 +67,7 @@ bool orl_import_is_same(const struct orl_colmap_camera *from, const struct orl_c
 struct orl_camera orl_import_target(const struct orl_colmap_camera *from, int max_size)
 {
     static const double directions[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
-    const double shrink = 0.995, least = 0.2; // COLMAP's least scale
+    const double shrink = 0.995, least = 0.2; // COLMAP's smallest scale
     struct orl_camera to = from->pinhole;
     struct extent e;
     for (int k = 0; k < 4; k++)

@@ -58,7 +58,7 @@ struct watch {
     const struct orl_job *job;
     const struct orl_colmap_run *run;
     bool tolerated;
-    char error[4096]; // held back until it is clear whether it counts
+    char error[4096]; // held back until it is clear whether the failure is tolerated
 };
 
 static void hold_error(void *priv, enum orl_log_level level, const char *message)
@@ -78,7 +78,7 @@ static void watch_line(void *priv, const char *line)
     if (part < 0)
         return;
     double done = run->done + run->share * (part < 1 ? part : 1);
-    // Only orl_job_colmap's callers know when a step is over.
+    // Only the callers of orl_job_colmap know when a step is complete.
     double limit = 0.999 * run->total;
     orl_progress_report(watch->job->progress, run->step, done < limit ? done : limit, run->total,
                         NULL);
@@ -94,7 +94,7 @@ static enum orl_result advise_missing(const struct orl_job *job)
 enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run *run,
                                struct orl_colmap_args *args)
 {
-    // Qt would look for a display otherwise.
+    // Qt would look for a display without this variable.
     static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     const char *argv[ORL_COLMAP_ARGS_MAX + 3] = {job->colmap, run->command};
     for (size_t i = 0; i < args->count; i++)

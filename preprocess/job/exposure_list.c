@@ -12,7 +12,7 @@
 
 enum { LIST_MAX_BYTES = 16 << 20, FIELDS_MAX = 4 };
 
-// Splits at commas, in place, without the spaces around; at most FIELDS_MAX + 1 are counted.
+// Splits a line at commas, in place, and trims spaces. Counts at most FIELDS_MAX + 1 fields.
 static int split(char *line, char *fields[FIELDS_MAX])
 {
     int count = 0;
@@ -33,7 +33,7 @@ static int split(char *line, char *fields[FIELDS_MAX])
     return count;
 }
 
-// "0.004", "1/250", "f/8".
+// Reads numbers such as "0.004", "1/250" and "f/8".
 static bool read_number(const char *text, double *value)
 {
     char *end;
@@ -65,10 +65,10 @@ static bool read_line(char *fields[FIELDS_MAX], int count, struct orl_listed_exp
     return fabs(entry->ev) <= 64;
 }
 
-// "photo, exposure time, ISO": has no digit but in the first. A number that was mistyped has one.
+// A line of titles has digits in its first field at most; a mistyped number has others.
 static bool is_title(char *fields[FIELDS_MAX], int count)
 {
-    bool digits = strchr(fields[0], '.') != NULL; // a name with its extension
+    bool digits = strchr(fields[0], '.') != NULL; // the first field is a file name
     for (int i = 1; i < count && i < FIELDS_MAX; i++)
         digits = digits || strpbrk(fields[i], "0123456789");
     return count > 1 && !digits;
@@ -107,7 +107,7 @@ enum orl_result orl_exposure_list_read(const struct orl_log *log, const char *pa
     size_t size, capacity = 0;
     enum orl_result result = orl_file_read(log, path, LIST_MAX_BYTES, &data, &size);
     int number = 1;
-    // Spreadsheets write a byte order mark.
+    // Spreadsheet programs write a byte order mark.
     size_t mark = result == ORL_OK && size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
     for (char *line = data ? (char *)data + mark : NULL; result == ORL_OK && line; number++) {
         char *end = strchr(line, '\n');

@@ -27,8 +27,8 @@ static enum orl_result fail_there(const struct orl_job *job)
                     "%s: there already; go on with --resume or choose another folder", job->dir);
 }
 
-// Never touches what it did not make: a folder is taken when it is new, empty, or
-// prepare's own and --resume says so.
+// Accepts a new or empty folder, or with --resume a folder that prepare made. Other folders are
+// left untouched.
 static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
 {
     struct orl_names names = {0};
@@ -47,8 +47,8 @@ static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
     return result;
 }
 
-// What the folder is must be decided with the lock held: until then another prepare may have
-// taken it, and finished.
+// The folder's state must be read with the lock held: another prepare may have used the folder and
+// finished since.
 static enum orl_result lock_folder(struct orl_job *job, bool empty)
 {
     bool taken = false;

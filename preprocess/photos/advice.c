@@ -44,7 +44,7 @@ enum orl_result orl_fail_video(const struct orl_job *job, const char *path)
 
 struct contents {
     bool photos;
-    char *video; // owned; the path of one, NULL: none
+    char *video; // owned; the path of one video, NULL: none
     struct orl_names folders;
 };
 
@@ -67,7 +67,7 @@ static enum orl_result look_into(const struct orl_job *job, const char *dir,
             result = orl_names_add(job->log, &contents->folders, names.items[i]);
         } else if (!contents->video && orl_is_video_name(names.items[i])) {
             contents->video = path;
-            continue; // `path` is kept
+            continue; // `path` is handed over
         } else {
             contents->photos = contents->photos || orl_is_photo_name(names.items[i]);
         }
@@ -77,7 +77,8 @@ static enum orl_result look_into(const struct orl_job *job, const char *dir,
     return result;
 }
 
-// Of the folders below `dir`: adds those with photographs to `with`, keeps one video.
+// Looks into the folders below `dir`: adds those with photographs to `with`, keeps one video's
+// path.
 static enum orl_result look_below(const struct orl_job *job, const char *dir,
                                   struct contents *contents, struct orl_names *with)
 {
@@ -129,7 +130,7 @@ end:
 
 enum { BLOCK = 8, ACROSS = 12, DOWN = 9, BLOCKS = ACROSS * DOWN };
 
-// A photograph, small: blocks less their means.
+// A photograph at a small size: blocks of pixels minus their means.
 struct thumb {
     float pixels[BLOCKS][BLOCK * BLOCK];
     float energy[BLOCKS]; // sum of squares
@@ -167,8 +168,8 @@ static void make_thumb(const struct orl_image *image, struct thumb *thumb)
     }
 }
 
-// Do most of the blocks with texture look alike, whatever the exposure? Frames of a camera
-// that stood still do entirely, photographs of a turntable 16 degrees apart by half.
+// True when most blocks with texture look alike at any exposure. For a camera that stood still
+// nearly all do; for photographs of a turntable 16 degrees apart, half do.
 static bool same_view(const struct thumb *a, const struct thumb *b)
 {
     const float textured = 16.0f * BLOCK * BLOCK;

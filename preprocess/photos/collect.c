@@ -14,7 +14,7 @@
 #include "preprocess/photos/advice.h"
 #include "preprocess/photos/develop.h"
 
-// Pictures that a user may expect to be taken.
+// Picture formats that Oriel does not read, though a user may expect it to.
 static bool is_other_photo_name(const char *name)
 {
     static const char *const known[] = {"heic", "heif", "webp", "bmp", "gif", "avif", NULL};
@@ -25,16 +25,16 @@ static void skip(struct orl_job *job, const char *name, const char *why)
 {
     orl_logf(job->log, ORL_LOG_WARNING, "%s: %s; skipped", name, why);
     json_t *entry = json_pack("{s:s, s:s}", "name", name, "why", why);
-    if (!entry) // JSON is UTF-8
+    if (!entry) // JSON must be UTF-8
         entry = json_pack("{s:s, s:s}", "name", "(name is not UTF-8)", "why", "cannot be used");
     json_array_append_new(job->skipped, entry);
 }
 
-// Names of files that are made from a photograph's are longer, and file systems take 255 bytes.
+// Files made from a photograph have longer names, and file systems allow 255 bytes.
 enum { NAME_MAX_BYTES = 200 };
 
-// COLMAP's lists are lines, its stereo lists are parted by commas, and '#' starts a
-// comment: a name must survive all of them. NULL: it does.
+// COLMAP's lists are lines, its stereo lists are separated by commas, and '#' starts a comment. A
+// name must be valid in all of them; NULL: it is.
 static const char *name_problem(const char *name)
 {
     size_t length = strlen(name);
@@ -131,7 +131,7 @@ static int compare_sources(const void *a, const void *b)
     return strcmp(((const struct orl_source *)a)->name, ((const struct orl_source *)b)->name);
 }
 
-// Moves a source up behind the *kept ones before it.
+// Moves a source to the end of the *kept ones before it.
 static void keep_source(struct orl_job *job, struct orl_source *source, size_t *kept)
 {
     if (&job->sources[*kept] != source) {
@@ -141,7 +141,7 @@ static void keep_source(struct orl_job *job, struct orl_source *source, size_t *
     ++*kept;
 }
 
-// For messages of a decoder, which become the reason in our own.
+// Collects a decoder's messages, which become the reason in the report.
 struct reason {
     char text[512];
 };
@@ -161,7 +161,7 @@ static size_t stem_length(const char *name)
 
 static void skip_for(struct orl_job *job, struct orl_source *source, const struct reason *reason)
 {
-    // Decoders name the file first; it is named already.
+    // Decoders start with the file's name, which the report has already.
     size_t length = strlen(source->path);
     bool named = strncmp(reason->text, source->path, length) == 0;
     const char *why = reason->text + (named ? length : 0);
@@ -169,7 +169,7 @@ static void skip_for(struct orl_job *job, struct orl_source *source, const struc
     orl_source_finish(source);
 }
 
-// Of those that stand for a JPEG of the same name, so that it can be used after all.
+// Drops unreadable photographs that stand for a JPEG of the same name, so that the JPEG is used.
 static void drop_unreadable(struct orl_job *job)
 {
     size_t kept = 0;
@@ -187,8 +187,8 @@ static void drop_unreadable(struct orl_job *job)
     job->source_count = kept;
 }
 
-// Cameras write a JPEG beside a RAW file: the same moment, and two photographs from one
-// place would only mislead COLMAP.
+// Drops the JPEG that a camera writes beside a RAW file: two photographs from one place would
+// mislead COLMAP.
 static void drop_twins(struct orl_job *job)
 {
     drop_unreadable(job);
@@ -218,7 +218,8 @@ static void drop_twins(struct orl_job *job)
     job->source_count = kept;
 }
 
-// The same file given twice counts once; two files of one name cannot be told apart.
+// A file given twice counts once. Two files of one name are an error, since COLMAP cannot tell them
+// apart.
 static enum orl_result drop_duplicates(struct orl_job *job)
 {
     if (job->source_count)
@@ -242,7 +243,7 @@ static enum orl_result drop_duplicates(struct orl_job *job)
     return ORL_OK;
 }
 
-// What an earlier run found out about this file.
+// True when an earlier run found this file usable.
 static bool known_good(const struct orl_job *job, const struct orl_source *source)
 {
     const json_t *photos = json_object_get(
@@ -253,8 +254,8 @@ static bool known_good(const struct orl_job *job, const struct orl_source *sourc
     return hash && strcmp(hash, text) == 0;
 }
 
-// False, with the reason, when the file cannot be used. Decodes the whole picture,
-// as only that finds truncated ones.
+// Returns false, with the reason, when the file cannot be used. Decodes the whole picture, as only
+// this finds truncated files.
 static bool inspect(const struct orl_job *job, struct orl_source *source, struct reason *reason)
 {
     struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = reason};
@@ -301,8 +302,8 @@ static enum orl_result inspect_all(struct orl_job *job)
     return ORL_OK;
 }
 
-// One photograph under two names (a link, a copy) would be matched with itself, and one of them
-// held out would be known to the others. The first by name stays.
+// Drops copies, keeping the first by name. One photograph under two names (a link, a copy) would be
+// matched with itself, and a held-out one would be known to the renderer.
 static void drop_copies(struct orl_job *job)
 {
     size_t kept = 0;
@@ -315,7 +316,7 @@ static void drop_copies(struct orl_job *job)
         if (same) {
             char why[512];
             snprintf(why, sizeof why, "the same file as %s", same->given);
-            skip(job, source->given, why); // its path may be that of the other
+            skip(job, source->given, why); // the path may be that of the other
             orl_source_finish(source);
         } else {
             keep_source(job, source, &kept);
@@ -324,7 +325,7 @@ static void drop_copies(struct orl_job *job)
     job->source_count = kept;
 }
 
-// "name", with or without its extension.
+// True when `given` is the name, with or without its extension.
 static bool same_photo(const char *name, const char *given)
 {
     size_t stem = stem_length(name);
@@ -416,7 +417,7 @@ static enum orl_result link_photos(struct orl_job *job)
     return result;
 }
 
-// Names the folder when one was given.
+// Names the folder when the input was a folder.
 static enum orl_result too_few(const struct orl_job *job)
 {
     const struct orl_prepare_params *params = job->params;

@@ -1,4 +1,4 @@
-// Collect: which photographs were given, and which of them can be used.
+// Collect: lists the photographs given and finds those that can be used.
 #ifndef ORL_PREPROCESS_COLLECT_H
 #define ORL_PREPROCESS_COLLECT_H
 

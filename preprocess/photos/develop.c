@@ -13,7 +13,7 @@
 
 enum { TWIN_QUALITY = 98 };
 
-static const float light_max = 65504; // of half floats; infinities would spread
+static const float light_max = 65504; // greatest half float; infinities would spread
 
 bool orl_develop_wanted(const char *name)
 {
@@ -31,7 +31,7 @@ char *orl_develop_name(const struct orl_log *log, const char *name)
     return orl_format(log, "%.*s.jpg", (int)(dot ? dot - name : (long)strlen(name)), name);
 }
 
-// --- floating point photographs: which light is white? ---
+// --- floating point photographs: choice of white ---
 
 static char *cache_path(const struct orl_job *job, const struct orl_source *source,
                         const char *end)
@@ -39,7 +39,7 @@ static char *cache_path(const struct orl_job *job, const struct orl_source *sour
     return orl_job_path(job, ".oriel/developed/%016" PRIx64 "%s", source->hash, end);
 }
 
-// log2 of the geometric mean of what is not black.
+// log2 of the geometric mean of all pixels that are not black.
 static double log_average(const struct orl_image *image)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
@@ -54,7 +54,7 @@ static double log_average(const struct orl_image *image)
     return used > 0 ? sum / used : 0;
 }
 
-// Kept beside the twins, as it takes decoding the whole file.
+// The result is stored beside the twins, since it takes decoding the whole file.
 static enum orl_result read_light(const struct orl_job *job, const struct orl_source *source,
                                   double *light)
 {
@@ -88,8 +88,8 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// One factor for all of them, so that their brightness still compares: the median
-// picture's average becomes middle grey. A power of two loses nothing of half floats.
+// Chooses one factor for all photographs, so that their brightness stays comparable: the median
+// picture's average becomes middle grey. A power of two is exact in half floats.
 static enum orl_result choose_scale(struct orl_job *job)
 {
     double *lights = orl_array(job->log, job->source_count, sizeof *lights);
@@ -114,7 +114,7 @@ enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_sou
         job->log, source->original ? source->original : source->path, image);
     size_t count = result == ORL_OK ? orl_image_bytes(image) / sizeof(float) : 0;
     float scale = source->unbounded ? (float)job->linear_scale : 1;
-    for (size_t i = 0; i < count; i++) { // NaN and negative light are none
+    for (size_t i = 0; i < count; i++) { // NaN and negative light become black
         float value = scale * image->f32[i];
         image->f32[i] = value > 0 ? fminf(value, light_max) : 0;
     }

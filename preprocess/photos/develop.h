@@ -5,14 +5,13 @@
 
 #include "preprocess/job/job.h"
 
-// By its extension: does COLMAP need an 8-bit twin of it?
+// True when COLMAP needs an 8-bit twin of the file, by its extension.
 bool orl_develop_wanted(const char *name);
-// The twin's name, released with free().
+// The twin's name; the caller releases it with free().
 char *orl_develop_name(const struct orl_log *log, const char *name);
-// Makes the twins that are not there yet: source->path becomes the twin's. Sets
-// job->linear_scale.
+// Makes missing twins and sets source->path to the twin's. Sets job->linear_scale.
 enum orl_result orl_develop(struct orl_job *job) ORL_CHECK_RESULT;
-// The photograph as it was given, in linear light, F32 x3: 1 is its twin's white.
+// Reads the photograph as given, in linear light, F32 x3. 1 is its twin's white.
 enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_source *source,
                                  struct orl_image *image) ORL_CHECK_RESULT;
 

@@ -8,10 +8,10 @@
 #include "core/color.h"
 #include "core/memory.h"
 
-// Exposures must differ by this much before copies are made, and a photograph must be this
-// much darker than the median to get one.
+// Least range of exposures for which copies are made, and how much darker than the median a
+// photograph must be to be copied.
 static const double RANGE_MIN_EV = 1, DARKER_MIN_EV = 0.5;
-static const double BRIGHTEN_MAX_EV = 8; // beyond it there is nothing but noise
+static const double BRIGHTEN_MAX_EV = 8; // beyond this, a copy holds only noise
 enum { JPEG_QUALITY = 98 };
 
 static int compare_doubles(const void *a, const void *b)
@@ -20,7 +20,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// The exposure that darker photographs are brought to; false when copies are not needed.
+// Finds the exposure that darker photographs are brought to; false when copies are not needed.
 static bool find_target(const struct orl_job *job, double *target)
 {
     double *known = orl_array(job->log, job->source_count, sizeof *known);
@@ -36,7 +36,7 @@ static bool find_target(const struct orl_job *job, double *target)
     return needed;
 }
 
-// How much a photograph is to be brightened, EV; 0: not at all.
+// EV by which a photograph must be brightened; 0: not at all.
 static double needed_ev(const struct orl_job *job, const struct orl_source *source, double target)
 {
     double ev;
@@ -58,7 +58,7 @@ static bool is_png(const char *name)
     return dot && strcasecmp(dot, ".png") == 0;
 }
 
-// Same pixels, brighter; from more than 8 bits where there are more.
+// Writes the pixels brightened, from the original where it has more than 8 bits.
 static enum orl_result write_copy(const struct orl_job *job, const struct orl_source *source,
                                   double ev, const char *path)
 {

@@ -1,4 +1,4 @@
-// Which configurations are measured, one after another.
+// Measures the benchmark's configurations one after another.
 #include "eval/bench.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static struct orl_bench_run new_run(const struct bench_job *job, enum orl_bench_
                                   .points = job->scene->points.count, .photo_divide = 1};
 }
 
-// All methods, with the same renderer.
+// Measures all methods with one renderer.
 static enum orl_result measure_methods(struct bench_job *job, struct orl_renderer *renderer,
                                        const struct orl_bench_run *like, const char *what)
 {
@@ -125,7 +125,7 @@ static enum orl_result add_raster(struct bench_job *job, const struct orl_points
     return result;
 }
 
-// Time of all splatting passes.
+// Time of all splatting passes of a frame.
 static double splat_ms(const struct orl_bench_run *run)
 {
     double sum = 0;
@@ -154,7 +154,7 @@ static enum orl_result measure_point_count(struct bench_job *job, size_t count)
         result = measure_methods(job, renderer, &like, what);
     orl_renderer_destroy(&renderer);
     if (result == ORL_OK) {
-        // The first method's: they all splat alike.
+        // Uses the first method's time: all methods have the same splatting passes.
         const struct orl_bench *bench = job->bench;
         result = add_raster(job, &scene.points,
                             splat_ms(&bench->runs[bench->run_count - job->params->choice_count]));
@@ -176,7 +176,7 @@ static enum orl_result measure_points(struct bench_job *job)
     qsort(usual, ORL_COUNT(usual) - 1, sizeof *usual, compare_sizes);
     const size_t *counts = job->params->point_counts ? job->params->point_counts : usual;
     enum orl_result result = ORL_OK;
-    if (counts == usual) // of a tiny scene the first may be 0
+    if (counts == usual) // the first counts of a tiny scene may be 0
         while (*counts == 0)
             counts++;
     for (; result == ORL_OK && *counts; counts++) {
@@ -189,8 +189,8 @@ static enum orl_result measure_points(struct bench_job *job)
 
 // --- resolution of the photographs ---
 
-// Renders the first view: its picture goes to image_dir, and its closeness to `best`,
-// which is set by the first call, to *psnr_db.
+// Renders the first view and writes its picture to image_dir. *psnr_db: its PSNR against `best`,
+// which the first call sets.
 static enum orl_result compare_resolution(struct bench_job *job, struct orl_renderer *renderer,
                                           int divide, struct orl_image *best, double *psnr_db)
 {

@@ -1,5 +1,5 @@
-// What a frame costs: time pass by pass, memory by owner, and how both grow (the tables 1
-// and 2 and figures 13 and 15 of Airieau 2012, for any scene).
+// What a frame costs: time by pass, memory by owner, and how both grow (tables 1 and 2 and figures
+// 13 and 15 of Airieau 2012, for any scene).
 #ifndef ORL_EVAL_BENCH_H
 #define ORL_EVAL_BENCH_H
 
@@ -13,8 +13,8 @@ enum { ORL_BENCH_MEMORY_MAX = 64 };
 enum orl_bench_kind {
     ORL_BENCH_SIZES,       // of the picture: table 2
     ORL_BENCH_PHOTOGRAPHS, // how many: figure 13
-    ORL_BENCH_POINTS,      // how many
-    ORL_BENCH_RESOLUTION,  // of the photographs: figure 15
+    ORL_BENCH_POINTS,      // their number: figure 13
+    ORL_BENCH_RESOLUTION,  // their number
     ORL_BENCH_KIND_COUNT
 };
 
@@ -27,10 +27,11 @@ struct orl_bench_run {
     int photo_divide;           // photographs at 1/n of their size
     struct orl_timing timing;
     size_t device_bytes;
-    double psnr_db;             // RESOLUTION, first method: against full size; else 0
+    double psnr_db;             // ORL_BENCH_RESOLUTION, first method: PSNR against full size; else
+                                // 0
 };
 
-// Compute splatting beside the graphics pipeline's GL_POINTS with depth test.
+// Compute splatting compared with the graphics pipeline's GL_POINTS with depth test.
 struct orl_bench_raster {
     size_t points, frames;
     int width, height;
@@ -40,16 +41,16 @@ struct orl_bench_raster {
 struct orl_bench_params {
     const struct orl_choice *choices;
     size_t choice_count;
-    const int (*sizes)[2]; // width, height; growth is measured at the first
+    const int (*sizes)[2]; // width, height; growth is measured at the first size
     size_t size_count;
-    const size_t *point_counts; // of the growth with points, ended by 0; NULL: an eighth, a
-                                // quarter, half and all of the scene's, and a million
-    double seconds;        // for each median, about
-    size_t frames_max;     // and at most so many frames
-    bool growth;           // photographs, points, resolution, GL_POINTS too
+    const size_t *point_counts; // for growth with points, ended by 0; NULL: an eighth, a quarter,
+                                // half and all of the scene's, and a million
+    double seconds;        // approximate duration of the frames behind each median
+    size_t frames_max;     // greatest number of frames behind each median
+    bool growth;           // measures growth with photographs, points and resolution, and GL_POINTS
     size_t max_vram_bytes;
     enum orl_textures textures;
-    const char *image_dir; // views at each resolution of the photographs; NULL: none
+    const char *image_dir; // folder for pictures at each resolution of the photographs; NULL: none
     const char *trace;     // file for a trace of some frames; NULL: none
     const struct orl_progress *progress;
 };
@@ -58,7 +59,7 @@ struct orl_bench {
     const struct orl_scene *scene; // not owned
     char device[128], driver[128];
     bool software;
-    size_t photographs;      // that may be used
+    size_t photographs;      // number that the renderer may use
     int photo_width, photo_height; // largest
     size_t host_peak_bytes;
     struct orl_bench_run *runs; // owned
@@ -69,8 +70,8 @@ struct orl_bench {
     size_t memory_count;
 };
 
-// Renders fixed views between neighbouring photographs; held-out photographs are not
-// used. Renderers of its own, one after another.
+// Renders fixed views between neighbouring photographs, without using held-out photographs. Creates
+// its own renderers, one after another.
 enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_bench_params *params,
                               struct orl_bench *bench) ORL_CHECK_RESULT;
@@ -78,8 +79,8 @@ void orl_bench_finish(struct orl_bench *bench);
 
 // The JSON of docs/reference/json.md, released with free().
 char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench);
-// Writes passes.svg, memory.svg and, with growth, photographs.svg, points.svg,
-// resolution.svg into `dir`, made if need be.
+// Writes passes.svg and memory.svg and, with growth, photographs.svg, points.svg and resolution.svg
+// into `dir`, which is made if needed.
 enum orl_result orl_bench_plot(const struct orl_log *log, const struct orl_bench *bench,
                                const char *dir) ORL_CHECK_RESULT;
 

@@ -12,33 +12,33 @@ struct bench_job {
     const struct orl_scene *scene;
     const struct orl_bench_params *params;
     struct orl_bench *bench;
-    struct orl_view views[BENCH_VIEWS_MAX]; // as photographs are; resized for each run
+    struct orl_view views[BENCH_VIEWS_MAX]; // of the photographs' size; resized for each run
     size_t view_count;
     double done, total; // configurations, for the progress report
 };
 
-// --- bench_scene.c: the scene with more or less in it ---
+// --- bench_scene.c: the scene with more or fewer points and photographs ---
 
-// Views between neighbouring photographs, spread over the scene.
+// Chooses views between neighbouring photographs, spread over the scene.
 void orl_bench_choose_views(struct bench_job *job);
-// The view cropped to this shape, as wide as fits into the photograph's.
+// Crops the view to the shape of width x height, as wide as fits into the photograph's.
 struct orl_view orl_bench_resize_view(const struct orl_view *view, int width, int height);
-// `count` points: some of `all`, evenly chosen and larger, or each split into several
-// smaller ones on its disc. Owned by the caller.
+// Makes `count` points: an even choice of `all` with larger radii, or each point split into several
+// smaller ones on its disc. The caller owns the result.
 enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_points *all,
                                    size_t count, struct orl_points *points);
-// use[i] for `count` of the photographs that are not held out, evenly chosen.
+// Sets use[i] for an even choice of `count` photographs that are not held out.
 void orl_bench_choose_photos(const struct orl_scene *scene, size_t count, bool *use);
 
 // --- bench_measure.c: medians ---
 
-// Fills times and bytes of `run`, whose configuration is set, with `renderer`.
+// Fills times and bytes of `run`, whose configuration is set, by drawing with `renderer`.
 enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *renderer,
                                   const struct orl_render_params *render,
                                   struct orl_bench_run *run);
 enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl_points *points,
                                          struct orl_bench_raster *raster);
-// Draws some frames and writes job->params->trace.
+// Draws some frames and writes the trace to job->params->trace.
 enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *renderer,
                                 const struct orl_render_params *render);
 

@@ -1,4 +1,4 @@
-// Medians of one configuration.
+// Measures one configuration: median times and memory.
 #include <stdlib.h>
 
 #include "core/memory.h"
@@ -24,7 +24,7 @@ static enum orl_result draw(void *priv, size_t number)
     return orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
 }
 
-// As the benchmark's parameters have it; no warm-up, no passes.
+// Timing without warm-up and passes, as the benchmark's parameters say.
 static struct orl_timing_params timing_params(const struct bench_job *job)
 {
     return (struct orl_timing_params){.views = job->view_count, .seconds = job->params->seconds,
@@ -49,7 +49,7 @@ enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *re
 
 // --- GL_POINTS ---
 
-// GL's clip space from world, y downwards, column by column.
+// GL's clip space from world with y downwards, in column-major order.
 static void clip_matrix(const struct orl_view *view, double near, double far, float out[16])
 {
     const struct orl_camera *c = &view->camera;
@@ -94,7 +94,7 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
         orl_point_raster_draw(drawer, matrix);
         if (orl_gpu_take_times(job->gpu, times, ORL_TIMING_PASSES_MAX) == 0)
             result = ORL_ERR_GPU;
-        else if (i >= job->view_count) // after one round to warm up
+        else if (i >= job->view_count) // after one round of warm-up
             ms[raster->frames++] = times[0].ms;
         if (orl_progress_cancelled(job->params->progress))
             result = ORL_ERR_CANCELLED;

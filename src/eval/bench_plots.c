@@ -1,4 +1,4 @@
-// The benchmark as pictures.
+// Plots of the benchmark.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 
 enum { PARTS_MAX = 12, SERIES_MAX = 8, DOTS_MAX = 64, ROWS_MAX = 24, NAME_MAX_BYTES = 96 };
 
-// Takes over `svg`.
+// Writes a plot and releases `svg`.
 static enum orl_result save(const struct orl_log *log, const char *dir, const char *name,
                             char *svg)
 {
@@ -31,7 +31,7 @@ static void describe(const struct orl_bench *bench, char text[256])
 
 // --- passes and memory ---
 
-// Index of `name` among the parts, which it is added to; PARTS_MAX: no room.
+// Index of `name` among the parts, added if new; PARTS_MAX: no room.
 static size_t part_of(const char *name, const char **parts, size_t *count)
 {
     size_t i = 0;

@@ -1,4 +1,4 @@
-// Views to bench from, and scenes with more or fewer points and photographs.
+// Views for the benchmark, and scenes with more or fewer points and photographs.
 #include <math.h>
 #include <string.h>
 
@@ -40,7 +40,7 @@ struct orl_view orl_bench_resize_view(const struct orl_view *view, int width, in
     return resized;
 }
 
-// Moves a point on its disc: the copies of one fill it evenly (Vogel's spiral).
+// Moves a copy of a point on the point's disc, which its copies fill evenly (Vogel's spiral).
 static void spread(struct orl_points *points, size_t i, size_t copy, size_t copies, float radius)
 {
     const float *n = points->normal[i];
@@ -68,7 +68,7 @@ enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_p
     enum orl_result result = orl_points_init(log, points, count);
     if (result != ORL_OK)
         return result;
-    // As many points as there are pixels of surface: sparser ones are larger.
+    // The total area stays the same: fewer points are larger.
     float scale = sqrtf((float)all->count / (float)count);
     for (size_t i = 0; i < count; i++) {
         size_t from = (size_t)((double)i * (double)all->count / (double)count);

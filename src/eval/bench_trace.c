@@ -1,5 +1,5 @@
-// Chrome's and Perfetto's trace format: complete events ("X") in microseconds, one thread
-// for the CPU's side and one for the device's.
+// The trace format of Chrome and Perfetto: complete events ("X") in microseconds, with one thread
+// for the CPU and one for the device.
 #include <jansson.h>
 
 #include "eval/bench_internal.h"

@@ -19,7 +19,7 @@ struct job {
     const struct orl_chart_params *params;
     struct orl_chart *chart;
     json_t *scenes, *rows; // of chart->json
-    double done, total;    // rows, for the progress report
+    double done, total;    // number of rows, for the progress report
 };
 
 // --- one scene ---
@@ -54,7 +54,7 @@ static enum orl_result load_views(struct job *job, struct chart_scene *scene)
     return result;
 }
 
-// Seconds that all stages of prepare took; null when scene.json does not say.
+// Seconds that all stages of prepare took; null when scene.json lacks them.
 static json_t *prepare_time(const struct orl_log *log, const struct orl_scene *scene)
 {
     json_t *root = NULL, *stages, *stage;
@@ -73,7 +73,7 @@ static json_t *prepare_time(const struct orl_log *log, const struct orl_scene *s
 
 static enum orl_result open_scene(struct job *job, const char *dir, struct chart_scene *scene)
 {
-    char *whole = realpath(dir, NULL); // "." and "scene/" have no name of their own
+    char *whole = realpath(dir, NULL); // "." and "scene/" do not end in the folder's name
     *scene = (struct chart_scene){.gpu = job->gpu, .params = job->params};
     enum orl_result result = orl_scene_open(job->log, whole ? whole : dir, &scene->scene);
     free(whole);
@@ -114,7 +114,7 @@ static void report(struct job *job, const char *scene, const char *id)
     orl_progress_report(job->params->progress, "chart", job->done, job->total, text);
 }
 
-// A row that cannot be measured is left out; the others go on.
+// A row that cannot be measured is left out, and the others are still measured.
 static enum orl_result add_config(struct job *job, const struct chart_scene *scene,
                                   const struct chart_config *config)
 {
@@ -177,7 +177,7 @@ static enum orl_result chart_scene(struct job *job, const char *dir)
     return result;
 }
 
-// --- the rows for a table ---
+// --- the rows for the command's table ---
 
 static void list_rows(struct orl_chart *chart, const json_t *list)
 {

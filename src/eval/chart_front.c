@@ -40,7 +40,7 @@ static void add_name(char text[ORL_CHART_SENTENCE_MAX], const struct orl_chart_p
     add(text, "%s%s%s", p->method, p->setting[0] ? " " : "", p->setting);
 }
 
-// The point's neighbour on the front: the next faster one, or the next better one.
+// The point's neighbour on the front: the next faster or the next better one.
 static const struct orl_chart_point *neighbour(const struct orl_chart_point *points,
                                                size_t count, const struct orl_chart_point *p,
                                                bool faster)
@@ -77,7 +77,7 @@ static void add_neighbours(char text[ORL_CHART_SENTENCE_MAX],
     }
 }
 
-// Settings of the method that are on the front although it is not.
+// Adds the method's settings that are on the front when the method itself is not.
 static void add_settings(char text[ORL_CHART_SENTENCE_MAX], const struct orl_chart_point *points,
                          size_t count, const struct orl_chart_point *p)
 {

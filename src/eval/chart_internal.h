@@ -10,10 +10,10 @@
 
 // --- chart_plan.c: what is measured ---
 
-// One dot: a method with its settings and those of its renderer.
+// One dot: a method with its settings and the renderer's.
 struct chart_config {
     const struct orl_method *method;
-    char setting[64]; // "": the method as it is
+    char setting[64]; // "": the method's own values
     struct orl_render_params render;
     enum orl_textures textures;
     int photo_divide; // photographs at 1/n of their size
@@ -23,7 +23,7 @@ struct chart_plan {
     struct chart_config *items; // owned
     size_t count, capacity;
 };
-// Methods with the scene's tuned values, and the settings of those that have some.
+// Plans the methods with the scene's tuned values, and the settings of the methods that have some.
 enum orl_result orl_chart_make_plan(struct orl_gpu *gpu, const struct orl_scene *scene,
                                     const struct orl_chart_params *params,
                                     struct chart_plan *plan);
@@ -38,7 +38,7 @@ struct chart_scene {
     char checksum[32];
     struct orl_heldout *views;  // owned
     size_t view_count;
-    json_t *json;               // owned: of chart.json's "scenes"
+    json_t *json;               // owned: this scene's entry in chart.json's "scenes"
 };
 
 // --- chart_measure.c ---
@@ -46,8 +46,8 @@ struct chart_scene {
 enum { CHART_FIGURES = 7 };
 extern const char *const orl_chart_figures[CHART_FIGURES]; // names: psnr_db, ...
 
-// "views", "mean" and "sd" of a row, from pictures that `picture` hands out one by one, U8 x3 of
-// the view's size, with coverage (F32 x1); pictures for the page are written below
+// Sets "views", "mean" and "sd" of a row from pictures that `picture` returns one by one: U8 x3 of
+// the view's size, with coverage (F32 x1). Writes pictures for the page below
 // OUT/pictures/SCENE/ID.
 struct chart_pictures {
     enum orl_result (*picture)(void *priv, size_t view, struct orl_image *rendered,
@@ -56,47 +56,47 @@ struct chart_pictures {
 };
 enum orl_result orl_chart_compare(const struct chart_scene *scene, const char *id,
                                   const struct chart_pictures *pictures, json_t *row);
-// A whole row, new.
+// Measures a complete row, which is a new reference.
 enum orl_result orl_chart_measure(const struct chart_scene *scene,
                                   const struct chart_config *config, json_t **row);
-// The photographs themselves, for the page; and their list in scene->json.
+// Writes the photographs for the page, and their list into scene->json.
 enum orl_result orl_chart_write_photographs(struct chart_scene *scene);
 
 // --- chart_peer.c ---
 
-// A whole row, new. NULL: the peer has no picture of this scene.
+// A complete row, which is a new reference. NULL: the peer has no picture of this scene.
 enum orl_result orl_chart_peer_row(const struct chart_scene *scene,
                                    const struct orl_chart_peer *peer, json_t **row);
 
 // --- chart_rows.c: rows kept between runs ---
 
-// "oriel.candidates-3": a file name.
+// Makes a file name such as "oriel.candidates-3".
 void orl_chart_id(const char *method, const char *setting, char id[128]);
-// What a row depends on; new. Rows are used again only while this stays the same.
+// What a row depends on, as a new reference. Rows are reused only while this stays the same.
 json_t *orl_chart_provenance(const struct chart_scene *scene);
-// The row of this id if it was measured by this program, on this device, of this scene, with
-// its pictures; else NULL. New.
+// The row of this id if this program measured it on this device and scene and its pictures exist,
+// else NULL. A new reference.
 json_t *orl_chart_load_row(const struct chart_scene *scene, const char *id);
 enum orl_result orl_chart_keep_row(const struct chart_scene *scene, const char *id,
                                    const json_t *row);
-// Of all that a rendering of the scene depends on.
+// Checksum of everything that a rendering of the scene depends on.
 enum orl_result orl_chart_checksum(const struct orl_log *log, const struct orl_scene *scene,
                                    char text[32]);
 
-// --- chart_report.c: fronts, means over scenes ---
+// --- chart_report.c: Pareto fronts, means over scenes ---
 
-// A row's text, "" where there is none; a row's number, NAN where there is none or null.
+// A row's text, "" when missing; a row's number, NAN when missing or null.
 const char *orl_chart_text(const json_t *row, const char *key);
 double orl_chart_number(const json_t *row, const char *key);
 
-// Adds "on_front", "dominated_by" and "sentence" to each row, and "overall" to the root, which has
-// "scenes" and "rows".
+// Adds "on_front", "dominated_by" and "sentence" to each row, and "overall" to the root, which
+// holds "scenes" and "rows".
 enum orl_result orl_chart_analyse(const struct orl_log *log, json_t *root);
 
 // --- chart_write.c ---
 
 enum orl_result orl_chart_write(const struct orl_log *log, const char *out, const json_t *root);
-// chart.html with places for the data.
+// chart.html with marks where the data belongs.
 extern const char orl_chart_page[];
 
 #endif

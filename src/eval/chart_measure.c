@@ -1,4 +1,4 @@
-// One row: frames, memory, pictures, a walk.
+// Measures one row: frame times, memory, accuracy, flicker along a walk.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@
 #include "eval/timing.h"
 #include "io/picture.h"
 
-// Pictures of the page, longer side in pixels, and their JPEG quality.
+// Longer side of the page's pictures in pixels, and their JPEG quality.
 enum { PAGE_SIDE = 480, PAGE_QUALITY = 82 };
 enum { FRAMES_MAX = 200, WARM_UP = 1, WALK_FRAMES = 12, WALK_DIVIDE = 2, QUICK_FRAMES = 6,
        QUICK_DIVIDE = 4 };
@@ -45,7 +45,7 @@ static enum orl_result write_jpeg(const struct chart_scene *scene, const char *p
     return result;
 }
 
-// "pictures/SCENE/[ID/]STEM.END.jpg", its folder made.
+// The path "pictures/SCENE/[ID/]STEM.END.jpg"; makes its folder.
 static char *picture_name(const struct chart_scene *scene, const char *id, size_t view,
                           const char *end)
 {
@@ -170,7 +170,7 @@ struct job {
     struct orl_renderer *renderer;
 };
 
-// As the photograph's, smaller where the setting says so.
+// The photograph's view, smaller where the setting says so.
 static struct orl_view view_of(const struct job *job, size_t number)
 {
     struct orl_view view = job->scene->views[number % job->scene->view_count].view;
@@ -251,8 +251,8 @@ static enum orl_result time_frames(struct job *job, json_t *row)
 
 // --- memory ---
 
-// From here on the kernel notes this process's peak anew, without what earlier rows have freed.
-// False: it cannot.
+// Resets the kernel's record of this process's peak memory, so that it excludes earlier rows.
+// Returns false where the kernel cannot do so.
 static bool reset_host_peak(void)
 {
 #ifdef __GLIBC__
@@ -331,7 +331,7 @@ enum orl_result orl_chart_measure(const struct chart_scene *scene,
     enum orl_result result = row ? orl_renderer_create(scene->gpu, scene->scene, &params,
                                                        &job.renderer) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = draw_frame(&job, 0); // all that is done once
+        result = draw_frame(&job, 0); // includes all work that happens once
     if (result == ORL_OK)
         json_object_set_new(row, "open_s", json_real(orl_time_s() - start));
     if (result == ORL_OK)

@@ -1,4 +1,4 @@
-// Pictures that another program rendered at the held-out cameras.
+// A row for pictures that another program rendered at the held-out cameras.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@ struct job {
     char *dir; // owned
 };
 
-// The picture's file, NULL when there is none.
+// Path of the picture, NULL when there is none.
 static char *find_picture(const struct job *job, size_t view)
 {
     static const char *const extensions[] = {"png", "jpg", "jpeg", "JPG"};
@@ -45,7 +45,7 @@ static enum orl_result read_picture(void *priv, size_t view, struct orl_image *r
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no picture of %s", job->dir,
                         job->scene->scene->photos[heldout->photo].name);
     enum orl_result result = orl_picture_read(log, path, 3, &other);
-    // Of another size, but the same shape within a pixel or two.
+    // The size may differ, but the shape must agree within a pixel or two.
     double skew = fabs((double)other.width * height - (double)other.height * width);
     if (result == ORL_OK && skew > 2 * fmax(other.width, other.height))
         result = orl_fail(log, ORL_ERR_DATA, "%s has %dx%d pixels, the photograph %dx%d", path,
@@ -58,7 +58,7 @@ static enum orl_result read_picture(void *priv, size_t view, struct orl_image *r
     if (result == ORL_OK)
         result = orl_image_init(log, coverage, width, height, 1, ORL_PIXEL_F32);
     for (int i = 0; result == ORL_OK && i < width * height; i++)
-        coverage->f32[i] = 1; // what it covers is not known: all of the picture counts
+        coverage->f32[i] = 1; // the program's coverage is unknown, so the whole picture counts
     orl_image_finish(&other);
     free(path);
     return result;

@@ -1,4 +1,4 @@
-// What is measured of a scene.
+// Plans what is measured of a scene.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "eval/chart_internal.h"
 #include "eval/choice.h"
 
-// Settings of methods that choose a few photographs for each pixel: what they may trade.
+// Settings that trade accuracy for speed in methods that choose a few photographs for each pixel.
 static const char *const option_settings[] = {
     "photos_per_pixel=1", "photos_per_pixel=2", "photos_per_pixel=3", "candidates=2",
     "candidates=3", "candidates=4", "candidates=8", "points_per_pixel=1",
@@ -25,15 +25,15 @@ static enum orl_result add(const struct orl_log *log, struct chart_plan *plan,
     return result;
 }
 
-// Does a pixel of this method ask a few photographs that it chooses? Only there do the settings
-// above trade anything.
+// True when each pixel of this method uses a few chosen photographs. Only then do the settings
+// above matter.
 static bool chooses_photographs(const struct orl_render_params *render)
 {
     const struct orl_render_option *option = orl_render_option_find("candidates");
     return option && orl_render_option_read(option, render);
 }
 
-// The user's own values come first.
+// True when the plan has the configuration already. The user's own values are planned first.
 static bool is_planned(const struct chart_plan *plan, const struct chart_config *config)
 {
     for (size_t i = 0; i < plan->count; i++)
@@ -50,7 +50,7 @@ static enum orl_result add_options(const struct orl_log *log, const struct chart
     for (size_t i = 0; result == ORL_OK && option_settings[i]; i++) {
         struct chart_config config = *base;
         snprintf(config.setting, sizeof config.setting, "%s", option_settings[i]);
-        // What the method does not read, or has already, is no other method.
+        // A setting that the method does not read, or has already, makes no new configuration.
         if (orl_render_params_set(NULL, &config.render, config.setting) == ORL_OK &&
             memcmp(&config.render, &base->render, sizeof base->render) != 0 &&
             !is_planned(plan, &config))
@@ -59,7 +59,7 @@ static enum orl_result add_options(const struct orl_log *log, const struct chart
     return result;
 }
 
-// The method once with each value that the user wants to see.
+// Adds the method once with each of the user's values.
 static enum orl_result add_varied(const struct orl_log *log, const struct orl_scene *scene,
                                   const char *varied, const struct chart_config *base,
                                   struct chart_plan *plan)

@@ -1,4 +1,4 @@
-// From measured rows to what they say: fronts, sentences, means over scenes.
+// Analyses measured rows: Pareto fronts, sentences, means over scenes.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ static json_t *number_json(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-// --- one scene's rows, or those over all scenes ---
+// --- rows of one scene, or over all scenes ---
 
 static void note_point(const struct orl_chart_point *points, size_t count, size_t i, json_t *row)
 {
@@ -42,7 +42,7 @@ static void note_point(const struct orl_chart_point *points, size_t count, size_
     json_object_set_new(row, "sentence", json_string(text));
 }
 
-// `rows`: those of `scene`; NULL: all of them.
+// Analyses the rows of `scene`, or with NULL all rows.
 static enum orl_result analyse(const struct orl_log *log, json_t *rows, const char *scene)
 {
     size_t all = json_array_size(rows), count = 0, i;
@@ -74,7 +74,7 @@ static bool same_dot(const json_t *a, const json_t *b)
            strcmp(orl_chart_text(a, "setting"), orl_chart_text(b, "setting")) == 0;
 }
 
-// Mean, and the standard deviation over the scenes, of a figure of rows like `like`.
+// Mean of a figure and its standard deviation over the scenes, from the rows like `like`.
 static void gather(const json_t *rows, const json_t *like, const char *key, json_t *mean,
                    json_t *sd)
 {
@@ -93,7 +93,8 @@ static void gather(const json_t *rows, const json_t *like, const char *key, json
     json_object_set_new(sd, key, number_json(sqrt(fmax(square / n - sum * sum / (n * n), 0))));
 }
 
-// Arithmetic mean, or of times the geometric one, of rows like `like`; null when one has none.
+// Arithmetic mean, or geometric mean (for times), of the rows like `like`; null when a row lacks
+// it.
 static json_t *mean_of(const json_t *rows, const json_t *like, const char *key, bool geometric)
 {
     double sum = 0, n = 0;
@@ -126,7 +127,7 @@ static json_t *overall_row(const json_t *rows, const json_t *like, size_t scenes
                      mean_of(rows, like, "host_peak_bytes", false));
 }
 
-// One row for each dot that every scene has.
+// Makes one row for each dot that every scene has.
 static json_t *make_overall(const json_t *rows, size_t scenes)
 {
     json_t *overall = json_array();

@@ -1,4 +1,4 @@
-// Measured rows, kept below OUT/rows, one file each.
+// Measured rows below OUT/rows, one file each.
 #include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -83,7 +83,7 @@ enum orl_result orl_chart_keep_row(const struct chart_scene *scene, const char *
 
 // --- the scene's checksum ---
 
-// Files that are there are added to the sum; others are not.
+// Adds a file to the checksum, if it exists.
 static enum orl_result add_file(const struct orl_log *log, XXH3_state_t *state, const char *dir,
                                 const char *name)
 {

@@ -14,7 +14,7 @@ enum { PAGE_VIEWS = 2, JPEG_MAX_BYTES = 1 << 24 };
 // --- figures ---
 
 struct dots {
-    struct orl_plot_series *series; // of each method, and the front after them
+    struct orl_plot_series *series; // one per method, then the front
     size_t series_count;
     double *x, *y;
     const char **labels;
@@ -67,7 +67,7 @@ static void add_methods(struct dots *dots, const json_t *rows, const char *scene
     }
 }
 
-// From the fastest on.
+// Adds the front, from its fastest point on.
 static void add_front(struct dots *dots, const json_t *rows, const char *scene)
 {
     begin_series(dots, "line: the front", true);
@@ -163,7 +163,7 @@ static void put_base64(FILE *out, const uint8_t *data, size_t size)
     }
 }
 
-// "NAME":"data:..", of one picture.
+// Writes "NAME":"data:..", of one picture.
 static enum orl_result put_picture(const struct orl_log *log, FILE *out, const char *dir,
                                    const char *name, bool *first)
 {
@@ -191,7 +191,7 @@ static enum orl_result put_picture(const struct orl_log *log, FILE *out, const c
     return result;
 }
 
-// The pictures of the first views of each row of `list`.
+// Writes the pictures of the first views of each row of `list`.
 static enum orl_result put_pictures_of(const struct orl_log *log, FILE *out, const char *dir,
                                        const json_t *list, bool *first)
 {
@@ -210,7 +210,7 @@ static enum orl_result put_pictures_of(const struct orl_log *log, FILE *out, con
     return result;
 }
 
-// The text between two marks of the page, and what comes after.
+// Writes the page up to a mark and moves *page behind the mark.
 static void put_until(FILE *out, const char **page, const char *mark)
 {
     const char *at = strstr(*page, mark);
@@ -223,7 +223,7 @@ static enum orl_result put_page(const struct orl_log *log, FILE *out, const char
 {
     const char *page = orl_chart_page;
     bool first = true;
-    // No "</script>" may be in it: slashes are escaped.
+    // Slashes are escaped, since the data must not contain "</script>".
     char *data = json_dumps(root, JSON_COMPACT | JSON_ESCAPE_SLASH | JSON_REAL_PRECISION(7));
     if (!data)
         return orl_fail(log, ORL_ERR_MEMORY, "no memory for the chart's page");

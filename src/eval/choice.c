@@ -6,13 +6,13 @@
 
 #include "core/memory.h"
 
-// What all choices of a command share.
+// What all choices of a command have in common.
 struct wish {
     const struct orl_log *log;
-    const struct orl_scene *scene; // NULL: nothing tuned
+    const struct orl_scene *scene; // NULL: tuned values are not used
     enum orl_sample sample;
     const struct orl_names *settings;
-    const char *varied; // NULL: nothing
+    const char *varied; // "KEY=A,B,.."; NULL: none
 };
 
 static enum orl_result make(const struct wish *wish, const struct orl_method *method,
@@ -49,7 +49,7 @@ static enum orl_result add(const struct orl_log *log, const struct orl_choice *c
     return result;
 }
 
-// The choice once with each of the values in "KEY=A,B,..".
+// Adds the choice once with each value of "KEY=A,B,..".
 static enum orl_result add_varied(const struct orl_log *log, const struct orl_choice *choice,
                                   const char *varied, struct orl_choices *choices)
 {

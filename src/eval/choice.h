@@ -1,5 +1,5 @@
-// Which methods a command works with, and with which values of their options: the methods' own,
-// what was tuned for the scene, then KEY=VALUE settings, in this order.
+// The methods that a command runs, and their options: the method's own values, then the values
+// tuned for the scene, then KEY=VALUE settings.
 #ifndef ORL_EVAL_CHOICE_H
 #define ORL_EVAL_CHOICE_H
 
@@ -8,13 +8,13 @@
 
 struct orl_choice {
     const struct orl_method *method;
-    char setting[64]; // KEY=VALUE that differs between choices of a method; empty: none does
+    char setting[64]; // KEY=VALUE in which choices of one method differ; empty: none
     struct orl_render_params params;
 };
 
-// scene: its tuned values are used; NULL: they are not. sample: what the renderer takes
-// photographs for, on which it depends what may be set. ORL_ERR_ARGUMENT, listing what is
-// allowed: an unknown method, a key that is unknown or that the method does not read, a value.
+// scene: its tuned values are used; NULL: none. sample: what the renderer samples photographs for,
+// which decides which options may be set. ORL_ERR_ARGUMENT, with a list of what is allowed: an
+// unknown method or key, a key that the method does not read, or a bad value.
 enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scene *scene,
                                 enum orl_sample sample, const char *method,
                                 const struct orl_names *settings,
@@ -24,8 +24,8 @@ struct orl_choices {
     struct orl_choice *items; // owned
     size_t count, capacity;
 };
-// methods: names, or "all" among them; none: the default method. varied: "KEY=A,B,..": each
-// method once with each of the values; NULL: once.
+// methods: names, which may include "all"; none: the default method. varied: "KEY=A,B,..", each
+// method once with each of the values; NULL: each method once.
 enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_scene *scene,
                                  enum orl_sample sample, const struct orl_names *methods,
                                  const struct orl_names *settings, const char *varied,

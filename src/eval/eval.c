@@ -10,7 +10,7 @@
 #include "eval/heldout.h"
 #include "eval/internal.h"
 
-// Timed frames of each view.
+// Duration of the timed frames of each view.
 static const double seconds = 0.2;
 enum { FRAMES_MAX = 30, PASS_FRAMES = 1 };
 
@@ -46,7 +46,8 @@ static enum orl_result draw_again(void *priv, size_t number)
     const struct view_frames *f = priv;
     if (!f->job->params->draw_radiance)
         return draw(f, NULL);
-    struct orl_frame frame = {0}; // merging several pictures is work with what was read back
+    struct orl_frame frame = {0}; // merging several pictures needs their pixels on the host, so
+                                  // reading back is part of the time
     enum orl_result result = draw(f, &frame);
     orl_frame_finish(&frame);
     return result;
@@ -67,7 +68,7 @@ static void add_pass_times(struct orl_eval *eval, const struct orl_timing *timin
     }
 }
 
-// The picture, drawn before the frames that are timed: they need no other to warm up.
+// Draws the picture before the timed frames, which need no other warm-up.
 static enum orl_result draw_and_time(struct job *job, const struct orl_view *view,
                                      struct orl_frame *frame, double *median_ms)
 {

@@ -1,5 +1,5 @@
-// The held-out protocol: photographs that were kept aside, rendered from the others
-// and compared. docs/reference/metrics.md defines every figure.
+// The held-out protocol: held-out photographs are compared with renderings from the other
+// photographs. docs/reference/metrics.md defines every figure.
 #ifndef ORL_EVAL_EVAL_H
 #define ORL_EVAL_EVAL_H
 
@@ -15,14 +15,14 @@ struct orl_eval_view {
     int width, height;
     struct orl_metrics metrics;
     struct orl_radiance_metrics radiance; // only with a truth
-    double render_ms; // median of frames, as timing.h takes them
-    double flip;      // flip.h
+    double render_ms; // median over frames, see timing.h
+    double flip;      // see flip.h
 };
 
 struct orl_eval {
     const struct orl_scene *scene; // not owned
     const char *method;            // not owned
-    char setting[64];              // KEY=VALUE that differs between evaluations; empty: none does
+    char setting[64];              // KEY=VALUE in which evaluations differ; empty: none
     char device[128];
     struct orl_eval_view *views; // owned
     size_t view_count;
@@ -33,36 +33,35 @@ struct orl_eval {
 };
 
 struct orl_eval_params {
-    const char *method; // name for reports
-    const char *setting; // of struct orl_eval; NULL: none
+    const char *method; // for reports
+    const char *setting; // as in struct orl_eval; NULL: none
     const struct orl_render_params *render;
-    // Folder (made if need be) for NAME.photo.png, NAME.<method>.png and
-    // NAME.<method>.diff.png: photograph, rendering and four times their difference
-    // beside each other. NULL: none.
+    // Folder for NAME.photo.png, NAME.<method>.png and NAME.<method>.diff.png, made if needed. The
+    // last shows the photograph, the rendering and four times their difference side by side. NULL:
+    // none.
     const char *image_dir;
-    // Draws radiance in place of the renderer; NULL: the renderer draws. Radiance is brought
-    // to each photograph's exposure, vignetting and response before it is compared.
+    // Draws radiance instead of the renderer; NULL: the renderer draws. Radiance is brought to each
+    // photograph's exposure, vignetting and response before the comparison.
     enum orl_result (*draw_radiance)(void *priv, const struct orl_view *view,
                                      struct orl_frame *frame);
     void *draw_priv;
-    const struct orl_truth *truth; // NULL: photographs are all there is to compare with
+    const struct orl_truth *truth; // NULL: renderings are compared with the photographs alone
     const struct orl_progress *progress;
 };
 
-// ORL_ERR_DATA, with advice, when the scene holds no photograph out.
+// ORL_ERR_DATA, with advice: the scene has no held-out photograph.
 enum orl_result orl_eval_check(const struct orl_log *log,
                                const struct orl_scene *scene) ORL_CHECK_RESULT;
-// Renders every held-out photograph's view, at the photograph's own size, and compares.
-// A renderer with default orl_renderer_params uses no held-out photograph; NULL will do
-// with draw_radiance.
-// Fails as orl_eval_check does.
+// Renders the view of every held-out photograph at the photograph's own size and compares. A
+// renderer with default orl_renderer_params uses no held-out photograph; with draw_radiance it may
+// be NULL. Fails as orl_eval_check does.
 enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              const struct orl_scene *scene, const struct orl_eval_params *params,
                              struct orl_eval *eval) ORL_CHECK_RESULT;
 void orl_eval_finish(struct orl_eval *eval);
 
-// The JSON of docs/reference/metrics.md, released with free(): one object, or with `array` an
-// array of `count` of them.
+// The JSON of docs/reference/metrics.md: one object, or with `array` an array of `count` objects.
+// The caller releases it with free().
 char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
                        bool array);
 

@@ -1,4 +1,4 @@
-// Pictures to look at beside the figures.
+// Pictures that accompany an evaluation's figures.
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ char *orl_eval_file_stem(const struct orl_log *log, const struct orl_scene *scen
     return stem;
 }
 
-// Photograph, rendering, and their difference times AMPLIFY, from left to right.
+// Photograph, rendering and their difference times AMPLIFY, from left to right.
 static enum orl_result beside(const struct orl_log *log, const struct orl_image *rendered,
                               const struct orl_image *photograph, struct orl_image *panels)
 {

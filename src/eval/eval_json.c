@@ -4,7 +4,7 @@
 #include "core/json.h"
 #include "eval/internal.h"
 
-// Takes over `value`, also on failure: when either is missing or memory ran out.
+// Takes over `value`, also on failure: `object` or `value` is NULL, or memory ran out.
 static bool set(json_t *object, const char *key, json_t *value)
 {
     return json_object_set_new(object, key, value) == 0;

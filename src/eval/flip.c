@@ -1,4 +1,4 @@
-// Sections and equations are those of Andersson et al. 2020.
+// Sections and equations refer to Andersson et al. 2020.
 #include "eval/flip.h"
 
 #include <math.h>
@@ -8,11 +8,11 @@
 #include "core/color.h"
 #include "core/memory.h"
 
-// A screen 0.7 m wide of 3840 pixels, seen from 0.7 m.
+// A screen 0.7 m and 3840 pixels wide at a distance of 0.7 m.
 static const double pixels_per_degree = 0.7 * 3840 / 0.7 * 3.14159265358979323846 / 180;
 static const double pi = 3.14159265358979323846;
 
-// A filter of one dimension, its middle at taps[radius].
+// A one-dimensional filter with its middle at taps[radius].
 enum { RADIUS_MAX = 10, TAPS_MAX = 2 * RADIUS_MAX + 1 };
 struct kernel {
     int radius;
@@ -22,7 +22,7 @@ struct kernel {
 // One picture in the spaces that FLIP needs; width * height values each.
 struct planes {
     int width, height;
-    float *y, *cx, *cz; // YCxCz, then as the eye blurs it, then Lab with Hunt's effect
+    float *y, *cx, *cz; // YCxCz, then filtered by contrast sensitivity, then Lab with Hunt's effect
     float *edge, *point; // strength of features
     float *work[2]; // of convolve()
     float *spare[2];
@@ -31,7 +31,7 @@ struct planes {
 
 // --- colour ---
 
-// Between linear Rec. 709 and XYZ over its white point, which makes white (1, 1, 1).
+// Linear Rec. 709 and XYZ relative to its white point, which makes white (1, 1, 1).
 static const float xyz_from_rgb[3][3] = {{0.433895389f, 0.376242373f, 0.189862239f},
                                          {0.212636822f, 0.715182982f, 0.072180196f},
                                          {0.017752423f, 0.109465629f, 0.872781948f}};
@@ -51,7 +51,7 @@ static float lab_curve(float t)
     return t > delta * delta * delta ? cbrtf(t) : t / (3 * delta * delta) + 4.0f / 29;
 }
 
-// Linear colour to L*a*b*, chroma growing with lightness as Hunt found it does (section 4.1.3).
+// Linear colour to L*a*b* with Hunt's effect: chroma grows with lightness (section 4.1.3).
 static void hunt_lab(const float rgb[3], float lab[3])
 {
     float xyz[3];
@@ -83,8 +83,8 @@ static void convolve_row(const float *in, int width, const struct kernel *kernel
             out[x] += kernel->taps[k] * padded[x + k];
 }
 
-// Both directions, border pixels repeated outward. `out` may be `in`; work: a plane, and a
-// padded row.
+// Filters in both directions, with border pixels repeated outward. `out` may be `in`. work: one
+// plane and a padded row.
 static void convolve(const float *in, int width, int height, const struct kernel *across,
                      const struct kernel *down, float *const work[2], float *out)
 {
@@ -110,7 +110,7 @@ static void blend(const float *a, const float *b, float share, size_t count, flo
         out[i] = (1 - share) * a[i] + share * b[i];
 }
 
-// exp(-scale d^2) at distance d pixels, not normalised: its sum.
+// exp(-scale d^2) at distance d pixels, not normalised. Returns the sum of the taps.
 static double fill_gaussian(double scale, int radius, struct kernel *kernel)
 {
     double sum = 0;
@@ -128,11 +128,11 @@ static void divide(struct kernel *kernel, double by)
         kernel->taps[i] /= (float)by;
 }
 
-// The eye's contrast sensitivity as a Gaussian of the paper's table 1, normalised. Its sum
-// over two dimensions before that, times `a`: its weight in a sum of several.
+// The eye's contrast sensitivity as a normalised Gaussian of the paper's table 1. Returns `a` times
+// the sum over two dimensions before normalisation: the Gaussian's weight in a sum of several.
 static double fill_sensitivity(double a, double b, struct kernel *kernel)
 {
-    const double widest = 0.04; // of all b
+    const double widest = 0.04; // greatest b in the table
     int radius = (int)ceil(3 * sqrt(widest / (2 * pi * pi)) * pixels_per_degree);
     double scale = pi * pi / b / (pixels_per_degree * pixels_per_degree);
     double sum = fill_gaussian(scale, radius, kernel);
@@ -140,8 +140,8 @@ static double fill_sensitivity(double a, double b, struct kernel *kernel)
     return a * sqrt(pi / b) * sum * sum;
 }
 
-// Gaussian as wide as features are (0.082 degrees) and its first and second derivative,
-// positive and negative taps of which sum to 1 and -1 (section 4.2).
+// A Gaussian as wide as features are (0.082 degrees) and its first and second derivatives, whose
+// positive taps sum to 1 and negative taps to -1 (section 4.2).
 static void fill_features(struct kernel *blur, struct kernel *first, struct kernel *second)
 {
     double sigma = 0.5 * 0.082 * pixels_per_degree;
@@ -182,7 +182,7 @@ static void to_opponent(const struct orl_image *image, struct planes *p)
     }
 }
 
-// Strength of edges (first derivative) or of points (second), from work[2].
+// Strength of edges (first derivative) or points (second derivative), from work[2].
 static void find_features(struct planes *p, const struct kernel *blur,
                           const struct kernel *derivative, float *out)
 {
@@ -225,7 +225,7 @@ static void see(struct planes *p)
         xyz[2] = xyz[1] - p->cz[i] / 200;
         apply(rgb_from_xyz, xyz, rgb);
         for (int c = 0; c < 3; c++)
-            rgb[c] = fminf(fmaxf(rgb[c], 0), 1); // what a screen shows
+            rgb[c] = fminf(fmaxf(rgb[c], 0), 1); // the range of a screen
         hunt_lab(rgb, lab);
         p->y[i] = lab[0];
         p->cx[i] = lab[1];
@@ -238,7 +238,7 @@ static enum orl_result prepare(const struct orl_log *log, const struct orl_image
 {
     size_t count = (size_t)image->width * (size_t)image->height;
     *p = (struct planes){.width = image->width, .height = image->height};
-    // The last one holds a padded row alone, which may be longer than a small picture.
+    // The last array also holds a padded row, which may be longer than a small picture.
     p->all = orl_array(log, 8 * count + (size_t)image->width + TAPS_MAX, sizeof *p->all);
     if (!p->all)
         return ORL_ERR_MEMORY;
@@ -254,7 +254,8 @@ static enum orl_result prepare(const struct orl_log *log, const struct orl_image
 
 // --- two pictures ---
 
-// Colour differences to [0, 1]: those up to 0.4 of the largest take 0.95 of it (section 4.1.4).
+// Maps colour differences to [0, 1]; those up to 0.4 of the largest take 0.95 of the range (section
+// 4.1.4).
 static float redistribute(float difference, float largest)
 {
     const float knee_at = 0.4f * largest, knee = 0.95f;
@@ -309,7 +310,7 @@ enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_ima
 enum orl_result orl_flip_paint(const struct orl_log *log, const struct orl_image *map,
                                struct orl_image *picture)
 {
-    // Matplotlib's magma at nine equal steps; between them straight lines.
+    // Matplotlib's magma at nine equal steps, interpolated linearly.
     static const float magma[9][3] = {{0, 0, 4},       {28, 16, 68},    {79, 18, 123},
                                       {129, 37, 129},  {181, 54, 122},  {229, 80, 100},
                                       {251, 135, 97},  {254, 194, 135}, {252, 253, 191}};

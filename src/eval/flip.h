@@ -1,19 +1,19 @@
-// FLIP: how large the difference of two pictures looks to somebody who flips between them.
+// FLIP: how large the difference of two pictures looks to a person who flips between them.
 #ifndef ORL_EVAL_FLIP_H
 #define ORL_EVAL_FLIP_H
 
 #include "oriel/image.h"
 
-// LDR-FLIP of Andersson et al. 2020 ("FLIP: A Difference Evaluator for Alternating Images"),
-// 67 pixels per degree of visual angle as in the authors' program. a, b: U8 x3, sRGB, of one
-// size. *mean: over all pixels, 0 (the same) to 1. map: F32 x1, FLIP of each pixel; NULL: not
-// wanted. Symmetric in a and b.
+// LDR-FLIP of Andersson et al. 2020 ("FLIP: A Difference Evaluator for Alternating Images"), at 67
+// pixels per degree of visual angle as in the authors' program. a, b: U8 x3, sRGB, of one size.
+// *mean: over all pixels, 0 (equal) to 1. map: F32 x1, FLIP of each pixel; NULL: not needed.
+// Symmetric in a and b.
 enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_image *a,
                                  const struct orl_image *b, struct orl_image *map,
                                  double *mean) ORL_CHECK_RESULT;
 
-// An error map as people print them: magma, from black (0) through purple to pale yellow (1).
-// map: F32 x1; picture: U8 x3.
+// Paints an error map in the usual colours: magma, from black (0) through purple to pale yellow
+// (1). map: F32 x1; picture: U8 x3.
 enum orl_result orl_flip_paint(const struct orl_log *log, const struct orl_image *map,
                                struct orl_image *picture) ORL_CHECK_RESULT;
 

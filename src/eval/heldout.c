@@ -7,7 +7,7 @@
 #include "io/picture.h"
 #include "render/reexpose.h"
 
-enum { METRIC_SIDE = 11 }; // SSIM's window
+enum { METRIC_SIDE = 11 }; // side of SSIM's window, pixels
 
 // --- the photograph ---
 
@@ -33,7 +33,7 @@ enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_i
     return result;
 }
 
-// The camera of the picture that orl_heldout_shrink makes: what is cut off moves nothing.
+// The camera of the picture from orl_heldout_shrink. Cut-off pixels do not shift the others.
 static struct orl_camera shrunk_camera(const struct orl_camera *c, int n)
 {
     return (struct orl_camera){.width = c->width / n, .height = c->height / n, .fx = c->fx / n,
@@ -84,9 +84,9 @@ void orl_heldout_finish(struct orl_heldout *heldout)
 
 // --- the rendering ---
 
-// Aligned photographs show the scene at its reference exposure. What this one would have
-// shown is the way back: by a gain guessed without its pixels (expose.h) and the vignetting
-// of its lens.
+// True when the rendering is at the scene's reference exposure. It then has to be brought to what
+// this photograph's camera would show, with a gain estimated without the photograph's pixels
+// (expose.h) and the vignetting of its lens.
 static bool is_aligned(const struct orl_render_params *render, const struct orl_photo *photo)
 {
     bool changed = false;

@@ -6,16 +6,15 @@
 
 #include "eval/eval.h"
 
-// Text of an array of reports, or of the only one in it; NULL, with a line in the log, when
-// there is no memory (`whole` false: already while they were put together) or a name is not
-// UTF-8. Takes `all`.
+// Text of an array of reports, or without `array` of its only report. NULL, logged: out of memory
+// (`whole` false: earlier, while the reports were made), or a name is not UTF-8. Takes over `all`.
 char *orl_reports_to_text(const struct orl_log *log, json_t *all, bool whole, bool array,
                           int digits);
 
-// The photograph's name as a file name: without its extension unless another
-// photograph differs by that alone, and without folders. Released with free().
+// The photograph's name as a file name, without folders, and without its extension unless another
+// photograph differs by that alone. The caller releases it with free().
 char *orl_eval_file_stem(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
-// Writes one view's pictures into params->image_dir, which exists.
+// Writes one view's pictures into the existing folder params->image_dir.
 enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,
                                       const struct orl_eval_params *params, size_t photo,
                                       const struct orl_image *rendered,

@@ -70,11 +70,11 @@ static void invert(const double s[3][3], double inverse[3][3])
             inverse[i][j] /= det;
 }
 
-// Least squares of b = m a + offset over all pixels. A faint pull towards the
-// identity decides what pictures of few colours leave open.
+// Least squares of b = m a + offset over all pixels. A weak pull towards the identity makes the
+// solution unique for pictures of few colours.
 static void fit_colour(const struct orl_image *a, const struct orl_image *b, struct affine *fit)
 {
-    const double pull = 1e-3; // variance in squared 8-bit steps; pictures have hundreds
+    const double pull = 1e-3; // variance in squared 8-bit steps; typical pictures have hundreds
     size_t count = pixel_count(a);
     double n = (double)count, mean_a[3] = {0}, mean_b[3] = {0}, aa[3][3] = {{0}}, ba[3][3] = {{0}};
     for (size_t i = 0; i < count; i++) {
@@ -131,7 +131,7 @@ static double psnr_after_fit(const struct orl_image *a, const struct orl_image *
 
 enum { SSIM_TAPS = 11 };
 
-// Luma minus 128: variances do not change and lose less in float.
+// Luma minus 128 has the same variances, which lose less precision in float.
 static const float luma_shift = 128;
 
 static float luma(const uint8_t *rgb)
@@ -179,8 +179,8 @@ static enum orl_result measure_ssim(const struct orl_log *log, const struct orl_
     for (int i = 0; i < 5 && result == ORL_OK; i++)
         result = moment(log, a, b, i, &moments[i]);
     if (result == ORL_OK) {
-        // Windows inside the picture only, as in the authors' program; pictures
-        // smaller than a window have none, and count as a whole.
+        // Only windows inside the picture count, as in the authors' program. A picture smaller than
+        // a window counts as a whole.
         bool small = a->width < SSIM_TAPS || a->height < SSIM_TAPS;
         int border = small ? 0 : SSIM_TAPS / 2;
         double sum = 0, count = 0;
@@ -199,7 +199,7 @@ static enum orl_result measure_ssim(const struct orl_log *log, const struct orl_
 
 // --- Virtual Rephotography ---
 
-enum { PATCH = 7, SUMS = 6 }; // sums: complete pixels, x, y, xx, yy, xy
+enum { PATCH = 7, SUMS = 6 }; // SUMS: complete pixels, x, y, xx, yy, xy
 
 static int64_t int_luma(const uint8_t *rgb)
 {
@@ -214,7 +214,7 @@ static void pixel_terms(const uint8_t *a, const uint8_t *b, int64_t terms[SUMS])
     memcpy(terms, values, sizeof values);
 }
 
-// 1 - NCC from a patch's sums; exact integers, so a flat patch has variance 0 exactly.
+// 1 - NCC from a patch's sums, which are exact integers: a flat patch has variance exactly 0.
 static double patch_error(const int64_t sums[SUMS])
 {
     const int64_t n = (int64_t)PATCH * PATCH;

@@ -1,4 +1,4 @@
-// How close two pictures are.
+// Differences of two 8-bit pictures.
 #ifndef ORL_EVAL_METRICS_H
 #define ORL_EVAL_METRICS_H
 

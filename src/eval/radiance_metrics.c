@@ -13,7 +13,7 @@ double orl_pu21_encode(double cd_m2)
     return p[6] * (pow((p[0] + p[1] * y) / (1 + p[2] * y), p[4]) - p[5]);
 }
 
-// Kalantari and Ramamoorthi 2017.
+// The mu-law of Kalantari and Ramamoorthi 2017.
 static double mu_law(double light)
 {
     const double mu = 5000;
@@ -26,7 +26,7 @@ static double psnr_db(double squared_error, double count, double peak)
     return mse > 0 ? fmin(psnr_max_db, 10 * log10(peak * peak / mse)) : psnr_max_db;
 }
 
-// What is not a number is no light.
+// NaN counts as no light.
 static double light_of(float value)
 {
     return value > 0 ? (double)value : 0;

@@ -1,11 +1,11 @@
-// How close radiance is to the truth.
+// Differences of rendered and true radiance.
 #ifndef ORL_EVAL_RADIANCE_METRICS_H
 #define ORL_EVAL_RADIANCE_METRICS_H
 
 #include "oriel/image.h"
 
-// cd/m2 that radiance 1, white at the scene's middle exposure, is taken to be: an ordinary
-// display's white. PU21 then spans 14.3 stops below it and 6.6 above.
+// The luminance in cd/m2 assumed for radiance 1 (white at the scene's middle exposure): an ordinary
+// display's white. PU21 then spans 14.3 stops below white and 6.6 above.
 #define ORL_RADIANCE_CD_M2 100.0
 
 struct orl_radiance_metrics {
@@ -16,7 +16,7 @@ struct orl_radiance_metrics {
     double mu_psnr_db;
     // Root mean square of log2(rendered / truth) over R, G, B of covered pixels, in stops.
     double log2_rmse;
-    double log2_rmse_fitted; // the same after the one factor on all pixels that serves best
+    double log2_rmse_fitted; // the same after the least-squares factor, common to all pixels
 };
 
 // PU21's banding_glare encoding of light in cd/m2, clamped to [0.005, 10000]: Mantiuk and
@@ -24,9 +24,9 @@ struct orl_radiance_metrics {
 // metrics for HDR"; coefficients of github.com/gfxdisp/pu21, matlab/pu21_encoder.m.
 double orl_pu21_encode(double cd_m2);
 
-// rendered and truth: F32 x3 of one size and unit; coverage F32 x1 (covered above 0.5) or
-// NULL: all. In log2 figures samples whose truth is below 2^-20 of the truth's largest are
-// left out, and rendered ones are raised to that. ORL_ERR_DATA when the truth is all black.
+// rendered and truth: F32 x3 of one size and unit; coverage: F32 x1 (covered above 0.5), or NULL:
+// all covered. The log2 figures leave out samples whose truth is below 2^-20 of the truth's largest
+// value, and raise rendered samples to that limit. ORL_ERR_DATA: the truth is all black.
 enum orl_result orl_radiance_compare(const struct orl_log *log, const struct orl_image *rendered,
                                      const struct orl_image *truth,
                                      const struct orl_image *coverage,

@@ -10,16 +10,16 @@
 #include "core/process.h"
 #include "io/picture.h"
 
-// Depths of one surface agree within this share: more than a pixel's slope on walls seen
-// at a slant, less than what parts neighbouring things.
+// Relative difference of depths on one surface: more than a pixel's slope on walls seen at a slant,
+// less than the distance between neighbouring objects.
 static const double same_surface = 0.01;
 
 enum { TAPS = 4, THERE_AND_BACK = 2 * TAPS - 1 };
 
 // --- interpolation ---
 
-// Catmull-Rom weights at `t` in [0, 1) between the second and the third sample: bilinear
-// weights blur so much that the floor hides what differs between methods.
+// Catmull-Rom weights at `t` in [0, 1) between the second and third sample. Bilinear weights blur
+// so much that the interpolation floor hides the differences between methods.
 static void weights_at(double t, double w[TAPS])
 {
     w[0] = t * (-0.5 + t * (1 - 0.5 * t));
@@ -28,7 +28,7 @@ static void weights_at(double t, double w[TAPS])
     w[3] = t * t * (-0.5 + 0.5 * t);
 }
 
-// Moved by t and by -t: the weights at t and their mirror image, convolved.
+// Moved by t and then by -t: the weights at t convolved with their mirror image.
 static void weights_there_and_back(double t, double w[THERE_AND_BACK])
 {
     double there[TAPS];
@@ -39,7 +39,7 @@ static void weights_there_and_back(double t, double w[THERE_AND_BACK])
             w[i + TAPS - 1 - j] += there[i] * there[j];
 }
 
-// Sum of taps x taps pixels from (x, y) on, which all lie in the picture.
+// Weighted sum of taps x taps pixels from (x, y), which must all lie in the picture.
 static void weigh(const struct orl_image *image, int x, int y, int taps, const double *wx,
                   const double *wy, double rgb[3])
 {
@@ -63,7 +63,7 @@ static bool holds(const struct orl_image *image, int x, int y, int taps)
 
 struct sample {
     double rgb[3];
-    double tx, ty; // parts of a pixel by which it was interpolated
+    double tx, ty; // fractions of a pixel at which it was interpolated
 };
 
 static double depth_at(const struct orl_stability_frame *frame, int x, int y)
@@ -72,7 +72,7 @@ static double depth_at(const struct orl_stability_frame *frame, int x, int y)
     return frame->coverage.f32[at] > 0 ? frame->depth.f32[at] : 0;
 }
 
-// Where a pixel's surface lies in the other view: pixel coordinates and depth.
+// Pixel coordinates and depth of a pixel's surface in the other view.
 static bool reproject(const struct orl_view *from, int x, int y, double z,
                       const struct orl_view *to, double pixel[2], double *depth)
 {
@@ -81,15 +81,15 @@ static bool reproject(const struct orl_view *from, int x, int y, double z,
     return orl_view_project(to, world, pixel, depth);
 }
 
-// The colour that `before` has for a pixel of `after`. False where they do not see one
-// surface, the four pixels around the place included: what is blended there is another thing.
+// The colour in `before` for a pixel of `after`. Returns false unless the pixel and the four pixels
+// around its place in `before` show one surface, since other surfaces would be blended in.
 static bool warp(const struct orl_stability_frame *before,
                  const struct orl_stability_frame *after, int x, int y, struct sample *out)
 {
     double z = depth_at(after, x, y), pixel[2], expected, wx[TAPS], wy[TAPS];
     if (!(z > 0) || !reproject(&after->view, x, y, z, &before->view, pixel, &expected))
         return false;
-    // The same view gives the pixel itself, not one a rounding error away.
+    // An unchanged view gives exactly the same pixel, without rounding errors.
     for (int k = 0; k < 2; k++) {
         double centre = floor(pixel[k]) + 0.5;
         if (fabs(pixel[k] - centre) < 1e-6)
@@ -113,7 +113,8 @@ static bool warp(const struct orl_stability_frame *before,
     return true;
 }
 
-// What a pixel loses when its picture is moved as the sample was, and back.
+// The difference that interpolation makes to a pixel when its picture is moved as the sample was,
+// and back.
 static double lost(const struct orl_image *image, int x, int y, const struct sample *sample)
 {
     double wx[THERE_AND_BACK], wy[THERE_AND_BACK], rgb[3], sum = 0;
@@ -252,7 +253,8 @@ enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_s
                                    size_t frames, int divide, struct orl_path *path)
 {
     memset(path, 0, sizeof *path);
-    struct orl_scene training = *scene; // its photographs' names and points are the scene's
+    struct orl_scene training = *scene; // copies the photographs alone; their names and the points
+                                        // belong to the scene
     training.photos = orl_array(log, scene->photo_count, sizeof *training.photos);
     if (!training.photos)
         return ORL_ERR_MEMORY;
@@ -345,7 +347,7 @@ enum orl_result orl_stability_run(struct orl_gpu *gpu, struct orl_renderer *rend
                                   struct orl_stability *out)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    struct orl_stability_frame frames[2] = {0}; // frame i in [i % 2]
+    struct orl_stability_frame frames[2] = {0}; // frame i is in frames[i % 2]
     struct orl_stability_counts counts = {0};
     double ms = 0;
     memset(out, 0, sizeof *out);

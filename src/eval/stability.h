@@ -1,5 +1,6 @@
-// How steady a method is while the viewer moves: each frame of a walk, warped to the next
-// viewpoint by the next frame's depth, should be the next frame. docs/reference/metrics.md.
+// Temporal stability: how little a method flickers while the viewer moves. Each frame of a walk,
+// warped to the next viewpoint by the next frame's depth, should equal the next frame
+// (docs/reference/metrics.md).
 #ifndef ORL_EVAL_STABILITY_H
 #define ORL_EVAL_STABILITY_H
 
@@ -8,23 +9,23 @@
 #include "oriel/render.h"
 #include "oriel/path.h"
 
-// Side of the blocks whose mean colours are compared, pixels.
+// Side in pixels of the blocks whose mean colours are compared.
 enum { ORL_STABILITY_BLOCK = 16 };
 
-// One frame to the next. Differences are absolute, of 8-bit sRGB values, a pixel's being the
-// mean of its three channels.
+// From one frame to the next. Differences are absolute, in 8-bit sRGB values; a pixel's difference
+// is the mean of its three channels'.
 struct orl_stability_step {
-    double compared; // share of the pixels that both frames cover with one surface
+    double compared; // fraction of pixels where both frames show one surface
     double mean;     // of the compared pixels
-    double p99;      // that 99 % of the compared pixels do not exceed
-    // What interpolation alone adds to `mean`, about: half of what the second frame loses
-    // when it is moved by the same parts of a pixel, and back.
+    double p99;      // 99th percentile over the compared pixels
+    // Estimate of what interpolation alone adds to `mean`: half of the second frame's difference
+    // after it is moved by the same fractions of a pixel, and back.
     double floor;
-    // Differences of the mean colours of 16x16 blocks at least half of which were compared:
-    // interpolation, noise and detail cancel out, what pops does not.
+    // Differences of the mean colours of 16x16 blocks with at least half of their pixels compared.
+    // Interpolation, noise and detail cancel out; popping remains.
     double block_mean, block_worst;
-    int block_x, block_y; // of the worst, its upper left pixel in the second frame
-    double jump;          // of the mean colour of all compared pixels
+    int block_x, block_y; // upper left pixel of the worst block in the second frame
+    double jump;          // difference of the mean colour of all compared pixels
 };
 
 struct orl_stability {
@@ -33,27 +34,27 @@ struct orl_stability {
     int width, height;
     struct orl_stability_step *steps; // owned; step i leads from frame i to frame i + 1
     size_t step_count;
-    // Means over the steps; but p99 is that of all pixels of all steps, block_worst and jump
-    // are the largest, with the block's place.
+    // Means over the steps. Exceptions: p99 is over all pixels of all steps; block_worst (with its
+    // place) and jump are the largest.
     struct orl_stability_step all;
     size_t worst_block_step, worst_jump_step;
     double render_ms; // mean
 };
 
 struct orl_stability_params {
-    const char *method; // name for reports
+    const char *method; // for reports
     const struct orl_render_params *render;
     const struct orl_view *views; // at least two, in the order of the walk
     size_t view_count;
-    // Photographs that frame i may not use, for the renderer; NULL: none are forbidden.
+    // Photographs that the renderer may not use in frame i; NULL: it may use all.
     const bool *(*skip)(void *priv, size_t frame);
     void *skip_priv;
-    const char *image_dir; // frames are kept as METHOD.NNNNN.png here, made if need be; or NULL
+    const char *image_dir; // folder for frames METHOD.NNNNN.png, made if needed; NULL: none
     const struct orl_progress *progress;
 };
 
-// A walk past the photographs that are not held out, in name order, in pictures of the
-// first one's size divided by `divide`.
+// Makes a walk past the photographs that are not held out, in order of name, with pictures of the
+// first photograph's size divided by `divide`.
 enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_scene *scene,
                                    size_t frames, int divide,
                                    struct orl_path *path) ORL_CHECK_RESULT;
@@ -65,13 +66,13 @@ void orl_stability_finish(struct orl_stability *stability);
 struct orl_walk_params {
     const struct orl_choice *choices;
     size_t choice_count;
-    int frames, divide;    // of orl_stability_walk
-    const char *image_dir; // of struct orl_stability_params
+    int frames, divide;    // as for orl_stability_walk
+    const char *image_dir; // as in struct orl_stability_params
     void (*on_result)(void *priv, const struct orl_stability *one); // may be NULL
     void *priv;
     const struct orl_progress *progress;
 };
-// Each choice along the same walk, into results[choice_count]; each to be finished.
+// Measures each choice on the same walk. The caller finishes each of results[choice_count].
 enum orl_result orl_stability_walk_all(struct orl_gpu *gpu, struct orl_renderer *renderer,
                                        const struct orl_scene *scene,
                                        const struct orl_walk_params *params,
@@ -83,19 +84,19 @@ struct orl_stability_frame {
     struct orl_image srgb;            // U8 x3
     struct orl_image depth, coverage; // as in struct orl_frame
 };
-// Counts of pixels by the sum of their three channels' differences.
+// Numbers of pixels by the sum of the differences of their three channels.
 struct orl_stability_counts {
     size_t of[3 * 255 + 1];
 };
-// Compares two pictures; adds to *counts.
+// Compares two pictures and adds to *counts.
 enum orl_result orl_stability_compare(const struct orl_log *log,
                                       const struct orl_stability_frame *before,
                                       const struct orl_stability_frame *after,
                                       struct orl_stability_counts *counts,
                                       struct orl_stability_step *step) ORL_CHECK_RESULT;
 
-// The JSON of docs/reference/metrics.md, released with free(): one object, or with `array` an
-// array of `count` of them.
+// The JSON of docs/reference/metrics.md: one object, or with `array` an array of `count` objects.
+// The caller releases it with free().
 char *orl_stability_to_json(const struct orl_log *log, const struct orl_scene *scene,
                             const struct orl_stability *all, size_t count, bool array);
 

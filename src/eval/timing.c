@@ -53,7 +53,7 @@ static enum orl_result take_frames(const struct orl_timing_params *params, doubl
     return result;
 }
 
-// Adds one frame's passes to the columns, which are `rows` long; passes grow.
+// Adds one frame's passes to the columns, which are `rows` long. New passes get a column.
 static void note_passes(struct orl_gpu *gpu, struct orl_timing *timing, double *columns,
                         size_t rows, size_t frame)
 {

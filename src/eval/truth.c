@@ -95,7 +95,7 @@ static const struct orl_colmap_camera *find_camera(const struct orl_truth *truth
     return NULL;
 }
 
-// From the pixels as they were taken to the scene's.
+// Undistorts radiance from the pixels of the photograph as taken to those of the scene.
 static enum orl_result bring_to_pixels(const struct orl_log *log, const struct orl_truth *truth,
                                        const struct orl_photo *photo, const char *path,
                                        struct orl_image *seen, struct orl_image *radiance)
@@ -126,8 +126,8 @@ enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth
     enum orl_result result = path ? orl_exr_read(log, path, rgb, 3, &seen) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = bring_to_pixels(log, truth, photo, path, &seen, radiance);
-    // A photograph of exposure e takes radiance times 2^e, and so does the scene's unit
-    // for its middle exposure, exposure_ev below it.
+    // A photograph of exposure e shows radiance times 2^e. The scene's unit does so at its middle
+    // exposure, which is exposure_ev below e.
     float scale = (float)exp2(truth->ev[index] - photo->exposure_ev);
     size_t count = result == ORL_OK ? orl_image_bytes(radiance) / sizeof(float) : 0;
     for (size_t i = 0; i < count; i++)

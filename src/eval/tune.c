@@ -22,7 +22,7 @@ struct job {
     size_t target_count;
     bool *skip; // owned
     double start_s;
-    double done, total; // renderings, for the progress report
+    double done, total; // number of renderings, for the progress report
 };
 
 // --- targets ---
@@ -120,7 +120,7 @@ static bool out_of_time(const struct job *job)
     return job->params->budget_s > 0 && orl_time_s() - job->start_s >= job->params->budget_s;
 }
 
-// Tries one value; `kept` when it is better, `same` when it changes nothing at all.
+// Tries one value. `kept`: the result is better; `same`: the value has no effect at all.
 static enum orl_result try_value(struct job *job, const struct orl_render_option *option,
                                  double value, bool *kept, bool *same)
 {
@@ -140,13 +140,13 @@ static enum orl_result try_value(struct job *job, const struct orl_render_option
     return note_trial(job, &trial);
 }
 
-// The next of the option's tries beyond its value; NAN: none.
+// The next of the option's values to try beyond `from`; NAN: none.
 static double next_try(const struct orl_render_option *option, double from, int direction)
 {
     double next = NAN;
     for (int i = 0; i < option->try_count; i++) {
         double value = option->tries[i];
-        // What is stored is a float: 0.1 is not beyond itself.
+        // The stored value is a float, so values are compared with a tolerance.
         if ((value - from) * direction <= 1e-6 * fabs(from))
             continue;
         if (isnan(next) || (next - value) * direction > 0)
@@ -169,7 +169,7 @@ static enum orl_result tune_option(struct job *job, const struct orl_render_opti
             result = try_value(job, option, value, &kept, &same);
             moved = moved || (result == ORL_OK && kept);
         }
-        if (result != ORL_OK || same) // an option that changes nothing in these views
+        if (result != ORL_OK || same) // an option without effect in these views
             break;
     }
     *better = *better || moved;
@@ -237,7 +237,8 @@ enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     if (result == ORL_OK)
         result = load_targets(&job);
     for (const struct orl_render_option *o = orl_render_options; o->key; o++)
-        job.total += is_chosen(&job, o) ? 3.0 * (double)job.target_count : 0; // about
+        // An estimate, for the progress report.
+        job.total += is_chosen(&job, o) ? 3.0 * (double)job.target_count : 0;
     if (result == ORL_OK)
         result = search(&job);
     if (result == ORL_OK)

@@ -24,7 +24,7 @@ json_t *orl_tune_settings(const struct orl_render_params *best,
         char text[32];
         if (o->try_count == 0 || value == value_of(method, o))
             continue;
-        snprintf(text, sizeof text, "%.6g", value); // 0.1, not the float next to it
+        snprintf(text, sizeof text, "%.6g", value); // writes 0.1, not the nearest float
         json_object_set_new(settings, o->key, json_real(atof(text)));
     }
     return settings;

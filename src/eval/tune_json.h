@@ -1,4 +1,4 @@
-// What oriel tune found, as JSON: a report, and the scene's own record.
+// The result of oriel tune as JSON: a report, and the record in the scene.
 #ifndef ORL_EVAL_TUNE_JSON_H
 #define ORL_EVAL_TUNE_JSON_H
 
@@ -6,14 +6,15 @@
 
 #include "eval/tune.h"
 
-// Keys and numbers of `best` that differ from the method's own, of all that may be tuned. New.
+// Keys and numbers of `best`, among all tunable options, that differ from the method's own. A new
+// reference.
 json_t *orl_tune_settings(const struct orl_render_params *best,
                           const struct orl_render_params *method);
 enum orl_result orl_tune_write_json(const struct orl_log *log, const char *path,
                                     const struct orl_scene *scene,
                                     const struct orl_method *method, const char *device,
                                     int size_divide, const struct orl_tune *tune) ORL_CHECK_RESULT;
-// Keeps the result in scene.json, for all that render the scene.
+// Records the result in scene.json, where every command that renders the scene uses it.
 enum orl_result orl_tune_apply(const struct orl_log *log, const struct orl_scene *scene,
                                const struct orl_method *method, int size_divide,
                                const struct orl_tune *tune) ORL_CHECK_RESULT;
