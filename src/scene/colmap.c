@@ -8,8 +8,8 @@
 #include "core/memory.h"
 #include "scene/colmap_internal.h"
 
-// COLMAP's src/base/camera_models.h. One focal length: params are f cx cy ...;
-// two: fx fy cx cy ...
+// From COLMAP's src/base/camera_models.h. Models with one focal length have params f cx cy ...;
+// models with two have fx fy cx cy ...
 static const struct {
     const char *name;
     int params, focal_lengths;
@@ -156,7 +156,7 @@ enum orl_result orl_colmap_check(const struct orl_log *log, const char *dir,
     return ORL_OK;
 }
 
-// 1: binary, 0: text, -1: neither.
+// 1: the model is binary; 0: text; -1: there is no model.
 static int find_kind(const struct orl_log *log, const char *dir)
 {
     static const char *const names[] = {"cameras.txt", "cameras.bin"};

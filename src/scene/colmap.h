@@ -1,5 +1,5 @@
-// COLMAP's files: sparse model (binary or text) and depth or normal maps.
-// Sizes are checked against the file before anything is allocated; errors name
+// COLMAP's files: sparse models (binary or text) and depth or normal maps.
+// Sizes are checked against the file before memory is allocated. Errors name
 // the file, the offset and the reason.
 #ifndef ORL_SCENE_COLMAP_H
 #define ORL_SCENE_COLMAP_H
@@ -10,7 +10,7 @@
 struct orl_colmap_camera {
     uint32_t id;
     int model;               // COLMAP's model id; 0 SIMPLE_PINHOLE, 1 PINHOLE, ...
-    struct orl_camera pinhole; // without the distortion of other models
+    struct orl_camera pinhole; // the camera without its distortion
     double params[12];
     int param_count;
 };
@@ -19,7 +19,7 @@ struct orl_colmap_image {
     uint32_t id, camera_id;
     char *name; // owned
     struct orl_pose cam_from_world;
-    // The sparse points it sees: indices into orl_colmap_model.points.
+    // The sparse points that the image sees: indices into orl_colmap_model.points.
     uint32_t *points; // owned
     size_t point_count;
 };
@@ -29,11 +29,11 @@ struct orl_colmap_point {
     double position[3]; // world
     uint8_t rgb[3];
     double error_px;        // mean reprojection error
-    uint32_t track_length;  // photographs that see it
+    uint32_t track_length;  // number of photographs that see the point
 };
 
-// Cameras sorted by id, images by name. Points that are not finite or beyond ORL_WORLD_MAX are
-// dropped with a warning.
+// Cameras are sorted by id, images by name. Readers drop points that are not finite or beyond
+// ORL_WORLD_MAX, with a warning.
 struct orl_colmap_model {
     struct orl_colmap_camera *cameras;
     size_t camera_count;
@@ -43,48 +43,48 @@ struct orl_colmap_model {
     size_t point_count;
 };
 
-// Reads cameras, images and points3D (.bin if there, else .txt) from `dir`.
-// ORL_ERR_FORMAT for damaged files, ORL_ERR_NOT_FOUND when there are none.
+// Reads cameras, images and points3D from `dir`: the .bin files if they exist, else the .txt files.
+// ORL_ERR_FORMAT: a file is damaged. ORL_ERR_NOT_FOUND: there is no model.
 enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
                                 struct orl_colmap_model *model) ORL_CHECK_RESULT;
-// Poses alone, in the order of a file like images.txt, and the cameras of a cameras.txt beside it
-// where there is one.
+// Reads only poses, in the order of a file like images.txt, and cameras from a cameras.txt beside
+// it where there is one.
 enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *path,
                                       struct orl_colmap_model *model) ORL_CHECK_RESULT;
 void orl_colmap_finish(struct orl_colmap_model *model);
-// Writes cameras.bin, images.bin and points3D.bin into `dir`, which is there. Observations lie
-// where their points project.
+// Writes cameras.bin, images.bin and points3D.bin into `dir`, which must exist. Observations are
+// written at the projections of their points.
 enum orl_result orl_colmap_write(const struct orl_log *log, const char *dir,
                                  const struct orl_colmap_model *model) ORL_CHECK_RESULT;
-// NULL when there is none of that id.
+// NULL when no camera has that id.
 const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
                                                         uint32_t id);
 
-// NULL when there is none of that name.
+// NULL when no image has that name.
 const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_model *model,
                                                         const char *name);
 // Pose and pinhole camera of one of the model's images, without distortion.
 struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,
                                       const struct orl_colmap_image *image);
 
-// Where a ray with x/z, y/z = ray meets the picture, in pixels, distortion included, as
-// COLMAP's model of this camera has it. The camera must come from orl_colmap_read.
+// Projects the ray with x/z, y/z = ray to pixels, with the distortion of the camera's COLMAP
+// model. The camera must come from orl_colmap_read.
 void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],
                                double pixel[2]);
-// Does each corner of the picture see a ray? Not where the distortion of a camera estimated amiss
-// turns back on itself before.
+// True when every corner of the picture is the projection of a ray. False when a badly estimated
+// distortion folds back before it reaches a corner.
 bool orl_colmap_camera_reaches_corners(const struct orl_colmap_camera *camera);
 
-// "W&H&C&" then W*H*C float32, channel by channel. Depth maps have one channel
-// (z in scene units, 0 = none), normal maps three (camera frame).
+// Maps are files of "W&H&C&" and W*H*C float32, channel by channel. Depth maps have one
+// channel (z in scene units, 0 = none), normal maps three (camera frame).
 // The image is interleaved in memory.
 enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
                                     struct orl_image *image) ORL_CHECK_RESULT;
 enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path,
                                      const struct orl_image *image) ORL_CHECK_RESULT;
 
-// Of each of the `count` points of a fused cloud, how many photographs it was fused from
-// (255: as many or more), from the file that COLMAP writes beside it (fused.ply.vis).
+// Reads from how many photographs each of the `count` points of a fused cloud was fused (255: at
+// least 255). COLMAP writes this file beside the cloud (fused.ply.vis).
 enum orl_result orl_colmap_visibility_read(const struct orl_log *log, const char *path,
                                            size_t count, uint8_t *photographs) ORL_CHECK_RESULT;
 

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "scene/colmap_internal.h"
 
-// Smallest possible records, to check counts against the file's size.
+// Smallest possible sizes of records in bytes, to check counts against the file's size.
 enum { CAMERA_MIN = 48, IMAGE_MIN = 73, POINT_MIN = 51, POINT2D_SIZE = 24, TRACK_SIZE = 8 };
 
 struct reader {
@@ -31,7 +31,7 @@ static enum orl_result take(struct reader *r, void *out, size_t size, const char
     return ORL_OK;
 }
 
-// A count of records that need at least `record_min` bytes each.
+// Reads a count of records, each of which takes at least `record_min` bytes.
 static enum orl_result take_count(struct reader *r, size_t record_min, const char *what,
                                   uint64_t *count)
 {
@@ -196,7 +196,7 @@ static enum orl_result read_images(struct reader *r, struct orl_colmap_model *mo
     if (!model->images)
         return ORL_ERR_MEMORY;
     for (uint64_t i = 0; i < count && result == ORL_OK; i++) {
-        model->image_count = i + 1; // so that a half-read one is released
+        model->image_count = i + 1; // counted first, so that a half-read image is released
         result = read_image(r, model, &model->images[i]);
     }
     return result;

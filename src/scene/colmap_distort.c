@@ -1,4 +1,4 @@
-// COLMAP's camera models (src/base/camera_models.h of COLMAP 3.8, documented there).
+// COLMAP's camera models, as documented in src/base/camera_models.h of COLMAP 3.8.
 #include <math.h>
 
 #include "scene/colmap.h"
@@ -9,7 +9,7 @@ enum {
     SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE,
 };
 
-// u, v scaled by `radial`, then OpenCV's tangential terms.
+// Scales u, v by `radial` and adds OpenCV's tangential terms.
 static void brown(double radial, double p1, double p2, double uv[2])
 {
     double u = uv[0], v = uv[1], r2 = u * u + v * v;
@@ -17,7 +17,7 @@ static void brown(double radial, double p1, double p2, double uv[2])
     uv[1] = v * radial + 2 * p2 * u * v + p1 * (r2 + 2 * v * v);
 }
 
-// The angle from the axis in place of its tangent, times 1 + k0 t^2 + k1 t^4 + ...
+// Replaces the tangent of the angle t from the axis by t (1 + k0 t^2 + k1 t^4 + ...).
 static void fisheye(const double *k, int count, double uv[2])
 {
     double r = hypot(uv[0], uv[1]);
@@ -55,7 +55,7 @@ void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const dou
                                double pixel[2])
 {
     const struct orl_camera *c = &camera->pinhole;
-    // After f cx cy or fx fy cx cy.
+    // Distortion terms follow f cx cy or fx fy cx cy.
     const double *k = camera->params + orl_colmap_model_focal_lengths(camera->model) + 2;
     double uv[2] = {ray[0], ray[1]}, r2 = ray[0] * ray[0] + ray[1] * ray[1], r4 = r2 * r2;
     switch (camera->model) {
@@ -94,7 +94,8 @@ void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const dou
     pixel[1] = c->fy * uv[1] + c->cy;
 }
 
-// Follows rays outwards, to a tangent of STEPS / 100, while they move towards the corner.
+// Follows rays from the axis outwards, up to a tangent of STEPS / 100, as long as their projections
+// approach the corner.
 static bool reaches(const struct orl_colmap_camera *camera, const double corner[2])
 {
     enum { STEPS = 400 };

@@ -6,32 +6,33 @@
 
 // Number of parameters of a camera model, 0 when it is unknown.
 int orl_colmap_model_params(int model);
-// 1: its parameters start with f cx cy; 2: with fx fy cx cy. The model must be known.
+// 1: the model's parameters start with f cx cy; 2: with fx fy cx cy. The model must be known.
 int orl_colmap_model_focal_lengths(int model);
 // COLMAP's id of a model's name, -1 when it is unknown.
 int orl_colmap_model_id(const char *name);
 
-// Fills camera->pinhole from model and params. NULL, or what is wrong.
+// Fills camera->pinhole from model and params. NULL, or the problem in words.
 const char *orl_colmap_camera_set(struct orl_colmap_camera *camera, uint64_t width,
                                   uint64_t height);
-// NULL, or what is wrong with a picture's name. Names are joined to a folder, so
-// none may lead out of it.
+// The problem with a picture's name in words, or NULL. Names are joined to a folder and
+// must not lead out of it.
 const char *orl_colmap_name_problem(const char *name);
-// Index of the point of this id, -1 when it was dropped or is not there. Points
+// Index of the point of this id; -1 when it was dropped or is missing. Points
 // must be sorted by id.
 int64_t orl_colmap_point_index(const struct orl_colmap_model *model, uint64_t id);
 // After points3D has been read: drops points that are not finite and sorts by id.
 enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *path,
                                         struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
-// Sorts images by name; ids and names must be unique and cameras there. `file` is for messages.
+// Sorts images by name and checks that ids and names are unique and that cameras exist. `file` is
+// for messages.
 enum orl_result orl_colmap_check(const struct orl_log *log, const char *file,
                                  struct orl_colmap_model *model) ORL_CHECK_RESULT;
-// By id, so that they can be found; no two may have the same.
+// Sorts cameras by id for look-up and checks that ids are unique.
 enum orl_result orl_colmap_sort_cameras(const struct orl_log *log, const char *path,
                                         struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
-// Each reads one file; points before images, since images refer to points.
+// Read all three files, points before images, since images refer to points.
 enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,
                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;
 enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,

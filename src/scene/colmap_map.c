@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "scene/colmap.h"
 
-// Room for three numbers of up to five digits and their '&', generously.
+// Room for three numbers, each with its '&'.
 enum { HEADER_MAX = 48 };
 
 // Length of the header, 0 when it is damaged.

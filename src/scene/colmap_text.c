@@ -1,4 +1,4 @@
-// COLMAP's text model: one record a line, '#' starts a comment line.
+// COLMAP's text model: one record per line; '#' starts a comment line.
 #include <stdlib.h>
 #include <string.h>
 

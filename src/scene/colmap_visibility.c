@@ -1,5 +1,5 @@
-// COLMAP's fused.ply.vis (src/mvs/fusion.cc): u64 count, then of each point u32 n and n
-// times u32: the photographs it was fused from.
+// COLMAP's fused.ply.vis (src/mvs/fusion.cc): a u64 count, then for each point a u32 n and n u32
+// indices of the photographs that the point was fused from.
 #include <stdlib.h>
 #include <string.h>
 

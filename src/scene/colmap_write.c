@@ -78,7 +78,7 @@ static void put_images(struct buffer *b, const struct orl_colmap_model *model)
     }
 }
 
-// One observation of a point: which of which image's.
+// One observation of a point: an image and the index among the image's observations.
 struct track {
     uint32_t point, image_id, index;
 };

@@ -9,19 +9,21 @@
 enum {
     POINTS_MAX = 4096,
     PHOTOS_MAX = 64,
-    PAIRS = 5, // that each point is tried in
+    PAIRS = 5, // partners that each point is tried with
 };
 
-// Of a photograph's height above the ground.
-static const double HEIGHT_SPREAD = 0.2;  // standard deviation of the heights, at most
-static const double TOLERANCE = 0.01;     // of the photographs' distance: points on it are this near
-static const double BENEATH = 2;          // tolerances beneath it: a point that cannot be there
-static const double EXTENT = 1;           // heights: RMS spread of the points on it, at least
-// Mean cosines between the plane's normal and the photographs' axes.
+// Largest standard deviation of the photographs' heights, as a fraction of their mean height.
+static const double HEIGHT_SPREAD = 0.2;
+static const double TOLERANCE = 0.01; // distance of inliers, as a fraction of photo_distance
+static const double BENEATH = 2;      // in tolerances: deeper points contradict the plane
+static const double EXTENT = 1;       // smallest RMS spread of inliers, in mean heights
+// Limits of the mean absolute cosines between the plane's normal and the photographs' axes: z, and
+// the larger of x and y.
 static const double FORWARD_MOST = 0.5, UPWARD_LEAST = 0.85;
-// Shares of all points.
+// As fractions of all points.
 static const double BENEATH_MOST = 0.005, SCORE_LEAST = 0.02;
-// Points whose own normal agrees, and points beneath, count so often.
+// Smallest cosine of a point's normal with the plane's for the two to agree, and the weights of
+// such inliers and of points beneath.
 static const double ALIGNED_COSINE = 0.7;
 static const int ALIGNED_COUNTS = 3, BENEATH_COUNTS = 3;
 
@@ -32,10 +34,10 @@ struct sample {
     double centres[PHOTOS_MAX][3];
     int photo_count;
     double tolerance; // scene units
-    double along[3]; // unit: where the photographs' centres spread most
+    double along[3]; // unit vector along the largest spread of the camera centres
 };
 
-// Largest eigenvector of the centres' covariance, by power iteration.
+// Principal eigenvector of the centres' covariance, by power iteration.
 static void find_along(struct sample *s)
 {
     double mean[3] = {0}, c[3][3] = {{0}};
@@ -93,7 +95,8 @@ static enum orl_result take_sample(const struct orl_log *log, const struct orl_s
     return ORL_OK;
 }
 
-// Turns the plane towards the photographs. Their mean height, 0: they did not stand on this.
+// Turns the plane's normal towards the photographs and returns their mean height above it; 0 when
+// the plane cannot be the ground that they were taken from.
 static double stood_height(const struct sample *s, double plane[4])
 {
     double sum = 0, squares = 0, least = INFINITY, across[3] = {0};
@@ -109,12 +112,12 @@ static double stood_height(const struct sample *s, double plane[4])
         for (int k = 0; k < 3; k++)
             across[k] += fabs(orl_dot3(s->poses[i]->r[k], plane)) / s->photo_count;
     }
-    // Photographs may be on their side.
+    // A camera may be held upright or on its side, so x or y may be the vertical axis.
     bool level = across[2] <= FORWARD_MOST && fmax(across[0], across[1]) >= UPWARD_LEAST;
     return level && least > 0 && sqrt(squares) <= HEIGHT_SPREAD * mean ? mean : 0;
 }
 
-// How well the points agree that this is the ground, as a share of them; negative: they do not.
+// Weighted share of the points that support the plane as ground; negative: they contradict it.
 static double score(const struct sample *s, const double plane[4], double height)
 {
     double tolerance = s->tolerance, mean[3] = {0}, squares = 0;
@@ -139,15 +142,15 @@ static double score(const struct sample *s, const double plane[4], double height
     return (counted - BENEATH_COUNTS * beneath) / s->count;
 }
 
-// A plane through point i: along its normal, or through another point and along the
-// photographs' path, since the foot of a facade may be all that is known of the ground.
+// A plane through point i, either perpendicular to the point's normal or through another point and
+// parallel to the camera path. The second serves where only the foot of a facade is reconstructed.
 static bool candidate(const struct sample *s, int i, int pair, double plane[4])
 {
     const double *at = s->position[i];
     for (int k = 0; k < 3; k++)
         plane[k] = s->normal[i][k];
     if (pair > 0) {
-        // Multiplicative hashing: partners spread evenly over the points.
+        // Multiplicative hashing spreads the partners evenly over the points.
         uint32_t other = ((uint32_t)i * PAIRS + (uint32_t)pair) * 2654435761u;
         const double *b = s->position[((uint64_t)other * (uint64_t)s->count) >> 32];
         const double to[3] = {b[0] - at[0], b[1] - at[1], b[2] - at[2]};
@@ -173,7 +176,7 @@ enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scen
             if (!candidate(&s, i, pair, plane) || (height = stood_height(&s, plane)) == 0)
                 continue;
             double here = score(&s, plane, height);
-            if (!(here > best)) // nor a NaN
+            if (!(here > best)) // true also for NaN
                 continue;
             best = here;
             ground->height = height;

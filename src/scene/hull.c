@@ -32,7 +32,7 @@ void orl_hull_finish(struct orl_hull *hull)
 
 // --- one silhouette ---
 
-// Sums of the mask above and to the left, so that any box is asked with four of them.
+// Summed-area table of the mask: four entries tell whether any box touches the subject.
 struct table {
     int width, height;
     uint32_t *sum; // (width + 1) x (height + 1)
@@ -66,7 +66,8 @@ static double clamped(double v, int end)
     return v < 0 ? 0 : v > end ? end : v;
 }
 
-// Does any pixel of the box, in pixel coordinates, belong to the subject, or may it, outside?
+// True when a pixel of the box, given in pixel coordinates, belongs to the subject or may do so
+// outside the picture.
 static bool any_inside(const struct table *t, const double low[2], const double high[2])
 {
     bool outside = low[0] < 0 || low[1] < 0 || high[0] >= t->width || high[1] >= t->height;
@@ -80,14 +81,15 @@ static bool any_inside(const struct table *t, const double low[2], const double 
     return bottom[x1] - bottom[x0] - top[x1] + top[x0] != 0;
 }
 
-// Does the silhouette leave room for the ball around a point?
+// True when the ball around a point may contain a part of the subject.
 static bool leaves_room(const struct table *t, const struct orl_view *view, const double world[3],
                         double radius)
 {
     const struct orl_camera *c = &view->camera;
     double cam[3], low[2], high[2];
     orl_pose_apply(&view->cam_from_world, world, cam);
-    if (cam[2] <= radius) // the camera may be in it; all that lies behind is not seen
+    // A ball that crosses the camera's plane stays; a ball behind the camera is not seen.
+    if (cam[2] <= radius)
         return cam[2] > -radius;
     const double focal[2] = {c->fx, c->fy}, centre[2] = {c->cx, c->cy};
     for (int k = 0; k < 2; k++) {
@@ -122,9 +124,9 @@ enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silho
     return result;
 }
 
-// --- where it is ---
+// --- bounds ---
 
-// The middle of a silhouette and half the diagonal of its box, in pixels.
+// The centre of a silhouette's bounding box and half the box's diagonal, in pixels.
 struct blob {
     double centre[2], reach_px;
 };
@@ -147,7 +149,7 @@ static bool find_blob(const struct orl_image *mask, struct blob *blob)
     return high[0] >= 0;
 }
 
-// The point nearest to the rays through the silhouettes' middles.
+// The point nearest to the rays through the silhouettes' centres.
 static bool find_centre(const struct orl_silhouette *silhouettes, const struct blob *blobs,
                         size_t count, double centre[3])
 {
@@ -163,7 +165,7 @@ static bool find_centre(const struct orl_silhouette *silhouettes, const struct b
     return orl_ray_meeting_point(&meeting, centre);
 }
 
-// How far from the centre the silhouettes reach, by the one that says most.
+// The largest distance from the centre that any silhouette reaches, in scene units.
 static double find_reach(const struct orl_silhouette *silhouettes, const struct blob *blobs,
                          size_t count, const double centre[3])
 {
@@ -180,7 +182,7 @@ static double find_reach(const struct orl_silhouette *silhouettes, const struct 
     return most;
 }
 
-// Voxels of the hull: their box, in voxels. False: there are none.
+// The bounding box of the hull, in voxels. False when the hull is empty.
 static bool occupied(const struct orl_hull *hull, int low[3], int high[3])
 {
     const uint8_t *at = hull->inside;
@@ -208,8 +210,8 @@ static enum orl_result carve_all(const struct orl_log *log,
     return result;
 }
 
-// Carves a coarse cube around the centre, larger ones while the hull reaches its faces, then takes
-// the box of what is left with a voxel around it.
+// Carves a coarse cube around the centre, and larger ones while the hull reaches the cube's faces.
+// The result is the bounding box of the hull with a margin of one voxel.
 static enum orl_result search_bounds(const struct orl_log *log,
                                      const struct orl_silhouette *silhouettes, size_t count,
                                      const double centre[3], double reach, double origin[3],
@@ -284,7 +286,7 @@ enum orl_result orl_hull_make(const struct orl_log *log, const struct orl_silhou
     return result;
 }
 
-// --- what it is ---
+// --- volume and surface ---
 
 double orl_hull_volume(const struct orl_hull *hull)
 {
@@ -297,7 +299,7 @@ double orl_hull_volume(const struct orl_hull *hull)
 enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *hull,
                               size_t triangles, struct orl_mesh *mesh)
 {
-    // Samples are the voxels' centres, with empty ones around.
+    // Samples are the voxels' centres, with a border of empty samples around.
     int n = hull->side + 2;
     memset(mesh, 0, sizeof *mesh);
     float *value = orl_array(log, (size_t)n * (size_t)n * (size_t)n, sizeof *value);

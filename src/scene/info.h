@@ -1,4 +1,4 @@
-// What is in a scene, for programs and people.
+// A description of a scene for programs and people.
 #ifndef ORL_SCENE_INFO_H
 #define ORL_SCENE_INFO_H
 
@@ -6,11 +6,13 @@
 
 #include "oriel/scene.h"
 
-// Bounds of the points, which must not be none.
+// Bounds of the points; there must be at least one.
 void orl_points_bounds(const struct orl_points *points, double low[3], double high[3]);
-// How many photographs have the camera of this one; 0: an earlier photograph has it, too.
+// Number of photographs that share this photograph's camera; 0 when an earlier photograph has the
+// same camera, so that each camera is counted once.
 size_t orl_scene_camera_users(const struct orl_scene *scene, size_t photo);
-// docs/reference/files.md; new. NULL, logged: scene.json is damaged, or there is no memory.
+// The description as docs/reference/files.md defines it, released with json_decref. NULL, logged,
+// when scene.json is damaged or memory runs out.
 json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene);
 
 #endif

@@ -9,7 +9,7 @@
 struct nets {
     const struct orl_log *log;
     const struct orl_grid *grid;
-    uint32_t *vertex_of; // of each cell, by its first sample; UINT32_MAX: none
+    uint32_t *vertex_of; // vertex of each cell, by the cell's first sample; UINT32_MAX: none
     struct orl_mesh_builder builder;
 };
 
@@ -19,7 +19,8 @@ static size_t sample_index(const struct orl_grid *grid, const int at[3])
            (size_t)grid->size[0] * ((size_t)at[1] + (size_t)grid->size[1] * (size_t)at[2]);
 }
 
-// Mean of the crossings of the cell's 12 edges, in cells from its first corner. False: none.
+// Mean of the crossings of the cell's 12 edges, in cells from its first corner. False when no edge
+// is crossed.
 static bool cell_vertex(const float corner[8], double mean[3])
 {
     int crossings = 0;
@@ -63,7 +64,7 @@ static enum orl_result add_vertex(struct nets *n, const int at[3])
     return ORL_OK;
 }
 
-// The quad around the edge from sample `at` along `axis`, if the surface crosses it.
+// Adds the quad around the edge from sample `at` along `axis`, if the surface crosses that edge.
 static enum orl_result add_quad(struct nets *n, const int at[3], int axis)
 {
     const struct orl_grid *grid = n->grid;
@@ -74,7 +75,7 @@ static enum orl_result add_quad(struct nets *n, const int at[3], int axis)
     if (next[axis] == grid->size[axis] ||
         inside == (grid->value[sample_index(grid, next)] < 0))
         return ORL_OK;
-    // On an outer face of the grid there are no cells around the edge.
+    // An edge on an outer face of the grid is not surrounded by four cells.
     if (at[u] < 1 || at[v] < 1 || at[u] + 1 >= grid->size[u] || at[v] + 1 >= grid->size[v])
         return orl_fail(n->log, ORL_ERR_DATA, "a surface reaches the end of its grid");
     uint32_t corners[4];
@@ -84,7 +85,7 @@ static enum orl_result add_quad(struct nets *n, const int at[3], int axis)
         cell[v] -= c >= 2;
         corners[c] = n->vertex_of[sample_index(grid, cell)];
     }
-    if (!inside) { // it faces the other way
+    if (!inside) { // the surface faces the other way
         uint32_t other = corners[1];
         corners[1] = corners[3];
         corners[3] = other;

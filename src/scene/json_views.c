@@ -30,6 +30,6 @@ bool orl_json_inria_view(const json_t *entry, struct orl_view *view)
     if (!orl_json_rows(json_object_get(entry, "rotation"), 3, 3, &axes[0][0]) ||
         !orl_json_read_numbers(json_object_get(entry, "position"), 3, centre))
         return false;
-    (void)orl_pose_from_axes(axes, centre, &view->cam_from_world); // the caller checks the view
+    (void)orl_pose_from_axes(axes, centre, &view->cam_from_world); // the caller checks
     return true;
 }

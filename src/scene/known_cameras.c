@@ -43,7 +43,7 @@ void orl_known_set_opencv(struct orl_known_camera *camera, const double f_c[4],
 static bool same_camera(const struct orl_colmap_camera *a, const struct orl_known_gap *gap,
                         const struct orl_known_camera *b)
 {
-    // Pictures whose sizes are not told may differ.
+    // Pictures of unstated size may differ in size.
     return !b->gap.size && !gap->size && a->model == b->model && a->pinhole.width == b->width &&
            a->pinhole.height == b->height && gap->centre == b->gap.centre &&
            gap->fov_x_rad <= b->gap.fov_x_rad && gap->fov_x_rad >= b->gap.fov_x_rad &&
@@ -76,7 +76,7 @@ static enum orl_result add_camera(const struct orl_log *log, const char *file, c
     size_t count = model->camera_count;
     if (count && same_camera(&model->cameras[count - 1], &known->gaps[count - 1], given))
         return ORL_OK;
-    // Files have at most some thousands: room for one more at a time is quick enough.
+    // Files have at most some thousands of cameras, so growing by one at a time is fast enough.
     void *cameras = realloc(model->cameras, (count + 1) * sizeof *model->cameras);
     if (cameras)
         model->cameras = cameras;
@@ -147,7 +147,7 @@ enum orl_result orl_known_camera_settle(const struct orl_log *log,
     if (!gap->size && (width != told_width || height != told_height)) {
         sx = (double)width / told_width;
         sy = (double)height / told_height;
-        // Half a pixel of rounding on either side.
+        // Allows for rounding of either size by half a pixel.
         if (fabs(sx - sy) * told_height > 1 && fabs(sx - sy) * told_width > 1)
             return orl_fail(log, ORL_ERR_DATA, "%s: %dx%d pixels, but its camera has %dx%d", name,
                             width, height, told_width, told_height);
@@ -163,7 +163,7 @@ enum orl_result orl_known_camera_settle(const struct orl_log *log,
     return problem ? orl_fail(log, ORL_ERR_DATA, "%s: %s", name, problem) : ORL_OK;
 }
 
-// --- what the file is ---
+// --- file formats ---
 
 static bool ends_with(const char *text, const char *end)
 {
@@ -204,7 +204,8 @@ static enum orl_result read_file(const struct orl_log *log, const char *path, do
                     "bundle.out, NAME_par.txt or a COLMAP model", path);
 }
 
-// The file of cameras in a folder: its path in *file, or NULL. ORL_ERR_DATA: several fit.
+// Sets *file to the path of the file of cameras in a folder, or to NULL when there is none.
+// ORL_ERR_DATA: there are several.
 static enum orl_result find_file(const struct orl_log *log, const char *dir, char **file)
 {
     static const char *const known[] = {
@@ -252,7 +253,7 @@ static enum orl_result read_folder(const struct orl_log *log, const char *dir,
                           "nor cameras.json, transforms.json, bundle.out, or NAME_par.txt", dir);
     if (result == ORL_OK)
         result = read_file(log, file, pixel_centre, known);
-    // Pictures lie beside the folder that was named, not beside sparse/.
+    // Pictures are relative to the folder that the user named, not to sparse/.
     free(known->folder);
     known->folder = orl_strdup(log, dir);
     free(file);

@@ -14,7 +14,7 @@ struct entry {
     const struct orl_log *log;
     const char *file;
     char place[160]; // "camera 3 (0003.jpg)"
-    double shift;    // from the file's pixel coordinates to COLMAP's
+    double shift;    // added to the file's pixel coordinates, gives COLMAP's
 };
 
 static enum orl_result bad(const struct entry *e, const char *what)
@@ -46,7 +46,8 @@ static enum orl_result read_own(const struct entry *e, const json_t *item,
         return bad(e, "\"dist\" is not up to 8 numbers, k1 k2 p1 p2 k3 k4 k5 k6");
     camera->width = orl_json_side(item, "width");
     camera->height = orl_json_side(item, "height");
-    // Pixels have right angles: what skew there is must not move one by half a pixel.
+    // Only cameras without skew are supported: it may shift a pixel by at most half a pixel
+    // within the picture's half height.
     if (!(fabs(k[0][1]) * camera->height <= fabs(k[1][1])))
         return bad(e, "\"K\" has a skew, which is not supported");
     const double f_c[4] = {k[0][0], k[1][1], k[0][2] + e->shift, k[1][2] + e->shift};
@@ -73,7 +74,7 @@ static enum orl_result read_inria(const struct entry *e, const json_t *item,
 
 // --- nerfstudio's ---
 
-// A number of the frame, else of the file. False when neither has it.
+// Reads a number from the frame, or else from the file. False when neither has it.
 static bool number(const json_t *root, const json_t *frame, const char *key, double *value)
 {
     const json_t *found = json_object_get(frame, key);
@@ -136,7 +137,7 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
 enum schema { OWN, INRIA, NERFSTUDIO };
 static const struct {
     const char *name_key;
-    double pixel_centre; // by custom
+    double pixel_centre; // the format's convention
 } schemas[] = {[OWN] = {"name", 0}, [INRIA] = {"img_name", 0.5}, [NERFSTUDIO] = {"file_path", 0.5}};
 
 static enum orl_result read_items(struct entry *e, enum schema schema, const json_t *root,

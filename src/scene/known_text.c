@@ -65,12 +65,12 @@ struct bundler {
     struct orl_text_lines l;
     struct orl_names pictures; // from list.txt
     uint64_t camera_count, point_count;
-    // Index into the model's images of each camera, -1: not registered.
+    // Index of each camera into the model's images; -1: not registered.
     int64_t *image_of; // owned
     size_t *capacity;  // owned; of each image's list of points
 };
 
-// The list of pictures: one a line, what follows the name is not needed.
+// Reads the list of pictures: one name per line; text after the name is ignored.
 static enum orl_result read_list(const struct orl_log *log, const char *folder,
                                  struct orl_names *pictures)
 {
@@ -122,14 +122,14 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
     b->image_of[index] = -1;
     if (result != ORL_OK || f_k[0] == 0) // not registered
         return result;
-    // From y up, z backward.
+    // Converts from OpenGL's axes (y up, z backward).
     for (int i = 0; i < 3; i++) {
         double sign = i == 0 ? 1 : -1;
         for (int j = 0; j < 3; j++)
             camera.pose.r[i][j] = sign * r[i][j];
         camera.pose.t[i] = sign * t[i];
     }
-    // Radial distortion of p / -p.z has the same sign in both frames.
+    // The terms of radial distortion are equal in both frames.
     camera.model = ORL_COLMAP_RADIAL;
     camera.params[0] = f_k[0];
     camera.params[3] = f_k[1];
@@ -187,7 +187,7 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
     if (!orl_text_next(l) || !orl_text_id(l, 1000000, &b->camera_count) ||
         !orl_text_id(l, UINT32_MAX - 1, &b->point_count) || *l->at)
         return orl_text_bad(l, "not the numbers of cameras and points");
-    // A camera takes 30 bytes at least, a point 14.
+    // A camera takes at least 30 bytes, a point at least 14.
     if (b->camera_count > left / 30 || b->point_count > left / 14)
         return orl_text_bad(l, "more cameras or points than the file has room for");
     if (b->pictures.count != b->camera_count)
@@ -211,7 +211,7 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
 enum orl_result orl_known_read_bundler(const struct orl_log *log, const char *path,
                                        double pixel_centre, struct orl_known_cameras *known)
 {
-    (void)pixel_centre; // its principal point is the picture's centre, wherever pixels have theirs
+    (void)pixel_centre; // the principal point is always the picture's centre
     struct bundler b = {0};
     enum orl_result result = orl_text_open(log, path, &b.l);
     if (result == ORL_OK)

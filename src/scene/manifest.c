@@ -134,7 +134,7 @@ static enum orl_result read_photos(const struct orl_log *log, const char *path,
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         const json_t *entry = json_array_get(list, i);
         const char *name = orl_json_text(entry, "name");
-        // They are sorted by name, as the sparse model is.
+        // Photographs are sorted by name, like the images of the sparse model.
         struct orl_photo *photo = !name ? NULL
                                         : bsearch(name, scene->photos, scene->photo_count,
                                                   sizeof *scene->photos, compare_photo);
@@ -153,7 +153,7 @@ static enum orl_result read_photos(const struct orl_log *log, const char *path,
     return result;
 }
 
-// null: there is none. Absent: to be looked for.
+// A null value means that there is no ground; an absent value, that it must be searched for.
 static enum orl_result read_ground(const struct orl_log *log, const char *path,
                                    const json_t *root, struct orl_ground *ground)
 {
@@ -174,8 +174,8 @@ static enum orl_result read_ground(const struct orl_log *log, const char *path,
     return ORL_OK;
 }
 
-// Tells of each file of DIR that is not as the manifest `root` says, and counts it; of those in
-// `names` alone, which end with NULL, unless that is NULL.
+// Logs and counts each file of DIR that does not match its checksum in the manifest `root`. Checks
+// only the files in the NULL-terminated list `names`, or all files when `names` is NULL.
 static enum orl_result check_files(const struct orl_log *log, const char *dir,
                                    const json_t *root, const char *const *names,
                                    enum orl_log_level level, size_t *bad)
@@ -193,7 +193,7 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
         char *path = orl_path_join(log, dir, name);
         if (!path)
             return ORL_ERR_MEMORY;
-        // A stranger's manifest may name any file: only the scene's own are read.
+        // An untrusted manifest may name any file, so only files inside the scene are read.
         bool read = orl_path_is_inside(dir, path) && orl_path_is_file(path) &&
                     orl_file_checksum(NULL, path, sum) == ORL_OK;
         if (!read || strcmp(sum, told) != 0) {
@@ -209,7 +209,7 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
                                   struct orl_scene *scene)
 {
-    // Pictures take too long: oriel info --check reads them.
+    // Checking pictures takes too long here; oriel info --check does it.
     static const char *const read_on_opening[] = {"points.ply", "sparse/cameras.bin",
                                                   "sparse/images.bin", "sparse/points3D.bin",
                                                   NULL};

@@ -8,18 +8,18 @@
 
 #define ORL_MANIFEST_VERSION 1
 
-// Sets what scene.json says of each photograph of `scene`; warns when points.ply or the sparse
-// model is not what it names by checksum.
+// Sets the fields of `scene` and its photographs that scene.json states. Warns when points.ply or
+// the sparse model does not match its checksum.
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
                                   struct orl_scene *scene) ORL_CHECK_RESULT;
-// Compares all `files` that DIR/scene.json names by checksum; each that is missing or changed
-// is logged as an error and counted in *bad.
+// Checks every file that DIR/scene.json names by checksum, and counts these files in *files. Each
+// file that is missing or changed is logged as an error and counted in *bad.
 enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, size_t *bad,
                                    size_t *files) ORL_CHECK_RESULT;
-// What is "ground": null where there is none. New.
+// The value of "ground", released with json_decref; JSON null where there is no ground.
 json_t *orl_manifest_ground(const struct orl_ground *ground);
-// ORL_OK when prepare never worked on this folder; else ORL_ERR_DATA, logged with
-// the first stage that is missing.
+// ORL_OK when prepare never worked on this folder. Otherwise logs the first missing stage and
+// returns ORL_ERR_DATA.
 enum orl_result orl_manifest_check_unfinished(const struct orl_log *log,
                                               const char *dir) ORL_CHECK_RESULT;
 

@@ -134,7 +134,7 @@ enum orl_result orl_mesh_write(const struct orl_log *log, const char *path,
 
 // --- geometry ---
 
-// Normal of a triangle, its length twice the area.
+// Normal of a triangle, with a length of twice its area.
 static void face_normal(const struct orl_mesh *mesh, size_t i, double normal[3])
 {
     const uint32_t *t = mesh->triangle[i];
@@ -187,7 +187,7 @@ double orl_mesh_volume(const struct orl_mesh *mesh)
     return sum / 6;
 }
 
-// Keeps only the vertices that triangles use, in their order.
+// Drops the vertices that no triangle uses. The others keep their order.
 static enum orl_result drop_unused(const struct orl_log *log, struct orl_mesh *mesh)
 {
     uint32_t *to = orl_array(log, mesh->vertex_count, sizeof *to);
@@ -222,7 +222,7 @@ enum orl_result orl_mesh_decimate(const struct orl_log *log, size_t target, stru
     uint32_t (*triangle)[3] = orl_array(log, mesh->triangle_count, sizeof *triangle);
     if (!triangle)
         return ORL_ERR_MEMORY;
-    // No limit of error: what is asked for is a number of triangles.
+    // The error is unlimited, since the number of triangles is the target.
     size_t count = meshopt_simplify(&triangle[0][0], &mesh->triangle[0][0],
                                     3 * mesh->triangle_count, &mesh->position[0][0],
                                     mesh->vertex_count, sizeof *mesh->position, 3 * target,

@@ -9,29 +9,29 @@ struct orl_mesh {
     float (*position)[3];    // world, scene units
     float (*normal)[3];      // unit length, 0 0 0: unknown; NULL: none
     uint8_t (*color)[3];     // sRGB; NULL: none
-    uint32_t (*triangle)[3]; // vertices, counter-clockwise as seen from outside
+    uint32_t (*triangle)[3]; // vertex indices, counter-clockwise as seen from outside
 };
 
-// Room for so many, zeroed, without normals and colours.
+// Allocates zeroed vertices and triangles, without normals and colours.
 enum orl_result orl_mesh_init(const struct orl_log *log, struct orl_mesh *mesh,
                               size_t vertex_count, size_t triangle_count) ORL_CHECK_RESULT;
 void orl_mesh_finish(struct orl_mesh *mesh);
 
-// PLY (ascii or binary little endian: x y z, optional nx ny nz and red green blue; faces as
-// vertex_indices or vertex_index) and Wavefront OBJ (v with optional colour, f), known by
-// content. Polygons become fans of triangles. ORL_ERR_FORMAT: indices of vertices that are not
-// there, vertices that are not finite, or no face.
+// Reads PLY (ascii or binary little endian: x y z, optional nx ny nz and red green blue; faces as
+// vertex_indices or vertex_index) and Wavefront OBJ (v with optional colour, f), recognised by
+// content. Polygons become fans of triangles. ORL_ERR_FORMAT: an index of a missing vertex, a
+// vertex that is not finite, or no face.
 enum orl_result orl_mesh_read(const struct orl_log *log, const char *path,
                               struct orl_mesh *mesh) ORL_CHECK_RESULT;
-// Binary little-endian PLY. Written whole or not at all.
+// Writes binary little-endian PLY, atomically.
 enum orl_result orl_mesh_write(const struct orl_log *log, const char *path,
                                const struct orl_mesh *mesh) ORL_CHECK_RESULT;
 
-// Sets normals: the mean of those of the triangles around, by their areas.
+// Sets vertex normals: the mean of the adjacent triangles' normals, weighted by area.
 enum orl_result orl_mesh_set_normals(const struct orl_log *log,
                                      struct orl_mesh *mesh) ORL_CHECK_RESULT;
-// Fewer triangles, `target` of them where the shape allows (meshoptimizer: quadric error edge
-// collapse); vertices that are not used any more are dropped.
+// Reduces the mesh to `target` triangles where the shape allows (meshoptimizer: quadric error edge
+// collapse). Unused vertices are dropped.
 enum orl_result orl_mesh_decimate(const struct orl_log *log, size_t target,
                                   struct orl_mesh *mesh) ORL_CHECK_RESULT;
 

@@ -10,7 +10,7 @@ struct orl_mesh_builder {
     size_t vertex_capacity, color_capacity, triangle_capacity;
 };
 
-// Adds the triangles of a polygon: a fan around its first corner.
+// Adds a polygon as a fan of triangles around its first corner.
 enum orl_result orl_mesh_add_polygon(const struct orl_log *log, struct orl_mesh_builder *builder,
                                      const uint32_t *corners, size_t count) ORL_CHECK_RESULT;
 enum orl_result orl_mesh_read_ply(const struct orl_log *log, const char *path,

@@ -1,4 +1,4 @@
-// Meshes from Wavefront OBJ: v and f; everything else is skipped.
+// Meshes from Wavefront OBJ: v and f are read, other statements are skipped.
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 struct obj {
     struct orl_text_lines l;
     struct orl_mesh_builder *builder;
-    bool colors; // every vertex so far has one
+    bool colors; // every vertex so far has a colour
 };
 
 static enum orl_result read_vertex(struct obj *obj)
@@ -39,7 +39,7 @@ static enum orl_result read_vertex(struct obj *obj)
     return ORL_OK;
 }
 
-// A corner: "7", "7/1", "7//3", "7/1/3" or, from the last vertex back, "-1".
+// Reads a corner: "7", "7/1", "7//3", "7/1/3", or "-1", which counts back from the last vertex.
 static bool read_corner(struct obj *obj, uint32_t *corner)
 {
     char *end;

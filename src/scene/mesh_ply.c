@@ -6,7 +6,7 @@
 #include "scene/mesh_internal.h"
 #include "scene/ply.h"
 
-// Indices of three properties; false unless all are there.
+// Indices of three properties; false when one is missing.
 static bool find_three(const struct orl_ply_element *element, const char *const names[3],
                        int found[3])
 {

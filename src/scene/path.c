@@ -173,7 +173,7 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
                               PATH_VIEWS_MAX);
         else
             result = spread_frames(log, &read, (size_t)count, path);
-        for (size_t i = 0; result == ORL_OK && i < path->count; i++) // a curve may swing out
+        for (size_t i = 0; result == ORL_OK && i < path->count; i++) // a spline may overshoot
             result = check_view(log, file, "frame", i, true, &path->views[i]);
     } else if (result == ORL_OK) {
         *path = read;
@@ -185,7 +185,7 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
 
 // --- other programs' formats ---
 
-// nerfstudio: camera_to_world row-major, fov vertical.
+// nerfstudio: camera_to_world is row-major, fov is vertical.
 static bool read_nerfstudio_view(const json_t *entry, int width, int height, struct orl_view *view)
 {
     double m[16];
@@ -196,7 +196,7 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
     view->camera = (struct orl_camera){.width = width, .height = height,
                                        .cx = 0.5 * width, .cy = 0.5 * height};
     set_fov_y(&view->camera, fov * pi / 180);
-    (void)orl_pose_from_opengl(m, &view->cam_from_world); // check_view tells what is wrong with it
+    (void)orl_pose_from_opengl(m, &view->cam_from_world); // check_view reports problems
     return true;
 }
 

@@ -35,7 +35,8 @@ static enum orl_ply_type type_by_name(const char *name)
 
 // --- the header ---
 
-// Copies the next header line; ply->at stays at its start. False when it does not end.
+// Copies the next header line; ply->at stays at the start of the line. False when the line has no
+// end.
 static bool header_line(const struct orl_ply *ply, char line[HEADER_LINE_MAX], size_t *length)
 {
     size_t room = ply->size - ply->at;
@@ -78,7 +79,7 @@ static enum orl_result add_property(struct orl_ply *ply, const char *line)
         return result;
     element->properties[element->property_count++] = property;
     element->lists = element->lists || property.list;
-    // As text a value takes a digit and a space.
+    // In an ascii file a value takes at least a digit and a space.
     element->least += ply->ascii ? 2 : types[property.list ? property.count_type
                                                            : property.type].size;
     return ORL_OK;
@@ -200,7 +201,7 @@ static enum orl_result take(struct orl_ply *ply, enum orl_ply_type type, double 
     }
     const char *text = (const char *)ply->data + ply->at;
     char *end;
-    *value = strtod(text, &end); // the data end with a zero byte
+    *value = strtod(text, &end); // stops at the zero byte after the data
     if (end == text)
         return orl_ply_bad(ply, "a value is missing or not a number");
     ply->at += (size_t)(end - text);
@@ -271,7 +272,7 @@ static enum orl_result skip(struct orl_ply *ply, const struct orl_ply_element *e
     return result;
 }
 
-// Where the last value of an ascii record ended, its line has not.
+// Skips the rest of the line after the last value of an ascii record.
 static void finish_line(struct orl_ply *ply)
 {
     while (ply->ascii && ply->at < ply->size &&
@@ -299,7 +300,7 @@ enum orl_result orl_ply_seek(struct orl_ply *ply, const char *name, const char *
         return result;
     const struct orl_ply_element *element = &ply->elements[ply->next++];
     size_t left = ply->size - ply->at;
-    // The last line of an ascii file may lack its newline.
+    // + ply->ascii: the last line of an ascii file may lack its newline.
     if (element->count && (!element->least ||
                            element->count > (left + ply->ascii) / element->least))
         return orl_fail(ply->log, ORL_ERR_FORMAT,

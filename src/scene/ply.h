@@ -11,8 +11,8 @@ enum orl_ply_type {
 
 struct orl_ply_property {
     char name[64];
-    enum orl_ply_type type;       // of a list: of its items
-    enum orl_ply_type count_type; // of a list
+    enum orl_ply_type type;       // of the value; for a list, of its items
+    enum orl_ply_type count_type; // of a list's length
     bool list;
 };
 
@@ -20,7 +20,7 @@ enum { ORL_PLY_ELEMENTS_MAX = 16, ORL_PLY_PROPERTIES_MAX = 256 };
 struct orl_ply_element {
     char name[64];
     uint64_t count;
-    size_t least; // bytes of a record: all of them, or with lists the least, those being empty
+    size_t least; // smallest size of a record in bytes, with its lists empty
     bool lists;
     int property_count;
     struct orl_ply_property *properties; // owned
@@ -30,9 +30,9 @@ struct orl_ply {
     const struct orl_log *log;
     char *path;       // owned
     uint8_t *data;    // owned; a zero byte follows
-    size_t size, at;  // at: next byte to read
+    size_t size, at;  // at: offset of the next byte to read
     bool ascii;
-    int element_count, next; // next: the element that `at` is ahead of
+    int element_count, next; // next: the element whose records come next
     struct orl_ply_element elements[ORL_PLY_ELEMENTS_MAX];
 };
 
@@ -40,11 +40,12 @@ struct orl_ply {
 enum orl_result orl_ply_open(const struct orl_log *log, const char *path,
                              struct orl_ply *ply) ORL_CHECK_RESULT;
 void orl_ply_close(struct orl_ply *ply);
-// ORL_ERR_FORMAT, saying at which byte the reader stands and `what` is wrong there.
+// Logs the reader's position in bytes and `what` is wrong there; returns ORL_ERR_FORMAT.
 enum orl_result orl_ply_bad(const struct orl_ply *ply, const char *what);
 
-// Goes ahead of the records of the element of this name, past those before it, and checks that
-// the file has room for them. Where there is none the error says `missing`.
+// Moves the reader to the records of the element of this name, past the elements before it, and
+// checks that the file is long enough for these records. When there is no such element the error
+// says `missing`.
 enum orl_result orl_ply_seek(struct orl_ply *ply, const char *name, const char *missing,
                              const struct orl_ply_element **element) ORL_CHECK_RESULT;
 // Items of one list.
@@ -52,15 +53,16 @@ struct orl_ply_list {
     double *items; // owned
     size_t count, capacity;
 };
-// Reads one record: values[i] is property i, of a list its length. Items of property `list` (-1:
-// none) go to *items.
+// Reads one record. values[i] is the value of property i, or the length of a list. The items of
+// property `list` (-1: none) go to *items.
 enum orl_result orl_ply_record(struct orl_ply *ply, const struct orl_ply_element *element,
                                double *values, int list,
                                struct orl_ply_list *items) ORL_CHECK_RESULT;
-// Index of a property by its name; -1: none.
+// Index of the property of this name; -1 when there is none.
 int orl_ply_property_index(const struct orl_ply_element *element, const char *name);
 
-// As a float colour runs from 0 to 1, those of such a property must be multiplied by 255.
+// True when the property is a float type. Colours in such a property run from 0 to 1 and must be
+// multiplied by 255.
 static inline bool orl_ply_is_float(const struct orl_ply_element *element, int property)
 {
     return element->properties[property].type >= ORL_PLY_FLOAT32;

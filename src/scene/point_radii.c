@@ -9,19 +9,19 @@
 
 #include "core/memory.h"
 
-enum { CHUNK = 1 << 15 }; // points between two looks at progress and cancellation
+enum { CHUNK = 1 << 15 }; // points between two reports of progress and checks for cancellation
 
 struct search {
     const struct orl_log *log;
     struct orl_points *points;
     const double (*viewers)[3];
     size_t viewer_count;
-    int neighbours; // without the point itself
+    int neighbours; // excluding the point itself
     float overlap;
     struct FLANNParameters flann;
     flann_index_t index;
     int *found;   // CHUNK * (neighbours + 1)
-    float *dist2; // the same
+    float *dist2; // squared distances, as many
 };
 
 // Eigenvector of the smallest eigenvalue of a symmetric matrix, by Jacobi
@@ -72,7 +72,7 @@ static size_t nearest_viewer(const struct search *s, const float p[3], double *d
     return best;
 }
 
-// Plane through the point and its neighbours, by principal components.
+// Fits a plane to the point and its neighbours by principal components and sets the normal.
 static void fit_normal(const struct search *s, size_t i, const int *found)
 {
     const float *p = s->points->position[i];
@@ -107,7 +107,7 @@ static enum orl_result search_open(struct search *s)
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     s->flann = DEFAULT_FLANN_PARAMETERS;
     s->flann.algorithm = FLANN_INDEX_KDTREE_SINGLE;
-    s->flann.checks = FLANN_CHECKS_UNLIMITED; // exact
+    s->flann.checks = FLANN_CHECKS_UNLIMITED; // an exact search
     s->flann.sorted = 1;
     s->flann.leaf_max_size = 10;
     s->flann.log_level = FLANN_LOG_NONE;
@@ -134,7 +134,7 @@ static void search_close(struct search *s)
 static enum orl_result search_chunk(struct search *s, size_t first, size_t count)
 {
     size_t columns = (size_t)s->neighbours + 1;
-    memset(s->found, 0xff, count * columns * sizeof *s->found); // -1: none
+    memset(s->found, 0xff, count * columns * sizeof *s->found); // -1: no neighbour
     if (flann_find_nearest_neighbors_index(s->index, s->points->position[first], (int)count,
                                            s->found, s->dist2, (int)columns, &s->flann) != 0)
         return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
@@ -142,7 +142,8 @@ static enum orl_result search_chunk(struct search *s, size_t first, size_t count
         if (s->found[i] < 0 || (size_t)s->found[i] >= s->points->count)
             return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN found a point that is not there");
     for (size_t i = 0; i < count; i++) {
-        // The point itself is among them at distance zero, so the last one is the k-th.
+        // The point itself is found too, at distance zero, so the last column is the k-th
+        // neighbour.
         s->points->radius[first + i] =
             s->overlap * sqrtf(s->dist2[i * columns + columns - 1]);
         const float *n = s->points->normal[first + i];
@@ -163,7 +164,7 @@ static bool usable(float radius)
     return radius > 0 && isfinite(radius);
 }
 
-// Radii for points that coincide with all their neighbours.
+// Sets the radii of points that coincide with all their neighbours.
 static enum orl_result fill_radii(struct search *s)
 {
     struct orl_points *points = s->points;
@@ -175,7 +176,7 @@ static enum orl_result fill_radii(struct search *s)
         if (usable(points->radius[i]))
             sorted[known++] = points->radius[i];
     qsort(sorted, known, sizeof *sorted, compare_floats);
-    double distance = 1; // nothing to go by: a hundredth of the way to the viewer
+    double distance = 1; // without any known radius: a hundredth of the distance to the viewer
     if (!known && s->viewer_count)
         nearest_viewer(s, points->position[0], &distance);
     float median = known ? sorted[known / 2] : (float)(0.01 * (distance > 0 ? distance : 1));
@@ -194,7 +195,7 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
 {
     ORL_REQUIRE(log, params->neighbours >= 1 && params->neighbours <= 64);
     ORL_REQUIRE(log, params->overlap > 0 && params->overlap <= 8);
-    orl_points_drop_unusable(log, points); // FLANN loses its way among distances that overflow
+    orl_points_drop_unusable(log, points); // FLANN fails when distances overflow
     if (points->count == 0)
         return ORL_OK;
     if (points->count > INT_MAX / 64)
@@ -221,8 +222,8 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
     return result;
 }
 
-// Pixels per scene unit at the point in the photograph that draws it largest; 0 when
-// it is in no photograph's frame.
+// Pixels per scene unit at the point, in the photograph that shows it largest; 0 when
+// the point is in no photograph's frame.
 static double finest_scale(const struct orl_view *views, size_t view_count, const float p[3])
 {
     const double world[3] = {(double)p[0], (double)p[1], (double)p[2]};

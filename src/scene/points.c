@@ -65,7 +65,7 @@ void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *poin
     points->count = kept;
 }
 
-// As in the file: packed, 32 bytes.
+// Size of a record in the file, which is packed: six floats, a colour, a radius and a count.
 enum { RECORD_SIZE = 6 * 4 + 3 + 4 + 1 };
 
 static void pack_point(const struct orl_points *points, size_t i, uint8_t record[RECORD_SIZE])

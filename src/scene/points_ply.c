@@ -7,14 +7,14 @@
 #include "scene/ply.h"
 #include "oriel/points.h"
 
-// What a property is to us.
+// The meaning of a property.
 enum role {
     X, Y, Z, NX, NY, NZ, RED, GREEN, BLUE, RADIUS, PHOTOGRAPHS, ROLE_COUNT
 };
 static const char *const roles[ROLE_COUNT] = {"x", "y", "z", "nx", "ny", "nz",
                                               "red", "green", "blue", "radius", "photographs"};
 
-// Which property has which role; -1: none.
+// Sets the index of the property of each role; -1: none.
 static void find_roles(const struct orl_ply_element *vertex, int property[ROLE_COUNT])
 {
     for (int role = 0; role < ROLE_COUNT; role++) {
@@ -33,7 +33,7 @@ static void set_normal(const double values[3], float normal[3])
         normal[i] = length > 1e-12 && isfinite(length) ? (float)(values[i] / length) : 0;
 }
 
-// Stores a point at index i. False when it must be dropped.
+// Stores a point at index i. False when the point must be dropped.
 static bool set_point(struct orl_points *points, size_t i, const double values[ROLE_COUNT],
                       size_t *bad_radii)
 {
@@ -59,7 +59,7 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
 {
     size_t kept = 0, bad_radii = 0;
     double record[ORL_PLY_PROPERTIES_MAX];
-    // Without colours a point is mid-grey.
+    // Points without colours are mid-grey.
     double values[ROLE_COUNT] = {[RED] = 128, [GREEN] = 128, [BLUE] = 128};
     enum orl_result result = ORL_OK;
     for (uint64_t i = 0; i < vertex->count && result == ORL_OK; i++) {

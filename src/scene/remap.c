@@ -31,7 +31,7 @@ enum orl_result orl_undistort(const struct orl_log *log, const struct orl_colmap
     if (image->width != size->width || image->height != size->height)
         return orl_fail(log, ORL_ERR_DATA, "a picture of %dx%d pixels, but its camera has %dx%d",
                         image->width, image->height, size->width, size->height);
-    // Where nothing shrinks one resampling is enough.
+    // One resampling suffices unless the picture shrinks.
     bool shrinks = to->fx < 0.999 * size->fx || to->fy < 0.999 * size->fy;
     struct orl_camera full = shrinks ? orl_camera_resized(to, size->width, size->height) : *to;
     enum orl_result result = make_map(log, from, &full, &map);

@@ -5,9 +5,10 @@
 #include "oriel/image.h"
 #include "scene/colmap.h"
 
-// What camera `to` would have seen from the same place, of any pixel type. `image` has the
-// size of camera `from`. Resampled bilinearly, black where `from` saw nothing; where `to` is
-// coarser as COLMAP does: at the size of `from`, then brought to the size of `to`.
+// Makes the picture that camera `to` would have taken from the same place, of any pixel type.
+// `image` has the size of camera `from`. Resampling is bilinear, and black where `from` saw
+// nothing. Where `to` is coarser, the picture is undistorted at the resolution of `from` and then
+// reduced to the size of `to`, as COLMAP does.
 enum orl_result orl_undistort(const struct orl_log *log, const struct orl_colmap_camera *from,
                               const struct orl_camera *to, const struct orl_image *image,
                               struct orl_image *undistorted) ORL_CHECK_RESULT;

@@ -12,7 +12,7 @@
 #include "scene/manifest.h"
 #include "scene/point_radii.h"
 
-// A still scene, zeroed but for what its maker sets, has no moments.
+// A still scene has no frames. Its `frame` may be 0 when the struct was only zeroed.
 static bool shows_moment(const struct orl_scene *scene)
 {
     return scene->frame_count > 0 && scene->frame >= 0;
@@ -35,7 +35,7 @@ static enum orl_result set_photo(const struct orl_log *log, const char *dir,
     return photo->name ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-// A stranger's scene must not show this machine's other files, nor publish them.
+// A scene from an untrusted source must not show or publish other files of this machine.
 static enum orl_result check_inside(const struct orl_log *log, const struct orl_scene *scene,
                                     const char *path)
 {
@@ -46,7 +46,7 @@ static enum orl_result check_inside(const struct orl_log *log, const struct orl_
                           "there", path);
 }
 
-// Takes over `path`, which need not be there.
+// Takes ownership of `path`. The file may be missing.
 static enum orl_result check_if_there(const struct orl_log *log, const struct orl_scene *scene,
                                       char *path, bool *there)
 {
@@ -93,13 +93,13 @@ enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene 
     enum orl_result result = check_photo_files(log, scene);
     if (result != ORL_OK) {
         scene->frame = before;
-        if (check_photo_files(NULL, scene) != ORL_OK) // for `linear`
+        if (check_photo_files(NULL, scene) != ORL_OK) // restores photo->linear
             return result;
     }
     return result;
 }
 
-// Moments are numbered from 0 without gaps; others are not counted.
+// Frames are numbered from 0 without gaps; folders after a gap are ignored.
 static size_t count_frames(const char *dir)
 {
     size_t count = 0;
@@ -120,7 +120,7 @@ static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *s
     if (!scene->photos)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < model->image_count; i++) {
-        scene->photo_count = i + 1; // so that a half-made one is released
+        scene->photo_count = i + 1; // counted first, so that a half-made one is released
         enum orl_result result =
             set_photo(log, scene->dir, model, &model->images[i], &scene->photos[i]);
         if (result != ORL_OK)
@@ -149,7 +149,7 @@ static double distance(const double a[3], const double b[3])
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-// Without sparse observations: distances to some of the points in the picture.
+// For scenes without sparse observations: distances to some of the points in the picture.
 static size_t sample_distances(const struct orl_scene *scene, double *values, size_t per_photo)
 {
     size_t count = 0, step = scene->points.count / per_photo + 1;
@@ -171,7 +171,7 @@ static size_t sample_distances(const struct orl_scene *scene, double *values, si
     return count;
 }
 
-// Without points: distances to the place that the photographs look at.
+// For scenes without points: distances to the place that the photographs look at.
 static size_t middle_distances(const struct orl_scene *scene, double *values)
 {
     struct orl_ray_meeting meeting = {0};
@@ -202,7 +202,7 @@ static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_
     if (!values)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < model->image_count; i++) {
-        if (scene->photos[i].test) // the photographs are the model's images
+        if (scene->photos[i].test) // photographs and model images have equal indices
             continue;
         double centre[3];
         orl_pose_centre(&model->images[i].cam_from_world, centre);
@@ -218,7 +218,7 @@ static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_
     return ORL_OK;
 }
 
-// Points without radius would not be drawn.
+// Drops points without a radius, which would not be drawn.
 static void drop_flat_points(const struct orl_log *log, struct orl_scene *scene)
 {
     struct orl_points *points = &scene->points;
@@ -262,7 +262,7 @@ static enum orl_result read_points(const struct orl_log *log, struct orl_scene *
                                    const char *path, bool may_be_empty)
 {
     enum orl_result result = orl_points_read(log, path, &scene->points);
-    // A manifest's scene may have none: silhouettes do without.
+    // A scene with a manifest may have no points: methods that use silhouettes need none.
     if (result != ORL_OK || (may_be_empty && !scene->points.count))
         return result;
     size_t known = 0;
@@ -282,7 +282,7 @@ static enum orl_result check_files_inside(const struct orl_log *log, const struc
 {
     struct orl_names names;
     if (!orl_path_is_dir(dir))
-        return ORL_OK; // the reader says what is missing
+        return ORL_OK; // the reader reports what is missing
     enum orl_result result = orl_dir_list(log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
         char *path = orl_path_join(log, dir, names.items[i]);
@@ -311,7 +311,7 @@ static enum orl_result read_model(const struct orl_log *log, const struct orl_sc
     return result;
 }
 
-// What is in the folder: paths that are NULL are not there.
+// Paths of the files that a folder has; NULL: missing.
 struct folder {
     char *manifest, *points, *fused;
 };
@@ -342,7 +342,7 @@ static enum orl_result look(const struct orl_log *log, const char *dir, struct f
     return result;
 }
 
-// With the photographs and their splits known.
+// Adds the points. The photographs and their `test` flags must be set before.
 static enum orl_result add_points(const struct orl_log *log, struct orl_scene *scene,
                                   const struct orl_colmap_model *model, const char *path,
                                   bool may_be_empty)
@@ -457,7 +457,7 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name)
     return -1;
 }
 
-// "SCENE/" or "SCENE/frames/<number>/", then folder, name and ending.
+// The path "SCENE/" or "SCENE/frames/<number>/", followed by folder, name and ending.
 static char *moment_path(const struct orl_log *log, const struct orl_scene *scene,
                          const char *folder, size_t photo, const char *ending)
 {

@@ -6,21 +6,21 @@
 #include "bridge/bridge.h"
 #include "core/memory.h"
 
-// Pieces and holes smaller than this share of the picture are specks. Before a dark ground larger
-// ones are too: glints of the ground, and shadows, which a hull is better off without.
+// Pieces and holes smaller than this fraction of the picture are specks. Before a dark background
+// larger ones count too: glints of the background, and shadows, which would harm a hull.
 static const double SPECK_SHARE = 0.0005, DARK_SPECK_SHARE = 0.003;
 
 void orl_silhouette_mark_edges(struct orl_image *mask)
 {
     int w = mask->width, h = mask->height;
     size_t row = (size_t)w;
-    // What is inside becomes IN first, so that EDGE is told from it while both are written.
+    // All inside pixels become IN first; the edge test below then asks only for OUT (0).
     for (size_t i = 0; i < row * (size_t)h; i++)
         mask->u8[i] = mask->u8[i] ? ORL_ALPHA_IN : ORL_ALPHA_OUT;
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             uint8_t *at = mask->u8 + (size_t)y * row + (size_t)x;
-            // What lies beyond the picture is not known to be outside.
+            // Pixels beyond the picture's border are unknown and mark no edge.
             bool edge = (x > 0 && !at[-1]) || (x + 1 < w && !at[1]) ||
                         (y > 0 && !*(at - row)) || (y + 1 < h && !at[row]);
             if (*at && edge)
@@ -40,23 +40,24 @@ static enum orl_result clean(const struct orl_log *log, int open_px, int close_p
     return result;
 }
 
-// Diameter of the disc that a mask is opened with: 3 pixels at VGA, none where limbs are as thin.
+// Diameter in pixels of the disc that a mask is opened with: 3 at VGA; 1 (no opening) for small
+// pictures, where limbs may be that thin.
 static int disc_of(const struct orl_image *picture)
 {
     return picture->height > 1000 ? 5 : picture->height > 300 ? 3 : 1;
 }
 
-// --- a dark ground ---
+// --- dark background ---
 
-// The square root of the greatest channel, in 64 steps: noise of dark pixels counts like that of
-// bright ones.
+// Levels of the square root of the greatest channel. The square root equalises the noise of dark
+// and bright pixels.
 enum { STEPS = 64 };
 static int step_of(int value)
 {
     return (int)(sqrt(value / 255.0) * (STEPS - 1) + 0.5);
 }
 
-// The threshold between two classes with the greatest variance between them.
+// The threshold that maximises the variance between the two classes (Otsu 1979).
 static int otsu(const size_t histogram[STEPS])
 {
     double total = 0, sum = 0, below = 0, sum_below = 0, best = -1;
@@ -105,7 +106,7 @@ enum orl_result orl_silhouette_dark(const struct orl_log *log, const struct orl_
 
 // --- difference from the background ---
 
-// Welford's method: `deviation` holds the sum of squares until it is asked for.
+// Updates the mean and the variance by Welford's method.
 enum orl_result orl_background_add(const struct orl_log *log, struct orl_background *b,
                                    const struct orl_image *picture)
 {
@@ -127,7 +128,7 @@ enum orl_result orl_background_add(const struct orl_log *log, struct orl_backgro
     for (size_t i = 0; i < count; i++) {
         float value = (float)picture->u8[i], off = value - b->mean.f32[i];
         b->mean.f32[i] += off / n;
-        // From a variance of n - 1 pictures to one of n.
+        // Updates the variance of n - 1 pictures to that of n.
         b->deviation.f32[i] += (off * (value - b->mean.f32[i]) - b->deviation.f32[i]) / n;
     }
     return ORL_OK;
@@ -150,7 +151,7 @@ static bool is_subject(const float mean[3], const float variance[3], const uint8
         along += weight[c] * (double)mean[c] * pixel[c];
         square += weight[c] * (double)mean[c] * (double)mean[c];
     }
-    // How bright the background's colour would have to be to come nearest to this one.
+    // The factor that brings the background's colour nearest to the pixel's (its brightness).
     double alpha = square > 0 ? along / square : 1;
     for (int c = 0; c < 3; c++) {
         double off = pixel[c] - alpha * (double)mean[c], step = (alpha - 1) * (double)mean[c];

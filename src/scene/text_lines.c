@@ -45,7 +45,7 @@ bool orl_text_next_raw(struct orl_text_lines *l)
     stop = stop ? stop : l->end;
     while (stop > line && (stop[-1] == '\r' || stop[-1] == ' ' || stop[-1] == '\t'))
         stop--;
-    *stop = '\0'; // orl_file_read leaves room after the last byte
+    *stop = '\0'; // orl_file_read adds a byte after the last one
     l->at = line;
     l->number++;
     return true;

@@ -24,7 +24,7 @@ static enum orl_result open_nearest(const struct orl_log *log, const struct orl_
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     n->flann = DEFAULT_FLANN_PARAMETERS;
     n->flann.algorithm = FLANN_INDEX_KDTREE_SINGLE;
-    n->flann.checks = FLANN_CHECKS_UNLIMITED; // exact
+    n->flann.checks = FLANN_CHECKS_UNLIMITED; // an exact search
     n->flann.leaf_max_size = 10;
     n->flann.log_level = FLANN_LOG_NONE;
     n->flann.cores = cores > 0 && cores < 256 ? (int)cores : 2;
@@ -47,7 +47,7 @@ static void close_nearest(struct nearest *n)
     free(n->dist2);
 }
 
-// Sets alone[i] for the points of `thin` with room around them.
+// Sets alone[i] for the points of `thin` without a near point in the other cloud.
 static enum orl_result find_alone(const struct orl_log *log, const struct orl_thin_params *params,
                                   const struct orl_points *points, const struct orl_points *thin,
                                   bool *alone)
@@ -56,7 +56,7 @@ static enum orl_result find_alone(const struct orl_log *log, const struct orl_th
     enum orl_result result = open_nearest(log, points, &n);
     for (size_t first = 0; result == ORL_OK && first < thin->count; first += CHUNK) {
         size_t count = thin->count - first < CHUNK ? thin->count - first : CHUNK;
-        memset(n.found, 0xff, count * sizeof *n.found); // -1: none
+        memset(n.found, 0xff, count * sizeof *n.found); // -1: no neighbour
         if (flann_find_nearest_neighbors_index(n.index, thin->position[first], (int)count,
                                                n.found, n.dist2, 1, &n.flann) != 0)
             result = orl_fail(log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
@@ -64,8 +64,8 @@ static enum orl_result find_alone(const struct orl_log *log, const struct orl_th
             if (n.found[i] < 0 || (size_t)n.found[i] >= points->count)
                 result = orl_fail(log, ORL_ERR_EXTERNAL, "FLANN found a point that is not there");
         for (size_t i = 0; result == ORL_OK && i < count; i++) {
-            // Often the nearest point is in both clouds and exactly as far as the radius:
-            // near, however this is rounded.
+            // The nearest point is often in both clouds and exactly one radius away. The margin
+            // makes it count as near despite rounding.
             float room = params->spacing * thin->radius[first + i] * (1 + 1e-5f);
             alone[first + i] = n.dist2[i] > room * room;
         }
@@ -96,7 +96,7 @@ enum orl_result orl_points_add_thin(const struct orl_log *log, const struct orl_
                                     struct orl_points *thin, struct orl_points *points)
 {
     ORL_REQUIRE(log, params->spacing > 0 && params->spacing <= 64);
-    orl_points_drop_unusable(log, points); // FLANN loses its way among distances that overflow
+    orl_points_drop_unusable(log, points); // FLANN fails when distances overflow
     orl_points_drop_unusable(log, thin);
     if (points->count > INT_MAX / 64 || thin->count > INT_MAX / 64)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are more than FLANN can index",

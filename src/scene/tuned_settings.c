@@ -22,7 +22,7 @@ static enum orl_result add(const struct orl_log *log, const char *path, const ch
     tuned->method = orl_strdup(log, method);
     tuned->key = orl_strdup(log, key);
     tuned->value = number;
-    scene->tuned_count++; // also half-made, so that it is released
+    scene->tuned_count++; // even if incomplete, so that it is released
     return tuned->method && tuned->key ? ORL_OK : ORL_ERR_MEMORY;
 }
 

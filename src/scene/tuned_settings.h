@@ -6,11 +6,11 @@
 
 #include "oriel/scene.h"
 
-// Sets scene->tuned from the manifest `root`, which is the file `path`.
+// Sets scene->tuned from the manifest `root`, read from the file `path`.
 enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, const json_t *root,
                                struct orl_scene *scene) ORL_CHECK_RESULT;
-// Sets "tuned" of a method in DIR/scene.json; takes over `record`, whose "settings" has
-// option keys and numbers. ORL_ERR_NOT_FOUND: there is no scene.json.
+// Sets the entry of a method in "tuned" of DIR/scene.json. Takes ownership of `record`, whose
+// "settings" maps option keys to numbers. ORL_ERR_NOT_FOUND: there is no scene.json.
 enum orl_result orl_tuned_write(const struct orl_log *log, const char *dir, const char *method,
                                 json_t *record) ORL_CHECK_RESULT;
 
