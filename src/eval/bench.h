@@ -12,9 +12,9 @@ enum { ORL_BENCH_MEMORY_MAX = 64 };
 
 enum orl_bench_kind {
     ORL_BENCH_SIZES,       // of the picture: table 2
-    ORL_BENCH_PHOTOGRAPHS, // how many: figure 13
-    ORL_BENCH_POINTS,      // their number: figure 13
-    ORL_BENCH_RESOLUTION,  // their number
+    ORL_BENCH_PHOTOGRAPHS, // their number: figure 13
+    ORL_BENCH_POINTS,      // their number
+    ORL_BENCH_RESOLUTION,  // of the photographs: figure 15
     ORL_BENCH_KIND_COUNT
 };
 

@@ -253,8 +253,8 @@ enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_s
                                    size_t frames, int divide, struct orl_path *path)
 {
     memset(path, 0, sizeof *path);
-    struct orl_scene training = *scene; // copies the photographs alone; their names and the points
-                                        // belong to the scene
+    struct orl_scene training = *scene; // only its photographs are replaced; their names and
+                                        // the points belong to the scene
     training.photos = orl_array(log, scene->photo_count, sizeof *training.photos);
     if (!training.photos)
         return ORL_ERR_MEMORY;
