@@ -61,7 +61,7 @@ static enum orl_result add_to_list(const struct orl_log *log, const struct arg_o
     return result;
 }
 
-// The names, separated by commas.
+// Writes the names, separated by commas.
 static void list_names(const struct arg_enum *e, char text[256])
 {
     text[0] = '\0';

@@ -1,4 +1,4 @@
-// Table-driven command line options.
+// Command line options, described by tables.
 #ifndef ORL_CLI_ARGS_H
 #define ORL_CLI_ARGS_H
 
@@ -14,21 +14,21 @@ enum arg_type {
     ARG_ENUM,   // struct arg_enum
 };
 
-// One of some names. The help and the error list them.
+// One of several names, which the help and the error message list.
 struct arg_enum {
     const char *const *names; // ended by NULL
-    int value;                // index; what it is before parsing is the default, -1: none
+    int value;                // index; the value before parsing is the default, -1: none
 };
 
 struct arg_size {
-    int width, height; // 0 0: not given
+    int width, height; // 0 0: option absent
 };
 
 struct arg_option {
     const char *name;  // without "--"
     enum arg_type type;
     void *value;       // of the type's C type, holding the default
-    const char *meta;  // "DIR", NULL for flags
+    const char *meta;  // placeholder such as "DIR"; NULL for flags
     const char *help;
     double min, max;   // ARG_INT, ARG_NUMBER
 };
@@ -39,16 +39,16 @@ struct arg_command {
     size_t positionals_min, positionals_max;
 };
 
-// Options every command has: --help, --quiet, --verbose, --shader-dir DIR.
+// Options of every command: --help, --quiet, --verbose, --shader-dir DIR.
 struct arg_common {
     bool help, quiet, verbose;
     const char *shader_dir;
 };
 
-// Options may stand before, between or after positionals; "--name=value" works too;
-// "--" ends them. ORL_ERR_ARGUMENT, logged, for anything that is not allowed. With
-// --help it prints the help to stdout and returns ORL_OK with common->help set.
-// Positionals point into argv.
+// Parses the arguments. Options may stand before, between or after positionals, "--name=value" is
+// accepted, and "--" ends the options. With --help it prints the help to stdout and returns ORL_OK
+// with common->help set. Positionals point into argv. ORL_ERR_ARGUMENT, logged: an argument is not
+// allowed.
 enum orl_result args_parse(const struct orl_log *log, const struct arg_command *command, int argc,
                            char **argv, struct arg_common *common, const char **positionals,
                            size_t *positional_count) ORL_CHECK_RESULT;

@@ -1,4 +1,4 @@
-// oriel bench: what a frame costs, pass by pass and byte by byte.
+// oriel bench: what a frame costs, in time by pass and in memory by owner.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +18,7 @@ struct options {
     bool quick;
 };
 
-// What the options say, in the library's words.
+// The options as parameters of the library.
 struct plan {
     struct orl_choices choices;
     int sizes[SIZES_MAX][2];

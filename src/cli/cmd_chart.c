@@ -1,4 +1,4 @@
-// oriel chart: speed and memory against accuracy, all methods, on held-out photographs.
+// oriel chart: speed and memory against accuracy of all methods on held-out photographs.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ struct options {
     bool quick;
 };
 
-// NAME=DIR, and after it ms=.. and MIB=.. of the same peer.
+// Parses NAME=DIR, optionally followed by ms=.. and MIB=.. of the same peer.
 static enum orl_result parse_peers(const struct orl_log *log, const struct orl_names *words,
                                    struct orl_chart_peer peers[PEERS_MAX], size_t *count)
 {

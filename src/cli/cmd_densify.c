@@ -1,5 +1,5 @@
-// oriel densify: depth and normal maps for a COLMAP workspace, in place of
-// colmap patch_match_stereo.
+// oriel densify: depth and normal maps for a COLMAP workspace, instead of colmap
+// patch_match_stereo.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -13,7 +13,7 @@ struct options {
     int seed, max_vram_mib;
 };
 
-// Names of the workspace's photographs that are not excluded.
+// Lists the workspace's photographs that are not excluded.
 static enum orl_result choose_photos(const struct orl_log *log, const char *workspace,
                                      const struct orl_colmap_model *model,
                                      const struct orl_names *exclude, struct orl_names *photos)

@@ -1,4 +1,4 @@
-// oriel eval: held-out photographs against renderings.
+// oriel eval: compares held-out photographs with renderings.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ struct options {
     struct arg_enum merge, textures;
     struct orl_names settings;
     int max_vram_mib;
-    int walk, divide; // frames of a walk in place of held-out photographs; 0: none
+    int walk, divide; // frames of a walk instead of held-out photographs; 0: no walk
 };
 
 struct job {
@@ -27,7 +27,7 @@ struct job {
     struct orl_scene *scene;
     struct orl_gpu *gpu;
     struct orl_renderer *renderer; // NULL with --merge
-    struct orl_hdr *hdr;           // of the method at hand, with --merge
+    struct orl_hdr *hdr;           // of the current method, with --merge
     struct orl_truth truth;
     struct orl_choices choices;
     struct orl_eval *evals; // one per choice
@@ -227,7 +227,7 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         .max_vram_bytes = (size_t)o->max_vram_mib << 20,
         .textures = (enum orl_textures)o->textures.value};
     enum orl_result result = check_together(job->log, o);
-    if (result == ORL_OK) // wrong settings are found before the work
+    if (result == ORL_OK) // reports wrong settings before the long work
         result = choose(job, NULL);
     if (result == ORL_OK)
         result = orl_scene_open(job->log, scene_dir, &job->scene);

@@ -113,7 +113,7 @@ static enum orl_result check(const struct options *o, const struct orl_log *log)
     return ORL_OK;
 }
 
-// Everything there is, unless the user says what; a picture to look at has colour alone.
+// By default all layers; a picture format for viewing has colour only.
 static void default_layers(const struct options *o, struct orl_frame_layers *layers)
 {
     if (!o->output.layers.count && !has_extension(o->out, ".png"))
@@ -129,7 +129,7 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
     struct orl_view_choice views = o->views;
     views.width = o->size.width;
     views.height = o->size.height;
-    if (result == ORL_OK) // wrong settings are found before the work
+    if (result == ORL_OK) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
     if (result == ORL_OK)
         result = output_choose(log, &o->output, true, &job->output);

@@ -1,4 +1,4 @@
-// oriel import: known cameras and their pictures become a scene.
+// oriel import: makes a scene from known cameras and their pictures.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@ struct options {
     struct orl_import_params params;
 };
 
-// "A:B" or "A:B:STEP" of moments, either end may be missing.
+// Parses a range of frames "A:B" or "A:B:STEP"; either end may be missing.
 static enum orl_result parse_frames(const struct orl_log *log, const char *text,
                                     struct orl_frame_range *range)
 {
@@ -75,7 +75,7 @@ static enum orl_result parse_points(const struct orl_log *log, const struct opti
                       : ORL_OK;
 }
 
-// A file, or hull[=SIDE[,TRIANGLES]].
+// Parses the name of a file, or hull[=SIDE[,TRIANGLES]].
 static enum orl_result parse_mesh(const struct orl_log *log, const char *text,
                                   struct orl_import_params *params)
 {

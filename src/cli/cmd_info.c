@@ -80,7 +80,7 @@ struct options {
     bool json, check;
 };
 
-// Compares every file with the checksum that it had when it was made.
+// Compares every file with the checksum from when it was made.
 static enum orl_result check(const struct orl_log *log, const char *dir)
 {
     size_t bad, files;

@@ -1,4 +1,4 @@
-// oriel methods: what there is to render with, and what may be set.
+// oriel methods: lists the rendering methods and their options.
 #include <stdio.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ static void print_list(void)
     printf("\noriel methods NAME lists the options of one.\n");
 }
 
-// What an option is worth, and what it may be.
+// Prints an option's value and range.
 static void print_option(const struct orl_render_option *option,
                          const struct orl_render_params *params)
 {

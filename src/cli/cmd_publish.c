@@ -1,4 +1,4 @@
-// oriel publish: a scene as static files that a browser renders.
+// oriel publish: writes a scene as static files, which a browser renders.
 #include <stdio.h>
 
 #include "cli/commands.h"

@@ -1,4 +1,4 @@
-// oriel render: one view, or every view of a camera path.
+// oriel render: renders one view, or every view of a camera path.
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,7 +78,7 @@ static enum orl_result run(const struct options *options, const struct arg_commo
         .max_vram_bytes = (size_t)options->max_vram_mib << 20,
         .textures = (enum orl_textures)options->textures.value};
     enum orl_result result = check(log, options);
-    if (result == ORL_OK) // wrong settings are found before the work
+    if (result == ORL_OK) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, options->method, &options->settings,
                                  &job->choice);
     if (result == ORL_OK)

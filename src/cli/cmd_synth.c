@@ -1,4 +1,4 @@
-// oriel synth: synthetic sets with ground truth, a monument or a moving figure.
+// oriel synth: makes synthetic photographs with ground truth, of a monument or a moving figure.
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ static enum orl_result parse_exposures(const struct orl_log *log, const struct o
     return ORL_OK;
 }
 
-// `path` without slashes at its end, and `suffix`.
+// `path` without trailing slashes, followed by `suffix`.
 static char *sibling(const struct orl_log *log, const char *path, const char *suffix)
 {
     size_t length = strlen(path);
@@ -60,7 +60,7 @@ static enum orl_result run(struct terminal *terminal, const struct arg_common *c
     return result;
 }
 
-// Each set has options of its own, which the other refuses.
+// Refuses options that belong to the other set.
 static enum orl_result check_options(const struct orl_log *log,
                                      const struct orl_synth_params *monument,
                                      const struct orl_figures_params *figures, bool is_figures)

@@ -1,4 +1,4 @@
-// oriel tune: a method's numbers fitted to a scene's training photographs.
+// oriel tune: fits a method's options to a scene's training photographs.
 #include <stdio.h>
 
 #include "cli/commands.h"
@@ -58,7 +58,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
                                              &o->settings, &start);
     if (result == ORL_OK)
         result = orl_scene_open(log, dir, &scene);
-    if (result == ORL_OK && !o->fresh) // from the scene's tuned values on
+    if (result == ORL_OK && !o->fresh) // starts from the scene's tuned values
         result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings,
                                  &start);
     if (result == ORL_OK)

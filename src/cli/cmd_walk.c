@@ -1,4 +1,4 @@
-// oriel walk: a scene in the browser, drawn by this machine.
+// oriel walk: shows a scene in the browser, rendered by this machine.
 #include <stdio.h>
 
 #include "cli/commands.h"

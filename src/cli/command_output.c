@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// By enum orl_exr_compression.
+// Indexed by enum orl_exr_compression.
 static const char *const compression_names[] = {"zip", "piz", NULL};
 _Static_assert(ORL_EXR_ZIP == 0 && ORL_EXR_PIZ == 1, "names in this order");
 

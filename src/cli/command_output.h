@@ -1,4 +1,4 @@
-// What several commands write: frames as files, reports.
+// Output that several commands share: frames as files, and reports.
 #ifndef ORL_CLI_COMMAND_OUTPUT_H
 #define ORL_CLI_COMMAND_OUTPUT_H
 
@@ -13,9 +13,9 @@ struct output_options {
     bool float_color;
     struct orl_names layers;
 };
-// Sets the defaults, which point into *options.
+// Sets the defaults. Pointers among them point into *options.
 void output_options_init(struct output_options *options);
-// Rows of a command's table for `o`, a struct output_options; layers: what there is.
+// Rows of a command's table for `o`, a struct output_options. layers_help: the allowed layers.
 #define OUTPUT_OPTION_ROWS(o, layers_help)                                                       \
     {"layers", ARG_LIST, &(o)->layers, "A,B", layers_help, 0, 0},                                \
     {"exposure", ARG_NUMBER, &(o)->exposure_ev, "EV", "of .png and .mp4, in stops; default 0",   \
@@ -26,14 +26,14 @@ void output_options_init(struct output_options *options);
     {"float", ARG_FLAG, &(o)->float_color, NULL, "of .exr: 32-bit colour; default: 16-bit",      \
      0, 0},                                                                                      \
     {"compression", ARG_ENUM, &(o)->compression, "NAME", "of .exr", 0, 0}
-// confidence: may it be asked for?
+// confidence: whether the layer of this name is allowed.
 enum orl_result output_choose(const struct orl_log *log, const struct output_options *options,
                               bool confidence, struct orl_frame_output *output) ORL_CHECK_RESULT;
 
-// Writes a report (released; NULL: there was no memory for it) to a file, or "-": stdout.
+// Writes a report to a file or, for "-", to stdout, and releases it. NULL: out of memory.
 enum orl_result report_write(const struct orl_log *log, const char *path,
                              char *text) ORL_CHECK_RESULT;
-// Does the report take stdout, so that no table may?
+// True when the report goes to stdout, so that tables must not be printed there.
 bool report_on_stdout(const char *path);
 
 #endif

@@ -1,5 +1,5 @@
-// The commands: each parses its own arguments and returns the exit status,
-// 0 only if the whole job was done, 2 for wrong usage or unusable input.
+// The commands. Each parses its own arguments and returns the exit status: 0 only if the whole job
+// was done, 2 for wrong usage or unusable input.
 #ifndef ORL_CLI_COMMANDS_H
 #define ORL_CLI_COMMANDS_H
 
@@ -26,20 +26,20 @@ int cmd_synth(int argc, char **argv);
 int cmd_tune(int argc, char **argv);
 int cmd_walk(int argc, char **argv);
 
-// Starts a command: parses, sets `terminal` up by --quiet and --verbose. Returns false
-// when there is nothing left to do, with the exit status in *status.
+// Starts a command: parses the arguments and sets `terminal` up by --quiet and --verbose. Returns
+// false, with the exit status in *status, when nothing is left to do.
 bool command_begin(const struct arg_command *command, int argc, char **argv,
                    struct arg_common *common, struct terminal *terminal,
                    const char **positionals, size_t *positional_count, int *status);
-// What a command does with its one positional (NULL: not given) and its options.
+// The work of a command with its one positional (NULL: absent) and its options.
 typedef enum orl_result command_run(const struct terminal *terminal, const void *options,
                                     const struct arg_common *common, const char *positional);
-// A whole command that takes one positional: parses, runs, returns the exit status,
-// which says so if what was printed got lost.
+// Runs a whole command that takes one positional: parses, runs, and returns the exit status, which
+// is an error when stdout could not be written.
 int command_main(const struct arg_command *command, int argc, char **argv, command_run *run,
                  const void *options);
-// 0 for ORL_OK; 2 for argument, format, data and not-found errors; 130 when
-// cancelled; else 1.
+// 0 for ORL_OK; 2 for argument, format, data and not-found errors; 130 when cancelled; 1 for other
+// errors.
 int command_status(enum orl_result result);
 
 #endif

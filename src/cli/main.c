@@ -95,7 +95,7 @@ static int run_command(int argc, char **argv)
 int main(int argc, char **argv)
 {
     int status = run_command(argc, argv);
-    // ferror tells of a part that was lost earlier, which fflush has forgotten.
+    // ferror remembers an earlier failed write, which fflush does not.
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {
         fprintf(stderr, "oriel: error: standard output: cannot write all of it\n");
         status = command_status(ORL_ERR_IO);

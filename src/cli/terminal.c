@@ -8,13 +8,13 @@
 #include "core/process.h"
 #include "core/text.h"
 
-// The one global: a signal handler can reach nothing else.
+// The one global variable: a signal handler has no other access to state.
 static volatile sig_atomic_t interrupted;
 
 static void on_signal(int number)
 {
     interrupted = 1;
-    signal(number, SIG_DFL); // the second one ends the program at once
+    signal(number, SIG_DFL); // a second signal ends the program at once
 }
 
 static bool cancelled(void *priv)
@@ -66,7 +66,7 @@ static void report(void *priv, const char *step, double done, double total, cons
     bool started = strcmp(step, t->step) != 0;
     bool ended = total > 0 && done >= total;
     if (started && ended && strcmp(step, t->ended) == 0)
-        return; // said already
+        return; // reported already
     snprintf(t->ended, sizeof t->ended, "%s", ended ? step : "");
     if (started) {
         end_line(t);

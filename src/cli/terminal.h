@@ -7,18 +7,18 @@
 
 struct terminal {
     bool quiet, tty;
-    bool line_open;        // an unfinished \r line
-    char step[64];         // under way
-    char ended[64];        // whose end was reported last
+    bool line_open;        // true while a \r line is unfinished
+    char step[64];         // the current step
+    char ended[64];        // the step whose end was reported last
     double step_start_s, last_print_s;
-    struct orl_log log;    // ends an open line before it prints
+    struct orl_log log;    // finishes an open line before it prints
     struct orl_progress progress;
 };
-// Sets up log and progress, which point to `terminal`, and SIGINT and SIGTERM so that
-// the first one cancels. On a terminal progress is one line with the time left; elsewhere
-// one line when a step starts and one when it ends.
+// Sets up log and progress, which point to `terminal`, and a handler by which the first SIGINT or
+// SIGTERM cancels. On a terminal, progress is one line with the remaining time; elsewhere it is a
+// line when a step starts and one when the step ends.
 void terminal_init(struct terminal *terminal, enum orl_log_level level, bool quiet);
-// Ends an open progress line.
+// Finishes an open progress line.
 void terminal_finish(struct terminal *terminal);
 
 #endif
