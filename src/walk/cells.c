@@ -1,6 +1,6 @@
-// The point cloud as a site holds it: cells of neighbouring points, positions quantised within
-// each cell, and every cell in an order of which any first part is spread evenly over it. The first
-// parts of all cells come first, in one file: the coarse cloud.
+// The point cloud of a site: cells of neighbouring points, with positions quantised within each
+// cell. Each cell is ordered so that any first part of it covers the cell evenly. The first parts
+// of all cells form one file, which is loaded first: the coarse cloud.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,27 +10,28 @@
 #include "walk/internal.h"
 
 enum {
-    CELL_POINTS = 4096, // a power of two: of its bits the order within a cell is made
+    CELL_POINTS = 4096, // a power of two, for the bit-reversed order within a cell
     CELLS_PER_FILE = 16,
-    POINT_BYTES = 12,   // web/js/points.js reads them
+    POINT_BYTES = 12,   // read by web/js/points.js
     CELL_WORDS = 16,
-    COARSE_BYTES = 420 << 10, // of the points that are loaded first
-    NEIGHBOURS = 7,     // points in a disc of a point's radius, itself included
+    COARSE_BYTES = 420 << 10, // of points in the coarse cloud, about
+    NEIGHBOURS = 7,     // points within a point's radius, including itself
 };
 static const uint32_t magic = 0x504c524f; // "ORLP"
 
-// What the file says of a cell, in 4-byte words.
+// The record of a cell in the coarse file, in 4-byte words.
 struct cell_words {
     float low[3], size[3];           // bounds of its points
     float radius_low, radius_octaves; // radius = low * 2^(octaves * byte / 255)
     float density;                   // points per unit of area
     float normal[3];                 // mean
-    uint32_t count, coarse;          // points; of them in the coarse file
-    uint32_t file, first;            // of the others: number of the file, and first point in it
+    uint32_t count, coarse;          // number of points; number of these in the coarse file
+    uint32_t file, first;            // of the other points: number of the file, index of the first
+                                     // point in it
 };
 _Static_assert(sizeof(struct cell_words) == 4 * CELL_WORDS, "cell_words is words");
 
-// The points in the order they are written in.
+// The points in the order in which they are written.
 struct order {
     const struct orl_points *points;
     uint32_t *index;
@@ -63,7 +64,7 @@ static int widest_axis(const struct order *order, size_t first, size_t count)
     return axis;
 }
 
-// Wirth's quickselect: no coordinate before `middle` is larger than any after it.
+// Wirth's quickselect: afterwards no coordinate before `middle` exceeds any coordinate after it.
 static void split(struct order *order, size_t first, size_t count, size_t middle, int axis)
 {
     ptrdiff_t low = (ptrdiff_t)first, high = (ptrdiff_t)(first + count) - 1;
@@ -87,7 +88,7 @@ static void split(struct order *order, size_t first, size_t count, size_t middle
     }
 }
 
-// A k-d tree's order: halves of halves are neighbours, down to single points.
+// The order of a k-d tree: halves of halves are neighbours, down to single points.
 static void sort_points(struct order *order, size_t first, size_t count)
 {
     if (count < 2)
@@ -99,7 +100,7 @@ static void sort_points(struct order *order, size_t first, size_t count)
     sort_points(order, first + half, count - half);
 }
 
-// Bit-reversed, so that any first part of a cell is spread evenly.
+// Orders a cell by bit-reversed index, so that any first part covers the cell evenly.
 static void shuffle_cell(uint32_t *index, size_t count)
 {
     uint32_t sorted[CELL_POINTS];
@@ -146,7 +147,7 @@ static enum orl_result make_order(const struct orl_log *log, const struct orl_po
 struct cell {
     const struct orl_points *points;
     const uint32_t *index;
-    float enlarged; // radii: fewer points than there are cover the same surface
+    float enlarged; // factor on radii, so that fewer points cover the same surface
     struct cell_words words;
 };
 
@@ -189,7 +190,7 @@ static uint8_t signed_byte(float value)
     return (uint8_t)(int8_t)lrintf(fminf(1, fmaxf(-1, value)) * 127);
 }
 
-// As shaders/proxy/octahedron.glsl.
+// Octahedral encoding, as in shaders/proxy/octahedron.glsl.
 static void encode_normal(const float n[3], uint8_t out[2])
 {
     float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]) + 1e-20f, x = n[0] / sum, y = n[1] / sum;
@@ -199,7 +200,7 @@ static void encode_normal(const float n[3], uint8_t out[2])
     out[1] = signed_byte(n[2] >= 0 ? y : wrapped_y);
 }
 
-// Position 3 x 16 bits, normal 2 x 8, sRGB colour 3 x 8, radius 8, and 16 spare to align.
+// Position 3 x 16 bits, normal 2 x 8, sRGB colour 3 x 8, radius 8, and 16 bits of padding.
 static void encode_point(const struct cell *cell, size_t i, uint8_t out[POINT_BYTES])
 {
     const struct cell_words *w = &cell->words;
@@ -239,12 +240,14 @@ struct writing {
     struct site *site;
     struct order order;
     struct cell_words *words; // of all cells
-    double share, coarse;     // of a cell's points: kept; kept and coarse
+    double share, coarse;     // fraction of a cell's points that are kept; fraction that is in the
+                              // coarse file
     uint8_t *coarse_data;     // owned
     size_t coarse_size;
 };
 
-// Describes and encodes cells [first, first + count); what is not coarse goes to the end of `rest`.
+// Describes and encodes cells [first, first + count). Points outside the coarse file are appended
+// to `rest`.
 static void encode_cells(struct writing *w, size_t first, size_t count, uint8_t *rest,
                          size_t *rest_points)
 {
@@ -293,7 +296,7 @@ static enum orl_result write_files(struct writing *w, json_t *files)
     return result;
 }
 
-// Header, cells, coarse points.
+// Writes the header, the cells' records and the coarse points.
 static enum orl_result write_coarse(struct writing *w)
 {
     const uint32_t header[4] = {magic, 1, (uint32_t)w->order.cells, POINT_BYTES};

@@ -12,7 +12,7 @@
 
 enum { PICTURE_SIDE = 1600, PICTURE_QUALITY = 88, THUMB_SIDE = 160, THUMB_QUALITY = 70 };
 
-// --- what there is ---
+// --- manifest, page and scene ---
 
 static json_t *photo_json(const struct orl_photo *photo, size_t number)
 {
@@ -98,7 +98,7 @@ static enum orl_result make_picture(const struct content *content, size_t number
     return result;
 }
 
-// "FOLDER/NNNNN.jpg" of a photograph; false: it is none.
+// Reads the number in a photograph's path "FOLDER/NNNNN.jpg". Returns false for other paths.
 static bool photo_number(const struct content *content, const char *path, const char *folder,
                          size_t *number)
 {

@@ -1,4 +1,4 @@
-// What a client of the server asks for, and the picture that answers it.
+// A client's request for a frame, and the picture that answers it.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ enum { SIDE_LEAST = 16, SIDE_MOST = 4096, PIXELS_MOST = 4000000 };
 static const char *const layer_names[WALK_LAYERS] = {"color", "depth", "normal", "coverage",
                                                      "points"};
 
-// Is it a rotation? Rounding aside.
+// Is the matrix orthonormal, up to rounding?
 static bool is_rotation(double r[3][3])
 {
     for (int i = 0; i < 3; i++)
@@ -75,7 +75,7 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// As shaders of the page show the same layers (web/shaders/show.frag).
+// Shows a layer in the colours that the page's shaders use (web/shaders/show.frag).
 static void show_pixel(const struct orl_frame *frame, enum walk_layer layer, float typical, size_t i,
                        uint8_t rgb[3])
 {

@@ -1,5 +1,6 @@
-// The page of a site: the files of web/, and the shader functions that page and renderer share.
-// web/index.html names in double braces what differs between a folder and a single file.
+// The page of a site: the files of web/, and the shader functions that the page shares with the
+// renderer. In web/index.html, names in double braces mark what differs between a folder and a
+// single file.
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ static const size_t FILE_MOST = (size_t)1 << 30;
 
 struct text {
     const struct orl_log *log;
-    char *data; // owned, ends in a zero byte
+    char *data; // owned; ends with a zero byte
     size_t size, capacity;
     enum orl_result result; // the first failure; nothing is added after it
 };
@@ -69,7 +70,7 @@ static void add_html(struct text *text, const char *string)
     }
 }
 
-// --- the page from its template ---
+// --- the page from web/index.html ---
 
 struct value {
     const char *key;
@@ -84,7 +85,7 @@ static const char *web_file(const char *name)
     return NULL;
 }
 
-// `page`: the template with {{key}} replaced.
+// Fills `page` with the template, each {{key}} replaced by its value.
 static void fill_template(const struct value *values, size_t count, struct text *page)
 {
     const char *rest = web_file(index_name);
@@ -154,7 +155,7 @@ static enum orl_result write_index(struct site *site)
     return result;
 }
 
-// A shader file, if it is one of those that the page includes too.
+// Writes a shader file if the page includes it too.
 static enum orl_result write_shared(struct site *site, const struct orl_shader_file *file)
 {
     bool shared = false;
@@ -184,9 +185,9 @@ enum orl_result orl_site_page(struct site *site)
     return result;
 }
 
-// --- one file ---
+// --- the site as one file ---
 
-// Every module under the name that others import it by, as a data: address.
+// Adds every module as a data: address, under the name by which others import it.
 static void add_modules(struct text *text)
 {
     bool first = true;
@@ -204,7 +205,7 @@ static void add_modules(struct text *text)
     add(text, "\n}}</script>");
 }
 
-// Is it data, which the page asks for by name?
+// True for data files, which the page requests by name.
 static bool is_data(const char *path)
 {
     return strcmp(path, index_name) != 0 && strcmp(path, "style.css") != 0 &&
@@ -230,7 +231,7 @@ static void add_file(const struct site *site, const char *path, struct text *tex
     free(data);
 }
 
-// All data below `folder` of the site ("": the site itself).
+// Adds all data files below `folder` of the site ("": the site itself).
 static void add_folder(const struct site *site, const char *folder, struct text *text)
 {
     struct orl_names names = {0};
@@ -266,7 +267,7 @@ enum orl_result orl_site_pack(struct site *site, const char *file)
     add(&values[FILES].text, "<script type=\"application/json\" id=\"files\">{");
     add_bytes(&values[FILES].text, files.data ? files.data : "", files.size);
     add(&values[FILES].text, "}</script>");
-    // The page shows the poster from its own file table: none is asked for by address.
+    // The page finds the poster in its own table of files, so it needs no address for it.
     fill_template(values, VALUES, &page);
     enum orl_result result = files.result != ORL_OK ? files.result : page.result;
     if (result == ORL_OK)

@@ -1,4 +1,4 @@
-// A site, part by part; it appears under its name only when it is whole.
+// Writes a site part by part. The site takes its name only when it is complete.
 #include "walk/publish.h"
 
 #include <stdio.h>
@@ -37,9 +37,9 @@ json_t *orl_site_file(struct site *site, const char *path)
     return json_pack("{s:s, s:I}", "file", path, "bytes", (json_int_t)status.st_size);
 }
 
-// --- where to ---
+// --- the output ---
 
-// Nothing there, or a site that Oriel wrote.
+// Accepts a path that does not exist, or a site that Oriel wrote.
 static enum orl_result check_out(const struct orl_log *log, const char *out, bool single_file)
 {
     if (single_file)
@@ -85,7 +85,7 @@ static enum orl_result replace(const struct site *site, const char *out)
     return result;
 }
 
-// --- what ---
+// --- the parts of the site ---
 
 static size_t folder_bytes(const struct site *site, const char *folder)
 {
@@ -140,7 +140,7 @@ static enum orl_result make_renderer(struct site *site)
                : result;
 }
 
-// Beside `out`, with or without a slash after it.
+// Name of the unfinished site beside `out`, which may end with a slash.
 static char *part_name(const struct orl_log *log, const char *out)
 {
     size_t length = strlen(out);

@@ -1,5 +1,5 @@
 // The server: one thread, which serves the network by libwebsockets' event loop and, between two
-// rounds of it, draws one frame for the client that has waited longest.
+// rounds of the loop, draws one frame for the client that has waited longest.
 #include "walk/server.h"
 
 #include <errno.h>
@@ -18,27 +18,27 @@
 #include "walk/internal.h"
 
 enum {
-    MESSAGE_MOST = 4096, // bytes of a request for a frame
+    MESSAGE_MOST = 4096, // greatest size of a request for a frame, bytes
     CLIENTS_MOST = 64,
-    CHUNK = 16384,       // of a file that is written at once
+    CHUNK = 16384,       // bytes of a file that are written at once
     TOKEN_BYTES = 16,
-    IDLE_S = 30,         // seconds that a connection may take for what it began
+    IDLE_S = 30,         // seconds until an unfinished request ends the connection
 };
 
-// A connection: of a request for a file, or of a client that walks.
+// A connection: a request for a file, or a client that walks.
 struct session {
     struct lws *wsi;
     struct session *next;
     bool walks;
-    // Walks: the newest request, and one frame on its way.
+    // A client that walks: its newest request, and the frame that is being sent.
     struct walk_request request;
     bool wants, sending;
     unsigned waits_since;
-    uint8_t *frame; // owned, LWS_PRE bytes of room before it; NULL: none to write
+    uint8_t *frame; // owned, with LWS_PRE bytes of room before it; NULL: no frame to send
     size_t frame_size;
-    char message[MESSAGE_MOST]; // as far as it has come
+    char message[MESSAGE_MOST]; // the part that has arrived
     size_t message_size;
-    // A file.
+    // A request for a file.
     struct content_file file;
     size_t written;
 };
@@ -49,13 +49,13 @@ struct server {
     struct walk_renderer walk;
     struct content content;
     struct lws_context *context;
-    struct session *sessions; // that walk
+    struct session *sessions; // the sessions of clients that walk
     size_t session_count;
     unsigned clock;
-    char token[2 * TOKEN_BYTES + 1]; // "": none is asked for
+    char token[2 * TOKEN_BYTES + 1]; // "": no token is needed
 };
 
-// --- who may ask ---
+// --- access ---
 
 static bool is_local(const char *name)
 {
@@ -63,8 +63,9 @@ static bool is_local(const char *name)
            strcmp(name, "[::1]") == 0 || strcmp(name, "::1") == 0;
 }
 
-// Without a token a request must name this machine as its host: a page of another site whose name
-// was made to point here does not. A page of another origin may ask for nothing.
+// Without a token, a request must name this machine as its host. This stops another site's page
+// whose host name resolves to this machine (DNS rebinding). Pages of another origin are always
+// refused.
 static bool asks_from_here(const struct server *server, struct lws *wsi)
 {
     char host[256] = "", origin[256] = "", own[300];
@@ -90,7 +91,7 @@ static bool has_token(const struct server *server, struct lws *wsi)
     const char *given = lws_get_urlarg_by_name(wsi, "token=", argument, sizeof argument);
     if (!given || strlen(given) != strlen(server->token))
         return false;
-    unsigned char differs = 0; // as long for any wrong one
+    unsigned char differs = 0; // constant time: the duration tells nothing about the token
     for (size_t i = 0; server->token[i]; i++)
         differs |= (unsigned char)(given[i] ^ server->token[i]);
     return differs == 0;
@@ -178,7 +179,7 @@ static int close_for(struct lws *wsi, enum lws_close_status status)
     return -1;
 }
 
-// A newer request replaces one that no frame was drawn for yet.
+// A newer request replaces an older one for which no frame has been drawn.
 static int take_message(struct server *server, struct lws *wsi, struct session *session,
                         const char *data, size_t size)
 {
@@ -202,7 +203,7 @@ static int take_message(struct server *server, struct lws *wsi, struct session *
     return 0;
 }
 
-// The next frame is drawn once this one has left for the network.
+// Sends the frame. The next one is drawn only after this one has been handed to the network.
 static int write_frame(struct lws *wsi, struct session *session)
 {
     if (!session->frame) {
@@ -292,7 +293,7 @@ static enum orl_result make_token(struct server *server)
     return ORL_OK;
 }
 
-// libwebsockets waits for an address that this machine has not got, in case it comes.
+// Fails early: libwebsockets would wait for an address that this machine does not have.
 static enum orl_result check_address(const struct orl_log *log, const char *host)
 {
     const struct addrinfo hints = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE};
@@ -340,7 +341,7 @@ static enum orl_result serve(struct server *server)
         struct session *session = longest_waiting(server);
         if (session) {
             result = answer(server, session);
-            lws_cancel_service(server->context); // look for events, but do not wait
+            lws_cancel_service(server->context); // process network events without waiting
         }
         if (result == ORL_OK && lws_service(server->context, 0) < 0 && errno != EINTR)
             result = orl_fail(server->log, ORL_ERR_IO, "the network cannot be served");

@@ -1,4 +1,4 @@
-// manifest.json of a site: all that the page must know before it loads anything else.
+// manifest.json of a site: all that the page must know before it loads other files.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "scene/manifest.h"
 #include "walk/internal.h"
 
-// Numbers of the method, by their keys.
+// The method's numeric options by their keys.
 static json_t *options_json(const struct orl_render_params *params)
 {
     json_t *options = json_object();
@@ -24,7 +24,7 @@ static json_t *options_json(const struct orl_render_params *params)
     return options;
 }
 
-// The ground's normal, or what the photographers held upwards.
+// The ground's normal, or the photographs' mean upward direction.
 static json_t *up_json(const struct orl_scene *scene)
 {
     double up[3] = {0};
@@ -72,7 +72,7 @@ char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene)
     return last;
 }
 
-// Number of a photograph among those that are not held out.
+// A photograph's index among those that are not held out.
 static json_int_t number_of(const struct orl_scene *scene, size_t photo)
 {
     json_int_t number = 0;
@@ -81,7 +81,7 @@ static json_int_t number_of(const struct orl_scene *scene, size_t photo)
     return number;
 }
 
-// Rows of cam_from_world: rotation and translation.
+// The rows of cam_from_world: rotation and translation.
 static json_t *pose_json(const struct orl_pose *pose)
 {
     json_t *rows = json_array();

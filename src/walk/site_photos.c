@@ -1,4 +1,4 @@
-// Photographs of a site: JPEG, thumbnails, and the depth that each of them sees.
+// A site's photographs: JPEGs, thumbnails, and a depth map of each.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,11 +15,11 @@ enum {
     POSTER_WIDTH = 960,
     POSTER_HEIGHT = 600,
     POSTER_QUALITY = 78,
-    DEPTH_SIDE_MAX = 1024, // as of the renderer: depth is smooth between edges
-    // Depth is kept as round(STEPS_PER_FOLD * ln(z / nearest)) + 1, 0 where there is none: steps of a
-    // twentieth of the tolerance of the occlusion test.
+    DEPTH_SIDE_MAX = 1024, // as in the renderer: depth is smooth between edges
+    // Depth is stored as round(STEPS_PER_FOLD * ln(z / nearest)) + 1, or 0 where there is none. A
+    // step is a twentieth of the tolerance of the occlusion test.
     STEPS_PER_FOLD = 2048,
-    DEPTH_MOST = 32767, // the upper bit is free for the page
+    DEPTH_MOST = 32767, // the highest bit is left to the page
 };
 
 static struct orl_camera within(const struct orl_camera *camera, int side)
@@ -81,7 +81,7 @@ static float nearest_depth(const struct orl_image *depth)
     return isfinite(nearest) ? nearest : 1;
 }
 
-// High byte red, low byte green.
+// The high byte goes to red, the low byte to green.
 static enum orl_result pack_depth(const struct orl_log *log, const struct orl_image *depth,
                                   float nearest, struct orl_image *packed)
 {
@@ -98,8 +98,8 @@ static enum orl_result pack_depth(const struct orl_log *log, const struct orl_im
     return result;
 }
 
-// The surface that this camera sees of the points, without any photograph's help: what the
-// occlusion test compares with.
+// Draws the depth of the point cloud in this camera without any photograph. The occlusion test
+// compares with this depth.
 static enum orl_result draw_depth(struct site *site, const struct orl_view *view,
                                   struct orl_image *depth)
 {

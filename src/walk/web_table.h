@@ -1,4 +1,4 @@
-// The files of web/, the interactive page, embedded at build time and ended by a NULL name.
+// The files of web/, the interactive page, embedded at build time. A NULL name ends the table.
 #ifndef ORL_WALK_WEB_TABLE_H
 #define ORL_WALK_WEB_TABLE_H
 
