@@ -8,7 +8,7 @@ const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "lev
     "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
     "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "gather/photo.glsl", "choose.frag",
     "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag",
-    "compose.frag", "show.frag", "gather/guess_blur.glsl", "gather/hidden.glsl",
+    "compose.frag", "show.frag", "gather/bicubic.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl",
     "gather/penalty.glsl", "gather/sample/srgb.glsl", "proxy/octahedron.glsl", "proxy/surfel.glsl",
     "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
