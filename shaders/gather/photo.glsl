@@ -37,34 +37,7 @@ struct Point {
 layout(binding = 0) uniform sampler2DArray photo_color;
 layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: estimated in a hole, 0: none
 
-// Projects a point of the view's camera frame into a photograph: pixel coordinates, and z in the
-// photograph's frame. Returns false if the point is behind the photograph or outside it.
-bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
-{
-    vec4 ph = vec4(p, 1.0);
-    vec3 q = vec3(dot(shot.from_view[0], ph), dot(shot.from_view[1], ph),
-                  dot(shot.from_view[2], ph));
-    z = q.z;
-    pixel = vec2(-1.0);
-    if (!(q.z > 0.0))
-        return false;
-    pixel = shot.focal.xy * q.xy * (1.0 / q.z) + shot.focal.zw;
-    vec2 border = min(pixel, shot.size.xy - pixel);
-    // Rounding must not drop the outermost pixels when the view is the photograph's own.
-    return min(border.x, border.y) > 0.499;
-}
-
-// Factor on the border width for estimated depth, where a sky of another day or a displaced object
-// would otherwise end in a visible line.
-const float GUESS_BORDERS = 4.0;
-
-// Weight that falls from 1 to 0 towards the photograph's border; 1 throughout if border_px is 0.
-float photo_border(photo shot, vec2 pixel, bool guessed)
-{
-    vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
-    float width = max(guessed ? GUESS_BORDERS * border_px : border_px, 0.5);
-    return border_px > 0.0 ? clamp(min(border.x, border.y) / width, 0.0, 1.0) : 1.0;
-}
+#include "gather/projection.glsl"
 
 // The photograph's own depth at the four texels around a pixel.
 vec4 photo_depths(photo shot, vec2 pixel)
@@ -74,13 +47,6 @@ vec4 photo_depths(photo shot, vec2 pixel)
     at = clamp(at, vec2(0.5), shot.size.zw - 0.5);
     float slot = shot.eye.w;
     return textureGather(photo_depth, vec3(at * (1.0 / slot_size.zw), slot));
-}
-
-// Mip level at which the photograph has the view's resolution.
-float photo_mip(photo shot, float z, float view_depth)
-{
-    float magnification = shot.focal.x * view_depth / (z * view_focal.x);
-    return clamp(log2(magnification), 0.0, last_mip);
 }
 
 vec4 photo_texel(vec2 at, float slot, float lod)

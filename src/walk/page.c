@@ -13,8 +13,8 @@
 static const char index_name[] = "index.html";
 static const char *const shared_shaders[] = {
     "gather/bicubic.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl",
-    "gather/sample/srgb.glsl", "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h",
-    "shared/pixel.glsl", "shared/srgb.glsl", NULL};
+    "gather/projection.glsl", "gather/sample/srgb.glsl", "proxy/octahedron.glsl",
+    "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl", NULL};
 static const size_t FILE_MOST = (size_t)1 << 30;
 
 // --- growing text ---

@@ -9,8 +9,8 @@ const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "lev
     "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "gather/photo.glsl", "choose.frag",
     "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag",
     "compose.frag", "show.frag", "gather/bicubic.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl",
-    "gather/penalty.glsl", "gather/sample/srgb.glsl", "proxy/octahedron.glsl", "proxy/surfel.glsl",
-    "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
+    "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
+    "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
 const LEVELS_MOST = 9;     // of the surfel pyramid
 const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it

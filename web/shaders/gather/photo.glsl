@@ -39,28 +39,7 @@ int photo_listed(uvec2 list, int c)
     return i == 255u ? -1 : int(i);
 }
 
-bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
-{
-    vec4 ph = vec4(p, 1.0);
-    vec3 q = vec3(dot(shot.from_view[0], ph), dot(shot.from_view[1], ph),
-                  dot(shot.from_view[2], ph));
-    z = q.z;
-    pixel = vec2(-1.0);
-    if (!(q.z > 0.0))
-        return false;
-    pixel = shot.focal.xy * q.xy / q.z + shot.focal.zw;
-    vec2 border = min(pixel, shot.size.xy - pixel);
-    return min(border.x, border.y) > 0.5;
-}
-
-const float GUESS_BORDERS = 4.0;
-
-float photo_border(photo shot, vec2 pixel, bool guessed)
-{
-    vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
-    float width = max(guessed ? GUESS_BORDERS * border_px : border_px, 0.5);
-    return clamp(min(border.x, border.y) / width, 0.0, 1.0);
-}
+#include "gather/projection.glsl"
 
 // The photograph's own depth at the four texels around a pixel.
 vec4 photo_depths(photo shot, vec2 pixel)
@@ -72,11 +51,6 @@ vec4 photo_depths(photo shot, vec2 pixel)
                               texelFetch(photo_depth, ivec3(high.x, low.y, slot), 0).x,
                               texelFetch(photo_depth, ivec3(low.x, high.y, slot), 0).x,
                               texelFetch(photo_depth, ivec3(high, slot), 0).x);
-}
-
-float photo_mip(photo shot, float z, float view_depth)
-{
-    return clamp(log2(shot.focal.x * view_depth / (z * view_focal.x)), 0.0, last_mip);
 }
 
 vec4 photo_texel(vec2 at, float slot, float lod)

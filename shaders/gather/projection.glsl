@@ -1,0 +1,38 @@
+// Where a photograph shows a surface point, the same for the renderer and the web page. The file that
+// includes this one defines struct photo, border_px, last_mip and view_focal.
+
+// Projects a point of the view's camera frame into a photograph: pixel coordinates, and z in the
+// photograph's frame. Returns false if the point is behind the photograph or outside it.
+bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
+{
+    vec4 ph = vec4(p, 1.0);
+    vec3 q = vec3(dot(shot.from_view[0], ph), dot(shot.from_view[1], ph),
+                  dot(shot.from_view[2], ph));
+    z = q.z;
+    pixel = vec2(-1.0);
+    if (!(q.z > 0.0))
+        return false;
+    pixel = shot.focal.xy * q.xy * (1.0 / q.z) + shot.focal.zw;
+    vec2 border = min(pixel, shot.size.xy - pixel);
+    // Rounding must not drop the outermost pixels when the view is the photograph's own.
+    return min(border.x, border.y) > 0.499;
+}
+
+// Factor on the border width for estimated depth, where a sky of another day or a displaced object
+// would otherwise end in a visible line.
+const float GUESS_BORDERS = 4.0;
+
+// Weight that falls from 1 to 0 towards the photograph's border; 1 throughout if border_px is 0.
+float photo_border(photo shot, vec2 pixel, bool guessed)
+{
+    vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
+    float width = max(guessed ? GUESS_BORDERS * border_px : border_px, 0.5);
+    return border_px > 0.0 ? clamp(min(border.x, border.y) / width, 0.0, 1.0) : 1.0;
+}
+
+// Mip level at which the photograph has the view's resolution.
+float photo_mip(photo shot, float z, float view_depth)
+{
+    float magnification = shot.focal.x * view_depth / (z * view_focal.x);
+    return clamp(log2(magnification), 0.0, last_mip);
+}
