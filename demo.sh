@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Oriel, makes a scene from photographs and leaves
-# one page about it: demo/index.html.
+# one page about it: demo/index.html, with a walk through the scene in it.
 #   ./demo.sh            photographs of a synthetic monument
 #   ./demo.sh PHOTOS     a folder of your own
 set -u
@@ -21,8 +21,8 @@ oriel=$build/oriel
 start=$SECONDS
 current='' current_start=0 step_json=''
 # Steps with the seconds they take on two cores without a GPU, for the time left.
-names=(dependencies build photographs scene comparison walk page)
-expected=(60 70 40 170 15 90 10)
+names=(dependencies build photographs scene comparison walk site page)
+expected=(60 70 40 170 15 90 15 10)
 spent=0 planned_spent=0
 
 fail() {
@@ -100,6 +100,11 @@ take_walk() {
             --out "$demo/view.png"
 }
 
+# The walk to take oneself, as one file, which a browser opens from disk.
+publish_walk() {
+    "$oriel" publish "$scene" --out "$demo/walk.html" --single-file --title "$title"
+}
+
 begin dependencies "looking for what Oriel needs"
 install_dependencies || fail "installing what is missing"
 begin build "building Oriel"
@@ -122,7 +127,14 @@ compare || fail "the comparison"
 method=$(choose_method)
 begin walk "rendering a walk"
 take_walk || fail "the walk"
+begin site "publishing the walk"
+publish_walk || fail "publishing the walk"
 begin page "writing the page"
 minutes=$(((SECONDS - start + 30) / 60))
 write_page || fail "writing the page"
-echo "== done in $((SECONDS - start)) s: open $demo/index.html"
+cat <<END
+== done in $((SECONDS - start)) s: open $demo/index.html
+== next: walk through it yourself, drawn by this machine: run
+       $oriel walk $scene
+   and open http://127.0.0.1:8765/
+END

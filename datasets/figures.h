@@ -6,6 +6,7 @@
 #include "oriel/image.h"
 #include "oriel/progress.h"
 #include "oriel/camera.h"
+#include "oriel/scene.h"
 #include "scene/mesh.h"
 
 enum {
@@ -27,6 +28,8 @@ enum orl_result orl_figures_check(const struct orl_log *log,
                                   const struct orl_figures_params *params) ORL_CHECK_RESULT;
 // params->cameras views.
 void orl_figures_views(const struct orl_figures_params *params, struct orl_view *views);
+
+extern const struct orl_room orl_figures_room;
 
 // --- one moment ---
 

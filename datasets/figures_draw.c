@@ -6,11 +6,11 @@
 #include "core/vec3.h"
 #include "datasets/figures_internal.h"
 
-// Half sides of the room, and its height, metres.
-static const double ROOM_HALF = 4.0, ROOM_HEIGHT = 3.0;
 static const double LIGHT[3] = {1.1, 2.8, 0.7}; // a small lamp below the ceiling
 static const double LAMP = 11.0, AMBIENT = 0.40; // W m^2 and share: white at 2 m is about 1
 static const double CLEAR = 1e-6;               // metres that a shadow ray starts off the surface
+
+const struct orl_room orl_figures_room = {{-4, 0, -4}, {4, 3, 4}, true};
 
 struct hit {
     double t; // along the ray; INFINITY: none
@@ -72,9 +72,8 @@ static void meet_figure(const struct orl_figure *figure, const double eye[3], co
 static void meet_room(const double eye[3], const double ray[3], struct hit *hit)
 {
     for (int k = 0; k < 3; k++) {
-        double far = k == 1 ? ROOM_HEIGHT : ROOM_HALF, near = k == 1 ? 0 : -ROOM_HALF;
-        double t = ray[k] > 0   ? (far - eye[k]) / ray[k]
-                   : ray[k] < 0 ? (near - eye[k]) / ray[k]
+        double t = ray[k] > 0   ? (orl_figures_room.high[k] - eye[k]) / ray[k]
+                   : ray[k] < 0 ? (orl_figures_room.low[k] - eye[k]) / ray[k]
                                 : INFINITY;
         if (t < hit->t) {
             hit->t = t;

@@ -10,6 +10,7 @@
 #include "datasets/synth_files.h"
 #include "io/exr.h"
 #include "io/picture.h"
+#include "scene/manifest.h"
 
 // Of the grid that meshes are found on, metres.
 static const double MESH_SPACING = 0.015;
@@ -78,7 +79,8 @@ static enum orl_result write_cameras(const struct job *job)
                             "K", rows_json(k, 3, 3), "R", rows_json(&pose->r[0][0], 3, 3), "t",
                             pose->t[0], pose->t[1], pose->t[2], "dist"));
     }
-    json_t *root = json_pack("{s:f, s:o}", "pixel_centre", 0.5, "cameras", list);
+    json_t *root = json_pack("{s:f, s:o, s:o}", "pixel_centre", 0.5, "room",
+                             orl_manifest_room(&orl_figures_room), "cameras", list);
     char *path = orl_path_join(job->log, job->dir, "cameras.json");
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
     enum orl_result result = path && text ? orl_file_write(job->log, path, text, strlen(text))

@@ -59,6 +59,12 @@ enum orl_result orl_synth_check(const struct orl_log *log, const struct orl_synt
         return orl_fail(log, ORL_ERR_ARGUMENT, "vignette %g: must be from 0 to 0.9", p->vignette);
     if (!(p->drift_ev >= 0 && p->drift_ev <= 2))
         return orl_fail(log, ORL_ERR_ARGUMENT, "drift %g: must be from 0 to 2", p->drift_ev);
+    if (!(p->gloss >= 0 && p->gloss <= 1))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "gloss %g: must be from 0 to 1", p->gloss);
+    if (!(p->bars_m >= 0 && p->bars_m <= 1.5))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "bars of %g m: must be from 0 to 1.5", p->bars_m);
+    if (!(p->plain >= 0 && p->plain <= 1))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "plain %g: must be from 0 to 1", p->plain);
     return ORL_OK;
 }
 

@@ -39,6 +39,9 @@ struct orl_synth_params {
     // Error of each photograph's exposure that EXIF does not record, up to this many EV, and of the
     // balance of each colour, up to a quarter of it; [0, 2].
     double drift_ev;
+    double gloss;  // share of the monument's light that is a mirror's, [0, 1]
+    double bars_m; // diameter of upright bars before the monument, metres, [0, 1.5]; 0: no bars
+    double plain;  // share of the walls, in cubes of 1.2 m, that have one colour, [0, 1]
 };
 #define ORL_SYNTH_DEFAULTS .name = "monument", .width = 768, .height = 512, .count = 24, .seed = 1
 
@@ -65,6 +68,7 @@ struct orl_synth_frame {
     struct orl_image radiance; // f32, 3 channels, linear, averaged over the pixel
     struct orl_image depth;    // f32, z in camera space at the pixel's centre; 0: sky
     struct orl_image normal;   // f32, 3 channels, camera frame, unit; 0 0 0: sky
+    struct orl_image textured; // f32: 0 where a plain wall is; empty without plain walls
 };
 enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_params *params,
                                  struct orl_synth **out) ORL_CHECK_RESULT;

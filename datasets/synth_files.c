@@ -214,10 +214,12 @@ static enum orl_result write_summary(const struct job *job)
     for (int v = 0; v < 256; v++)
         json_array_append_new(curve, json_real(orl_synth_decode(p->response, v / 255.0)));
     return write_json(job, "synth.json",
-                      json_pack("{s:s, s:[ii], s:i, s:I, s:f, s:f, s:f, s:f, s:s, s:o, s:s, s:o}",
+                      json_pack("{s:s, s:[ii], s:i, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:s, "
+                                "s:o, s:s, s:o}",
                                 "name", p->name, "size", p->width, p->height, "count", p->count,
                                 "seed", (json_int_t)p->seed, "contrast", p->contrast_ev, "noise",
-                                p->noise, "vignette", p->vignette, "drift", p->drift_ev, "response",
+                                p->noise, "vignette", p->vignette, "drift", p->drift_ev, "gloss",
+                                p->gloss, "bars", p->bars_m, "plain", p->plain, "response",
                                 orl_synth_response_names()[p->response], "linear", curve,
                                 "oriel", ORL_VERSION, "photographs", photos));
 }

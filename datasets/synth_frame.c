@@ -1,5 +1,6 @@
 // Draws one view of a synthetic monument.
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,7 +26,8 @@ struct orl_synth {
     struct orl_gpu *gpu;
     int width, height;
     uint32_t seed;
-    double contrast_ev;
+    double contrast_ev, gloss, bars_m, plain;
+    char variant[64]; // defines of the programs
     struct orl_tex *start, *radiance, *truth;
 };
 
@@ -49,7 +51,13 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
     if (!synth)
         return ORL_ERR_MEMORY;
     *synth = (struct orl_synth){.gpu = gpu, .width = params->width, .height = params->height,
-                                .seed = params->seed, .contrast_ev = params->contrast_ev};
+                                .seed = params->seed, .contrast_ev = params->contrast_ev,
+                                .gloss = params->gloss, .bars_m = params->bars_m,
+                                .plain = params->plain};
+    snprintf(synth->variant, sizeof synth->variant, "%s%s%s%s",
+             params->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : "",
+             params->gloss > 0 ? "GLOSS 1\n" : "", params->bars_m > 0 ? "BARS 1\n" : "",
+             params->plain > 0 ? "PLAIN 1\n" : "");
     int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
     result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
     if (result == ORL_OK)
@@ -84,7 +92,8 @@ static struct frame_params params_of(const struct orl_synth *synth, const struct
                    (float)view->camera.cy},
         .size = {synth->width, synth->height, 0, synth->height},
         .seed = {synth->seed * 0x9e3779b9u},
-        .light = {(float)synth->contrast_ev},
+        .light = {(float)synth->contrast_ev, (float)synth->gloss, (float)(0.5 * synth->bars_m),
+                  (float)synth->plain},
     };
     double eye[3];
     orl_pose_centre(&view->cam_from_world, eye);
@@ -95,6 +104,11 @@ static struct frame_params params_of(const struct orl_synth *synth, const struct
         params.eye[i] = (float)eye[i];
     }
     return params;
+}
+
+static const char *variant_of(const struct orl_synth *synth)
+{
+    return synth->variant[0] ? synth->variant : NULL;
 }
 
 static enum orl_result dispatch_bands(struct orl_synth *synth,
@@ -111,8 +125,7 @@ static enum orl_result dispatch_bands(struct orl_synth *synth,
         params->size[2] = row;
         params->size[3] = row + rows;
         orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
-            .prog = orl_prog_get(synth->gpu, "synth/frame.comp", NULL,
-                                 synth->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : NULL),
+            .prog = orl_prog_get(synth->gpu, "synth/frame.comp", NULL, variant_of(synth)),
             .params = params, .params_size = sizeof *params,
             .images = {{synth->start, 0, GL_READ_ONLY}, {synth->radiance, 0, GL_WRITE_ONLY},
                        {synth->truth, 0, GL_WRITE_ONLY}},
@@ -138,10 +151,15 @@ static enum orl_result read_frame(const struct orl_synth *synth, struct orl_synt
         result = orl_image_init(log, &frame->depth, w, h, 1, ORL_PIXEL_F32);
     if (result == ORL_OK)
         result = orl_image_init(log, &frame->normal, w, h, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK && synth->plain > 0)
+        result = orl_image_init(log, &frame->textured, w, h, 1, ORL_PIXEL_F32);
     if (result != ORL_OK)
         goto end;
     orl_tex_read(synth->radiance, 0, GL_RGB, GL_FLOAT, orl_image_bytes(&frame->radiance),
                  frame->radiance.f32);
+    if (synth->plain > 0)
+        orl_tex_read(synth->radiance, 0, GL_ALPHA, GL_FLOAT, orl_image_bytes(&frame->textured),
+                     frame->textured.f32);
     orl_tex_read(synth->truth, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
     for (size_t i = 0; i < pixels; i++) {
         memcpy(frame->normal.f32 + 3 * i, texels + 4 * i, 3 * sizeof *texels);
@@ -162,7 +180,7 @@ enum orl_result orl_synth_draw(struct orl_synth *synth, const struct orl_progres
                                              orl_camera_valid(&view->camera));
     struct frame_params params = params_of(synth, view);
     orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
-        .prog = orl_prog_get(synth->gpu, "synth/cone.comp", NULL, NULL),
+        .prog = orl_prog_get(synth->gpu, "synth/cone.comp", NULL, variant_of(synth)),
         .params = &params, .params_size = sizeof params,
         .images = {{synth->start, 0, GL_WRITE_ONLY}},
         .groups = {orl_groups((size_t)synth->width, TILE * TILE),
@@ -181,4 +199,5 @@ void orl_synth_frame_finish(struct orl_synth_frame *frame)
     orl_image_finish(&frame->radiance);
     orl_image_finish(&frame->depth);
     orl_image_finish(&frame->normal);
+    orl_image_finish(&frame->textured);
 }

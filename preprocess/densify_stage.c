@@ -100,17 +100,23 @@ end:
 
 // --- densify ---
 
-static struct orl_densify_params densify_settings(const struct orl_job *job)
+struct orl_densify_params orl_densify_quality(enum orl_quality quality)
 {
     struct orl_densify_params params = {ORL_DENSIFY_DEFAULTS};
-    if (job->params->quality == ORL_QUALITY_DRAFT) {
+    if (quality == ORL_QUALITY_DRAFT) {
         params.sources = 5;
         params.iterations = 3;
-    } else if (job->params->quality == ORL_QUALITY_HIGH) {
+    } else if (quality == ORL_QUALITY_HIGH) {
         params.sources = 10;
         params.iterations = 6;
         params.geometric_passes = 2;
     }
+    return params;
+}
+
+static struct orl_densify_params densify_settings(const struct orl_job *job)
+{
+    struct orl_densify_params params = orl_densify_quality(job->params->quality);
     params.seed = job->params->seed;
     params.max_vram_bytes = job->params->max_vram_bytes;
     return params;
@@ -190,27 +196,61 @@ static enum orl_result begin_stereo(const struct orl_job *job)
     return result;
 }
 
+// Whether COLMAP makes the stereo; an error where that was asked for and it cannot.
+static enum orl_result choose_densifier(struct orl_job *job, bool *use_colmap)
+{
+    enum orl_densifier densifier = job->params->densifier;
+    enum orl_result result = densifier == ORL_DENSIFIER_GL ? ORL_OK : orl_job_find_colmap(job);
+    *use_colmap = densifier == ORL_DENSIFIER_COLMAP ||
+                  (densifier == ORL_DENSIFIER_AUTO && job->colmap_cuda);
+    if (result == ORL_OK && *use_colmap && !job->colmap_cuda)
+        result = orl_fail(job->log, ORL_ERR_UNSUPPORTED,
+                          "--densifier colmap: COLMAP %s here was built without CUDA; use gl",
+                          job->colmap_version);
+    return result;
+}
+
+// Leaves SCENE/stereo with this job's key and COLMAP's lists, and maps only if they have that key.
+static enum orl_result open_stereo(struct orl_job *job, struct orl_names *train)
+{
+    enum orl_result result = orl_job_train_names(job, train);
+    if (result == ORL_OK)
+        result = begin_stereo(job);
+    if (result == ORL_OK)
+        result = write_stereo_lists(job, train);
+    return result;
+}
+
+enum orl_result orl_stage_densify_begin(struct orl_job *job)
+{
+    struct orl_names train = {0};
+    struct orl_densify_params params = densify_settings(job);
+    bool use_colmap = false;
+    char *masks = orl_job_path(job, "masks");
+    enum orl_result result = masks ? choose_densifier(job, &use_colmap) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !use_colmap)
+        result = orl_job_sparse(job, &params.model);
+    if (result == ORL_OK && !use_colmap)
+        result = open_stereo(job, &train);
+    params.masks_dir = job->params->masks_dir ? masks : NULL;
+    if (result == ORL_OK && !use_colmap)
+        result = orl_densify_begin(job->log, job->dir, &train, &params);
+    orl_names_finish(&train);
+    free(masks);
+    return result;
+}
+
 enum orl_result orl_stage_densify(struct orl_job *job, json_t *record)
 {
     struct orl_names train = {0};
-    enum orl_densifier densifier = job->params->densifier;
-    enum orl_result result = densifier == ORL_DENSIFIER_GL ? ORL_OK : orl_job_find_colmap(job);
-    if (result != ORL_OK)
-        return result;
-    bool use_colmap = densifier == ORL_DENSIFIER_COLMAP ||
-                      (densifier == ORL_DENSIFIER_AUTO && job->colmap_cuda);
-    if (use_colmap && !job->colmap_cuda)
-        return orl_fail(job->log, ORL_ERR_UNSUPPORTED,
-                        "--densifier colmap: COLMAP %s here was built without CUDA; use gl",
-                        job->colmap_version);
-    if ((result = orl_job_train_names(job, &train)) != ORL_OK ||
-        (result = begin_stereo(job)) != ORL_OK ||
-        (result = write_stereo_lists(job, &train)) != ORL_OK)
-        goto end;
-    result = use_colmap ? densify_colmap(job, record) : densify_gl(job, &train, record);
+    bool use_colmap = false;
+    enum orl_result result = choose_densifier(job, &use_colmap);
+    if (result == ORL_OK)
+        result = open_stereo(job, &train);
+    if (result == ORL_OK)
+        result = use_colmap ? densify_colmap(job, record) : densify_gl(job, &train, record);
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
-end:
     orl_names_finish(&train);
     return result;
 }

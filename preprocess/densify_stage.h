@@ -3,9 +3,16 @@
 #ifndef ORL_PREPROCESS_DENSIFY_STAGE_H
 #define ORL_PREPROCESS_DENSIFY_STAGE_H
 
+#include "preprocess/densify/densify.h"
 #include "preprocess/job/job.h"
 
+// The effort of the stereo at a quality.
+struct orl_densify_params orl_densify_quality(enum orl_quality quality);
 // Writes SCENE/stereo.
 enum orl_result orl_stage_densify(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+
+// Makes SCENE/stereo ready for the parts of the built-in stereo (orl_densify_begin); for COLMAP's,
+// which has no parts, it does nothing.
+enum orl_result orl_stage_densify_begin(struct orl_job *job) ORL_CHECK_RESULT;
 
 #endif

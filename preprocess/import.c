@@ -1,11 +1,8 @@
 #include "preprocess/import.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "preprocess/import/import_internal.h"
 #include "preprocess/import_densify.h"
@@ -32,32 +29,6 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
     return ORL_OK;
 }
 
-// Creates the folder that is filled, OUT.part. It takes the name OUT once it is complete.
-static enum orl_result begin(struct import_job *job)
-{
-    const char *out = job->params->out;
-    size_t length = strlen(out);
-    struct orl_names names = {0};
-    enum orl_result result = ORL_OK;
-    while (length > 1 && out[length - 1] == '/')
-        length--;
-    if (orl_path_is_file(out))
-        return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: is a file", out);
-    if (orl_path_is_dir(out))
-        result = orl_dir_list(job->log, out, &names);
-    if (result == ORL_OK && names.count)
-        result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: not empty; choose another folder", out);
-    orl_names_finish(&names);
-    if (result != ORL_OK)
-        return result;
-    job->dir = orl_format(job->log, "%.*s.part", (int)length, out);
-    if (!job->dir)
-        return ORL_ERR_MEMORY;
-    // An interrupted import may have left its folder.
-    result = orl_dir_remove(job->log, job->dir);
-    return result == ORL_OK ? orl_dir_make(job->log, job->dir) : result;
-}
-
 static enum orl_result fill_points(struct import_job *job, size_t *count)
 {
     const struct import_points known = {&job->known.model, false};
@@ -80,9 +51,7 @@ static enum orl_result fill(struct import_job *job)
         result = job->params->points == ORL_IMPORT_DENSIFY
                      ? orl_import_complete_manifest(job, triangles)
                      : orl_import_write_manifest(job, points, triangles);
-    if (result == ORL_OK && rename(job->dir, job->params->out) != 0)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", job->params->out, strerror(errno));
-    return result;
+    return result == ORL_OK ? orl_new_dir_finish(job->log, job->dir, job->params->out) : result;
 }
 
 static void finish(struct import_job *job)
@@ -109,7 +78,7 @@ enum orl_result orl_import(const struct orl_log *log, const struct orl_import_pa
     if (result == ORL_OK)
         result = orl_import_find_all(&job);
     if (result == ORL_OK)
-        result = begin(&job);
+        result = orl_new_dir_begin(log, params->out, &job.dir);
     if (result == ORL_OK)
         result = fill(&job);
     if (result != ORL_OK && job.dir && orl_dir_remove(log, job.dir) != ORL_OK)

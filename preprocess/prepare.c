@@ -48,6 +48,8 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
 {
     ORL_REQUIRE(log, params->input_count > 0 && params->out && *params->out);
     ORL_REQUIRE(log, params->test_every >= 0 && params->max_size >= 0);
+    ORL_REQUIRE(log, params->radius_neighbours >= 0 && params->radius_neighbours <= 64);
+    ORL_REQUIRE(log, params->radius_overlap >= 0 && params->radius_overlap <= 8);
     struct orl_job job;
     enum orl_result result = orl_job_open(&job, log, params, progress);
     if (result == ORL_OK)
@@ -56,10 +58,14 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
         orl_job_leave(&job);
     if (result == ORL_OK)
         result = orl_stages_run(&job);
-    if (result == ORL_OK)
+    bool whole = params->until == ORL_UNTIL_END;
+    if (result == ORL_OK && whole)
         result = orl_scene_json_write(&job);
+    if (result == ORL_OK && !whole)
+        orl_logf(log, ORL_LOG_INFO, "%s: calibrated and undistorted; oriel plan says what is left",
+                 job.dir);
     // Only fuse and ground read the depth maps, so the maps can go once the scene is complete.
-    if (result == ORL_OK && params->keep == ORL_KEEP_MINIMAL)
+    if (result == ORL_OK && whole && params->keep == ORL_KEEP_MINIMAL)
         result = orl_job_remove(&job, "stereo");
     orl_job_close(&job);
     return result;

@@ -75,6 +75,9 @@ static json_t *list_photos(const struct orl_job *job, const json_t *photos)
         json_t *entry = json_copy(items[i]);
         if (source && source->mask)
             json_object_set_new(entry, "mask", json_true());
+        if (source && source->exif.placed)
+            json_object_set_new(entry, "gps", json_pack("[f,f]", source->exif.latitude,
+                                                        source->exif.longitude));
         json_array_append_new(sorted, entry);
     }
     free(items);
@@ -90,13 +93,14 @@ static json_t *counts(const struct orl_job *job, const json_t *done, const json_
         test += split && strcmp(split, "test") == 0;
     }
     json_int_t registered = (json_int_t)json_array_size(photos);
-    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:O*, s:O*}", "given",
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:O*, s:O*, s:O*}", "given",
                      (json_int_t)job->given, "skipped", (json_int_t)json_array_size(job->skipped),
                      "used", (json_int_t)job->source_count, "registered", registered, "train",
                      registered - (json_int_t)test, "test", (json_int_t)test, "left_out",
                      (json_int_t)job->source_count - registered, "sparse_points",
                      stage_value(done, "calibrate", "sparse_points"), "points",
-                     stage_value(done, "radii", "points"));
+                     stage_value(done, "radii", "points"), "triangles",
+                     stage_value(done, "mesh", "triangles"));
 }
 
 static json_t *left_out(const struct orl_job *job, const json_t *done)
@@ -109,19 +113,22 @@ static json_t *left_out(const struct orl_job *job, const json_t *done)
     return list;
 }
 
-// Keeps the result of oriel tune while the scene is the same. A manifest that cannot be read holds
+// Keeps how the scene is drawn best, as tune and trim found it, while the scene is the same. A manifest that cannot be read holds
 // nothing to keep and is written anew.
 static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
 {
     json_t *old = NULL;
     if (!orl_path_is_file(path)) // removed before a stage ran again
         return ORL_OK;
+    static const char *const kept[] = {"tuned", "render"};
     enum orl_result result = ORL_OK;
     if (orl_json_read(NULL, path, &old) != ORL_OK)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: cannot be read; written anew", path);
-    json_t *tuned = json_object_get(old, "tuned");
-    if (tuned && json_object_set(root, "tuned", tuned) != 0)
-        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(kept); i++) {
+        json_t *value = json_object_get(old, kept[i]);
+        if (value && json_object_set(root, kept[i], value) != 0)
+            result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    }
     json_decref(old);
     return result;
 }

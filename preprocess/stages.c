@@ -15,8 +15,10 @@
 #include "preprocess/calibrate/undistort.h"
 #include "preprocess/cloud/fuse.h"
 #include "preprocess/cloud/ground.h"
+#include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
 #include "preprocess/densify/densify.h"
+#include "preprocess/arguments.h"
 #include "preprocess/densify_stage.h"
 #include "preprocess/expose/expose.h"
 #include "preprocess/photos/collect.h"
@@ -84,6 +86,18 @@ static json_t *expose_settings(const struct orl_job *job)
     return json_pack("{s:o, s:s}", "test", test_names(job), "exposures", job->exposures_hash);
 }
 
+static json_t *mesh_settings(const struct orl_job *job)
+{
+    const struct orl_prepare_params *p = job->params;
+    return json_pack("{s:s, s:s, s:o}", "mesh", orl_prepare_mesh_names[p->mesh], "quality",
+                     orl_quality_names[p->quality], "test", test_names(job));
+}
+
+static bool is_mesh_wanted(const struct orl_job *job)
+{
+    return job->params->mesh != ORL_MESH_NONE;
+}
+
 static json_t *no_settings(const struct orl_job *job)
 {
     (void)job;
@@ -103,27 +117,37 @@ struct stage {
     const char *results[RESULTS_MAX + 1]; // files and folders that it writes
     const char *tells; // part of the record that scene.json needs
     bool repeatable;   // a repeated run gives the same result, so that later stages stay valid
+    bool (*wanted)(const struct orl_job *job); // NULL: always
 };
 
 static const struct stage stages[ORL_STAGE_COUNT] = {
-    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, {0}, NULL, true},
+    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, {0}, NULL, true,
+                           NULL},
     [ORL_STAGE_CALIBRATE] = {"calibrate", 2, ORL_STAGE_COLLECT, calibrate_settings,
-                             orl_stage_calibrate, {".oriel/calibrate/model"}, "left_out", false},
+                             orl_stage_calibrate, {".oriel/calibrate/model"}, "left_out", false,
+                             NULL},
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
                              orl_stage_undistort,
-                             {"sparse", "images", "images_linear", "masks"}, "largest", true},
+                             {"sparse", "images", "images_linear", "masks"}, "largest", true, NULL},
     // Depth maps may be deleted once they are read, and COLMAP's differ from run to run.
     [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
-                           orl_stage_densify, {0}, "tool", false},
+                           orl_stage_densify, {0}, "tool", false, NULL},
     [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
-                        {".oriel/fused.ply"}, "points", true},
-    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, no_settings, orl_stage_radii,
-                         {"points.ply"}, "points", true},
+                        {".oriel/fused.ply"}, "points", true, NULL},
+    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
+                         {"points.ply"}, "points", true, NULL},
     [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, {0},
-                          "ground", true},
-    [ORL_STAGE_EXPOSE] = {"expose", 2, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
-                          "photographs", true},
+                          "ground", true, NULL},
+    [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, mesh_settings, orl_stage_mesh, {"mesh.ply"},
+                        "triangles", true, is_mesh_wanted},
+    [ORL_STAGE_EXPOSE] = {"expose", 3, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
+                          "photographs", true, NULL},
 };
+
+static bool is_wanted(const struct orl_job *job, int id)
+{
+    return !stages[id].wanted || stages[id].wanted(job);
+}
 
 static enum orl_result set_keys(struct orl_job *job)
 {
@@ -176,7 +200,8 @@ enum orl_result orl_stages_load(struct orl_job *job)
     // The plan is always this program's, not that of the file.
     json_t *plan = json_array();
     for (int i = 0; i < ORL_STAGE_COUNT; i++)
-        json_array_append_new(plan, json_string(stages[i].name));
+        if (is_wanted(job, i))
+            json_array_append_new(plan, json_string(stages[i].name));
     job->stages = path ? read_stages(job, path) : NULL;
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && json_object_set(job->stages, "plan", plan) != 0)
@@ -217,6 +242,11 @@ static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id,
 {
     const json_t *record = json_object_get(done_stages(job), stages[id].name);
     const char *damaged = NULL, *why = NULL;
+    // There is nothing to do for a stage that is not wanted, unless its result is to be removed.
+    if (!is_wanted(job, id)) {
+        *there = !has_key(job, id);
+        return ORL_OK;
+    }
     *there = has_same_key(job, id) && is_sound(record, id);
     if (!*there)
         return ORL_OK;
@@ -293,6 +323,36 @@ static void add_usage(const struct orl_job *job, double start_s, const struct ru
                         json_real((double)job->child_peak_bytes / (1 << 20)));
 }
 
+// Pixels of the undistorted photographs, held-out ones included.
+static double scene_pixels(const struct orl_job *job)
+{
+    double pixels = 0, limit = orl_prepare_max_size(job->params);
+    for (size_t i = 0; i < job->source_count; i++) {
+        double w = job->sources[i].width, h = job->sources[i].height;
+        double scale = limit / (w > h ? w : h);
+        pixels += scale < 1 ? w * h * scale * scale : w * h;
+    }
+    return pixels;
+}
+
+// About what a stage writes: of each photograph (features and matches), and of each pixel
+// (docs/how/scale.md).
+static double disk_need(const struct orl_job *job, enum orl_stage_id id)
+{
+    static const struct {
+        double photo_bytes, pixel_bytes;
+    } needs[ORL_STAGE_COUNT] = {
+        [ORL_STAGE_CALIBRATE] = {2 << 20, 0}, [ORL_STAGE_UNDISTORT] = {0, 2},
+        [ORL_STAGE_DENSIFY] = {0, 52},        [ORL_STAGE_FUSE] = {0, 6},
+        [ORL_STAGE_RADII] = {0, 3},
+    };
+    // Maps that an interrupted run or other jobs have made are there already.
+    if (id == ORL_STAGE_DENSIFY && orl_job_has(job, "stereo/depth_maps"))
+        return 0;
+    return needs[id].photo_bytes * (double)job->source_count +
+           needs[id].pixel_bytes * scene_pixels(job);
+}
+
 static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json_t *record)
 {
     struct rusage before;
@@ -302,7 +362,10 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
     job->child_cpu_s = 0;
     job->child_peak_bytes = 0;
     json_object_set_new(record, "key", json_string(job->keys[id]));
-    enum orl_result result = files ? stages[id].run(job, record) : ORL_ERR_MEMORY;
+    enum orl_result result = files ? orl_job_need_disk(job, stages[id].name, disk_need(job, id))
+                                   : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = stages[id].run(job, record);
     if (result == ORL_OK)
         result = orl_results_sum(job, stages[id].results, files);
     if (json_object_size(files))
@@ -325,11 +388,22 @@ static void drop_dependents(const struct orl_job *job, enum orl_stage_id id, boo
     }
 }
 
+// Of a stage that is no longer wanted. Its record is gone already.
+static enum orl_result remove_results(const struct orl_job *job, enum orl_stage_id id)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t k = 0; result == ORL_OK && stages[id].results[k]; k++)
+        result = orl_job_remove(job, stages[id].results[k]);
+    return result;
+}
+
 // `before`: the records of earlier runs. The stage's new record and the removal of the records that
 // it outdates are saved together.
 static enum orl_result redo_stage(struct orl_job *job, enum orl_stage_id id, const json_t *before,
                                   bool *current)
 {
+    if (!is_wanted(job, id))
+        return remove_results(job, id);
     json_t *record = json_object();
     enum orl_result result = record ? run_stage(job, id, record) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
@@ -350,14 +424,19 @@ enum orl_result orl_stages_run(struct orl_job *job)
     enum orl_result result = before ? find_current(job, current) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = invalidate(job, current);
-    for (int i = 1; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
+    int end = job->params->until == ORL_UNTIL_UNDISTORT ? ORL_STAGE_DENSIFY : ORL_STAGE_COUNT;
+    for (int i = 1; result == ORL_OK && i < end; i++) {
         if (orl_progress_cancelled(job->progress))
             result = ORL_ERR_CANCELLED;
-        else if (current[i])
+        else if (current[i] && is_wanted(job, i))
             orl_logf(job->log, ORL_LOG_INFO, "%s: done already", stages[i].name);
+        else if (current[i])
+            continue;
         else
             result = redo_stage(job, (enum orl_stage_id)i, before, current);
     }
+    if (result == ORL_OK && end == ORL_STAGE_DENSIFY && !current[ORL_STAGE_DENSIFY])
+        result = orl_stage_densify_begin(job);
     json_decref(before);
     return result;
 }
@@ -366,10 +445,13 @@ enum orl_result orl_stages_run_points(struct orl_job *job)
 {
     bool current[ORL_STAGE_COUNT] = {0};
     enum orl_result result = ORL_OK;
-    for (int i = ORL_STAGE_DENSIFY; result == ORL_OK && i < ORL_STAGE_COUNT; i++)
+    for (int i = ORL_STAGE_DENSIFY; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
+        if (!is_wanted(job, i))
+            continue;
         result = orl_progress_cancelled(job->progress)
                      ? ORL_ERR_CANCELLED
                      : redo_stage(job, (enum orl_stage_id)i, NULL, current);
+    }
     return result;
 }
 
@@ -382,5 +464,8 @@ enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
                         json_pack("{s:s, s:f, s:o, s:O}", "key", job->keys[ORL_STAGE_COLLECT],
                                   "wall_s", wall_s, "photographs", photo_hashes(job), "skipped",
                                   job->skipped));
+    json_t *arguments = orl_prepare_arguments(job->log, job->params);
+    if (!arguments || json_object_set_new(job->stages, "arguments", arguments) != 0)
+        return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the arguments");
     return save_stages(job);
 }

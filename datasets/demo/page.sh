@@ -54,11 +54,15 @@ HTML
 }
 
 page_walk() {
-    [ -f "$demo/walk.mp4" ] || return 0
     cat <<HTML
 <h2>A walk</h2>
-<p>Nobody photographed these views: every frame is painted from the photographs around it.</p>
+<p>Nobody photographed these views: every frame is painted from the photographs around it. Left a film,
+right the place itself, to walk through: drag to look, W A S D to move, ? for help.
+<a href="walk.html">Open it alone</a>.</p>
+<div class="two walk">
 <video controls autoplay loop muted playsinline src="$(data_uri video/mp4 "$demo/walk.mp4")"></video>
+<iframe src="walk.html" title="a walk through the scene" loading="lazy" allow="fullscreen"></iframe>
+</div>
 HTML
 }
 

@@ -39,7 +39,8 @@ enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_p
 void orl_gpu_destroy(struct orl_gpu **gpu);
 const struct orl_gpu_caps *orl_gpu_caps(const struct orl_gpu *gpu);
 const struct orl_log *orl_gpu_log(const struct orl_gpu *gpu);
-// Waits for the device. ORL_ERR_GPU if any GL error occurred since the last call.
+// Waits for the device. ORL_ERR_GPU if any GL error occurred since the last call, and always once the
+// device has been reset: what was read from it before this call must not be used then.
 enum orl_result orl_gpu_finish(struct orl_gpu *gpu) ORL_CHECK_RESULT;
 // What a buffer or texture holds, for accounts of device memory.
 enum orl_owner {
@@ -119,7 +120,7 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
 void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,
                         struct orl_tex *to, int layer);
 // Compresses all levels of `from`, 8 bits per channel, into a layer of the array `to`, which must
-// have the same size and levels. Oriel encodes BC7 (bc7.h), the driver BC1. Alpha is lost. Waits
+// have the same size and levels. Oriel encodes them (bc1.h, bc7.h). Alpha is lost. Waits
 // for the device.
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer) ORL_CHECK_RESULT;

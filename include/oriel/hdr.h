@@ -30,6 +30,7 @@ struct orl_hdr_params {
 
 struct orl_hdr;
 // The scene and gpu must outlive *out. Logs a warning if there is only a single exposure.
+// ORL_ERR_ARGUMENT: the merge is ORL_HDR_SERIES, and photographs are radiance already.
 enum orl_result orl_hdr_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                const struct orl_hdr_params *params,
                                struct orl_hdr **out) ORL_CHECK_RESULT;

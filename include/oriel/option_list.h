@@ -28,18 +28,19 @@
     SLOT(visibility, "hard", "paint=gather paint=tiled", \
         "Which photographs see a surface point: all (`none`), those whose own depth map agrees, " \
         "with a `hard` or a `soft` limit, those and the ones without depth there (`lenient`), " \
-        "those that the surface faces (`facing`), or that it faces and whose depth map agrees " \
-        "(`shadow`).") \
+        "those that the surface faces (`facing`), that it faces and whose depth map agrees " \
+        "(`shadow`), or that it faces with nothing before it (`opaque`).") \
     SLOT(weight, "airieau", "paint=gather paint=tiled", \
         "How much a photograph counts that sees a surface point.") \
     SLOT(combine, "mean", "paint=gather paint=tiled", \
         "How the samples of a pixel become one colour: their weighted mean, the mean of the " \
-        "four of greatest weight (`top`), the one of greatest weight (`best`), the mean of those that pass a test of their standard " \
+        "four of greatest weight (`top`), the mean by a recurrence in 8 bits (`recurrence`), the one of greatest weight (`best`), the mean of those that pass a test of their standard " \
         "deviation (`sigma`), or a mean that is robust against outliers.") \
-    CHOICE(fill, orl_fill, "none color depth ground", ORL_FILL_COLOR, "", \
+    CHOICE(fill, orl_fill, "none color depth ground room", ORL_FILL_COLOR, "", \
         "What pixels without a surface show: black, the colours of their neighbours, " \
-        "photographs projected to a guessed depth, or the same with the depth no farther than " \
-        "the ground.") \
+        "photographs projected to a guessed depth, the same with the depth no farther than " \
+        "the ground, or pictures of the empty place projected on the walls of the scene's " \
+        "`room`, or of a shell around it.") \
     CHOICE(sampling, orl_sampling, "bilinear bicubic", ORL_SAMPLING_BICUBIC, \
         "paint=gather paint=tiled", \
         "The filter that photographs are sampled with. `bicubic` is sharper and takes five " \
@@ -70,7 +71,7 @@
     NUMBER(sharpness, 3, 0, 64, "", "weight=lumigraph", ORL_TRIES(1, 2, 3, 4, 6, 10), \
         "How strongly the better photograph is preferred. With 0 all weigh the same.") \
     NUMBER(depth_tolerance, 0.01f, 1e-5, 0.5, "fraction of depth", "visibility=hard visibility=lenient " \
-        "visibility=soft visibility=shadow paint=tiled", \
+        "visibility=soft visibility=shadow visibility=opaque paint=tiled", \
         ORL_TRIES(0.003, 0.005, 0.01, 0.02, 0.04), \
         "How far two depths may differ and still count as the same surface.") \
     NUMBER(min_support, 0, 0, 25, "pixels of 5x5", "proxy=splats", ORL_TRIES(0, 4, 8, 12, 16), \
@@ -103,6 +104,19 @@
     NUMBER(points_per_pixel, 4, 0, 64, "points", "proxy=splats", ORL_NO_TRIES, \
         "Where more points than this fall into a pixel, splats are thinned and enlarged. With " \
         "0 all are drawn.") \
+    NUMBER(fatten_px, 2, 0, 16, "pixels", "visibility=opaque", ORL_NO_TRIES, \
+        "How far outlines in a photograph's depth map are fattened, so that what is before " \
+        "does not leak onto what is behind.") \
+    NUMBER(shell, 2, 1, 1000, "times the farthest photograph's distance", "fill=room", ORL_NO_TRIES, \
+        "Radius of the shell around a scene whose room is not known.") \
+    NUMBER(hull_triangles, 0, 0, 1e7f, "triangles", "proxy=hull", ORL_NO_TRIES, \
+        "The hull is simplified to about so many. With 0 it is not.") \
+    NUMBER(hull_side, 64, 8, 512, "voxels", "proxy=voxels proxy=hull", ORL_NO_TRIES, \
+        "How many voxels the cube around the subject has each way. Time and memory of making " \
+        "the hull grow with the third power.") \
+    NUMBER(projection_bits, 0, 0, 16, "bits", "paint=billboards", ORL_NO_TRIES, \
+        "Where photographs show a voxel comes from tables of so many bits, as on hardware of " \
+        "2003 with 8. With 0 it is computed exactly.") \
     NUMBER(ghosts, 1, 0, 16, "stops", "sample=radiance", ORL_NO_TRIES, \
         "Samples that differ from the others by this much, beyond noise and edges, count " \
         "half. With 0 all count fully.")

@@ -31,8 +31,9 @@ void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *poin
 // counts both.
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,
                                 struct orl_points *points) ORL_CHECK_RESULT;
-// Writes binary little-endian PLY: x y z nx ny nz red green blue radius photographs.
+// Writes binary little-endian PLY: x y z nx ny nz red green blue radius photographs. small: normals
+// take a byte a component, which is exact to half a degree, and `photographs` is left out.
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
-                                 const struct orl_points *points) ORL_CHECK_RESULT;
+                                 const struct orl_points *points, bool small) ORL_CHECK_RESULT;
 
 #endif

@@ -25,17 +25,39 @@ enum orl_densifier { ORL_DENSIFIER_AUTO, ORL_DENSIFIER_GL, ORL_DENSIFIER_COLMAP 
 // (stereo/).
 enum orl_keep { ORL_KEEP_MINIMAL, ORL_KEEP_ALL };
 
+// undistort: stops before the stereo, which oriel plan divides into jobs for several machines.
+enum orl_until { ORL_UNTIL_END, ORL_UNTIL_UNDISTORT };
+
+// The triangle mesh that is made for methods that draw one; none: no mesh. poisson: from the points.
+// delaunay: from the sparse points and what sees them; needs a COLMAP built with CGAL.
+enum orl_prepare_mesh { ORL_MESH_NONE, ORL_MESH_POISSON, ORL_MESH_DELAUNAY };
+
+// Which photographs that are named as doubtful are left out. blurred: much less sharp than most.
+// duplicates: same picture as another, re-encoded, or of a camera that stood still.
+enum orl_leave_out {
+    ORL_LEAVE_OUT_NONE,
+    ORL_LEAVE_OUT_BLURRED,
+    ORL_LEAVE_OUT_DUPLICATES,
+    ORL_LEAVE_OUT_BOTH,
+};
+
 // Names of the values above, in their order; NULL after the last.
 extern const char *const orl_quality_names[];
 extern const char *const orl_camera_sharing_names[];
 extern const char *const orl_matching_names[];
 extern const char *const orl_densifier_names[];
 extern const char *const orl_keep_names[];
+extern const char *const orl_prepare_mesh_names[];
+extern const char *const orl_leave_out_names[];
+extern const char *const orl_until_names[];
 
 struct orl_prepare_params {
-    const char *const *inputs; // photographs and folders of them
+    const char *const *inputs; // photographs, videos and folders of them, with their sub-folders
     size_t input_count;
     const char *out;           // the scene folder
+    double fps;                // frames taken of a second of video; 0: 2 a second
+    int frames;                // frames taken of each video instead; 0: by fps
+    enum orl_leave_out leave_out;
     int test_every;            // hold out photographs 0, N, 2N, ... by name; 0: none
     const struct orl_names *test_list; // hold out these (extension optional); NULL: none
     int max_size;              // larger side of the undistorted photographs in pixels;
@@ -45,12 +67,17 @@ struct orl_prepare_params {
     enum orl_matching matching;
     enum orl_densifier densifier;
     enum orl_keep keep;
+    enum orl_prepare_mesh mesh;
+    int radius_neighbours;     // a splat's radius is the distance to its k-th neighbour, [1, 64],
+    double radius_overlap;     // times this, (0, 8]; 0 each: 6 and 1
     const char *masks_dir;     // NAME.png or NAME.EXT.png, black = ignore; NULL: none
     const char *exposures;     // CSV that overrides EXIF (exposure_list.h); NULL: none
+    enum orl_until until;
     bool resume;               // continue after the stages that are complete
     uint32_t seed;
     struct orl_gpu *gpu;       // NULL: opened when densify needs it
     size_t max_vram_bytes;     // device memory that densify keeps to; 0: no limit
+    size_t max_ram_bytes;      // memory that fusion keeps to; 0: half of what is free then
     const char *shader_dir;    // for a GPU opened here; NULL: the embedded shaders
 };
 

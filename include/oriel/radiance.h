@@ -45,6 +45,7 @@ struct orl_photo_response {
     float vignette[3];          // as in struct orl_photo
     float centre[2];            // centre of vignetting: the principal point, pixels of the image
     float ev_above;             // exposure in stops above the scene's darkest photograph
+    bool unclipped;             // no value is clipped, however near to white
 };
 
 // Converts a photograph to F32 RGBA: linear exposure without vignetting, times the confidence, and

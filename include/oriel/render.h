@@ -5,6 +5,7 @@
 #include "oriel/image.h"
 #include "oriel/gpu.h"
 #include "oriel/option_list.h"
+#include "oriel/progress.h"
 #include "oriel/scene.h"
 
 // --- methods and options ---
@@ -14,6 +15,7 @@ enum orl_fill {
     ORL_FILL_COLOR,
     ORL_FILL_DEPTH,
     ORL_FILL_GROUND, // as DEPTH, but no farther than the scene's ground
+    ORL_FILL_ROOM,   // photographs projected on the walls around
     ORL_FILL_COUNT
 };
 enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON };
@@ -84,6 +86,9 @@ struct orl_method {
 };
 // All methods, terminated by a NULL name. The first is the default.
 extern const struct orl_method orl_methods[];
+// The name of the method that the scene states as its default, or else (or without a scene) of the
+// first.
+const char *orl_method_default(const struct orl_scene *scene);
 // NULL if the name is unknown; the log then lists the names.
 const struct orl_method *orl_method_find(const struct orl_log *log, const char *name);
 // Applies each "key=value", then checks all of them. ORL_ERR_ARGUMENT, with the allowed values in
@@ -100,7 +105,7 @@ enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_rend
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params) ORL_CHECK_RESULT;
 
-// The method's parameters as they suit the scene: with the values that oriel tune found for it, and
+// The method's parameters as they suit the scene: with the values that scene.json has for it, and
 // with the mesh as the proxy if the scene has no points. ORL_ERR_FORMAT if
 // the scene has settings that are unknown to this program.
 enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
@@ -128,13 +133,16 @@ struct orl_renderer_params {
     const bool *use;       // per photograph: may it be used? NULL: all that are not held out
     size_t max_vram_bytes; // device memory to stay within, bytes; 0: no limit
     // Radiance, and pixels that the device cannot compress, stay uncompressed.
-    enum orl_textures textures;
+    enum orl_textures textures; // AUTO: as the scene's defaults say, if they do
     int photo_divide;      // photographs are loaded at 1/n of their size or less, n a power
                            // of two up to 8; 0 counts as 1
     // Samples photographs as radiance: response, vignetting and exposure are undone, and each pixel
     // is weighted by how well exposed it is (radiance.h). For scenes with several exposures.
     bool radiance;
     const struct orl_sensor *sensor; // for radiance; NULL: ORL_SENSOR_DEFAULTS
+    // Asked ahead of every photograph of a frame, which then ends with ORL_ERR_CANCELLED; NULL:
+    // frames are not cancelled. Must outlive the renderer.
+    const struct orl_progress *progress;
 };
 
 // Uploads the points and loads photographs. If they do not fit max_vram_bytes, it plans with
@@ -145,6 +153,9 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
                                     const struct orl_renderer_params *params,
                                     struct orl_renderer **out) ORL_CHECK_RESULT;
 void orl_renderer_destroy(struct orl_renderer **renderer);
+
+// Bytes of photographs and their masks that have gone to the device so far.
+size_t orl_renderer_uploaded(const struct orl_renderer *renderer);
 
 // One rendered view, in host memory. All images have the view's size.
 struct orl_frame {
@@ -163,6 +174,23 @@ void orl_frame_finish(struct orl_frame *frame);
 enum orl_result orl_renderer_draw(struct orl_renderer *renderer, const struct orl_view *view,
                                   const struct orl_render_params *params, const bool *skip,
                                   struct orl_frame *frame) ORL_CHECK_RESULT;
+
+// How a viewer's frame gets its photographs: it paints from those that are on the device, and from
+// the points' own colours elsewhere. Files are read on another thread.
+struct orl_progressive {
+    double seconds; // the frame may spend on photographs; at least one step is always made
+    bool at_rest;   // nothing moves: that step may be the long one that completes a photograph
+    double spent;   // output: seconds that the frame has spent on photographs
+    size_t missing; // output: photographs that are not there yet, or not in full quality
+};
+// As orl_renderer_draw, without waiting for photographs. With progress->missing 0, the frame has
+// the bits of orl_renderer_draw; else a later frame of the same view is better. A photograph that
+// cannot be read is logged, from another thread, and left out.
+enum orl_result orl_renderer_draw_progressive(struct orl_renderer *renderer,
+                                              const struct orl_view *view,
+                                              const struct orl_render_params *params,
+                                              struct orl_progressive *progress,
+                                              struct orl_frame *frame) ORL_CHECK_RESULT;
 
 // Converts a scene-linear image to sRGB-encoded 8-bit RGB. Values are clamped.
 enum orl_result orl_tone_srgb(const struct orl_log *log, const struct orl_image *linear,

@@ -13,11 +13,17 @@ struct orl_photo {
     struct orl_view view; // size and intrinsics as of the undistorted file
     bool test;            // held out: used for calibration only
     bool linear;          // has a linear version (orl_scene_read_linear)
+    bool radiance;        // its linear version is radiance (oriel hdr --replace-series): no value
+                          // is clipped, however near to white
     bool masked;          // has a mask (orl_scene_mask_path)
     double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
     float gain[3];        // multiplies linear colour; 1 1 1 unless aligned
+    // Of a held-out photograph, whose gain is a guess: the gain holds for a rendering whose metered
+    // light (scene/meter.h) is metered_ev, log2. Each stop more of it raises the gain by `metering`
+    // stops, in [0, 1], as in a camera that exposes automatically. 0: the light does not matter.
+    float metering, metered_ev;
     // Relative illumination is 1 + v[0] r^2 + v[1] r^4 + v[2] r^6 at distance r from the
     // principal point, in units of half the picture's diagonal; 0 0 0: no vignetting.
     float vignette[3];
@@ -29,10 +35,19 @@ struct orl_response {
     float linear[3][256]; // linear exposure per channel and value; increasing, 1 at value 255
 };
 
-// The value of a method's option that oriel tune found best for the scene.
+// The value of a method's option that oriel tune or oriel trim chose for the scene.
 struct orl_tuned {
     char *method, *key; // owned
     double value;
+    char *name; // owned: of an option whose values are names; NULL: `value` is meant
+};
+
+// How the scene is drawn unless a command says otherwise ("render" of scene.json).
+struct orl_scene_defaults {
+    char *method;     // owned; NULL: the first of all methods
+    char *textures;   // owned: a name of orl_textures_names; NULL: the renderer chooses
+    int depth_divide; // depth maps of photographs have 1/n of their size; 0 counts as 1
+    bool depth_half;  // depth maps of photographs are half floats
 };
 
 // The ground plane that the photographer stood on.
@@ -40,6 +55,12 @@ struct orl_ground {
     double plane[4]; // world: dot(plane, (X, 1)) is X's height above it, in scene units
     double height;   // mean height of the photographs above the plane; 0: no plane was found
     bool known;      // the plane was searched for, or scene.json states it
+};
+
+// The room that the subject is in: a box, world.
+struct orl_room {
+    double low[3], high[3];
+    bool known;
 };
 
 struct orl_scene {
@@ -51,10 +72,12 @@ struct orl_scene {
     size_t response_count;
     struct orl_tuned *tuned;
     size_t tuned_count;
+    struct orl_scene_defaults defaults;
     size_t frame_count;    // frames of a sequence; 0: a still scene
     int frame;             // the frame that the photographs show; -1: SCENE/images
     double photo_distance; // median distance from training photographs to the points they see
     struct orl_ground ground;
+    struct orl_room room;
 };
 
 // Opens SCENE (scene.json, points.ply) or a plain COLMAP dense workspace with
@@ -70,6 +93,9 @@ enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char 
                                           const struct orl_names *test,
                                           struct orl_scene **out) ORL_CHECK_RESULT;
 void orl_scene_destroy(struct orl_scene **scene);
+// Reads the scene's sparse model (colmap.h), whose images have the photographs' order.
+enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl_scene *scene,
+                                     struct orl_colmap_model *model) ORL_CHECK_RESULT;
 // Index of the photograph of this name (with or without extension), -1 if there is none.
 int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
 // Selects the photographs and silhouettes of `frame`, or with -1 those of the scene itself. Cameras
@@ -89,7 +115,8 @@ char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *sce
 // missing.
 char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,
                                 size_t photo);
-// "SCENE/mesh.ply". The file may be missing.
+// "SCENE/mesh.ply", or the mesh of the selected frame, "SCENE/frames/<number>/mesh.ply", where there
+// is one. The file may be missing.
 char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene);
 // "SCENE/images_linear/<name>.exr". The file may be missing.
 char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene,

@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "preprocess/calibrate/match.h"
 #include "preprocess/job/colmap_run.h"
-#include "preprocess/photos/advice.h"
+#include "preprocess/photos/doubts.h"
 #include "preprocess/photos/normalise.h"
 
 #define WORK ORL_CALIBRATE_WORK
@@ -48,8 +48,11 @@ static bool has_exif(const struct orl_source *s)
 
 static bool same_camera(const struct orl_source *a, const struct orl_source *b, bool one_size)
 {
-    if (a->width != b->width || a->height != b->height || has_exif(a) != has_exif(b))
+    if (a->width != b->width || a->height != b->height || has_exif(a) != has_exif(b) ||
+        a->clip != b->clip)
         return false;
+    if (a->clip)
+        return true;
     if (!has_exif(a))
         return one_size;
     return strcmp(a->exif.make, b->exif.make) == 0 && strcmp(a->exif.model, b->exif.model) == 0 &&

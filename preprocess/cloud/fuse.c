@@ -1,8 +1,8 @@
 #include "preprocess/cloud/fuse.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "core/file.h"
 #include "core/memory.h"
@@ -13,45 +13,47 @@
 // Fraction of depth by which a photograph must see past a point to call the point an outlier.
 static const float STRAY_TOLERANCE = 0.01f;
 
-static double available_gib(void)
-{
-    long pages = sysconf(_SC_AVPHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
-    double gib = pages > 0 && size > 0 ? (double)pages * (double)size / (1 << 30) : 4;
-    // The kernel's own estimate counts the file cache as available, since it can free the cache.
-    FILE *info = fopen("/proc/meminfo", "r");
-    char line[256];
-    unsigned long kib;
-    while (info && fgets(line, sizeof line, info))
-        if (sscanf(line, "MemAvailable: %lu kB", &kib) == 1)
-            gib = (double)kib / (1 << 20);
-    if (info)
-        fclose(info);
-    return gib;
-}
+// Bytes that fusion takes of each pixel beside the maps: COLMAP's marks of fused pixels, and the
+// points with the lists of their photographs.
+enum { MAP_BYTES = 24, OTHER_BYTES = 10 };
+static const double GIB = 1 << 30, CACHE_LEAST_GIB = 1.0 / 256;
 
-// Size of the depth, normal and colour maps of all photographs as COLMAP keeps them, GiB.
-static double maps_gib(const struct orl_colmap_model *model)
+static double pixels_of(const struct orl_colmap_model *model)
 {
-    double bytes = 0;
+    double pixels = 0;
     for (size_t i = 0; i < model->image_count; i++) {
         const struct orl_camera *camera =
             &orl_colmap_camera_by_id(model, model->images[i].camera_id)->pinhole;
-        bytes += 24.0 * camera->width * camera->height;
+        pixels += (double)camera->width * camera->height;
     }
-    return bytes / (1 << 30);
+    return pixels;
 }
 
-// Size of COLMAP's cache of maps in GiB; 0 when all maps fit into memory.
+// Memory that fusion may take, GiB.
+static double budget_gib(const struct orl_job *job)
+{
+    uint64_t available = orl_memory_available();
+    if (job->params->max_ram_bytes)
+        return (double)job->params->max_ram_bytes / GIB;
+    return available == UINT64_MAX ? 2 : 0.5 * (double)available / GIB;
+}
+
+// Size of COLMAP's cache of maps in GiB; 0 when all maps fit. With a cache the points are the same;
+// maps are read again and again.
 static double plan_cache(const struct orl_job *job, const struct orl_colmap_model *model)
 {
-    double need = maps_gib(model), have = available_gib();
-    if (need <= 0.5 * have)
+    double budget = budget_gib(job), pixels = pixels_of(model);
+    double maps = MAP_BYTES * pixels / GIB, other = OTHER_BYTES * pixels / GIB;
+    if (maps + other <= budget)
         return 0;
-    double cache_gib = 0.4 * have > 1 ? 0.4 * have : 1;
+    double cache = fmax(budget - other, CACHE_LEAST_GIB);
     orl_logf(job->log, ORL_LOG_INFO,
-             "fuse: the maps need %.1f GiB and %.1f are free; reading them through a cache of "
-             "%.1f GiB, which is slower", need, have, cache_gib);
-    return cache_gib;
+             "fuse: all maps take %.0f MiB and %.0f may be used; reading them through a cache of "
+             "%.0f MiB, which is slower", 1024 * (maps + other), 1024 * budget, 1024 * cache);
+    if (cache + other > budget)
+        orl_logf(job->log, ORL_LOG_WARNING, "fuse: %.0f MiB are not enough for %.1f megapixels; it "
+                 "takes about %.0f MiB", 1024 * budget, 1e-6 * pixels, 1024 * (cache + other));
+    return cache;
 }
 
 static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_pixels,
@@ -72,7 +74,7 @@ static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_p
     }
     orl_colmap_arg(args, "--StereoFusion.use_cache", "%d", cache_gib > 0);
     if (cache_gib > 0)
-        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.1f", cache_gib);
+        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.4f", cache_gib);
     return ORL_OK;
 }
 
@@ -161,7 +163,7 @@ static enum orl_result write_cloud(struct orl_job *job, struct orl_points *point
     for (size_t i = 0; i < points->count; i++)
         points->radius[i] = 0; // the next stage sets the radius
     enum orl_result result =
-        path ? orl_points_write(job->log, path, points) : ORL_ERR_MEMORY;
+        path ? orl_points_write(job->log, path, points, false) : ORL_ERR_MEMORY;
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     free(path);

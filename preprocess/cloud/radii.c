@@ -38,10 +38,32 @@ static enum orl_result find_viewers(struct orl_job *job, struct viewers *viewers
     return ORL_OK;
 }
 
+static struct orl_radii_params radii_params(const struct orl_prepare_params *asked)
+{
+    struct orl_radii_params params = {ORL_RADII_DEFAULTS};
+    if (asked->radius_neighbours)
+        params.neighbours = asked->radius_neighbours;
+    if (asked->radius_overlap > 0)
+        params.overlap = (float)asked->radius_overlap;
+    return params;
+}
+
+// Values that are not the usual ones; without any it is empty, as it was before there was a choice,
+// so that older keys stay valid.
+json_t *orl_stage_radii_settings(const struct orl_job *job)
+{
+    const struct orl_radii_params usual = {ORL_RADII_DEFAULTS};
+    const struct orl_radii_params params = radii_params(job->params);
+    return json_pack("{s:o*, s:o*}", "neighbours",
+                     params.neighbours != usual.neighbours ? json_integer(params.neighbours) : NULL,
+                     "overlap",
+                     params.overlap != usual.overlap ? json_real((double)params.overlap) : NULL);
+}
+
 enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
 {
-    const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
-    const struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
+    const struct orl_radii_params params = radii_params(job->params);
+    const struct orl_radii_limits limits = orl_radii_limits_of(&params);
     struct orl_points points = {0};
     struct viewers viewers = {0};
     char *in = orl_job_path(job, ".oriel/fused.ply"), *out = orl_job_path(job, "points.ply");
@@ -54,7 +76,7 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
         (result = orl_points_limit_radii(job->log, &limits, viewers.views, viewers.count,
                                          &points)) != ORL_OK)
         goto end;
-    result = orl_points_write(job->log, out, &points);
+    result = orl_points_write(job->log, out, &points, false);
     if (result != ORL_OK)
         orl_job_hint_disk(job);
     json_object_set_new(record, "tool", json_string("FLANN"));

@@ -4,6 +4,9 @@
 
 #include "preprocess/job/job.h"
 
+// What the radii depend on besides the cloud: a new object.
+json_t *orl_stage_radii_settings(const struct orl_job *job);
+
 // Writes SCENE/points.ply.
 enum orl_result orl_stage_radii(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 

@@ -23,7 +23,7 @@ enum {
 // One pass over the photographs. It reads the maps of the previous pass and writes its own, both in
 // stereo/*_maps/NAME.KIND.bin.
 struct pass {
-    char kind[24];
+    char kind[ORL_DENSIFY_KIND_SIZE];
     bool geometric; // uses the sources' depths from the previous pass
 };
 
@@ -62,6 +62,11 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
         if (table[i].value < table[i].low || table[i].value > table[i].high)
             return orl_fail(log, ORL_ERR_ARGUMENT, "densify: %s is %d, not within [%d, %d]",
                             table[i].name, table[i].value, table[i].low, table[i].high);
+    const struct orl_densify_part *part = p->part;
+    if (part && (part->count < 1 || part->index < 0 || part->index >= part->count ||
+                 part->pass < 0 || part->pass > p->geometric_passes))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "densify: no part %d of %d in pass %d of %d",
+                        part->index, part->count, part->pass, p->geometric_passes + 1);
     return ORL_OK;
 }
 
@@ -356,9 +361,26 @@ end:
     return result;
 }
 
+// Photographs [first, end) of this run: all, or those of its part.
+static size_t part_begin(const struct densifier *d, int index)
+{
+    const struct orl_densify_part *part = d->params.part;
+    return d->photos.count * (size_t)index / (size_t)part->count;
+}
+
+static size_t first_photo(const struct densifier *d)
+{
+    return d->params.part ? part_begin(d, d->params.part->index) : 0;
+}
+
+static size_t end_photo(const struct densifier *d)
+{
+    return d->params.part ? part_begin(d, d->params.part->index + 1) : d->photos.count;
+}
+
 static enum orl_result process_all(struct densifier *d, const struct pass *pass)
 {
-    for (size_t i = 0; i < d->photos.count; i++) {
+    for (size_t i = first_photo(d); i < end_photo(d); i++) {
         const char *name = densify_photo_name(&d->photos, i);
         bool has;
         enum orl_result result = has_maps(d, i, pass, &has);
@@ -385,6 +407,14 @@ static enum orl_result process_all(struct densifier *d, const struct pass *pass)
 
 // --- passes ---
 
+void orl_densify_pass_kind(int pass, int geometric_passes, char kind[ORL_DENSIFY_KIND_SIZE])
+{
+    if (pass > 0 && pass < geometric_passes)
+        snprintf(kind, ORL_DENSIFY_KIND_SIZE, "agreed-%d", pass);
+    else
+        snprintf(kind, ORL_DENSIFY_KIND_SIZE, "%s", pass ? "geometric" : "photometric");
+}
+
 static void plan_passes(struct densifier *d)
 {
     int agreeing = d->params.geometric_passes;
@@ -392,12 +422,10 @@ static void plan_passes(struct densifier *d)
     for (int i = 0; i < d->pass_count; i++) {
         struct pass *pass = &d->passes[i];
         pass->geometric = i > 0;
-        if (i > 0 && i < agreeing)
-            snprintf(pass->kind, sizeof pass->kind, "agreed-%d", i);
-        else
-            snprintf(pass->kind, sizeof pass->kind, "%s", i ? "geometric" : "photometric");
+        orl_densify_pass_kind(i, agreeing, pass->kind);
     }
-    d->total = (double)d->photos.count * d->pass_count;
+    size_t count = end_photo(d) - first_photo(d);
+    d->total = (double)count * (d->params.part ? 1 : d->pass_count);
 }
 
 // Removes the maps between the first and the last pass, which are not needed after the run.
@@ -419,16 +447,19 @@ static enum orl_result remove_intermediate(const struct densifier *d)
 static enum orl_result process_passes(struct densifier *d)
 {
     bool all = true, has;
-    for (size_t i = 0; i < d->photos.count && all; i++) {
+    for (size_t i = first_photo(d); i < end_photo(d) && all; i++) {
         enum orl_result result = has_maps(d, i, &d->passes[d->pass_count - 1], &has);
         if (result != ORL_OK)
             return result;
         all = has;
     }
     enum orl_result result = ORL_OK;
+    const struct orl_densify_part *part = d->params.part;
     for (int p = 0; p < d->pass_count && result == ORL_OK && !all; p++)
-        result = process_all(d, &d->passes[p]);
-    return result == ORL_OK ? remove_intermediate(d) : result;
+        if (!part || p == part->pass)
+            result = process_all(d, &d->passes[p]);
+    // Other parts may still read the maps between the passes.
+    return result == ORL_OK && !part ? remove_intermediate(d) : result;
 }
 
 static enum orl_result check_plans(const struct densifier *d)
@@ -502,6 +533,8 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
         result = orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans);
     if (result == ORL_OK)
         result = check_plans(d);
+    if (result == ORL_OK && d->params.part)
+        return orl_densify_check_maps(d->log, workspace, &d->params, d->shrink);
     if (result == ORL_OK)
         result = orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink);
     if (result == ORL_OK)
@@ -513,15 +546,43 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     return result;
 }
 
-// Two densifiers in one workspace would overwrite each other's maps.
+// Two densifiers in one workspace would overwrite each other's maps, but for parts.
 static enum orl_result lock_workspace(struct densifier *d, const char *workspace)
 {
     bool taken;
-    enum orl_result result = orl_lock(d->log, workspace, &d->lock_fd, &taken);
+    enum orl_result result = d->params.part
+                                 ? orl_lock_shared(d->log, workspace, &d->lock_fd, &taken)
+                                 : orl_lock(d->log, workspace, &d->lock_fd, &taken);
     return result == ORL_OK && taken
                ? orl_fail(d->log, ORL_ERR_ARGUMENT, "%s: another oriel densify is at work here",
                           workspace)
                : result;
+}
+
+static void close_densifier(struct densifier *d)
+{
+    orl_densify_cache_destroy(&d->cache);
+    orl_densify_device_destroy(&d->device);
+    free(d->plans);
+    orl_densify_photos_finish(&d->photos);
+    orl_colmap_finish(&d->own_model);
+    free(d->images_dir);
+    free(d->sparse_dir);
+    free(d->depth_dir);
+    free(d->normal_dir);
+    free(d->confidence_dir);
+    orl_unlock(&d->lock_fd);
+}
+
+static enum orl_result open_densifier(struct densifier *d, const char *workspace,
+                                      const struct orl_names *photos)
+{
+    enum orl_result result = check_params(d->log, &d->params);
+    if (result == ORL_OK)
+        result = lock_workspace(d, workspace);
+    if (result == ORL_OK)
+        result = open_workspace(d, workspace, photos);
+    return result;
 }
 
 enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
@@ -531,11 +592,7 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
 {
     struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
                           .progress = progress, .lock_fd = -1};
-    enum orl_result result = check_params(d.log, params);
-    if (result == ORL_OK)
-        result = lock_workspace(&d, workspace);
-    if (result == ORL_OK)
-        result = open_workspace(&d, workspace, photos);
+    enum orl_result result = open_densifier(&d, workspace, photos);
     if (result == ORL_OK)
         result = orl_densify_device_create(gpu, &d.params, &d.device);
     if (result == ORL_OK)
@@ -543,16 +600,16 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
     plan_passes(&d);
     if (result == ORL_OK)
         result = process_passes(&d);
-    orl_densify_cache_destroy(&d.cache);
-    orl_densify_device_destroy(&d.device);
-    free(d.plans);
-    orl_densify_photos_finish(&d.photos);
-    orl_colmap_finish(&d.own_model);
-    free(d.images_dir);
-    free(d.sparse_dir);
-    free(d.depth_dir);
-    free(d.normal_dir);
-    free(d.confidence_dir);
-    orl_unlock(&d.lock_fd);
+    close_densifier(&d);
+    return result;
+}
+
+enum orl_result orl_densify_begin(const struct orl_log *log, const char *workspace,
+                                  const struct orl_names *photos,
+                                  const struct orl_densify_params *params)
+{
+    struct densifier d = {.log = log, .params = *params, .lock_fd = -1};
+    enum orl_result result = open_densifier(&d, workspace, photos);
+    close_densifier(&d);
     return result;
 }

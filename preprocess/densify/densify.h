@@ -11,6 +11,14 @@
 // Raised when the same photographs and settings give different maps.
 enum { ORL_DENSIFY_VERSION = 5 };
 
+// One unit of work, which may run beside others, on other machines too: one pass over some of the
+// photographs.
+struct orl_densify_part {
+    int pass;         // 0: photometric, 1 to geometric_passes; all parts of the pass before must be
+                      // done
+    int index, count; // part `index` of `count` about equal parts of the photographs, from 0 on
+};
+
 struct orl_densify_params {
     int sources;          // source photographs per reference, [1, 16]; cost grows with it
     int iterations;       // photometric red-black sweeps, [1, 16]: two more at the coarsest level,
@@ -27,6 +35,8 @@ struct orl_densify_params {
     size_t max_vram_bytes; // limit of device memory, 0: none. When one photograph needs more,
                            // orl_densify uses fewer sources, down to four, then halves photographs
                            // and maps until they fit; it logs a warning
+    const struct orl_densify_part *part; // NULL: everything. A part needs orl_densify_begin, with
+                                         // the same settings and photographs, to have run
 };
 #define ORL_DENSIFY_DEFAULTS                                                               \
     .sources = 8, .iterations = 4, .geometric_passes = 2, .window_radius = 5, .window_step = 2, \
@@ -45,5 +55,22 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_names *photos,
                             const struct orl_densify_params *params,
                             const struct orl_progress *progress) ORL_CHECK_RESULT;
+
+// The ending of a pass's maps, NAME.KIND.bin.
+enum { ORL_DENSIFY_KIND_SIZE = 24 };
+void orl_densify_pass_kind(int pass, int geometric_passes, char kind[ORL_DENSIFY_KIND_SIZE]);
+// Of `parts` parts of the photographs: which read maps of which. reads[a * parts + b] is set where
+// a photograph of part a has a source in part b.
+enum orl_result orl_densify_part_sources(const struct orl_log *log,
+                                         const struct orl_colmap_model *model,
+                                         const struct orl_names *photos, int sources, int parts,
+                                         bool *reads) ORL_CHECK_RESULT;
+
+// Makes WORKSPACE/stereo ready for parts: removes maps of other settings or photographs. A later
+// orl_densify without a part finds what the parts have made, makes what is missing, and removes
+// what only other passes read.
+enum orl_result orl_densify_begin(const struct orl_log *log, const char *workspace,
+                                  const struct orl_names *photos,
+                                  const struct orl_densify_params *params) ORL_CHECK_RESULT;
 
 #endif

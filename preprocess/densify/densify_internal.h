@@ -70,6 +70,12 @@ enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *wo
                                        const struct orl_densify_params *params,
                                        int shrink) ORL_CHECK_RESULT;
 
+// For a part of a run: ORL_ERR_ARGUMENT unless stereo/densify.json has the settings of this run.
+// The photographs are not compared, since each part would read all of them.
+enum orl_result orl_densify_check_maps(const struct orl_log *log, const char *workspace,
+                                       const struct orl_densify_params *params,
+                                       int shrink) ORL_CHECK_RESULT;
+
 // Texels of padding around each source. Patches in a source may be three times as large.
 int orl_densify_padding(const struct orl_densify_params *params);
 

@@ -68,6 +68,15 @@ static enum orl_result add_pictures(struct digest *digest, const char *workspace
     return result;
 }
 
+static json_t *make_settings(const struct orl_densify_params *params, int shrink)
+{
+    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:I, s:i, s:b}", "sources", params->sources,
+                     "iterations", params->iterations, "geometric_passes",
+                     params->geometric_passes, "window_radius", params->window_radius,
+                     "window_step", params->window_step, "seed", (json_int_t)params->seed,
+                     "halvings", shrink, "masks", params->masks_dir != NULL);
+}
+
 static enum orl_result make_record(const struct orl_log *log, const char *workspace,
                                    const struct densify_photos *photos,
                                    const struct orl_densify_params *params, int shrink,
@@ -82,12 +91,9 @@ static enum orl_result make_record(const struct orl_log *log, const char *worksp
         result = add_pictures(&digest, workspace, photos, params->masks_dir);
     if (result == ORL_OK)
         *record = json_pack(
-            "{s:i, s:{s:i, s:i, s:i, s:i, s:i, s:I, s:i, s:b}, s:o}", "version",
-            ORL_DENSIFY_VERSION, "settings", "sources", params->sources, "iterations",
-            params->iterations, "geometric_passes", params->geometric_passes, "window_radius",
-            params->window_radius, "window_step", params->window_step, "seed",
-            (json_int_t)params->seed, "halvings", shrink, "masks", params->masks_dir != NULL,
-            "inputs", json_sprintf("xxh3:%016" PRIx64, XXH3_64bits_digest(digest.state)));
+            "{s:i, s:o, s:o}", "version", ORL_DENSIFY_VERSION, "settings",
+            make_settings(params, shrink), "inputs",
+            json_sprintf("xxh3:%016" PRIx64, XXH3_64bits_digest(digest.state)));
     if (result == ORL_OK && !*record)
         result = orl_fail(log, ORL_ERR_MEMORY, "no memory for the stereo's record");
     XXH3_freeState(digest.state);
@@ -180,6 +186,26 @@ end:
     json_decref(record);
     json_decref(old);
     free(stereo);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_densify_check_maps(const struct orl_log *log, const char *workspace,
+                                       const struct orl_densify_params *params, int shrink)
+{
+    json_t *record = NULL, *settings = make_settings(params, shrink);
+    char *path = orl_path_join(log, workspace, "stereo/densify.json");
+    enum orl_result result = path && settings ? refuse_links(log, workspace) : ORL_ERR_MEMORY;
+    bool same = result == ORL_OK && orl_path_is_file(path) &&
+                orl_json_read(NULL, path, &record) == ORL_OK &&
+                json_integer_value(json_object_get(record, "version")) == ORL_DENSIFY_VERSION &&
+                json_equal(json_object_get(record, "settings"), settings);
+    if (result == ORL_OK && !same)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: not begun with these settings; run oriel "
+                          "prepare --until undistort first, and oriel plan for the commands",
+                          path);
+    json_decref(record);
+    json_decref(settings);
     free(path);
     return result;
 }

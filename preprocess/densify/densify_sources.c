@@ -71,6 +71,7 @@ static void point_views_finish(struct point_views *views)
 {
     free(views->first);
     free(views->photo);
+    *views = (struct point_views){0};
 }
 
 static enum orl_result point_views_init(const struct orl_log *log,
@@ -283,4 +284,35 @@ void orl_densify_transfer(const struct orl_view *to, const struct orl_view *from
         rows[i][2] = (float)(row[2] - row[0] * cf->cx / cf->fx - row[1] * cf->cy / cf->fy);
         rows[i][3] = (float)row[3];
     }
+}
+
+// --- parts ---
+
+// The part of `count` photographs in `parts` parts that photograph `i` belongs to.
+static size_t part_of(size_t i, size_t count, size_t parts)
+{
+    size_t part = i * parts / count;
+    while (count * (part + 1) / parts <= i)
+        part++;
+    return part;
+}
+
+enum orl_result orl_densify_part_sources(const struct orl_log *log,
+                                         const struct orl_colmap_model *model,
+                                         const struct orl_names *names, int sources, int parts,
+                                         bool *reads)
+{
+    struct densify_photos photos;
+    struct densify_plan *plans = NULL;
+    enum orl_result result = orl_densify_photos_init(log, model, names, &photos);
+    if (result != ORL_OK)
+        return result;
+    result = orl_densify_plans_make(log, &photos, sources, &plans);
+    for (size_t i = 0; result == ORL_OK && i < photos.count; i++)
+        for (int k = 0; k < plans[i].count; k++)
+            reads[part_of(i, photos.count, (size_t)parts) * (size_t)parts +
+                  part_of(plans[i].sources[k].photo, photos.count, (size_t)parts)] = true;
+    free(plans);
+    orl_densify_photos_finish(&photos);
+    return result;
 }

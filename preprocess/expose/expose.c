@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "preprocess/expose/align.h"
 #include "preprocess/expose/gain_guess.h"
+#include "preprocess/expose/metered.h"
 #include "preprocess/expose/response.h"
 #include "oriel/points.h"
 
@@ -68,6 +69,7 @@ struct photo {
     int response; // index into the responses, -1: sRGB
     int camera;   // photographs of one camera may share a response, -1: none
     float gain[3], vignette[3];
+    double metering[2]; // orl_photo.metering and metered_ev
 };
 
 // Training photographs come first; each part is sorted by name.
@@ -403,9 +405,25 @@ static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, 
     return ORL_OK;
 }
 
+// Light of a training photograph at the scene's exposure, log2.
+static enum orl_result meter_photo(const struct exposing *e, const struct photo *photo,
+                                   double *light)
+{
+    char *path = orl_job_path(e->job, "images/%s", photo->source->name);
+    if (!path)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = orl_photo_metered(e->job->log, path, &photo->view.camera, photo->gain,
+                                               photo->vignette, light);
+    free(path);
+    return result;
+}
+
 static enum orl_result guess_held_out(struct exposing *e)
 {
     const struct orl_log *log = e->job->log;
+    double metering[2];
+    if (e->count == e->train)
+        return ORL_OK;
     struct orl_gain_view *views = orl_array(log, e->count, sizeof *views);
     uint32_t *shared = orl_array(log, e->count, e->train * sizeof *shared);
     uint32_t *own = orl_array(log, e->count, sizeof *own);
@@ -417,12 +435,16 @@ static enum orl_result guess_held_out(struct exposing *e)
         views[i].ev = e->exposures[i].ev;
         memcpy(views[i].gain, e->photos[i].gain, sizeof views[i].gain);
         orl_pose_centre(&e->photos[i].view.cam_from_world, views[i].eye);
+        if (i < e->train)
+            result = meter_photo(e, &e->photos[i], &views[i].light);
     }
     if (result == ORL_OK) {
         enum orl_gain_guess guess = orl_gains_guess(views, e->train, views + e->train,
-                                                    e->count - e->train, shared, own);
-        for (size_t i = e->train; i < e->count; i++)
+                                                    e->count - e->train, shared, own, metering);
+        for (size_t i = e->train; i < e->count; i++) {
             memcpy(e->photos[i].gain, views[i].gain, sizeof views[i].gain);
+            memcpy(e->photos[i].metering, metering, sizeof metering);
+        }
         json_object_set_new(e->record, "held_out_gain", json_string(orl_gain_guess_name(guess)));
     }
     free(views);
@@ -447,6 +469,9 @@ static json_t *photo_record(const struct photo *p, const struct orl_exposure *e)
         json_object_set_new(entry, "vignette",
                             json_pack("[f,f,f]", (double)p->vignette[0], (double)p->vignette[1],
                                       (double)p->vignette[2]));
+    if (p->metering[0] > 0)
+        json_object_set_new(entry, "metering",
+                            json_pack("[f,f]", p->metering[0], p->metering[1]));
     if (p->response >= 0)
         json_object_set_new(entry, "response", json_integer(p->response));
     return entry;

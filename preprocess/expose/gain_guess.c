@@ -1,17 +1,32 @@
 #include "preprocess/expose/gain_guess.h"
 
 #include <math.h>
-#include <string.h>
-
+#include <stdint.h>
 
 // A guess is used only when its error is less than this fraction of the error without a guess.
 static const double MUST_GAIN = 0.8;
+// The same for metering against the best other guess. It asks for more, because the light of a
+// rendering is not quite that of the photograph, and a camera set by hand does not follow it.
+static const double METERING_MUST_GAIN = 2.0 / 3;
+
+// What all guesses are made from.
+struct known {
+    const struct orl_gain_view *aligned;
+    size_t count;
+    const uint32_t *shared, *own;
+};
 
 const char *orl_gain_guess_name(enum orl_gain_guess guess)
 {
-    static const char *const names[] = {"reference", "neighbours", "exposure",
-                                        "exposure and neighbours"};
+    static const char *const names[] = {
+        "reference", "neighbours", "exposure", "exposure and neighbours", "metering",
+        "metering and neighbours"};
     return names[guess];
+}
+
+static bool is_metered(enum orl_gain_guess guess)
+{
+    return guess == ORL_GUESS_METER || guess == ORL_GUESS_METER_NEAR;
 }
 
 // Weights nearby views, and views that share much of their content: automatic exposure and white
@@ -25,62 +40,107 @@ static double weight(const struct orl_gain_view *a, const struct orl_gain_view *
     return common * common / squared;
 }
 
+// Mean light of the aligned views but `left_out`, and the slope of the gains over the light by least
+// squares, in stops per stop: 1 for a camera that always reaches the same brightness, 0 for a fixed
+// exposure.
+static void fit_metering(const struct known *known, size_t left_out, double metering[2])
+{
+    double n = 0, light = 0, gain = 0, lights = 0, both = 0;
+    for (size_t k = 0; k < known->count; k++) {
+        const struct orl_gain_view *view = &known->aligned[k];
+        if (k == left_out)
+            continue;
+        double stops = 0;
+        for (int c = 0; c < 3; c++)
+            stops += log2((double)view->gain[c]) / 3;
+        n++;
+        light += view->light;
+        gain += stops;
+        lights += view->light * view->light;
+        both += view->light * stops;
+    }
+    double spread = lights - light * light / fmax(n, 1);
+    metering[0] = spread > 1e-9 ? fmin(fmax((both - light * gain / n) / spread, 0), 1) : 0;
+    metering[1] = light / fmax(n, 1);
+}
+
 // log2 of the gain of view `number`. If the view is one of the aligned ones, its own gain is left
-// out.
-static void guess_one(enum orl_gain_guess guess, const struct orl_gain_view *aligned,
-                      size_t count, const struct orl_gain_view *view, size_t number,
-                      const uint32_t *shared, const uint32_t *own, double gain[3])
+// out. metering: see fit_metering.
+static void guess_one(enum orl_gain_guess guess, const struct known *known,
+                      const struct orl_gain_view *view, size_t number, const double metering[2],
+                      double gain[3])
 {
     bool uses_ev = (guess == ORL_GUESS_EXPOSURE || guess == ORL_GUESS_BOTH) && view->known;
-    bool uses_others = guess == ORL_GUESS_NEIGHBOURS || guess == ORL_GUESS_BOTH;
-    double total = 0, sum[3] = {0};
-    for (size_t k = 0; uses_others && k < count; k++) {
-        if (k == number || (uses_ev && !aligned[k].known))
+    bool uses_others = is_metered(guess) || guess == ORL_GUESS_NEIGHBOURS ||
+                       guess == ORL_GUESS_BOTH;
+    double slope = is_metered(guess) ? metering[0] : 0, total = 0, sum[3] = {0};
+    for (size_t k = 0; uses_others && k < known->count; k++) {
+        const struct orl_gain_view *other = &known->aligned[k];
+        if (k == number || (uses_ev && !other->known))
             continue;
-        double w = weight(view, &aligned[k], shared[number * count + k], own[number]);
+        double w = guess == ORL_GUESS_METER ? 1
+                   : weight(view, other, known->shared[number * known->count + k],
+                            known->own[number]);
+        double expected = slope * (other->light - metering[1]) - (uses_ev ? other->ev : 0);
         total += w;
         for (int c = 0; c < 3; c++)
-            sum[c] += w * (log2((double)aligned[k].gain[c]) + (uses_ev ? aligned[k].ev : 0));
+            sum[c] += w * (log2((double)other->gain[c]) - expected);
     }
     for (int c = 0; c < 3; c++)
         gain[c] = (total > 0 ? sum[c] / total : 0) - (uses_ev ? view->ev : 0);
 }
 
-static double error_of(enum orl_gain_guess guess, const struct orl_gain_view *aligned,
-                       size_t count, const uint32_t *shared, const uint32_t *own)
+static double error_of(enum orl_gain_guess guess, const struct known *known)
 {
     double squares = 0;
-    for (size_t i = 0; i < count; i++) {
-        double gain[3];
-        guess_one(guess, aligned, count, &aligned[i], i, shared, own, gain);
+    for (size_t i = 0; i < known->count; i++) {
+        const struct orl_gain_view *view = &known->aligned[i];
+        double gain[3], metering[2] = {0};
+        if (is_metered(guess))
+            fit_metering(known, i, metering);
+        guess_one(guess, known, view, i, metering, gain);
+        double brighter = metering[0] * (view->light - metering[1]);
         for (int c = 0; c < 3; c++)
-            squares += pow(gain[c] - log2((double)aligned[i].gain[c]), 2);
+            squares += pow(gain[c] + brighter - log2((double)view->gain[c]), 2);
     }
     return sqrt(squares);
 }
 
-enum orl_gain_guess orl_gains_guess(const struct orl_gain_view *aligned, size_t aligned_count,
-                                    struct orl_gain_view *others, size_t other_count,
-                                    const uint32_t *shared, const uint32_t *own)
+static enum orl_gain_guess best_guess(const struct known *known)
 {
     bool all_known = true;
-    for (size_t i = 0; i < aligned_count; i++)
-        all_known = all_known && aligned[i].known;
+    for (size_t i = 0; i < known->count; i++)
+        all_known = all_known && known->aligned[i].known;
     enum orl_gain_guess best = ORL_GUESS_REFERENCE;
-    double limit = MUST_GAIN * error_of(best, aligned, aligned_count, shared, own);
-    int last = all_known ? ORL_GUESS_BOTH : ORL_GUESS_NEIGHBOURS;
-    for (int g = ORL_GUESS_NEIGHBOURS; g <= last; g++) {
-        double error = error_of((enum orl_gain_guess)g, aligned, aligned_count, shared, own);
-        if (error < limit) {
+    double limit = MUST_GAIN * error_of(best, known);
+    for (int g = ORL_GUESS_NEIGHBOURS; g <= ORL_GUESS_METER_NEAR; g++) {
+        if (!all_known && (g == ORL_GUESS_EXPOSURE || g == ORL_GUESS_BOTH))
+            continue;
+        double error = error_of((enum orl_gain_guess)g, known);
+        bool turns = is_metered((enum orl_gain_guess)g) && !is_metered(best);
+        if (error < limit * (turns ? METERING_MUST_GAIN : 1)) {
             limit = error;
             best = (enum orl_gain_guess)g;
         }
     }
+    return best;
+}
+
+enum orl_gain_guess orl_gains_guess(const struct orl_gain_view *aligned, size_t aligned_count,
+                                    struct orl_gain_view *others, size_t other_count,
+                                    const uint32_t *shared, const uint32_t *own,
+                                    double metering[2])
+{
+    const struct known known = {aligned, aligned_count, shared, own};
+    enum orl_gain_guess best = best_guess(&known);
+    fit_metering(&known, SIZE_MAX, metering);
     for (size_t i = 0; i < other_count; i++) {
         double gain[3];
-        guess_one(best, aligned, aligned_count, &others[i], aligned_count + i, shared, own, gain);
+        guess_one(best, &known, &others[i], aligned_count + i, metering, gain);
         for (int c = 0; c < 3; c++)
             others[i].gain[c] = (float)exp2(gain[c]);
     }
+    if (!is_metered(best))
+        metering[0] = 0;
     return best;
 }

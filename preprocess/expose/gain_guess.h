@@ -10,6 +10,7 @@ struct orl_gain_view {
     bool known;    // true when ev is set
     double ev;     // relative to the scene's reference
     float gain[3]; // in: of the aligned views; out: of the other views
+    double light;  // of the aligned views: metered light at the scene's exposure, log2
 };
 
 enum orl_gain_guess {
@@ -17,6 +18,8 @@ enum orl_gain_guess {
     ORL_GUESS_NEIGHBOURS, // the gain of nearby photographs that share content
     ORL_GUESS_EXPOSURE,   // the exposure in EXIF or in a list
     ORL_GUESS_BOTH,       // the exposure, corrected by the neighbours' deviation from theirs
+    ORL_GUESS_METER,      // what automatic exposure makes of the light in the picture
+    ORL_GUESS_METER_NEAR, // the same, corrected by the neighbours' deviation from theirs
 };
 const char *orl_gain_guess_name(enum orl_gain_guess guess);
 
@@ -24,8 +27,11 @@ const char *orl_gain_guess_name(enum orl_gain_guess guess);
 // error when each aligned photograph's gain is estimated from the others. shared[i * aligned_count
 // + k]: scene points common to view i and aligned photograph k, where i counts the aligned views
 // first and then the others; own[i]: scene points of view i. Returns the guess that was used.
+// The light in an other view is unknown before it is rendered: its gain holds for the aligned views'
+// mean light, metering[1], and grows by metering[0] stops with each stop of light.
 enum orl_gain_guess orl_gains_guess(const struct orl_gain_view *aligned, size_t aligned_count,
                                     struct orl_gain_view *others, size_t other_count,
-                                    const uint32_t *shared, const uint32_t *own);
+                                    const uint32_t *shared, const uint32_t *own,
+                                    double metering[2]);
 
 #endif

@@ -5,6 +5,7 @@
 #include "core/file.h"
 #include "io/video.h"
 #include "oriel/prepare_params.h"
+#include "oriel/scene.h"
 
 enum orl_import_silhouettes {
     ORL_SILHOUETTES_NONE,
@@ -37,6 +38,7 @@ struct orl_import_params {
     const char *points_file;   // a PLY cloud
     struct orl_prepare_params densify; // of ORL_IMPORT_DENSIFY: only quality, densifier, seed,
                                        // keep, gpu, max_vram_bytes and shader_dir are used
+    struct orl_room room;      // the room that the subject is in; not known: as the cameras' file
     const char *mesh;          // a PLY or OBJ mesh; NULL: none
     int hull_side;             // > 0: the mesh is the silhouettes' visual hull on hull_side^3
                                // voxels

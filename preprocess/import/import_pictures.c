@@ -1,7 +1,6 @@
 // Undistorted photographs, silhouettes and backgrounds of a single picture or a sequence.
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "core/memory.h"
 #include "scene/linear.h"
@@ -48,29 +47,12 @@ static enum orl_result undistort(const struct import_job *job, const struct impo
     return orl_undistort(job->log, from, &job->targets[view->camera], image, out);
 }
 
-static bool is_png(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return dot && strcasecmp(dot, ".png") == 0;
-}
-
 // A picture that needs no change is copied byte for byte, without loss.
 static bool may_copy(const struct import_job *job, const struct import_view *view)
 {
     return view->picture.kind == IMPORT_PICTURE &&
            strcmp(orl_path_name(view->picture.path), orl_path_name(view->name)) == 0 &&
            orl_import_is_same(camera_of(job, view), &job->targets[view->camera]);
-}
-
-static enum orl_result copy_file(const struct orl_log *log, const char *from, const char *to)
-{
-    uint8_t *data;
-    size_t size;
-    enum orl_result result = orl_file_read(log, from, SIZE_MAX / 2, &data, &size);
-    if (result == ORL_OK)
-        result = orl_file_write(log, to, data, size);
-    free(data);
-    return result;
 }
 
 static enum orl_result write_photo(const struct import_job *job, const struct import_view *view,
@@ -80,11 +62,11 @@ static enum orl_result write_photo(const struct import_job *job, const struct im
     char *out = NULL;
     enum orl_result result = output_path(job, "images", frame, view->name, "", &out);
     if (result == ORL_OK && may_copy(job, view)) {
-        result = copy_file(job->log, path, out);
+        result = orl_file_copy(job->log, path, out);
     } else if (result == ORL_OK) {
         result = undistort(job, view, path, picture, &image);
         if (result == ORL_OK)
-            result = is_png(view->name) ? orl_png_write(job->log, out, &image)
+            result = orl_picture_is_png(view->name) ? orl_png_write(job->log, out, &image)
                                         : orl_jpeg_write(job->log, out, &image, JPEG_QUALITY, NULL);
     }
     orl_image_finish(&image);

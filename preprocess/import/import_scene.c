@@ -137,7 +137,7 @@ enum orl_result orl_import_write_points(const struct import_job *job, size_t *co
         else if (points.count)
             result = complete_points(job, &points);
         if (result == ORL_OK)
-            result = orl_points_write(job->log, path, &points);
+            result = orl_points_write(job->log, path, &points, false);
         *count = points.count;
         orl_points_finish(&points);
     }
@@ -147,7 +147,8 @@ enum orl_result orl_import_write_points(const struct import_job *job, size_t *co
 
 // --- mesh.ply ---
 
-static enum orl_result read_silhouettes(const struct import_job *job,
+// folder: "" or "frames/NNNNN/"
+static enum orl_result read_silhouettes(const struct import_job *job, const char *folder,
                                         struct orl_silhouette *silhouettes, size_t *count)
 {
     enum orl_result result = ORL_OK;
@@ -155,7 +156,7 @@ static enum orl_result read_silhouettes(const struct import_job *job,
         if (job->views[i].test)
             continue;
         struct orl_silhouette *one = &silhouettes[*count];
-        char *path = orl_import_path(job, "masks/%s.png", job->views[i].name);
+        char *path = orl_import_path(job, "%smasks/%s.png", folder, job->views[i].name);
         one->view = view_of(job, i);
         result = path ? orl_picture_read(job->log, path, 1, &one->mask) : ORL_ERR_MEMORY;
         *count += result == ORL_OK;
@@ -164,14 +165,15 @@ static enum orl_result read_silhouettes(const struct import_job *job,
     return result;
 }
 
-static enum orl_result carve_mesh(const struct import_job *job, struct orl_mesh *mesh)
+static enum orl_result carve_mesh(const struct import_job *job, const char *folder,
+                                  struct orl_mesh *mesh)
 {
     struct orl_hull hull = {0};
     size_t count = 0;
     struct orl_silhouette *silhouettes =
         orl_array(job->log, job->view_count, sizeof *silhouettes);
-    enum orl_result result = silhouettes ? read_silhouettes(job, silhouettes, &count)
-                                         : ORL_ERR_MEMORY;
+    enum orl_result result =
+        silhouettes ? read_silhouettes(job, folder, silhouettes, &count) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_hull_make(job->log, silhouettes, count, job->params->hull_side, 1, &hull);
     if (result == ORL_OK)
@@ -183,23 +185,51 @@ static enum orl_result carve_mesh(const struct import_job *job, struct orl_mesh 
     return result;
 }
 
-enum orl_result orl_import_write_mesh(const struct import_job *job, size_t *triangles)
+static enum orl_result write_mesh(const struct import_job *job, const char *folder,
+                                  size_t *triangles)
 {
     struct orl_mesh mesh = {0};
-    *triangles = 0;
-    if (!job->params->mesh && !job->params->hull_side)
-        return ORL_OK;
     enum orl_result result = job->params->mesh ? orl_mesh_read(job->log, job->params->mesh, &mesh)
-                                               : carve_mesh(job, &mesh);
+                                               : carve_mesh(job, folder, &mesh);
     if (result == ORL_OK && !mesh.normal)
         result = orl_mesh_set_normals(job->log, &mesh);
-    char *path = result == ORL_OK ? orl_import_path(job, "mesh.ply") : NULL;
+    char *path = result == ORL_OK ? orl_import_path(job, "%smesh.ply", folder) : NULL;
     if (result == ORL_OK)
         result = path ? orl_mesh_write(job->log, path, &mesh) : ORL_ERR_MEMORY;
     *triangles = mesh.triangle_count;
     free(path);
     orl_mesh_finish(&mesh);
     return result;
+}
+
+// A hull belongs to its moment; the mesh of a file belongs to all.
+static enum orl_result carve_moments(const struct import_job *job)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < job->frame_count; i++) {
+        char folder[32];
+        size_t triangles;
+        snprintf(folder, sizeof folder, "frames/%05zu/", i);
+        if (orl_progress_cancelled(job->progress))
+            return ORL_ERR_CANCELLED;
+        result = write_mesh(job, folder, &triangles);
+        if (result == ORL_ERR_DATA) { // the subject may have left the room
+            orl_logf(job->log, ORL_LOG_WARNING, "moment %zu has no hull: it shows that of the scene", i);
+            result = ORL_OK;
+        }
+        orl_progress_report(job->progress, "hulls", (double)(i + 1), (double)job->frame_count,
+                            NULL);
+    }
+    return result;
+}
+
+enum orl_result orl_import_write_mesh(const struct import_job *job, size_t *triangles)
+{
+    *triangles = 0;
+    if (!job->params->mesh && !job->params->hull_side)
+        return ORL_OK;
+    enum orl_result result = write_mesh(job, "", triangles);
+    return result == ORL_OK && job->params->hull_side ? carve_moments(job) : result;
 }
 
 // --- scene.json ---
@@ -258,6 +288,12 @@ static json_t *settings(const struct import_job *job)
                      points[p->points], "max_size", p->max_size, "hull", p->hull_side);
 }
 
+// The room that the user states, else the one of the file of cameras.
+static const struct orl_room *room_of(const struct import_job *job)
+{
+    return job->params->room.known ? &job->params->room : &job->known.room;
+}
+
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
                                           size_t triangles)
 {
@@ -268,9 +304,9 @@ enum orl_result orl_import_write_manifest(const struct import_job *job, size_t p
     if (result == ORL_OK) {
         json_t *sums = json_pack("{s:o}", "points.ply", json_sprintf("xxh3:%016" PRIx64, hash));
         json_t *root = json_pack(
-            "{s:s, s:i, s:s, s:o, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
+            "{s:s, s:i, s:s, s:o, s:o, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
             ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "import", settings(job),
-            "counts", counts(job, points, triangles), "photographs", photographs(job), "left_out",
+            "room", orl_manifest_room(room_of(job)), "counts", counts(job, points, triangles), "photographs", photographs(job), "left_out",
             left_out(job), "stages", "checksums", sums);
         result = root ? orl_json_write(job->log, path, root)
                       : orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
@@ -289,6 +325,7 @@ enum orl_result orl_import_complete_manifest(const struct import_job *job, size_
     if (result == ORL_OK) {
         json_t *numbers = json_object_get(root, "counts");
         json_object_set_new(root, "import", settings(job));
+        json_object_set_new(root, "room", orl_manifest_room(room_of(job)));
         json_object_set_new(root, "left_out", json_incref(missing));
         json_object_set_new(numbers, "given",
                             json_integer((json_int_t)job->known.model.image_count));

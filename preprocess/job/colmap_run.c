@@ -54,6 +54,21 @@ double orl_colmap_line_progress(const char *line, double total)
     return -1;
 }
 
+// Options that COLMAP 4 calls by another name, for features of any kind and for seeds.
+static const char *current_name(const struct orl_job *job, const char *name)
+{
+    static const char *const renamed[][2] = {
+        {"--SiftExtraction.use_gpu", "--FeatureExtraction.use_gpu"},
+        {"--SiftExtraction.max_image_size", "--FeatureExtraction.max_image_size"},
+        {"--SiftMatching.use_gpu", "--FeatureMatching.use_gpu"},
+        {"--SiftMatching.guided_matching", "--FeatureMatching.guided_matching"},
+    };
+    for (size_t i = 0; job->colmap_features && i < ORL_COUNT(renamed); i++)
+        if (strcmp(name, renamed[i][0]) == 0)
+            return renamed[i][1];
+    return job->colmap_seed && strcmp(name, "--random_seed") == 0 ? "--default_random_seed" : name;
+}
+
 struct watch {
     const struct orl_job *job;
     const struct orl_colmap_run *run;
@@ -98,7 +113,7 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
     static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     const char *argv[ORL_COLMAP_ARGS_MAX + 3] = {job->colmap, run->command};
     for (size_t i = 0; i < args->count; i++)
-        argv[2 + i] = args->items[i];
+        argv[2 + i] = i % 2 ? args->items[i] : current_name(job, args->items[i]);
     char *log_path = orl_job_path(job, "logs/colmap.log");
     struct watch watch = {.job = job, .run = run};
     struct orl_log held = {.level = ORL_LOG_ERROR, .print = hold_error, .priv = &watch};
@@ -107,6 +122,9 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
                                         .line_priv = &watch, .env = env};
     struct orl_process_usage usage = {0};
     enum orl_result result = ORL_ERR_MEMORY;
+    if (args->failed)
+        orl_logf(job->log, ORL_LOG_ERROR, "COLMAP %s: arguments too long, or no memory for them",
+                 run->command);
     if (!log_path || args->failed)
         goto end;
     if (run->done == 0)
@@ -141,6 +159,13 @@ static void find_version(void *priv, const char *line)
         job->colmap_cuda = true;
 }
 
+static void find_options(void *priv, const char *line)
+{
+    struct orl_job *job = priv;
+    job->colmap_features |= strstr(line, "--FeatureExtraction.use_gpu") != NULL;
+    job->colmap_seed |= strstr(line, "--default_random_seed") != NULL;
+}
+
 enum orl_result orl_job_find_colmap(struct orl_job *job)
 {
     if (job->colmap_known)
@@ -149,6 +174,7 @@ enum orl_result orl_job_find_colmap(struct orl_job *job)
     const char *chosen = getenv("ORIEL_COLMAP");
     job->colmap = chosen && *chosen ? chosen : "colmap";
     const char *const argv[] = {job->colmap, "help", NULL};
+    const char *const options[] = {job->colmap, "feature_extractor", "--help", NULL};
     struct orl_process_params params = {.argv = argv, .progress = job->progress,
                                         .line = find_version, .line_priv = job, .env = env};
     enum orl_result result = orl_process_run(job->log, &params, NULL);
@@ -156,6 +182,11 @@ enum orl_result orl_job_find_colmap(struct orl_job *job)
         return advise_missing(job);
     if (result != ORL_OK)
         return result;
+    // Some builds end this help with a status of failure; what it printed counts.
+    params.argv = options;
+    params.line = find_options;
+    if (orl_process_run(NULL, &params, NULL) == ORL_ERR_CANCELLED)
+        return ORL_ERR_CANCELLED;
     job->colmap_known = true;
     orl_logf(job->log, ORL_LOG_DEBUG, "COLMAP %s, %s CUDA", job->colmap_version,
              job->colmap_cuda ? "with" : "without");

@@ -77,7 +77,7 @@ static bool is_title(char *fields[FIELDS_MAX], int count)
 static enum orl_result add_line(const struct orl_log *log, const char *path, int number,
                                 char *line, size_t *capacity, struct orl_exposure_list *list)
 {
-    char *fields[FIELDS_MAX] = {0};
+    char *fields[FIELDS_MAX] = {line};
     int count = split(line, fields);
     struct orl_listed_exposure entry = {0};
     if (!*fields[0] && count == 1)

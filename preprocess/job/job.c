@@ -206,13 +206,29 @@ enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,
     return result;
 }
 
-void orl_job_hint_disk(const struct orl_job *job)
+// Negative: unknown.
+static double free_mib(const struct orl_job *job)
 {
     struct statvfs fs;
-    if (statvfs(job->dir, &fs) != 0)
-        return;
-    double mib = (double)fs.f_bavail * (double)fs.f_frsize / (1 << 20);
-    if (mib < 64)
+    return statvfs(job->dir, &fs) == 0 ? (double)fs.f_bavail * (double)fs.f_frsize / (1 << 20) : -1;
+}
+
+enum orl_result orl_job_need_disk(const struct orl_job *job, const char *stage, double bytes)
+{
+    double need = bytes / (1 << 20), have = free_mib(job);
+    if (have >= 0 && need > have)
+        return orl_fail(job->log, ORL_ERR_IO, "%s: %s writes about %.0f MiB and the disk has %.0f "
+                        "MiB left: make room and go on with --resume, or use another disk or a "
+                        "smaller --max-size", job->dir, stage, need, have);
+    orl_logf(job->log, need > 0.5 * have ? ORL_LOG_INFO : ORL_LOG_DEBUG,
+             "%s: writes about %.0f MiB; %.0f MiB are free", stage, need, have);
+    return ORL_OK;
+}
+
+void orl_job_hint_disk(const struct orl_job *job)
+{
+    double mib = free_mib(job);
+    if (mib >= 0 && mib < 64)
         orl_logf(job->log, ORL_LOG_ERROR, "%s: its disk has only %.1f MiB left", job->dir, mib);
 }
 

@@ -20,6 +20,7 @@ enum orl_stage_id {
     ORL_STAGE_FUSE,
     ORL_STAGE_RADII,
     ORL_STAGE_GROUND,
+    ORL_STAGE_MESH,
     ORL_STAGE_EXPOSE,
     ORL_STAGE_COUNT
 };
@@ -27,13 +28,14 @@ enum orl_stage_id {
 // A photograph of the input that can be read.
 struct orl_source {
     char *name;     // owned; unique, also its name in COLMAP's database
-    char *given;    // owned; its name in the input
+    char *given;    // owned; its path in the input, below the folder that was given
     char *path;     // owned; absolute path of the file that COLMAP reads
     char *original; // owned; absolute path of the file that `path` was developed from, NULL: none
     char *mask; // owned; absolute path of its mask, NULL: none
     uint64_t hash, mask_hash;
     int width, height;
     struct orl_exif exif;
+    int clip;       // the video that it is a frame of, from 1 on; 0: a photograph
     bool test;
     bool deep;      // more than 8 bits a sample
     bool unbounded; // floating point without a fixed white
@@ -64,6 +66,7 @@ struct orl_job {
     const char *colmap;
     char colmap_version[64];
     bool colmap_known, colmap_cuda;
+    bool colmap_features, colmap_seed; // has it COLMAP 4's option names for features, for seeds?
     char keys[ORL_STAGE_COUNT][20]; // hexadecimal; a hash of everything that a stage's result
                                     // depends on
     char exposures_hash[20];        // of the list of exposures; "": none
@@ -101,6 +104,10 @@ bool orl_job_has(const struct orl_job *job, const char *name);
 // Writes one name per line.
 enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,
                                    const struct orl_names *names) ORL_CHECK_RESULT;
+// Says what `stage` is about to write and fails with ORL_ERR_IO when the scene's disk has not that
+// much left.
+enum orl_result orl_job_need_disk(const struct orl_job *job, const char *stage,
+                                  double bytes) ORL_CHECK_RESULT;
 // Logs a hint when the scene's disk is nearly full.
 void orl_job_hint_disk(const struct orl_job *job);
 

@@ -1,7 +1,5 @@
 #include "preprocess/photos/collect.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,120 +9,9 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "preprocess/photos/advice.h"
 #include "preprocess/photos/develop.h"
-
-// Picture formats that Oriel does not read, though a user may expect it to.
-static bool is_other_photo_name(const char *name)
-{
-    static const char *const known[] = {"heic", "heif", "webp", "bmp", "gif", "avif", NULL};
-    return name[0] != '.' && orl_has_extension(name, known);
-}
-
-static void skip(struct orl_job *job, const char *name, const char *why)
-{
-    orl_logf(job->log, ORL_LOG_WARNING, "%s: %s; skipped", name, why);
-    json_t *entry = json_pack("{s:s, s:s}", "name", name, "why", why);
-    if (!entry) // JSON must be UTF-8
-        entry = json_pack("{s:s, s:s}", "name", "(name is not UTF-8)", "why", "cannot be used");
-    json_array_append_new(job->skipped, entry);
-}
-
-// Files made from a photograph have longer names, and file systems allow 255 bytes.
-enum { NAME_MAX_BYTES = 200 };
-
-// COLMAP's lists are lines, its stereo lists are separated by commas, and '#' starts a comment. A
-// name must be valid in all of them; NULL: it is.
-static const char *name_problem(const char *name)
-{
-    size_t length = strlen(name);
-    if (name[0] == '#' || isspace((unsigned char)name[0]) ||
-        isspace((unsigned char)name[length - 1]))
-        return "its name starts with # or starts or ends with a space: rename it";
-    for (const char *c = name; *c; c++)
-        if ((unsigned char)*c < 32 || *c == ',')
-            return "its name has a comma or a control character: rename it";
-    if (length > NAME_MAX_BYTES)
-        return "its name is longer than 200 bytes: rename it";
-    json_t *text = json_string(name);
-    json_decref(text);
-    return text ? NULL : "its name is not UTF-8: rename it";
-}
-
-static enum orl_result add_candidate(struct orl_job *job, const char *path)
-{
-    const char *name = orl_path_name(path);
-    job->given++;
-    char *real = realpath(path, NULL);
-    const char *problem = !real ? strerror(errno)
-                          : !orl_path_is_file(real) ? "not a regular file"
-                                                    : name_problem(name);
-    enum orl_result result = ORL_OK;
-    if (problem) {
-        skip(job, path, problem);
-        goto end;
-    }
-    result = orl_grow(job->log, (void **)&job->sources, &job->source_capacity,
-                      job->source_count + 1, sizeof *job->sources);
-    if (result != ORL_OK)
-        goto end;
-    struct orl_source *source = &job->sources[job->source_count++];
-    *source = (struct orl_source){.name = orl_develop_wanted(name)
-                                              ? orl_develop_name(job->log, name)
-                                              : orl_strdup(job->log, name),
-                                  .given = orl_strdup(job->log, name), .path = real};
-    real = NULL;
-    result = source->name && source->given ? ORL_OK : ORL_ERR_MEMORY;
-end:
-    free(real);
-    return result;
-}
-
-static enum orl_result add_folder(struct orl_job *job, const char *dir)
-{
-    struct orl_names names;
-    enum orl_result result = orl_dir_list(job->log, dir, &names);
-    size_t before = job->given, videos = 0;
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *path = orl_path_join(job->log, dir, names.items[i]);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (orl_is_photo_name(names.items[i]) && !orl_path_is_dir(path))
-            result = add_candidate(job, path);
-        else if (orl_is_video_name(names.items[i]))
-            videos++;
-        else if (is_other_photo_name(names.items[i])) {
-            job->given++;
-            skip(job, path, "not JPEG, PNG, TIFF, EXR or RAW");
-        }
-        free(path);
-    }
-    orl_names_finish(&names);
-    if (result == ORL_OK && job->given == before)
-        result = orl_fail_no_photos(job, dir);
-    else if (result == ORL_OK && videos)
-        orl_logf(job->log, ORL_LOG_WARNING, "%s: videos are left out: %zu", dir, videos);
-    return result;
-}
-
-static enum orl_result list_inputs(struct orl_job *job)
-{
-    const struct orl_prepare_params *params = job->params;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < params->input_count; i++) {
-        const char *input = params->inputs[i];
-        if (orl_path_is_dir(input))
-            result = add_folder(job, input);
-        else if (orl_is_video_name(orl_path_name(input)) && orl_path_is_file(input))
-            result = orl_fail_video(job, input);
-        else if (access(input, F_OK) == 0)
-            result = add_candidate(job, input);
-        else
-            result = orl_fail(job->log, ORL_ERR_NOT_FOUND,
-                              "%s: no such folder or file; give a folder of photographs", input);
-    }
-    return result;
-}
+#include "preprocess/photos/doubts.h"
+#include "preprocess/photos/list.h"
 
 static int compare_sources(const void *a, const void *b)
 {
@@ -165,7 +52,7 @@ static void skip_for(struct orl_job *job, struct orl_source *source, const struc
     size_t length = strlen(source->path);
     bool named = strncmp(reason->text, source->path, length) == 0;
     const char *why = reason->text + (named ? length : 0);
-    skip(job, source->path, why + strspn(why, ": "));
+    orl_photos_skip(job, source->path, why + strspn(why, ": "));
     orl_source_finish(source);
 }
 
@@ -209,7 +96,7 @@ static void drop_twins(struct orl_job *job)
         if (better) {
             char why[512];
             snprintf(why, sizeof why, "%s holds more of the same photograph", better->given);
-            skip(job, source->path, why);
+            orl_photos_skip(job, source->path, why);
             orl_source_finish(source);
         } else {
             keep_source(job, source, &kept);
@@ -231,8 +118,8 @@ static enum orl_result drop_duplicates(struct orl_job *job)
         if (last && strcmp(last->name, source->name) == 0) {
             if (strcmp(last->path, source->path) != 0)
                 return orl_fail(job->log, ORL_ERR_ARGUMENT,
-                                "%s and %s have the same name: rename one", last->path,
-                                source->path);
+                                "%s and %s have the same name, %s: rename one, or give the "
+                                "folder that holds both", last->path, source->path, source->name);
             orl_source_finish(source);
             job->given--;
             continue;
@@ -274,9 +161,11 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
                  source->height);
         return false;
     }
-    if (known_good(job, source))
+    if (known_good(job, source) && orl_doubts_has_look(job, source))
         return true;
     bool good = orl_picture_read(&log, source->path, 1, &image) == ORL_OK;
+    if (good)
+        orl_doubts_keep_look(job, source, &image);
     orl_image_finish(&image);
     return good;
 }
@@ -316,13 +205,50 @@ static void drop_copies(struct orl_job *job)
         if (same) {
             char why[512];
             snprintf(why, sizeof why, "the same file as %s", same->given);
-            skip(job, source->given, why); // the path may be that of the other
+            orl_photos_skip(job, source->given, why); // the path may be that of the other
             orl_source_finish(source);
         } else {
             keep_source(job, source, &kept);
         }
     }
     job->source_count = kept;
+}
+
+// Names blurred photographs and those that show the picture of another; leaves out those that the
+// settings say.
+static enum orl_result drop_doubtful(struct orl_job *job)
+{
+    enum orl_leave_out leave_out = job->params->leave_out;
+    struct orl_doubt *doubts = orl_array(job->log, job->source_count, sizeof *doubts);
+    char **names = orl_array(job->log, job->source_count, sizeof *names);
+    enum orl_result result = doubts && names ? orl_doubts_find(job, doubts) : ORL_ERR_MEMORY;
+    size_t kept = 0, count = result == ORL_OK ? job->source_count : 0;
+    for (size_t i = 0; i < count; i++)
+        names[i] = job->sources[i].given;
+    for (size_t i = 0; i < count; i++) {
+        struct orl_source *source = &job->sources[i];
+        char why[512] = "";
+        if (doubts[i].same >= 0)
+            snprintf(why, sizeof why, "shows the same as %s", names[doubts[i].same]);
+        else if (doubts[i].blurred)
+            snprintf(why, sizeof why, "blurred");
+        bool out = (doubts[i].same >= 0 && leave_out >= ORL_LEAVE_OUT_DUPLICATES) ||
+                   (doubts[i].blurred && (leave_out == ORL_LEAVE_OUT_BLURRED ||
+                                          leave_out == ORL_LEAVE_OUT_BOTH));
+        if (out) {
+            orl_photos_skip(job, source->path, why);
+            orl_source_finish(source);
+        } else {
+            if (*why)
+                orl_logf(job->log, ORL_LOG_WARNING, "%s: %s (see --leave-out)", source->given, why);
+            keep_source(job, source, &kept);
+        }
+    }
+    if (result == ORL_OK)
+        job->source_count = kept;
+    free(doubts);
+    free(names);
+    return result;
 }
 
 // True when `given` is the name, with or without its extension.
@@ -358,27 +284,35 @@ static enum orl_result choose_test(struct orl_job *job)
     return ORL_OK;
 }
 
-static enum orl_result find_mask(struct orl_job *job, struct orl_source *source)
+// By the photograph's name in the scene or in the input, with or without its extension.
+static enum orl_result find_mask_file(const struct orl_job *job, struct orl_source *source)
 {
-    const char *dot = strrchr(source->name, '.');
-    char *paths[2] = {
-        orl_format(job->log, "%s/%s.png", job->params->masks_dir, source->name),
-        orl_format(job->log, "%s/%.*s.png", job->params->masks_dir,
-                   (int)(dot ? dot - source->name : (long)strlen(source->name)), source->name)};
-    enum orl_result result = paths[0] && paths[1] ? ORL_OK : ORL_ERR_MEMORY;
-    for (int i = 0; result == ORL_OK && i < 2 && !source->mask; i++)
-        if (orl_path_is_file(paths[i]))
-            source->mask = realpath(paths[i], NULL);
+    const char *const names[] = {source->name, source->given};
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < 4 && !source->mask; i++) {
+        const char *name = names[i / 2];
+        char *path = orl_format(job->log, "%s/%.*s.png", job->params->masks_dir,
+                                (int)(i % 2 ? stem_length(name) : strlen(name)), name);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (orl_path_is_file(path))
+            source->mask = realpath(path, NULL);
+        free(path);
+    }
+    return result;
+}
+
+static enum orl_result find_mask(const struct orl_job *job, struct orl_source *source)
+{
+    enum orl_result result = find_mask_file(job, source);
     int width, height;
-    if (source->mask &&
+    if (result == ORL_OK && source->mask &&
         (result = orl_file_hash(job->log, source->mask, &source->mask_hash)) == ORL_OK &&
         (result = orl_picture_size(job->log, source->mask, &width, &height)) == ORL_OK &&
         (width != source->width || height != source->height))
         result = orl_fail(job->log, ORL_ERR_DATA, "%s: %dx%d pixels, but its photograph %s has "
                           "%dx%d", source->mask, width, height, source->name, source->width,
                           source->height);
-    free(paths[0]);
-    free(paths[1]);
     return result;
 }
 
@@ -431,12 +365,14 @@ static enum orl_result too_few(const struct orl_job *job)
 enum orl_result orl_stage_collect(struct orl_job *job)
 {
     enum orl_result result;
-    if ((result = list_inputs(job)) != ORL_OK)
+    if ((result = orl_photos_list(job)) != ORL_OK)
         return result;
     drop_twins(job);
     if ((result = drop_duplicates(job)) != ORL_OK || (result = inspect_all(job)) != ORL_OK)
         return result;
     drop_copies(job);
+    if ((result = drop_doubtful(job)) != ORL_OK)
+        return result;
     if (job->source_count < 3)
         return too_few(job);
     if ((result = choose_test(job)) != ORL_OK || (result = find_masks(job)) != ORL_OK ||

@@ -17,7 +17,8 @@ static const float light_max = 65504; // greatest half float; infinities would s
 
 bool orl_develop_wanted(const char *name)
 {
-    static const char *const known[] = {".tif", ".tiff", ".exr"};
+    static const char *const known[] = {".tif", ".tiff", ".exr", ".heic", ".heif",
+                                        ".avif"};
     const char *dot = strrchr(name, '.');
     for (size_t i = 0; dot && i < ORL_COUNT(known); i++)
         if (strcasecmp(dot, known[i]) == 0)

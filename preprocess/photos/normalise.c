@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "core/color.h"
 #include "core/memory.h"
@@ -52,12 +51,6 @@ bool orl_normalise_wanted(const struct orl_job *job)
     return find_target(job, &target);
 }
 
-static bool is_png(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return dot && strcasecmp(dot, ".png") == 0;
-}
-
 // Writes the pixels brightened, from the original where it has more than 8 bits.
 static enum orl_result write_copy(const struct orl_job *job, const struct orl_source *source,
                                   double ev, const char *path)
@@ -72,7 +65,7 @@ static enum orl_result write_copy(const struct orl_job *job, const struct orl_so
     for (size_t i = 0; i < count; i++)
         copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(factor * linear.f32[i]));
     if (result == ORL_OK)
-        result = is_png(source->name)
+        result = orl_picture_is_png(source->name)
                      ? orl_png_write(job->log, path, &copy)
                      : orl_jpeg_write(job->log, path, &copy, JPEG_QUALITY, &source->exif);
     orl_image_finish(&linear);

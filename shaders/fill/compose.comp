@@ -65,6 +65,7 @@ void compose(uvec2 group)
         bool on_surface = imageLoad(depth, at).r > 0.0;
         float weight = pixel_weight(pixel);
         vec3 own = weight > 0.0 ? pixel.rgb / weight : vec3(0.0);
+        own = layers == 1 ? pixel.rgb + (1.0 - weight) * filled : own;
 #ifdef RADIANCE
         float blur = imageLoad(trusted, at).z - 1.0;
         own = blur > 0.0 ? softened(at, own, blur) : own;

@@ -15,15 +15,16 @@ layout(rgba32f, binding = 0) readonly uniform image2D picture; // colour, covera
 layout(rgba32f, binding = 1) writeonly uniform image2D filtered;
 layout(r32f, binding = 2) readonly uniform image2D depth; // <= 0: no surface
 
-// The median of the known values. Equal values are ordered by index.
-float median(float values[COUNT], bool known[COUNT], int count)
+// The median of the covered values, `count` of them. Equal values are ordered by index.
+float median(float values[COUNT], float coverage[COUNT], int count)
 {
     float middle = 0.0;
     for (int i = 0; i < COUNT; i++) {
         int below = 0;
         for (int j = 0; j < COUNT; j++)
-            below += known[j] && (values[j] < values[i] || (values[j] == values[i] && j < i)) ? 1 : 0;
-        middle = known[i] && below == count / 2 ? values[i] : middle;
+            below += coverage[j] > 0.0 &&
+                     (values[j] < values[i] || (values[j] == values[i] && j < i)) ? 1 : 0;
+        middle = coverage[i] > 0.0 && below == count / 2 ? values[i] : middle;
     }
     return middle;
 }
@@ -44,18 +45,17 @@ void main()
         imageStore(filtered, at, own);
         return;
     }
-    float red[COUNT], green[COUNT], blue[COUNT];
-    bool known[COUNT];
+    float red[COUNT], green[COUNT], blue[COUNT], coverage[COUNT];
     int count = 0;
     for (int k = 0; k < COUNT; k++) {
         vec4 other = imageLoad(picture, at + ivec2(k % SIDE, k / SIDE) - REACH); // 0 outside
         red[k] = other.r;
         green[k] = other.g;
         blue[k] = other.b;
-        known[k] = other.a > 0.0;
-        count += known[k] ? 1 : 0;
+        coverage[k] = other.a;
+        count += other.a > 0.0 ? 1 : 0;
     }
-    vec3 color = vec3(median(red, known, count), median(green, known, count),
-                      median(blue, known, count));
+    vec3 color = vec3(median(red, coverage, count), median(green, coverage, count),
+                      median(blue, coverage, count));
     imageStore(filtered, at, count > 0 ? vec4(color, own.a) : own);
 }

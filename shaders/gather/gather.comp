@@ -16,6 +16,9 @@ layout(rgba32f, binding = 3) uniform image2D state_1;
 #include <visibility> // float visible_surface(shot, point, seen, z), visible_guess: 0 to 1
 #include <weight>     // float weight_of(shot, point): weight in any unit
 #include "gather/ask.glsl"
+#ifdef ROOM // 1: where there is no surface; 2: everywhere
+#include "gather/room.glsl"
+#endif
 #include <combine>    // combine_begin, _add, _end; photo_first, photo_next: order of photographs
 
 void main()
@@ -24,6 +27,9 @@ void main()
     if (at.x >= view_size.x || at.y >= view_size.y)
         return;
     float depth = imageLoad(view_depth, at).r;
+#ifdef ROOM
+    depth = ROOM == 2 || !(depth > 0.0) ? -room_depth(at) : 0.0;
+#endif
     if (depth == 0.0)
         return;
     Point point = Point(surface_point(at, abs(depth)), imageLoad(view_normal, at).xyz, depth < 0.0);

@@ -21,9 +21,14 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 
 // A pixel's surface point.
 struct spot {
-    vec3 p;       // z 0: no surface
-    bool guessed; // on estimated background depth
+    vec3 p;      // z 0: no surface
+    float guess; // 1: on estimated background depth, else 0; no bool: docs/develop/shaders.md
 };
+
+bool is_guess(spot s)
+{
+    return s.guess > 0.0;
+}
 
 // A photograph that shows the surface point.
 struct sight {
@@ -74,11 +79,12 @@ void consider(int i, photo shot, spot s, inout ranking r)
     vec4 seen = photo_depths(shot, pixel);
     float penalty = photo_penalty(shot, s.p);
     // Estimated depth is tested even if the method has no visibility test: it is behind everything.
-    float sees = s.guessed ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
-                           : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
-    penalty = s.guessed ? penalty : photo_surface_penalty(penalty);
-    float sure = sees * photo_border(shot, pixel, s.guessed);
-    bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (s.guessed ? GUESS_SURE_LEAST : 1e-4);
+    float sees = is_guess(s) ? photo_unhidden_share(shot, seen, z) * photo_past_share(shot, seen, z) *
+                                   photo_beside(penalty)
+                             : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
+    penalty = is_guess(s) ? penalty : photo_surface_penalty(penalty);
+    float sure = sees * photo_border(shot, pixel, is_guess(s));
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);
 }
 
@@ -89,7 +95,7 @@ vec4 look(sight one, float least, float limit, spot s)
     // trace of weight remains at equality, so that photographs that tie for the last place paint.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
     vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
-    float sharpness = s.guessed ? opt.guess_sharpness : opt.sharpness;
+    float sharpness = is_guess(s) ? opt.guess_sharpness : opt.sharpness;
     bool counts = one.penalty < NOT_SEEN && one.penalty <= limit;
     return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
 }
@@ -112,7 +118,7 @@ vec4 blend(spot s, ranking r, out float blur)
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
     vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
-    float severity = outlier_severity * (s.guessed ? GUESS_SEVERITY : 1.0);
+    float severity = outlier_severity * (is_guess(s) ? GUESS_SEVERITY : 1.0);
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(samples[k].rgb) - mean;
         sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
@@ -134,7 +140,7 @@ void main()
         ivec2 at = corner + ivec2(k & 1, k >> 1);
         float stored = imageLoad(view_depth, at).r; // 0 outside
         spots[k] = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
-                        stored < 0.0);
+                        stored < 0.0 ? 1.0 : 0.0);
         rankings[k].next = NOT_SEEN;
         for (int n = 0; n < KEPT; n++)
             rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
@@ -156,7 +162,7 @@ void main()
     for (int k = 0; k < 4; k++) {
         float own;
         colors[k] = blend(spots[k], rankings[k], own);
-        vec4 guessed = spots[k].guessed ? colors[k] : vec4(0.0);
+        vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
         seed += colors[k];
         guess += guessed;
         blur = guessed.a > 0.0 ? max(blur, own) : blur;
@@ -164,11 +170,11 @@ void main()
     bool whole = true;
     for (int k = 0; k < 4; k++) {
         bool has_color = colors[k].a > 0.0;
-        bool blurs = has_color && spots[k].guessed && blur > 0.0;
+        bool blurs = has_color && is_guess(spots[k]) && blur > 0.0;
         whole = whole && has_color && !blurs;
         colors[k] = !has_color ? pixel_unpainted()
                     : blurs    ? pixel_to_blur(colors[k].rgb, blur)
-                               : pixel_finished(colors[k].rgb, !spots[k].guessed);
+                               : pixel_finished(colors[k].rgb, !is_guess(spots[k]));
     }
     // Stores come last: a value that outlives a store costs a software renderer a load. Stores that
     // lie outside the picture do nothing.

@@ -7,7 +7,7 @@
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D depth;
-layout(r32f, binding = 1) writeonly uniform image2D guessed; // the same depth, with estimates
+layout(binding = 1) writeonly uniform image2D guessed; // the same depth, with estimates
 
 const int DIRECTIONS = 8, STRIDE = 2;
 const int REACH_SHARE = 24; // reach: the picture's longer side divided by this

@@ -36,7 +36,6 @@ surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 
 {
     vec2 target_ray = camera_ray(target);
     float front = 1e38, front_far = 0.0;
-    bool hit[4];
     for (int i = 0; i < 4; i++) {
         bool inside;
         float depth = surfel_depth_at(disc[i], ray[i], target_ray, inside);
@@ -46,15 +45,16 @@ surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 
         vec2 off = centre[i] - target;
         bool closes = own_near <= 0.0 &&
                       dot(off, off) <= SURFEL_MIN_RADIUS_PX * SURFEL_MIN_RADIUS_PX;
-        hit[i] = disc[i].radius > 0.0 && depth > 0.0 && (inside || closes);
-        bool nearer = hit[i] && disc[i].near < front;
+        bool hit = disc[i].radius > 0.0 && depth > 0.0 && (inside || closes);
+        weight[i] = hit ? weight[i] : 0.0;
+        bool nearer = hit && disc[i].near < front;
         front = nearer ? disc[i].near : front;
         front_far = nearer ? disc[i].far : front_far;
     }
     surfel sum = surfel(front, front_far, 0.0, 0.0, vec3(0.0), vec2(0.0));
     float total = 0.0;
     for (int i = 0; i < 4; i++) {
-        float w = hit[i] && disc[i].near <= front_far ? weight[i] : 0.0;
+        float w = disc[i].near <= front_far ? weight[i] : 0.0;
         sum.far = max(sum.far, w > 0.0 ? disc[i].far : 0.0);
         sum.depth += w * disc[i].depth;
         sum.radius += w * disc[i].radius;

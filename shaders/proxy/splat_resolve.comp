@@ -75,14 +75,16 @@ void main()
 #else
     vec4 own[4];
 #endif
-    bool mine[4];
+#ifdef CHUNKS
+    int written = 0; // a bit for each child that this chunk decides
+#endif
     for (int i = 0; i < 4; i++) {
         ivec2 at = 2 * parent + ivec2(i & 1, i >> 1);
         uint point = imageLoad(splat_index, at).x - uint(first_point);
-        mine[i] = point < uint(point_count) && at.x < view_size.x && at.y < view_size.y;
+        bool mine = point < uint(point_count) && at.x < view_size.x && at.y < view_size.y;
         // Without a branch, the view's parameters are loaded once for all four pixels.
-        child[i] = splat(at, mine[i] ? int(point) : 0);
-        child[i].radius = mine[i] ? child[i].radius : 0.0;
+        child[i] = splat(at, mine ? int(point) : 0);
+        child[i].radius = mine ? child[i].radius : 0.0;
         vec2 centre = vec2(at) + 0.5;
         vec2 ray = splat_ray(centre + child[i].displacement), target = splat_ray(centre);
 #ifdef NORMALS
@@ -91,8 +93,9 @@ void main()
         own[i] = vec4(surfel_own_depth(child[i], ray, target));
 #endif
 #ifdef CHUNKS
-        mine[i] = mine[i] || first_point == 0;
-        if (!mine[i])
+        mine = mine || first_point == 0;
+        written |= mine ? 1 << i : 0;
+        if (!mine)
             child[i] = surfel_unpack_splat(imageLoad(won, at));
         imageStore(won, at, surfel_pack_splat(child[i]));
 #endif
@@ -101,7 +104,7 @@ void main()
     // Stores come last: see gather/tiled.comp.
     for (int i = 0; i < 4; i++)
 #ifdef CHUNKS
-        if (mine[i])
+        if ((written >> i & 1) == 1)
 #endif
             imageStore(splats, 2 * parent + ivec2(i & 1, i >> 1), own[i]);
     imageStore(coarse_a, parent, surfel_pack_a(merged));

@@ -36,8 +36,8 @@ ORL_BLOCK(mesh_block)
     VEC4(eye);          // camera centre, world
     VEC4(focal);        // fx fy cx cy, pixels
     IVEC2(view_size);   // pixels
-    FLOAT(depth_near);  // least depth that is drawn
-    FLOAT(unused);
+    FLOAT(depth_near);  // range of depths that is drawn
+    FLOAT(depth_far);
 };
 #endif
 
@@ -106,6 +106,12 @@ ORL_BLOCK(gather_block)
     FLOAT(blur_per_radian);  // opt.guess_blur if background depth is estimated, else 0; radians
     FLOAT(model_variance);   // of radiance: variance of the relative error at full exposure
     FLOAT(least_radiance);   // least radiance that differs from darkness
+    FLOAT(voxel);            // edge of a voxel, scene units
+    INT(voxel_side);         // voxels each way
+    FLOAT(billboard_half);   // half the width of a billboard, scene units
+    // Rows of rotation | translation: of billboards to units of a voxel, of the room to a space
+    // where its walls are at -1 and 1, or the shell has radius 1.
+    VEC4S(local_from_view, 3);
     RENDER_OPTIONS_MEMBER;
 };
 #endif
@@ -129,9 +135,9 @@ ORL_BLOCK(image_block)
     VEC4(focal);        // fx fy cx cy
     VEC4(ground);       // dot(xyz, ray) is the ground's inverse depth; w: the least one used
     FLOAT(depth_scale); // a typical depth of the scene
+    INT(layers);        // compose: 1: a pixel's weight is alpha, and it lies over what is behind
     FLOAT(unused_1);
     FLOAT(unused_2);
-    FLOAT(unused_3);
 };
 #endif
 

@@ -95,11 +95,30 @@ const int FIRST_COUNT = SAMPLE_COUNT;
 #define sample_at(i) samples[i]
 #endif
 
+#ifdef GLOSS
+// What a mirror at the hit shows: one reflection, of surfaces as if without gloss.
+vec3 mirrored(Hit hit, vec3 ray)
+{
+    const float LIFT = 0.02; // metres, so that the ray leaves its own surface
+    vec3 way = reflect(ray, hit.n), from = hit.p + LIFT * hit.n;
+    float t = trace(from, way, LIFT);
+    if (t >= SKY_T)
+        return sky(way);
+    vec3 p = from + way * t, n = surface_normal(p, 3e-4 * hit.t);
+    return radiance(p, n, material_at(p, n, (hit.t + t) / camera.x), light_at(p, n));
+}
+#endif
+
 vec3 color_of(Hit hit, vec3 ray)
 {
     if (hit.t >= SKY_T)
         return sky(ray);
-    return radiance(hit.p, hit.n, material_at(hit.p, hit.n, hit.t / camera.x), hit.light);
+    vec3 color = radiance(hit.p, hit.n, material_at(hit.p, hit.n, hit.t / camera.x), hit.light);
+#ifdef GLOSS
+    if (part_at(hit.p) == PART_MONUMENT)
+        color = mix(color, mirrored(hit, normalize(ray)), view_light.y);
+#endif
+    return color;
 }
 
 void main()
@@ -143,6 +162,11 @@ void main()
         mean = fine / float(FINE * FINE);
 #endif
     vec3 n = vec3(dot(centre.n, right.xyz), dot(centre.n, down.xyz), dot(centre.n, forward.xyz));
-    imageStore(radiance_image, pixel, vec4(mean, 1.0));
+    float textured = 1.0;
+#ifdef PLAIN
+    if (centre.t < SKY_T && is_plain(centre.p, part_at(centre.p)))
+        textured = 0.0;
+#endif
+    imageStore(radiance_image, pixel, vec4(mean, textured));
     imageStore(truth_image, pixel, vec4(n, centre.t < SKY_T ? centre.t : 0.0));
 }

@@ -244,9 +244,29 @@ Material leaves(vec3 p, float footprint)
     return m;
 }
 
+#ifdef PLAIN
+const float PLAIN_CELL = 1.2; // side of the cubes in which walls are plain or not, metres
+
+// Walls without texture: a share of the cubes of space that walls lie in.
+bool is_plain(vec3 p, int part)
+{
+    ivec3 cell = ivec3(floor(p / PLAIN_CELL));
+    return part != PART_GROUND && part != PART_TREES &&
+           spread(hash_cell(cell)).x < view_light.w;
+}
+#endif
+
 Material material_at(vec3 p, vec3 n, float footprint)
 {
     int part = part_at(p);
+#ifdef PLAIN
+    if (is_plain(p, part))
+        return Material(vec3(0.46, 0.42, 0.36), vec3(0.0));
+#endif
+#ifdef BARS
+    if (part == PART_BARS)
+        return Material(vec3(0.10, 0.14, 0.12) * (fract(2.0 * p.y) < 0.5 ? 1.0 : 2.5), vec3(0.0));
+#endif
     if (part == PART_GROUND)
         return paving(p, footprint);
     if (part == PART_TOWN)

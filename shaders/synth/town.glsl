@@ -132,7 +132,21 @@ float fragments(vec3 p)
     return min(d, wall);
 }
 
-const int PART_MONUMENT = 0, PART_FRAGMENTS = 1, PART_TOWN = 2, PART_TREES = 3, PART_GROUND = 4;
+#ifdef BARS
+const float BAR_SPACING = 1.6, BAR_TOP = 5.0, BAR_Z = 2.6;
+const int BARS_ASIDE = 3; // on each side of the middle one
+
+// A row of upright round bars before the monument.
+float bars(vec3 p)
+{
+    float x = p.x - BAR_SPACING * clamp(round(p.x / BAR_SPACING), float(-BARS_ASIDE),
+                                        float(BARS_ASIDE));
+    return max(length(vec2(x, p.z - BAR_Z)) - view_light.z, p.y - BAR_TOP);
+}
+#endif
+
+const int PART_MONUMENT = 0, PART_FRAGMENTS = 1, PART_TOWN = 2, PART_TREES = 3, PART_GROUND = 4,
+          PART_BARS = 5;
 
 // All surfaces except the ground, whose intersection with rays has a closed form.
 float solids(vec3 p)
@@ -143,6 +157,9 @@ float solids(vec3 p)
         d = min(d, forest(p));
     if (min(16.5 - abs(p.x), p.z + 10.5) < d)
         d = min(d, town(p));
+#ifdef BARS
+    d = min(d, bars(p));
+#endif
     return d;
 }
 
@@ -150,6 +167,10 @@ int part_at(vec3 p)
 {
     float m = monument(p), f = fragments(p), t = town(p), v = forest(p), g = p.y;
     float least = min(min(min(m, f), min(t, v)), g);
+#ifdef BARS
+    if (bars(p) < least)
+        return PART_BARS;
+#endif
     if (least == g)
         return PART_GROUND;
     if (least == m)

@@ -8,7 +8,7 @@ layout(std140, binding = 0) uniform Params {
     vec4 camera;  // fx, fy, cx, cy in pixels
     ivec4 size;   // width, height, first row of this dispatch, end row
     uvec4 seed;   // x: seed of all noise
-    vec4 view_light; // x: contrast, stops
+    vec4 view_light; // x: contrast, stops; y: gloss; z: radius of the bars; w: plain share
 };
 
 const float SKY_T = 1e9;

@@ -198,3 +198,28 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
         flip_small(target, 0, cleaning->hole_px, 4);
     });
 }
+
+enum orl_result orl_bridge_distance(const struct orl_log *log, const struct orl_image *mask,
+                                    struct orl_image *distance)
+{
+    *distance = orl_image();
+    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
+    enum orl_result result =
+        orl_image_init(log, distance, mask->width, mask->height, 1, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    return run(log, mask, distance, [&](const cv::Mat &source, cv::Mat &target) {
+        // Each distance is to the nearest pixel of the other side, half a pixel past the outline.
+        cv::Mat to_subject, to_outside;
+        double most = std::max(source.rows, source.cols);
+        cv::distanceTransform(source == 0, to_subject, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+        cv::distanceTransform(source != 0, to_outside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+        cv::min(to_subject, most, to_subject);
+        cv::min(to_outside, most, to_outside);
+        for (int y = 0; y < source.rows; y++)
+            for (int x = 0; x < source.cols; x++) {
+                float out = to_subject.at<float>(y, x), in = to_outside.at<float>(y, x);
+                target.at<float>(y, x) = out > 0 ? out - 0.5f : 0.5f - in;
+            }
+    });
+}

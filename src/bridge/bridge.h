@@ -42,6 +42,12 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
                                       const struct orl_mask_cleaning *cleaning,
                                       struct orl_image *cleaned) ORL_CHECK_RESULT;
 
+// Signed distance from each pixel's centre to the subject's outline, pixels: positive outside. A
+// picture without subject, or of it alone, has its longer side everywhere. Mask: U8 x1, 0: outside;
+// result: F32 x1.
+enum orl_result orl_bridge_distance(const struct orl_log *log, const struct orl_image *mask,
+                                    struct orl_image *distance) ORL_CHECK_RESULT;
+
 #ifdef __cplusplus
 }
 #endif

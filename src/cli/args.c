@@ -194,3 +194,12 @@ enum orl_result args_parse(const struct orl_log *log, const struct arg_command *
                         command->usage);
     return ORL_OK;
 }
+
+enum orl_result args_part(const struct orl_log *log, const char *text, int *index, int *count)
+{
+    char end;
+    if (sscanf(text, "%d/%d%c", index, count, &end) != 2 || *index < 1 || *index > *count)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--part %s: not K/N with K from 1 to N", text);
+    --*index;
+    return ORL_OK;
+}

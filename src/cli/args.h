@@ -53,4 +53,9 @@ enum orl_result args_parse(const struct orl_log *log, const struct arg_command *
                            char **argv, struct arg_common *common, const char **positionals,
                            size_t *positional_count) ORL_CHECK_RESULT;
 
+// Reads "K/N", the K-th of N parts with K from 1 to N. *index is K - 1. ORL_ERR_ARGUMENT, logged:
+// anything else.
+enum orl_result args_part(const struct orl_log *log, const char *text, int *index,
+                          int *count) ORL_CHECK_RESULT;
+
 #endif

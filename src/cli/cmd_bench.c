@@ -210,7 +210,7 @@ int cmd_bench(int argc, char **argv)
     struct options o = {.textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .seconds = 1,
                         .frames = 100};
     const struct arg_option table[] = {
-        {"method", ARG_LIST, &o.methods, "NAME", "methods, or all; default: the first", 0, 0},
+        {"method", ARG_LIST, &o.methods, "NAME", "methods, or all; default: the scene's, or the first", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the methods", 0, 0},
         {"size", ARG_LIST, &o.sizes, "WxH", "of the picture; default: 512x512 and 1024x1024", 0, 0},
         {"points", ARG_LIST, &o.points, "N,N,..",

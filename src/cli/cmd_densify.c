@@ -2,6 +2,7 @@
 // patch_match_stereo.
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/commands.h"
 #include "preprocess/densify/densify.h"
@@ -9,17 +10,45 @@
 
 struct options {
     struct orl_names exclude;
+    const char *photos, *part;
     struct orl_densify_params params;
-    int seed, max_vram_mib;
+    int seed, max_vram_mib, pass;
 };
+
+// Reads names, one a line.
+static enum orl_result read_names(const struct orl_log *log, const char *path,
+                                  struct orl_names *names)
+{
+    uint8_t *data;
+    size_t size;
+    enum orl_result result = orl_file_read(log, path, (size_t)1 << 30, &data, &size);
+    char *rest = NULL;
+    for (char *line = result == ORL_OK ? strtok_r((char *)data, "\r\n", &rest) : NULL;
+         result == ORL_OK && line; line = strtok_r(NULL, "\r\n", &rest))
+        result = orl_names_add(log, names, line);
+    free(data);
+    return result;
+}
+
+// A part of a scene that is whole has nothing to do: its maps may be gone.
+static enum orl_result is_whole(const struct orl_log *log, const char *workspace, bool *whole)
+{
+    char *path = orl_path_join(log, workspace, "scene.json");
+    *whole = path && orl_path_is_file(path);
+    free(path);
+    return path ? ORL_OK : ORL_ERR_MEMORY;
+}
 
 // Lists the workspace's photographs that are not excluded.
 static enum orl_result choose_photos(const struct orl_log *log, const char *workspace,
                                      const struct orl_colmap_model *model,
-                                     const struct orl_names *exclude, struct orl_names *photos)
+                                     const struct options *o, struct orl_names *photos)
 {
-    enum orl_result result = ORL_OK;
+    const struct orl_names *exclude = &o->exclude;
     size_t excluded = 0;
+    if (o->photos)
+        return read_names(log, o->photos, photos);
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
         if (orl_names_contain(exclude, model->images[i].name))
             excluded++;
@@ -32,22 +61,20 @@ static enum orl_result choose_photos(const struct orl_log *log, const char *work
     return result;
 }
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *workspace)
+static enum orl_result densify(const struct terminal *terminal, const struct options *o,
+                               const struct arg_common *common, const char *workspace,
+                               const struct orl_densify_params *asked)
 {
-    const struct options *o = options;
     const struct orl_log *log = &terminal->log;
-    struct orl_densify_params params = o->params;
-    params.seed = (uint32_t)o->seed;
-    params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
     struct orl_colmap_model model = {0};
     struct orl_names photos = {0};
     struct orl_gpu *gpu = NULL;
     char *sparse = orl_path_join(log, workspace, "sparse");
     enum orl_result result = sparse ? orl_colmap_read(log, sparse, &model) : ORL_ERR_MEMORY;
+    struct orl_densify_params params = *asked;
     params.model = &model;
     if (result == ORL_OK)
-        result = choose_photos(log, workspace, &model, &o->exclude, &photos);
+        result = choose_photos(log, workspace, &model, o, &photos);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
@@ -60,11 +87,39 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     return result;
 }
 
+static enum orl_result run(const struct terminal *terminal, const void *options,
+                           const struct arg_common *common, const char *workspace)
+{
+    const struct options *o = options;
+    const struct orl_log *log = &terminal->log;
+    struct orl_densify_params params = o->params;
+    struct orl_densify_part part = {.pass = o->pass};
+    bool whole = false;
+    params.seed = (uint32_t)o->seed;
+    params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
+    if (o->photos && o->exclude.count)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--photos and --exclude exclude each other");
+    enum orl_result result = o->part ? args_part(log, o->part, &part.index, &part.count)
+                                     : ORL_OK;
+    if (result == ORL_OK && o->part)
+        result = is_whole(log, workspace, &whole);
+    params.part = o->part ? &part : NULL;
+    if (result != ORL_OK || !whole)
+        return result == ORL_OK ? densify(terminal, o, common, workspace, &params) : result;
+    orl_logf(log, ORL_LOG_INFO, "%s: a whole scene, so there is nothing left to do", workspace);
+    return ORL_OK;
+}
+
 int cmd_densify(int argc, char **argv)
 {
     struct options o = {.params = {ORL_DENSIFY_DEFAULTS}, .seed = 1};
     const struct arg_option table[] = {
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs to leave out altogether", 0, 0},
+        {"photos", ARG_STRING, &o.photos, "FILE",
+         "the photographs to use, a name a line; default: all", 0, 0},
+        {"part", ARG_STRING, &o.part, "K/N",
+         "only the K-th of N parts of one pass (oriel plan)", 0, 0},
+        {"pass", ARG_INT, &o.pass, "P", "of --part; 0: photometric, then geometric ones", 0, 8},
         {"masks", ARG_STRING, &o.params.masks_dir, "DIR",
          "DIR/NAME.png: no depth where it is 0", 0, 0},
         {"sources", ARG_INT, &o.params.sources, "N", "source photographs each; default 8", 1, 16},

@@ -17,6 +17,7 @@ struct options {
     struct orl_names settings;
     int max_vram_mib;
     int walk, divide; // frames of a walk instead of held-out photographs; 0: no walk
+    int moment;       // of a sequence; -1: the scene's own photographs
 };
 
 struct job {
@@ -209,7 +210,8 @@ static enum orl_result choose(struct job *job, const struct orl_scene *scene)
 {
     const struct options *o = job->options;
     struct orl_names methods = {0};
-    enum orl_result result = orl_names_add(job->log, &methods, o->method);
+    enum orl_result result =
+        o->method ? orl_names_add(job->log, &methods, o->method) : ORL_OK;
     orl_choices_finish(&job->choices);
     if (result == ORL_OK)
         result = orl_choices_make(job->log, scene,
@@ -225,12 +227,15 @@ static enum orl_result run(struct job *job, const char *scene_dir,
     const struct options *o = job->options;
     const struct orl_renderer_params limits = {
         .max_vram_bytes = (size_t)o->max_vram_mib << 20,
-        .textures = (enum orl_textures)o->textures.value};
+        .textures = (enum orl_textures)o->textures.value,
+        .progress = job->progress};
     enum orl_result result = check_together(job->log, o);
-    if (result == ORL_OK) // reports wrong settings before the long work
+    if (result == ORL_OK && o->method) // reports wrong settings before the long work
         result = choose(job, NULL);
     if (result == ORL_OK)
         result = orl_scene_open(job->log, scene_dir, &job->scene);
+    if (result == ORL_OK && o->moment >= 0)
+        result = orl_scene_set_frame(job->log, job->scene, o->moment);
     if (result == ORL_OK)
         result = choose(job, job->scene);
     if (result == ORL_OK && !o->walk)
@@ -246,7 +251,7 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     if (result != ORL_OK)
         return result;
-    bool array = o->vary || strcmp(o->method, "all") == 0;
+    bool array = o->vary || (o->method && strcmp(o->method, "all") == 0);
     return o->walk ? measure_walk(job, array) : measure_heldout(job, array);
 }
 
@@ -265,12 +270,16 @@ static void finish(struct job *job)
 
 int cmd_eval(int argc, char **argv)
 {
-    struct options o = {.method = orl_methods[0].name, .merge = {orl_hdr_merge_names, -1},
-                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .divide = 1};
+    struct options o = {.merge = {orl_hdr_merge_names, -1},
+                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .divide = 1,
+                        .moment = -1};
     const struct arg_option table[] = {
-        {"method", ARG_STRING, &o.method, "NAME", "a method, or all; default: the first", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME",
+         "a method, or all; default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "once for each value of an option", 0, 0},
+        {"frame", ARG_INT, &o.moment, "N", "moment of a sequence, from 0; default: the first", 0,
+         1 << 20},
         {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
         {"images", ARG_STRING, &o.images, "DIR", "write photographs, renderings, differences",
          0, 0},

@@ -1,4 +1,4 @@
-// oriel hdr: radiance views, replacements of a series, panoramas.
+// oriel hdr: radiance views, panoramas, scenes of radiance photographs.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +8,7 @@
 #include "cli/command_output.h"
 #include "core/memory.h"
 #include "eval/choice.h"
+#include "hdr/replace.h"
 #include "oriel/hdr.h"
 #include "render/sequence.h"
 #include "scene/view_choice.h"
@@ -33,7 +34,8 @@ struct job {
     struct orl_path path;
     struct orl_hdr_params params;
     struct orl_frame_output output;
-    bool *skip; // per photograph
+    const char *method; // name
+    bool *skip;         // per photograph
 };
 
 static bool has_extension(const char *path, const char *extension)
@@ -84,6 +86,16 @@ static enum orl_result draw_panorama(const struct options *options, struct job *
     return result;
 }
 
+// --- a series ---
+
+static enum orl_result replace_series(const struct options *o, struct job *job)
+{
+    const struct orl_replace_params params = {.series = o->replace_series, .out = o->out,
+                                              .skip = job->skip, .tone = job->output.tone,
+                                              .method = job->method};
+    return orl_hdr_replace_series(job->hdr, &params, job->progress);
+}
+
 // --- the command ---
 
 static enum orl_result check(const struct options *o, const struct orl_log *log)
@@ -103,6 +115,9 @@ static enum orl_result check(const struct options *o, const struct orl_log *log)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --position and --up are of --panorama");
     if (panorama && o->size.width)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --panorama has its own size");
+    if (replace && (o->size.width || o->output.layers.count))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --replace-series makes photographs: without "
+                        "--size and --layers");
     if (o->half && o->output.float_color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --half and --float exclude each other");
     bool many = o->views.path || replace, file = orl_frame_can_write(o->out);
@@ -129,7 +144,7 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
     struct orl_view_choice views = o->views;
     views.width = o->size.width;
     views.height = o->size.height;
-    if (result == ORL_OK) // reports wrong settings before the long work
+    if (result == ORL_OK && o->method) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
     if (result == ORL_OK)
         result = output_choose(log, &o->output, true, &job->output);
@@ -143,6 +158,8 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
     if (result == ORL_OK)
         result = orl_choice_make(log, job->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings,
                                  &choice);
+    if (result == ORL_OK)
+        job->method = choice.method->name;
     job->params.render = choice.params;
     if (result == ORL_OK && !o->panorama.width && o->replace_series < 0)
         result = orl_views_choose(log, job->scene, &views, &job->path);
@@ -158,11 +175,11 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
         return result;
     if (o->panorama.width)
         return draw_panorama(o, job);
+    if (o->replace_series >= 0)
+        return replace_series(o, job);
     const struct orl_sequence all = {.views = job->path.views, .count = job->path.count,
                                      .draw = draw, .priv = job, .output = &job->output,
                                      .step = "hdr", .progress = job->progress};
-    if (o->replace_series >= 0)
-        return orl_sequence_write_series(log, &all, job->scene, o->replace_series, o->out);
     return o->views.path ? orl_sequence_write_dir(log, &all, o->out, "exr")
                          : orl_sequence_write_view(log, &all, &job->path.views[0], o->out);
 }
@@ -183,7 +200,7 @@ static void finish(struct options *o, struct job *job)
 
 int cmd_hdr(int argc, char **argv)
 {
-    struct options o = {.views = {.frames = 120}, .method = orl_methods[0].name,
+    struct options o = {.views = {.frames = 120},
                         .merge = {orl_hdr_merge_names, ORL_HDR_FUSED},
                         .replace_series = -1, .samples = 1};
     output_options_init(&o.output);
@@ -193,19 +210,21 @@ int cmd_hdr(int argc, char **argv)
         {"path", ARG_STRING, &o.views.path, "FILE",
          "along the cameras in FILE; \"photos\": past all photographs", 0, 0},
         {"replace-series", ARG_INT, &o.replace_series, "N",
-         "from every photograph of this series, as NAME.exr", 0, 65535},
+         "make a scene with the photographs of this series as radiance", 0, 65535},
         {"panorama", ARG_SIZE, &o.panorama, "WxH",
          "all directions, from --at PHOTO or --position", 0, 0},
         {"position", ARG_LIST, &o.position, "X,Y,Z", "of the panorama, in the scene's units", 0, 0},
         {"up", ARG_LIST, &o.up, "X,Y,Z",
          "of the panorama; default: the photographs' mean upward direction", 0, 0},
-        {"out", ARG_STRING, &o.out, "FILE|DIR", ".exr or .png; for several views a folder", 0, 0},
+        {"out", ARG_STRING, &o.out, "FILE|DIR",
+         ".exr or .png; for several views or a scene a folder", 0, 0},
         {"size", ARG_SIZE, &o.size, "WxH", "picture size; default: the camera's", 0, 0},
         {"samples", ARG_INT, &o.samples, "N", "N x N samples a pixel, from 1 to 4; default 1", 1,
          4},
         {"merge", ARG_ENUM, &o.merge, "NAME",
          "one gather in radiance, or a picture of each series, merged", 0, 0},
-        {"method", ARG_STRING, &o.method, "NAME", "of rendering; default oriel", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME",
+         "of rendering; default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
         OUTPUT_OPTION_ROWS(&o.output, "depth, normal, coverage, confidence; default: all in .exr"),

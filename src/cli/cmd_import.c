@@ -1,4 +1,5 @@
 // oriel import: makes a scene from known cameras and their pictures.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +9,7 @@
 #include "preprocess/import.h"
 
 struct options {
-    const char *silhouettes, *points, *mesh, *frames, *quality;
+    const char *silhouettes, *points, *mesh, *frames, *quality, *room;
     int max_vram_mib;
     struct orl_names test_list;
     struct orl_import_params params;
@@ -94,6 +95,24 @@ static enum orl_result parse_mesh(const struct orl_log *log, const char *text,
     return ORL_OK;
 }
 
+// Parses the two corners of a room.
+static enum orl_result parse_room(const struct orl_log *log, const char *text,
+                                  struct orl_room *room)
+{
+    double *a = room->low, *b = room->high;
+    char rest;
+    if (!text)
+        return ORL_OK;
+    room->known = sscanf(text, "%lf,%lf,%lf,%lf,%lf,%lf%c", &a[0], &a[1], &a[2], &b[0], &b[1],
+                         &b[2], &rest) == 6;
+    for (int k = 0; k < 3; k++)
+        room->known = room->known && isfinite(a[k]) && isfinite(b[k]) && a[k] < b[k];
+    if (!room->known)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--room %s: must be X,Y,Z,X,Y,Z of its lowest and "
+                        "its highest corner", text);
+    return ORL_OK;
+}
+
 static enum orl_result run(const struct terminal *terminal, const void *given,
                            const struct arg_common *common, const char *cameras)
 {
@@ -118,6 +137,8 @@ static enum orl_result run(const struct terminal *terminal, const void *given,
         result = parse_silhouettes(log, o->silhouettes, &params);
     if (result == ORL_OK)
         result = parse_mesh(log, o->mesh, &params);
+    if (result == ORL_OK)
+        result = parse_room(log, o->room, &params.room);
     if (result == ORL_OK)
         result = orl_import(log, &params, &terminal->progress);
     return result == ORL_OK ? summary_print(log, params.out) : result;
@@ -149,6 +170,8 @@ int cmd_import(int argc, char **argv)
          1 << 20},
         {"mesh", ARG_STRING, &o.mesh, "FILE|hull",
          "a mesh as PLY or OBJ, or hull[=SIDE[,TRIANGLES]] of the silhouettes", 0, 0},
+        {"room", ARG_STRING, &o.room, "X,Y,Z,X,Y,Z",
+         "the room that the subject is in: its lowest and highest corner, world", 0, 0},
         {"pixel-centre", ARG_NUMBER, &p->pixel_centre, "X",
          "coordinate of the first pixel's centre, 0 or 0.5 (as is the format's custom)", 0, 0.5},
         {0},

@@ -6,6 +6,7 @@
 #include "cli/summary.h"
 #include "core/json.h"
 #include "core/text.h"
+#include "oriel/render.h"
 #include "scene/info.h"
 #include "scene/manifest.h"
 
@@ -47,6 +48,24 @@ static enum orl_result print_json(const struct orl_log *log, const struct orl_sc
     return result;
 }
 
+// How the scene is drawn unless a command says otherwise.
+static void print_choices(const struct orl_scene *scene)
+{
+    const struct orl_scene_defaults *d = &scene->defaults;
+    if (d->method || d->textures || d->depth_divide > 1 || d->depth_half)
+        printf("drawn        by %s, textures %s, depth of photographs at 1/%d in %d bits\n",
+               orl_method_default(scene), d->textures ? d->textures : orl_textures_names[0],
+               d->depth_divide > 1 ? d->depth_divide : 1, d->depth_half ? 16 : 32);
+    for (size_t i = 0; i < scene->tuned_count; i++) {
+        const struct orl_tuned *tuned = &scene->tuned[i];
+        printf("tuned        %s: %s=", tuned->method, tuned->key);
+        if (tuned->name)
+            printf("%s\n", tuned->name);
+        else
+            printf("%.6g\n", tuned->value);
+    }
+}
+
 static enum orl_result print_text(const struct orl_log *log, const struct orl_scene *scene)
 {
     enum orl_result result = ORL_OK;
@@ -68,9 +87,7 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
         printf("ground       %.4g below the photographs, up is %.3f %.3f %.3f\n",
                scene->ground.height, scene->ground.plane[0], scene->ground.plane[1],
                scene->ground.plane[2]);
-    for (size_t i = 0; i < scene->tuned_count; i++)
-        printf("tuned        %s: %s=%.6g\n", scene->tuned[i].method, scene->tuned[i].key,
-               scene->tuned[i].value);
+    print_choices(scene);
     print_cameras(scene);
     print_photos(scene);
     return result;

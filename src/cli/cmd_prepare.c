@@ -3,17 +3,24 @@
 
 #include "cli/commands.h"
 #include "cli/summary.h"
+#include "eval/adapt.h"
 #include "oriel/prepare.h"
 
 enum { INPUTS_MAX = 4096 };
 
 struct options {
     const char *out, *masks, *exposures;
-    struct arg_enum quality, sharing, matching, densifier, keep;
-    int test_every, max_size, seed, max_vram_mib;
+    struct arg_enum quality, sharing, matching, densifier, keep, mesh, leave_out, until;
+    double fps;
+    int frames;
+    int test_every, max_size, seed, max_vram_mib, max_ram_mib;
     struct orl_names test_list;
-    bool resume;
+    double adapt_s, radius_overlap;
+    int radius_neighbours;
+    bool resume, adapt;
 };
+
+enum { ADAPT_VIEWS = 6, ADAPT_DIVIDE = 2 };
 
 static enum orl_result prepare(const struct terminal *terminal, const struct options *o,
                                const struct arg_common *common, const char *const *inputs,
@@ -26,15 +33,50 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
         .sharing = (enum orl_camera_sharing)o->sharing.value,
         .matching = (enum orl_matching)o->matching.value,
         .densifier = (enum orl_densifier)o->densifier.value,
-        .keep = (enum orl_keep)o->keep.value,
+        .keep = (enum orl_keep)o->keep.value, .mesh = (enum orl_prepare_mesh)o->mesh.value,
+        .leave_out = (enum orl_leave_out)o->leave_out.value, .fps = o->fps, .frames = o->frames,
+        .radius_neighbours = o->radius_neighbours, .radius_overlap = o->radius_overlap,
+        .until = (enum orl_until)o->until.value,
         .resume = o->resume, .seed = (uint32_t)o->seed,
-        .max_vram_bytes = (size_t)o->max_vram_mib << 20, .shader_dir = common->shader_dir};
+        .max_vram_bytes = (size_t)o->max_vram_mib << 20,
+        .max_ram_bytes = (size_t)o->max_ram_mib << 20, .shader_dir = common->shader_dir};
     if (!o->out)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT, "prepare: --out SCENE is missing");
     if (o->test_every && o->test_list.count)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
                         "prepare: --test-every and --test-list exclude each other");
+    if (o->adapt && o->until.value != ORL_UNTIL_END)
+        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
+                        "prepare: --adapt needs a whole scene: without --until");
+    if (o->fps > 0 && o->frames)
+        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
+                        "prepare: --fps and --frames exclude each other");
     return orl_prepare(&terminal->log, &params, &terminal->progress);
+}
+
+// Finds out how the scene is drawn best.
+static enum orl_result adapt(const struct terminal *terminal, const struct options *o,
+                             const struct arg_common *common)
+{
+    const struct orl_log *log = &terminal->log;
+    struct orl_scene *scene = NULL;
+    struct orl_gpu *gpu = NULL;
+    struct orl_adapt adapt = {0};
+    const struct orl_adapt_params params = {.views = ADAPT_VIEWS, .size_divide = ADAPT_DIVIDE,
+                                            .budget_s = o->adapt_s,
+                                            .progress = &terminal->progress};
+    enum orl_result result = orl_scene_open(log, o->out, &scene);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
+    if (result == ORL_OK)
+        result = orl_adapt_run(gpu, scene, &params, &adapt);
+    for (size_t i = 0; result == ORL_OK && i < adapt.row_count; i++)
+        printf("%-14s %7.2f dB %7.4f%s\n", adapt.rows[i].method->name, adapt.rows[i].psnr_db,
+               adapt.rows[i].ssim, i == adapt.chosen ? "  chosen" : "");
+    orl_gpu_destroy(&gpu);
+    orl_scene_destroy(&scene);
+    return result;
 }
 
 int cmd_prepare(int argc, char **argv)
@@ -43,9 +85,18 @@ int cmd_prepare(int argc, char **argv)
                         .sharing = {orl_camera_sharing_names, ORL_SHARING_AUTO},
                         .matching = {orl_matching_names, ORL_MATCHING_AUTO},
                         .densifier = {orl_densifier_names, ORL_DENSIFIER_AUTO},
-                        .keep = {orl_keep_names, ORL_KEEP_MINIMAL}, .seed = 1};
+                        .keep = {orl_keep_names, ORL_KEEP_MINIMAL},
+                        .mesh = {orl_prepare_mesh_names, ORL_MESH_NONE},
+                        .leave_out = {orl_leave_out_names, ORL_LEAVE_OUT_NONE},
+                        .until = {orl_until_names, ORL_UNTIL_END}, .seed = 1,
+                        .adapt_s = 120};
     const struct arg_option options[] = {
         {"out", ARG_STRING, &o.out, "SCENE", "the scene folder to make", 0, 0},
+        {"fps", ARG_NUMBER, &o.fps, "N", "frames taken of a second of video; default 2", 0.001,
+         1000},
+        {"frames", ARG_INT, &o.frames, "N", "frames taken of each video instead", 1, 100000},
+        {"leave-out", ARG_ENUM, &o.leave_out, "WHAT",
+         "doubtful photographs, which are named in any case, are left out", 0, 0},
         {"test-every", ARG_INT, &o.test_every, "N", "hold out every N-th photograph by name",
          2, 100000},
         {"test-list", ARG_LIST, &o.test_list, "A,B,..", "hold out these photographs", 0, 0},
@@ -64,16 +115,29 @@ int cmd_prepare(int argc, char **argv)
          "gl is built in, colmap needs CUDA", 0, 0},
         {"keep", ARG_ENUM, &o.keep, "WHAT",
          "minimal is what commands read; all has the stereo's maps, too", 0, 0},
+        {"mesh", ARG_ENUM, &o.mesh, "HOW",
+         "also make mesh.ply, for methods that draw a mesh", 0, 0},
+        {"radius-neighbours", ARG_INT, &o.radius_neighbours, "K",
+         "a splat reaches to its point's K-th neighbour; default 6", 1, 64},
+        {"radius-overlap", ARG_NUMBER, &o.radius_overlap, "X",
+         "splats are X times as large; default 1", 0.01, 8},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
          1 << 20},
+        {"until", ARG_ENUM, &o.until, "STAGE",
+         "stop before the stereo, which oriel plan divides into jobs", 0, 0},
+        {"adapt", ARG_FLAG, &o.adapt, NULL,
+         "find the method and the options that suit the scene, as its defaults", 0, 0},
+        {"adapt-budget", ARG_NUMBER, &o.adapt_s, "SECONDS", "of --adapt; default 120", 0, 1e6},
+        {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
+         "memory that fusion keeps to; default: half of what is free", 1, 1 << 24},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},
         {"seed", ARG_INT, &o.seed, "N", "of random choices", 0, 2147483647},
         {0},
     };
     const struct arg_command command = {
         .name = "prepare", .usage = "PHOTOS... --out SCENE [options]",
-        .summary = "Makes a scene from photographs (files and folders of them). Needs COLMAP; "
-                   "ORIEL_COLMAP\nnames its program when it is not on PATH.",
+        .summary = "Makes a scene from photographs and videos (files and folders of them). Needs "
+                   "COLMAP;\nORIEL_COLMAP names its program when it is not on PATH.",
         .options = options, .positionals_min = 1, .positionals_max = INPUTS_MAX};
     const char *inputs[INPUTS_MAX];
     struct arg_common common = {0};
@@ -82,8 +146,10 @@ int cmd_prepare(int argc, char **argv)
     int status;
     if (command_begin(&command, argc, argv, &common, &terminal, inputs, &input_count, &status)) {
         enum orl_result result = prepare(&terminal, &o, &common, inputs, input_count);
+        if (result == ORL_OK && o.adapt && o.until.value == ORL_UNTIL_END)
+            result = adapt(&terminal, &o, &common);
         terminal_finish(&terminal);
-        if (result == ORL_OK)
+        if (result == ORL_OK && o.until.value == ORL_UNTIL_END)
             result = summary_print(&terminal.log, o.out);
         else if (result == ORL_ERR_CANCELLED)
             orl_logf(&terminal.log, ORL_LOG_WARNING, "interrupted; go on with --resume");

@@ -51,8 +51,8 @@ int cmd_publish(int argc, char **argv)
     const struct arg_option table[] = {
         {"out", ARG_STRING, &o.params.out, "SITE", "folder to write; an earlier site is replaced",
          0, 0},
-        {"title", ARG_STRING, &o.params.title, "TEXT", "of the page; default: the scene's name", 0,
-         0},
+        {"title", ARG_STRING, &o.params.title, "TEXT",
+         "of the page; default: that of walk.json, else the scene's name", 0, 0},
         {"single-file", ARG_FLAG, &o.params.single_file, NULL,
          "everything in one HTML file SITE, which also opens from disk", 0, 0},
         {"max-size", ARG_INT, &o.params.photo_side, "PX",

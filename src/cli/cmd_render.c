@@ -17,35 +17,55 @@ struct job {
     struct orl_path path;
     struct orl_choice choice;
     struct orl_frame_output output;
-    bool *skip; // per photograph
+    bool *skip;     // per photograph
+    bool time_runs; // the path leads through the moments of a sequence
 };
 
 struct options {
     struct orl_view_choice views;
     struct arg_size size;
     struct output_options output;
-    const char *out, *method;
+    const char *out, *method, *part;
     struct arg_enum textures;
     struct orl_names settings, exclude;
-    int max_vram_mib;
+    int max_vram_mib, moment; // moment of a sequence; -1: all of them along a path
     double fps;
 };
 
 static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_frame *frame)
 {
     struct job *job = priv;
+    size_t picture = (size_t)(view - job->path.views); // sequences draw the views of the path
+    enum orl_result result = ORL_OK;
+    if (job->time_runs)
+        result = orl_scene_set_frame(
+            job->log, job->scene, (int)(picture * job->scene->frame_count / job->path.count));
+    if (result != ORL_OK)
+        return result;
     return orl_renderer_draw(job->renderer, view, &job->choice.params, job->skip, frame);
+}
+
+static bool is_video(const char *out)
+{
+    const char *extension = strrchr(out, '.');
+    return extension && strcmp(extension, ".mp4") == 0;
 }
 
 static enum orl_result draw_all(const struct options *options, struct job *job)
 {
-    const char *out = options->out, *extension = strrchr(out, '.');
+    const char *out = options->out;
+    int index = 0, parts = 1;
+    enum orl_result result =
+        options->part ? args_part(job->log, options->part, &index, &parts) : ORL_OK;
+    if (result != ORL_OK)
+        return result;
     const struct orl_sequence sequence = {
-        .views = job->path.views, .count = job->path.count, .draw = draw, .priv = job,
+        .views = job->path.views, .first = job->path.count * (size_t)index / (size_t)parts,
+        .count = job->path.count * ((size_t)index + 1) / (size_t)parts, .draw = draw, .priv = job,
         .output = &job->output, .step = "render", .progress = job->progress};
     if (!options->views.path)
         return orl_sequence_write_view(job->log, &sequence, &job->path.views[0], out);
-    if (extension && strcmp(extension, ".mp4") == 0)
+    if (is_video(out))
         return orl_sequence_write_video(job->log, &sequence, out, options->fps);
     if (orl_frame_can_write(out))
         return orl_fail(job->log, ORL_ERR_ARGUMENT,
@@ -62,6 +82,9 @@ static enum orl_result check(const struct orl_log *log, const struct options *op
     if (!!options->views.at + !!options->views.camera + !!options->views.path != 1)
         return orl_fail(log, ORL_ERR_ARGUMENT,
                         "render: one of --at PHOTO, --camera FILE, --path FILE is needed");
+    if (options->part && (!options->views.path || is_video(options->out)))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--part: only the frames of a path in a folder have "
+                        "parts");
     if (!options->views.path && !orl_frame_can_write(options->out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .png or .exr", options->out);
     return ORL_OK;
@@ -76,15 +99,18 @@ static enum orl_result run(const struct options *options, const struct arg_commo
     views.height = options->size.height;
     const struct orl_renderer_params limits = {
         .max_vram_bytes = (size_t)options->max_vram_mib << 20,
-        .textures = (enum orl_textures)options->textures.value};
+        .textures = (enum orl_textures)options->textures.value,
+        .progress = job->progress};
     enum orl_result result = check(log, options);
-    if (result == ORL_OK) // reports wrong settings before the long work
+    if (result == ORL_OK && options->method) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, options->method, &options->settings,
                                  &job->choice);
     if (result == ORL_OK)
         result = output_choose(log, &options->output, false, &job->output);
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
+    if (result == ORL_OK && options->moment >= 0)
+        result = orl_scene_set_frame(log, job->scene, options->moment);
     if (result == ORL_OK)
         result = orl_choice_make(log, job->scene, ORL_SAMPLE_SRGB, options->method,
                                  &options->settings, &job->choice);
@@ -98,26 +124,34 @@ static enum orl_result run(const struct options *options, const struct arg_commo
                                 &job->gpu);
     if (result == ORL_OK)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
+    job->time_runs = options->views.path && options->moment < 0 && job->scene &&
+                     job->scene->frame_count > 0;
     return result == ORL_OK ? draw_all(options, job) : result;
 }
 
 int cmd_render(int argc, char **argv)
 {
-    struct options o = {.views = {.frames = 120}, .method = orl_methods[0].name,
-                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .fps = 30};
+    struct options o = {.views = {.frames = 120}, 
+                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .fps = 30,
+                        .moment = -1};
     output_options_init(&o.output);
     const struct arg_option table[] = {
         {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
         {"path", ARG_STRING, &o.views.path, "FILE",
          "along the cameras in FILE; \"photos\": past all photographs", 0, 0},
+        {"frame", ARG_INT, &o.moment, "N",
+         "moment of a sequence, from 0; default: along a path all, else the first", 0, 1 << 20},
         {"out", ARG_STRING, &o.out, "FILE|DIR",
          ".png or .exr; for a path a folder or .mp4", 0, 0},
         {"size", ARG_SIZE, &o.size, "WxH", "picture size; default: the camera's", 0, 0},
-        {"method", ARG_STRING, &o.method, "NAME", "default: the first of oriel methods", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME",
+         "default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
         OUTPUT_OPTION_ROWS(&o.output, "also write depth, normal, coverage"),
+        {"part", ARG_STRING, &o.part, "K/N", "only the K-th of N parts of the frames of a path",
+         0, 0},
         {"frames", ARG_INT, &o.views.frames, "N", "of --path photos; default 120", 2, 100000},
         {"fps", ARG_NUMBER, &o.fps, "N", "of .mp4; default 30", 1, 240},
         {"textures", ARG_ENUM, &o.textures, "KIND", "photographs on the device", 0, 0},

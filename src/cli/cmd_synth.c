@@ -70,7 +70,8 @@ static enum orl_result check_options(const struct orl_log *log,
     bool of_monument = monument->count != m.count || monument->seed != m.seed ||
                        monument->exposure_count || monument->contrast_ev > 0 ||
                        monument->noise > 0 || monument->response != m.response ||
-                       monument->vignette > 0 || monument->drift_ev > 0;
+                       monument->vignette > 0 || monument->drift_ev > 0 ||
+                       monument->gloss > 0 || monument->bars_m > 0 || monument->plain > 0;
     bool of_figures = figures->cameras != f.cameras || figures->frames != f.frames;
     if (is_figures && of_monument)
         return orl_fail(log, ORL_ERR_ARGUMENT, "synth figures: takes --cameras, --frames and "
@@ -125,6 +126,12 @@ int cmd_synth(int argc, char **argv)
          ORL_FIGURES_FRAMES_MAX},
         {"drift", ARG_NUMBER, &params.drift_ev, "EV",
          "exposure and colour wander by up to this, untold by EXIF, from 0 to 2 (0)", 0, 2},
+        {"gloss", ARG_NUMBER, &params.gloss, "SHARE",
+         "makes the monument shine, from 0 to 1, a mirror (0)", 0, 1},
+        {"bars", ARG_NUMBER, &params.bars_m, "METRES",
+         "upright bars of this diameter before the monument, from 0 to 1.5 (0)", 0, 1.5},
+        {"plain", ARG_NUMBER, &params.plain, "SHARE",
+         "share of the walls that has no texture, from 0 to 1 (0)", 0, 1},
         {0},
     };
     char summary[512] = "Synthetic photographs with ground truth. NAME is one of:\n"

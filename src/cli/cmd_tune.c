@@ -28,7 +28,7 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
                               const struct orl_scene *scene, const char *device,
                               const struct orl_method *method, const struct orl_tune *tune)
 {
-    json_t *settings = orl_tune_settings(&tune->best, &method->params), *value;
+    json_t *settings = orl_choice_settings(method, &tune->best, true), *value;
     const char *key;
     printf("%s: %.3f dB, was %.3f; %zu photographs at 1/%d, each rendered without itself%s\n",
            method->name, tune->best_db, tune->start_db, tune->views, o->size_divide,
@@ -52,15 +52,17 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
     struct orl_renderer *renderer = NULL;
-    struct orl_choice start;
+    struct orl_choice start = {0};
     struct orl_tune tune = {0};
-    enum orl_result result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, o->method,
-                                             &o->settings, &start);
+    enum orl_result result = ORL_OK;
+    if (o->method) // reports wrong settings before the long work
+        result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
     if (result == ORL_OK)
         result = orl_scene_open(log, dir, &scene);
-    if (result == ORL_OK && !o->fresh) // starts from the scene's tuned values
-        result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings,
-                                 &start);
+    if (result == ORL_OK) // unless `fresh`, starts from the scene's tuned values
+        result = orl_choice_make(log, o->fresh ? NULL : scene, ORL_SAMPLE_SRGB,
+                                 o->method ? o->method : orl_method_default(scene),
+                                 &o->settings, &start);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
@@ -68,7 +70,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_tune_params params = {
-        .method = o->method, .start = &start.params, .keys = &o->keys, .size_divide = o->size_divide,
+        .method = start.method ? start.method->name : NULL, .start = &start.params,
+        .keys = &o->keys, .size_divide = o->size_divide,
         .views = (size_t)o->views, .gain_db = o->gain_db, .budget_s = o->budget_s,
         .on_trial = common->quiet ? NULL : print_trial, .progress = &terminal->progress};
     if (result == ORL_OK && !common->quiet)
@@ -86,10 +89,10 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_tune(int argc, char **argv)
 {
-    struct options o = {.method = orl_methods[0].name, .size_divide = 2, .views = 16,
-                        .gain_db = 0.01};
+    struct options o = {.size_divide = 2, .views = 16, .gain_db = 0.01};
     const struct arg_option table[] = {
-        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the first", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the scene's, or the first", 0,
+         0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "start from another value", 0, 0},
         {"only", ARG_LIST, &o.keys, "KEY,KEY,..", "tune these options; default: all that can be",
          0, 0},

@@ -9,6 +9,7 @@ struct options {
     const char *method, *host, *title;
     struct orl_names settings;
     int port, max_vram_mib;
+    bool edits;
 };
 
 static void print_address(void *priv, const char *address)
@@ -36,9 +37,9 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     const struct orl_renderer_params limits = {.max_vram_bytes = (size_t)o->max_vram_mib << 20};
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
-    const struct orl_walk_params params = {.host = o->host, .port = o->port, .title = o->title,
-                                           .render = &choice.params, .progress = &terminal->progress,
-                                           .ready = print_address};
+    const struct orl_walk_params params = {
+        .host = o->host, .port = o->port, .title = o->title, .edits = o->edits,
+        .render = &choice.params, .progress = &terminal->progress, .ready = print_address};
     if (result == ORL_OK)
         result = orl_walk_serve(gpu, renderer, scene, &params);
     orl_renderer_destroy(&renderer);
@@ -49,13 +50,17 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_walk(int argc, char **argv)
 {
-    struct options o = {.method = orl_methods[0].name, .host = "127.0.0.1", .port = 8765};
+    struct options o = {.host = "127.0.0.1", .port = 8765};
     const struct arg_option table[] = {
         {"port", ARG_INT, &o.port, "N", "to listen on; default 8765, 0: any that is free", 0, 65535},
         {"host", ARG_STRING, &o.host, "ADDRESS",
          "to listen on; default 127.0.0.1; others ask for the token in the printed address", 0, 0},
-        {"title", ARG_STRING, &o.title, "TEXT", "of the page; default: the scene's name", 0, 0},
-        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the first", 0, 0},
+        {"title", ARG_STRING, &o.title, "TEXT",
+         "of the page; default: that of walk.json, else the scene's name", 0, 0},
+        {"edit", ARG_FLAG, &o.edits, NULL,
+         "other machines may change annotations, title and start view, too", 0, 0},
+        {"method", ARG_STRING, &o.method, "NAME",
+         "default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},

@@ -19,10 +19,13 @@ int cmd_chart(int argc, char **argv);
 int cmd_import(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_methods(int argc, char **argv);
+int cmd_plan(int argc, char **argv);
 int cmd_publish(int argc, char **argv);
+int cmd_stress(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_eval(int argc, char **argv);
 int cmd_synth(int argc, char **argv);
+int cmd_trim(int argc, char **argv);
 int cmd_tune(int argc, char **argv);
 int cmd_walk(int argc, char **argv);
 

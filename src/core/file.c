@@ -131,7 +131,9 @@ end:
 enum orl_result orl_dir_make(const struct orl_log *log, const char *path)
 {
     if (orl_path_is_dir(path))
-        return orl_dir_sweep(NULL, path) == ORL_ERR_MEMORY ? ORL_ERR_MEMORY : ORL_OK;
+        return orl_dir_sweep(NULL, path) == ORL_ERR_MEMORY
+                   ? orl_fail(log, ORL_ERR_MEMORY, "%s: no memory to list it", path)
+                   : ORL_OK;
     char *copy = orl_strdup(log, path);
     if (!copy)
         return ORL_ERR_MEMORY;
@@ -150,6 +152,60 @@ enum orl_result orl_dir_make(const struct orl_log *log, const char *path)
     }
     free(copy);
     return result;
+}
+
+enum orl_result orl_file_make_folder(const struct orl_log *log, const char *path)
+{
+    const char *name = orl_path_name(path);
+    if (name == path)
+        return ORL_OK;
+    char *folder = orl_format(log, "%.*s", (int)(name - path), path);
+    enum orl_result result = folder ? orl_dir_make(log, folder) : ORL_ERR_MEMORY;
+    free(folder);
+    return result;
+}
+
+enum orl_result orl_file_copy(const struct orl_log *log, const char *from, const char *to)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    enum orl_result result = orl_file_read(log, from, SIZE_MAX / 2, &data, &size);
+    if (result == ORL_OK)
+        result = orl_file_make_folder(log, to);
+    if (result == ORL_OK)
+        result = orl_file_write(log, to, data, size);
+    free(data);
+    return result;
+}
+
+enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, char **part)
+{
+    size_t length = strlen(out);
+    struct orl_names names = {0};
+    enum orl_result result = ORL_OK;
+    *part = NULL;
+    while (length > 1 && out[length - 1] == '/')
+        length--;
+    if (orl_path_is_file(out))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", out);
+    if (orl_path_is_dir(out))
+        result = orl_dir_list(log, out, &names);
+    if (result == ORL_OK && names.count)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: not empty; choose another folder", out);
+    orl_names_finish(&names);
+    if (result != ORL_OK)
+        return result;
+    *part = orl_format(log, "%.*s.part", (int)length, out);
+    if (!*part)
+        return ORL_ERR_MEMORY;
+    result = orl_dir_remove(log, *part);
+    return result == ORL_OK ? orl_dir_make(log, *part) : result;
+}
+
+enum orl_result orl_new_dir_finish(const struct orl_log *log, const char *part, const char *out)
+{
+    return rename(part, out) == 0 ? ORL_OK
+                                  : orl_fail(log, ORL_ERR_IO, "%s: %s", out, strerror(errno));
 }
 
 enum orl_result orl_dir_list(const struct orl_log *log, const char *path, struct orl_names *names)

@@ -49,11 +49,23 @@ void orl_atomic_abort(struct orl_atomic_file *file);
 // Writes a whole file from memory in one atomic step.
 enum orl_result orl_file_write(const struct orl_log *log, const char *path, const void *data,
                                size_t size) ORL_CHECK_RESULT;
+// Copies a regular file, making the folders that lead to `to`.
+enum orl_result orl_file_copy(const struct orl_log *log, const char *from,
+                              const char *to) ORL_CHECK_RESULT;
 // Removes temporary files that killed writers left in this folder.
 enum orl_result orl_dir_sweep(const struct orl_log *log, const char *dir) ORL_CHECK_RESULT;
 
 // Creates the folder and its parents. An existing folder is accepted and swept (orl_dir_sweep).
 enum orl_result orl_dir_make(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
+// Creates the folder that a file is in, and its parents.
+enum orl_result orl_file_make_folder(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
+// A folder that is filled under the name "OUT.part" and takes its own name once it is whole. Refuses
+// an `out` that is a file or not empty; removes an unfinished folder of an earlier run. *part is
+// owned by the caller, who removes the folder if it is not finished.
+enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,
+                                  char **part) ORL_CHECK_RESULT;
+enum orl_result orl_new_dir_finish(const struct orl_log *log, const char *part,
+                                   const char *out) ORL_CHECK_RESULT;
 // Removes the folder and everything in it; a missing folder counts as success. Links are
 // removed, never followed.
 enum orl_result orl_dir_remove(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;

@@ -9,6 +9,9 @@
 // result is ORL_OK. Where the file system has no locks a warning says so, and *fd may be -1.
 enum orl_result orl_lock(const struct orl_log *log, const char *path, int *fd,
                          bool *taken) ORL_CHECK_RESULT;
+// The same, but any number of processes hold a shared lock at once, while none holds the other.
+enum orl_result orl_lock_shared(const struct orl_log *log, const char *path, int *fd,
+                                bool *taken) ORL_CHECK_RESULT;
 // Releases the lock; -1 is accepted.
 void orl_unlock(int *fd);
 

@@ -27,6 +27,7 @@ struct orl_bench_run {
     int photo_divide;           // photographs at 1/n of their size
     struct orl_timing timing;
     size_t device_bytes;
+    size_t uploaded_bytes;      // photographs and masks that went to the device
     double psnr_db;             // ORL_BENCH_RESOLUTION, first method: PSNR against full size; else
                                 // 0
 };

@@ -17,13 +17,14 @@ static json_t *passes_json(const struct orl_bench_run *run)
 static json_t *run_json(const struct orl_bench_run *run)
 {
     json_t *object = json_pack(
-        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:I, s:o}", "method", run->method,
+        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:I, s:I, s:o}", "method", run->method,
         "size", run->width, run->height, "photographs", (json_int_t)run->photographs, "points",
         (json_int_t)run->points, "photo_divide", run->photo_divide, "frames",
         (json_int_t)run->timing.frames, "frame_ms", run->timing.median_ms, "slowest_ms",
         run->timing.slowest_ms, "cpu_ms", run->timing.cpu_ms, "fps",
         run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, "device_bytes",
-        (json_int_t)run->device_bytes, "passes_ms", passes_json(run));
+        (json_int_t)run->device_bytes, "uploaded_bytes", (json_int_t)run->uploaded_bytes,
+        "passes_ms", passes_json(run));
     if (run->psnr_db > 0)
         json_object_set_new(object, "psnr_db", json_real(run->psnr_db));
     return object;

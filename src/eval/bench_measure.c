@@ -44,6 +44,7 @@ enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *re
     params.pass_frames = params.frames_max;
     enum orl_result result = orl_timing_take(job->gpu, &params, &run->timing);
     run->device_bytes = orl_gpu_bytes(job->gpu);
+    run->uploaded_bytes = orl_renderer_uploaded(renderer);
     return result;
 }
 

@@ -33,27 +33,6 @@ static void finish_scene(struct chart_scene *scene)
     orl_scene_destroy(&scene->scene);
 }
 
-static enum orl_result load_views(struct job *job, struct chart_scene *scene)
-{
-    const struct orl_scene *s = scene->scene;
-    size_t held = 0, at = 0, wanted = job->params->quick ? QUICK_VIEWS : job->params->views;
-    for (size_t i = 0; i < s->photo_count; i++)
-        held += s->photos[i].test;
-    if (!wanted || wanted > held)
-        wanted = held;
-    scene->views = orl_array(job->log, wanted, sizeof *scene->views);
-    enum orl_result result = scene->views ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < s->photo_count; i++) {
-        if (!s->photos[i].test)
-            continue;
-        if ((at + 1) * wanted / held > at * wanted / held)
-            result = orl_heldout_load(job->log, s, i, job->params->quick ? QUICK_DIVIDE : 1,
-                                      &scene->views[scene->view_count++]);
-        at++;
-    }
-    return result;
-}
-
 // Seconds that all stages of prepare took; null when scene.json lacks them.
 static json_t *prepare_time(const struct orl_log *log, const struct orl_scene *scene)
 {
@@ -80,15 +59,16 @@ static enum orl_result open_scene(struct job *job, const char *dir, struct chart
     if (result == ORL_OK)
         result = orl_eval_check(job->log, scene->scene);
     if (result == ORL_OK)
-        result = orl_chart_checksum(job->log, scene->scene, scene->checksum);
+        result = orl_row_checksum(job->log, scene->scene, scene->checksum);
     if (result == ORL_OK)
-        result = load_views(job, scene);
+        result = orl_heldout_load_some(job->log, scene->scene,
+                                       job->params->quick ? QUICK_VIEWS : job->params->views,
+                                       job->params->quick ? QUICK_DIVIDE : 1, &scene->views,
+                                       &scene->view_count);
     if (result != ORL_OK)
         return result;
     const struct orl_scene *s = scene->scene;
-    size_t held = 0;
-    for (size_t i = 0; i < s->photo_count; i++)
-        held += s->photos[i].test;
+    size_t held = orl_heldout_count(s);
     scene->json = json_pack("{s:s, s:s, s:s, s:I, s:I, s:I, s:o}", "name", orl_path_name(s->dir),
                             "dir", s->dir, "checksum", scene->checksum, "photographs",
                             (json_int_t)(s->photo_count - held), "held_out", (json_int_t)held,
@@ -118,9 +98,9 @@ static void report(struct job *job, const char *scene, const char *id)
 static enum orl_result add_config(struct job *job, const struct chart_scene *scene,
                                   const struct chart_config *config)
 {
-    char id[128];
+    char id[ORL_ROW_ID_MAX];
     enum orl_result result = ORL_OK;
-    orl_chart_id(config->method->name, config->setting, id);
+    orl_row_id(config->method->name, config->setting, id);
     report(job, scene->name, id);
     json_t *row = orl_chart_load_row(scene, id);
     if (row) {
@@ -130,7 +110,7 @@ static enum orl_result add_config(struct job *job, const struct chart_scene *sce
                      ? ORL_ERR_CANCELLED
                      : orl_chart_measure(scene, config, &row);
         if (result == ORL_OK)
-            result = orl_chart_keep_row(scene, id, row);
+            result = orl_chart_keep_row(scene, id, &row);
         job->chart->measured += result == ORL_OK;
     }
     job->done++;
@@ -187,9 +167,9 @@ static void list_rows(struct orl_chart *chart, const json_t *list)
             .scene = json_string_value(json_object_get(row, "scene")),
             .method = json_string_value(json_object_get(row, "method")),
             .setting = json_string_value(json_object_get(row, "setting")),
-            .psnr_db = orl_chart_number(mean, "psnr_db"), .ssim = orl_chart_number(mean, "ssim"),
-            .flip = orl_chart_number(mean, "flip"), .frame_ms = orl_chart_number(row, "frame_ms"),
-            .device_mib = orl_chart_number(row, "device_bytes") / (1 << 20),
+            .psnr_db = orl_row_number(mean, "psnr_db"), .ssim = orl_row_number(mean, "ssim"),
+            .flip = orl_row_number(mean, "flip"), .frame_ms = orl_row_number(row, "frame_ms"),
+            .device_mib = orl_row_number(row, "device_bytes") / (1 << 20),
             .on_front = json_is_true(json_object_get(row, "on_front"))};
     }
 }

@@ -7,6 +7,7 @@
 #include "eval/chart.h"
 #include "eval/heldout.h"
 #include "eval/metrics.h"
+#include "eval/row_store.h"
 
 // --- chart_plan.c: what is measured ---
 
@@ -35,7 +36,7 @@ struct chart_scene {
     const struct orl_chart_params *params;
     struct orl_scene *scene;    // owned
     const char *name;           // of its folder
-    char checksum[32];
+    char checksum[ORL_ROW_CHECKSUM_SIZE];
     struct orl_heldout *views;  // owned
     size_t view_count;
     json_t *json;               // owned: this scene's entry in chart.json's "scenes"
@@ -70,24 +71,15 @@ enum orl_result orl_chart_peer_row(const struct chart_scene *scene,
 
 // --- chart_rows.c: rows kept between runs ---
 
-// Makes a file name such as "oriel.candidates-3".
-void orl_chart_id(const char *method, const char *setting, char id[128]);
 // What a row depends on, as a new reference. Rows are reused only while this stays the same.
 json_t *orl_chart_provenance(const struct chart_scene *scene);
 // The row of this id if this program measured it on this device and scene and its pictures exist,
 // else NULL. A new reference.
 json_t *orl_chart_load_row(const struct chart_scene *scene, const char *id);
 enum orl_result orl_chart_keep_row(const struct chart_scene *scene, const char *id,
-                                   const json_t *row);
-// Checksum of everything that a rendering of the scene depends on.
-enum orl_result orl_chart_checksum(const struct orl_log *log, const struct orl_scene *scene,
-                                   char text[32]);
+                                   json_t **row);
 
 // --- chart_report.c: Pareto fronts, means over scenes ---
-
-// A row's text, "" when missing; a row's number, NAN when missing or null.
-const char *orl_chart_text(const json_t *row, const char *key);
-double orl_chart_number(const json_t *row, const char *key);
 
 // Adds "on_front", "dominated_by" and "sentence" to each row, and "overall" to the root, which
 // holds "scenes" and "rows".

@@ -321,11 +321,11 @@ enum orl_result orl_chart_measure(const struct chart_scene *scene,
         .max_vram_bytes = scene->params->max_vram_bytes, .textures = config->textures,
         .photo_divide = config->photo_divide};
     const struct chart_pictures pictures = {draw_picture, &job};
-    char id[128];
+    char id[ORL_ROW_ID_MAX];
     json_t *row = json_pack("{s:s, s:s, s:s, s:b, s:o}", "scene", scene->name, "method",
                             config->method->name, "setting", config->setting, "peer", false,
                             "provenance", orl_chart_provenance(scene));
-    orl_chart_id(config->method->name, config->setting, id);
+    orl_row_id(config->method->name, config->setting, id);
     bool was_reset = reset_host_peak();
     double start = orl_time_s();
     enum orl_result result = row ? orl_renderer_create(scene->gpu, scene->scene, &params,

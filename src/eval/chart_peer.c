@@ -79,7 +79,7 @@ enum orl_result orl_chart_peer_row(const struct chart_scene *scene,
 {
     struct job job = {scene, choose_dir(scene, peer)};
     const struct chart_pictures pictures = {read_picture, &job};
-    char id[128];
+    char id[ORL_ROW_ID_MAX];
     size_t there = 0;
     *out = NULL;
     if (!job.dir)
@@ -98,7 +98,7 @@ enum orl_result orl_chart_peer_row(const struct chart_scene *scene,
                             peer->ms > 0 ? json_real(peer->ms) : json_null(), "device_bytes",
                             peer->mib > 0 ? json_integer((json_int_t)(peer->mib * (1 << 20)))
                                           : json_null());
-    orl_chart_id(peer->name, "", id);
+    orl_row_id(peer->name, "", id);
     enum orl_result result = row ? orl_chart_compare(scene, id, &pictures, row) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
         *out = row;

@@ -8,23 +8,6 @@
 #include "eval/chart_front.h"
 #include "eval/chart_internal.h"
 
-const char *orl_chart_text(const json_t *row, const char *key)
-{
-    const char *text = json_string_value(json_object_get(row, key));
-    return text ? text : "";
-}
-
-double orl_chart_number(const json_t *row, const char *key)
-{
-    const json_t *value = json_object_get(row, key);
-    return json_is_number(value) ? json_number_value(value) : (double)NAN;
-}
-
-static json_t *number_json(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 // --- rows of one scene, or over all scenes ---
 
 static void note_point(const struct orl_chart_point *points, size_t count, size_t i, json_t *row)
@@ -50,12 +33,12 @@ static enum orl_result analyse(const struct orl_log *log, json_t *rows, const ch
     json_t **of = orl_array(log, all, sizeof(json_t *)), *row;
     enum orl_result result = points && of ? ORL_OK : ORL_ERR_MEMORY;
     json_array_foreach(rows, i, row) {
-        if (result != ORL_OK || (scene && strcmp(orl_chart_text(row, "scene"), scene) != 0))
+        if (result != ORL_OK || (scene && strcmp(orl_row_text(row, "scene"), scene) != 0))
             continue;
         points[count] = (struct orl_chart_point){
-            .method = orl_chart_text(row, "method"), .setting = orl_chart_text(row, "setting"),
-            .ms = orl_chart_number(row, "frame_ms"),
-            .db = orl_chart_number(json_object_get(row, "mean"), "psnr_db")};
+            .method = orl_row_text(row, "method"), .setting = orl_row_text(row, "setting"),
+            .ms = orl_row_number(row, "frame_ms"),
+            .db = orl_row_number(json_object_get(row, "mean"), "psnr_db")};
         of[count++] = row;
     }
     orl_chart_find_front(points, count);
@@ -70,8 +53,8 @@ static enum orl_result analyse(const struct orl_log *log, json_t *rows, const ch
 
 static bool same_dot(const json_t *a, const json_t *b)
 {
-    return strcmp(orl_chart_text(a, "method"), orl_chart_text(b, "method")) == 0 &&
-           strcmp(orl_chart_text(a, "setting"), orl_chart_text(b, "setting")) == 0;
+    return strcmp(orl_row_text(a, "method"), orl_row_text(b, "method")) == 0 &&
+           strcmp(orl_row_text(a, "setting"), orl_row_text(b, "setting")) == 0;
 }
 
 // Mean of a figure and its standard deviation over the scenes, from the rows like `like`.
@@ -82,15 +65,15 @@ static void gather(const json_t *rows, const json_t *like, const char *key, json
     size_t i;
     const json_t *row;
     json_array_foreach((json_t *)(uintptr_t)rows, i, row) {
-        double value = orl_chart_number(json_object_get(row, "mean"), key);
+        double value = orl_row_number(json_object_get(row, "mean"), key);
         if (!same_dot(row, like))
             continue;
         sum += value;
         square += value * value;
         n++;
     }
-    json_object_set_new(mean, key, number_json(sum / n));
-    json_object_set_new(sd, key, number_json(sqrt(fmax(square / n - sum * sum / (n * n), 0))));
+    json_object_set_new(mean, key, orl_number_json(sum / n));
+    json_object_set_new(sd, key, orl_number_json(sqrt(fmax(square / n - sum * sum / (n * n), 0))));
 }
 
 // Arithmetic mean, or geometric mean (for times), of the rows like `like`; null when a row lacks
@@ -101,13 +84,13 @@ static json_t *mean_of(const json_t *rows, const json_t *like, const char *key, 
     size_t i;
     const json_t *row;
     json_array_foreach((json_t *)(uintptr_t)rows, i, row) {
-        double value = orl_chart_number(row, key);
+        double value = orl_row_number(row, key);
         if (!same_dot(row, like))
             continue;
         sum += geometric ? log(value) : value;
         n++;
     }
-    return number_json(geometric ? exp(sum / n) : sum / n);
+    return orl_number_json(geometric ? exp(sum / n) : sum / n);
 }
 
 static json_t *overall_row(const json_t *rows, const json_t *like, size_t scenes)
@@ -116,8 +99,8 @@ static json_t *overall_row(const json_t *rows, const json_t *like, size_t scenes
     for (size_t k = 0; k < CHART_FIGURES; k++)
         gather(rows, like, orl_chart_figures[k], mean, sd);
     return json_pack("{s:s, s:s, s:b, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "method",
-                     orl_chart_text(like, "method"), "setting",
-                     orl_chart_text(like, "setting"), "peer",
+                     orl_row_text(like, "method"), "setting",
+                     orl_row_text(like, "setting"), "peer",
                      json_is_true(json_object_get(like, "peer")), "scenes", (json_int_t)scenes,
                      "mean", mean, "sd", sd, "flicker", mean_of(rows, like, "flicker", false),
                      "frame_ms", mean_of(rows, like, "frame_ms", true), "p95_ms",
@@ -155,7 +138,7 @@ enum orl_result orl_chart_analyse(const struct orl_log *log, json_t *root)
     enum orl_result result = ORL_OK;
     json_array_foreach(scenes, i, scene)
         if (result == ORL_OK)
-            result = analyse(log, rows, orl_chart_text(scene, "name"));
+            result = analyse(log, rows, orl_row_text(scene, "name"));
     json_t *overall = make_overall(rows, json_array_size(scenes));
     if (json_object_set_new(root, "overall", overall) != 0)
         return orl_fail(log, ORL_ERR_MEMORY, "no memory for the chart");

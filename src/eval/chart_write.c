@@ -7,9 +7,10 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "eval/chart_internal.h"
+#include "eval/report_page.h"
 #include "io/svg_plot.h"
 
-enum { PAGE_VIEWS = 2, JPEG_MAX_BYTES = 1 << 24 };
+enum { PAGE_VIEWS = 2 };
 
 // --- figures ---
 
@@ -28,17 +29,17 @@ static double psnr_of(const json_t *row)
 
 static bool is_of(const json_t *row, const char *scene)
 {
-    return (!scene || strcmp(orl_chart_text(row, "scene"), scene) == 0) &&
+    return (!scene || strcmp(orl_row_text(row, "scene"), scene) == 0) &&
            json_is_number(json_object_get(row, "frame_ms"));
 }
 
 static void add_dot(struct dots *dots, const json_t *row, bool labelled)
 {
     size_t i = dots->count++;
-    const char *setting = orl_chart_text(row, "setting");
+    const char *setting = orl_row_text(row, "setting");
     dots->x[i] = json_number_value(json_object_get(row, "frame_ms"));
     dots->y[i] = psnr_of(row);
-    dots->labels[i] = labelled ? (setting[0] ? setting : orl_chart_text(row, "method")) : "";
+    dots->labels[i] = labelled ? (setting[0] ? setting : orl_row_text(row, "method")) : "";
     dots->series[dots->series_count - 1].count++;
 }
 
@@ -56,14 +57,14 @@ static void add_methods(struct dots *dots, const json_t *rows, const char *scene
     json_array_foreach((json_t *)(uintptr_t)rows, i, row) {
         bool seen = !is_of(row, scene);
         for (size_t s = 0; !seen && s < dots->series_count; s++)
-            seen = strcmp(dots->series[s].name, orl_chart_text(row, "method")) == 0;
+            seen = strcmp(dots->series[s].name, orl_row_text(row, "method")) == 0;
         if (seen)
             continue;
-        begin_series(dots, orl_chart_text(row, "method"), false);
+        begin_series(dots, orl_row_text(row, "method"), false);
         json_array_foreach((json_t *)(uintptr_t)rows, k, other)
             if (is_of(other, scene) &&
-                strcmp(orl_chart_text(other, "method"), orl_chart_text(row, "method")) == 0)
-                add_dot(dots, other, orl_chart_text(other, "setting")[0] == '\0');
+                strcmp(orl_row_text(other, "method"), orl_row_text(row, "method")) == 0)
+                add_dot(dots, other, orl_row_text(other, "setting")[0] == '\0');
     }
 }
 
@@ -127,7 +128,7 @@ static enum orl_result write_figures(const struct orl_log *log, const char *out,
                                      const json_t *root)
 {
     const json_t *scenes = json_object_get(root, "scenes"), *scene;
-    const char *device = orl_chart_text(root, "device");
+    const char *device = orl_row_text(root, "device");
     char subtitle[320], file[300];
     size_t i;
     snprintf(subtitle, sizeof subtitle, "means over %zu scene%s; %.100s",
@@ -137,7 +138,7 @@ static enum orl_result write_figures(const struct orl_log *log, const char *out,
     json_array_foreach((json_t *)(uintptr_t)scenes, i, scene) {
         if (result != ORL_OK)
             break;
-        const char *name = orl_chart_text(scene, "name");
+        const char *name = orl_row_text(scene, "name");
         snprintf(file, sizeof file, "chart.%.200s.svg", name);
         snprintf(subtitle, sizeof subtitle, "%.100s: %zu photographs held out; %.100s", name,
                  json_array_size(json_object_get(scene, "views")), device);
@@ -148,52 +149,9 @@ static enum orl_result write_figures(const struct orl_log *log, const char *out,
 
 // --- the page ---
 
-static void put_base64(FILE *out, const uint8_t *data, size_t size)
-{
-    static const char digits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        unsigned bits = (unsigned)data[i] << 16;
-        bits |= i + 1 < size ? (unsigned)data[i + 1] << 8 : 0;
-        bits |= i + 2 < size ? (unsigned)data[i + 2] : 0;
-        fputc(digits[bits >> 18], out);
-        fputc(digits[bits >> 12 & 63], out);
-        fputc(i + 1 < size ? digits[bits >> 6 & 63] : '=', out);
-        fputc(i + 2 < size ? digits[bits & 63] : '=', out);
-    }
-}
-
-// Writes "NAME":"data:..", of one picture.
-static enum orl_result put_picture(const struct orl_log *log, FILE *out, const char *dir,
-                                   const char *name, bool *first)
-{
-    uint8_t *data = NULL;
-    size_t size = 0;
-    char *path = orl_path_join(log, dir, name), *key = NULL;
-    json_t *text = orl_json_string(name);
-    enum orl_result result = path && text ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_file_read(log, path, JPEG_MAX_BYTES, &data, &size);
-    if (result == ORL_OK) {
-        key = json_dumps(text, JSON_ENCODE_ANY | JSON_ESCAPE_SLASH);
-        result = key ? ORL_OK : ORL_ERR_MEMORY;
-    }
-    if (result == ORL_OK) {
-        fprintf(out, "%s%s:\"data:image/jpeg;base64,", *first ? "" : ",\n", key);
-        put_base64(out, data, size);
-        fputc('"', out);
-        *first = false;
-    }
-    json_decref(text);
-    free(key);
-    free(data);
-    free(path);
-    return result;
-}
-
-// Writes the pictures of the first views of each row of `list`.
-static enum orl_result put_pictures_of(const struct orl_log *log, FILE *out, const char *dir,
-                                       const json_t *list, bool *first)
+// Collects the pictures of the first views of each row of `list`.
+static enum orl_result add_pictures_of(const struct orl_log *log, const json_t *list,
+                                       struct orl_names *pictures)
 {
     static const char *const keys[] = {"picture", "error_map"};
     enum orl_result result = ORL_OK;
@@ -204,60 +162,23 @@ static enum orl_result put_pictures_of(const struct orl_log *log, FILE *out, con
                 const char *name =
                     json_string_value(json_object_get(json_array_get(views, v), keys[k]));
                 if (name)
-                    result = put_picture(log, out, dir, name, first);
+                    result = orl_names_add(log, pictures, name);
             }
     }
     return result;
 }
 
-// Writes the page up to a mark and moves *page behind the mark.
-static void put_until(FILE *out, const char **page, const char *mark)
-{
-    const char *at = strstr(*page, mark);
-    fwrite(*page, 1, at ? (size_t)(at - *page) : strlen(*page), out);
-    *page = at ? at + strlen(mark) : *page + strlen(*page);
-}
-
-static enum orl_result put_page(const struct orl_log *log, FILE *out, const char *dir,
-                                const json_t *root)
-{
-    const char *page = orl_chart_page;
-    bool first = true;
-    // Slashes are escaped, since the data must not contain "</script>".
-    char *data = json_dumps(root, JSON_COMPACT | JSON_ESCAPE_SLASH | JSON_REAL_PRECISION(7));
-    if (!data)
-        return orl_fail(log, ORL_ERR_MEMORY, "no memory for the chart's page");
-    put_until(out, &page, "@DATA@");
-    fputs(data, out);
-    free(data);
-    put_until(out, &page, "@PICTURES@");
-    enum orl_result result =
-        put_pictures_of(log, out, dir, json_object_get(root, "scenes"), &first);
-    if (result == ORL_OK)
-        result = put_pictures_of(log, out, dir, json_object_get(root, "rows"), &first);
-    fputs(page, out);
-    return result;
-}
-
 static enum orl_result write_page(const struct orl_log *log, const char *dir, const json_t *root)
 {
-    struct orl_atomic_file file = {0};
-    char *path = orl_path_join(log, dir, "chart.html");
-    enum orl_result result = path ? orl_atomic_begin(log, path, &file) : ORL_ERR_MEMORY;
-    FILE *out = result == ORL_OK ? fopen(file.temp, "wb") : NULL;
-    if (result == ORL_OK && !out)
-        result = orl_fail(log, ORL_ERR_IO, "%s: cannot write", path);
-    if (out) {
-        result = put_page(log, out, dir, root);
-        bool ok = !ferror(out);
-        ok = fclose(out) == 0 && ok;
-        if (result == ORL_OK && !ok)
-            result = orl_fail(log, ORL_ERR_IO, "%s: cannot write", path);
-    }
+    struct orl_names pictures = {0};
+    enum orl_result result = add_pictures_of(log, json_object_get(root, "scenes"), &pictures);
     if (result == ORL_OK)
-        result = orl_atomic_commit(log, &file);
-    orl_atomic_abort(&file);
-    free(path);
+        result = add_pictures_of(log, json_object_get(root, "rows"), &pictures);
+    if (result == ORL_OK)
+        result = orl_page_write(log, &(struct orl_page){.dir = dir, .file = "chart.html",
+                                                        .html = orl_chart_page, .data = root,
+                                                        .pictures = &pictures});
+    orl_names_finish(&pictures);
     return result;
 }
 

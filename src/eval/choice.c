@@ -35,8 +35,33 @@ enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scen
                                 const struct orl_names *settings, struct orl_choice *choice)
 {
     const struct wish wish = {log, scene, sample, settings, NULL};
-    const struct orl_method *method = orl_method_find(log, name);
+    const struct orl_method *method =
+        orl_method_find(log, name ? name : orl_method_default(scene));
     return method ? make(&wish, method, choice) : ORL_ERR_ARGUMENT;
+}
+
+// A printed float without the digits that it does not have: 0.1, not 0.100000001.
+static const char *rounded(const char *value, char text[ORL_OPTION_NAME_BYTES])
+{
+    snprintf(text, ORL_OPTION_NAME_BYTES, "%.6g", atof(value));
+    return text;
+}
+
+json_t *orl_choice_settings(const struct orl_method *method,
+                            const struct orl_render_params *params, bool tunable)
+{
+    json_t *settings = json_object();
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+        char own[ORL_OPTION_NAME_BYTES], value[ORL_OPTION_NAME_BYTES];
+        orl_render_option_print(o, &method->params, own, sizeof own);
+        orl_render_option_print(o, params, value, sizeof value);
+        if (strcmp(own, value) == 0 || (tunable && o->try_count == 0))
+            continue;
+        json_object_set_new(settings, o->key, o->kind == ORL_OPTION_NUMBER
+                                                  ? json_real(atof(rounded(value, own)))
+                                                  : json_string(value));
+    }
+    return settings;
 }
 
 static enum orl_result add(const struct orl_log *log, const struct orl_choice *choice,
@@ -95,8 +120,11 @@ enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_sce
     bool all = orl_names_contain(methods, "all");
     enum orl_result result = ORL_OK;
     memset(choices, 0, sizeof *choices);
-    if (!all && !methods->count)
-        result = add_method(&wish, &orl_methods[0], choices);
+    const struct orl_method *preset = NULL;
+    if (!all && !methods->count) {
+        preset = orl_method_find(log, orl_method_default(scene));
+        result = preset ? add_method(&wish, preset, choices) : ORL_ERR_FORMAT;
+    }
     for (const struct orl_method *m = orl_methods; result == ORL_OK && all && m->name; m++)
         result = add_method(&wish, m, choices);
     for (size_t i = 0; result == ORL_OK && !all && i < methods->count; i++) {

@@ -3,6 +3,8 @@
 #ifndef ORL_EVAL_CHOICE_H
 #define ORL_EVAL_CHOICE_H
 
+#include <jansson.h>
+
 #include "core/file.h"
 #include "oriel/render.h"
 
@@ -12,19 +14,25 @@ struct orl_choice {
     struct orl_render_params params;
 };
 
-// scene: its tuned values are used; NULL: none. sample: what the renderer samples photographs for,
-// which decides which options may be set. ORL_ERR_ARGUMENT, with a list of what is allowed: an
+// scene: its tuned values are used; NULL: none are. method: a name; NULL: the scene's default.
+// sample: what the renderer samples photographs for, which decides which options may be set. ORL_ERR_ARGUMENT, with a list of what is allowed: an
 // unknown method or key, a key that the method does not read, or a bad value.
 enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scene *scene,
                                 enum orl_sample sample, const char *method,
                                 const struct orl_names *settings,
                                 struct orl_choice *choice) ORL_CHECK_RESULT;
 
+// Keys and values, numbers or names, of the options in which `params` differs from the method's own
+// values: "settings" of "tuned" in scene.json. tunable: only those that oriel tune may change. A new
+// reference.
+json_t *orl_choice_settings(const struct orl_method *method,
+                            const struct orl_render_params *params, bool tunable);
+
 struct orl_choices {
     struct orl_choice *items; // owned
     size_t count, capacity;
 };
-// methods: names, which may include "all"; none: the default method. varied: "KEY=A,B,..", each
+// methods: names, which may include "all"; none: the scene's default. varied: "KEY=A,B,..", each
 // method once with each of the values; NULL: each method once.
 enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_scene *scene,
                                  enum orl_sample sample, const struct orl_names *methods,

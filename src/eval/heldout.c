@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/color.h"
+#include "core/memory.h"
 #include "io/picture.h"
 #include "render/reexpose.h"
 
@@ -82,6 +83,34 @@ void orl_heldout_finish(struct orl_heldout *heldout)
     memset(heldout, 0, sizeof *heldout);
 }
 
+size_t orl_heldout_count(const struct orl_scene *scene)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        count += scene->photos[i].test;
+    return count;
+}
+
+enum orl_result orl_heldout_load_some(const struct orl_log *log, const struct orl_scene *scene,
+                                      size_t wanted, int divide, struct orl_heldout **views,
+                                      size_t *view_count)
+{
+    size_t held = orl_heldout_count(scene), at = 0;
+    if (!wanted || wanted > held)
+        wanted = held;
+    *view_count = 0;
+    *views = orl_array(log, wanted, sizeof **views);
+    enum orl_result result = *views ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (!scene->photos[i].test)
+            continue;
+        if ((at + 1) * wanted / held > at * wanted / held)
+            result = orl_heldout_load(log, scene, i, divide, &(*views)[(*view_count)++]);
+        at++;
+    }
+    return result;
+}
+
 // --- the rendering ---
 
 // True when the rendering is at the scene's reference exposure. It then has to be brought to what
@@ -89,7 +118,7 @@ void orl_heldout_finish(struct orl_heldout *heldout)
 // (expose.h) and the vignetting of its lens.
 static bool is_aligned(const struct orl_render_params *render, const struct orl_photo *photo)
 {
-    bool changed = false;
+    bool changed = photo->metering != 0;
     for (int c = 0; c < 3; c++)
         changed = changed || photo->gain[c] != 1 || photo->vignette[c] != 0;
     return changed && render->alignment == ORL_ALIGNMENT_ON &&
@@ -105,4 +134,28 @@ enum orl_result orl_heldout_expose(const struct orl_log *log, const struct orl_s
     if (is_aligned(render, &scene->photos[photo]))
         orl_photo_unalign(&scene->photos[photo], color);
     return orl_tone_srgb(log, color, picture);
+}
+
+enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_renderer *renderer,
+                                    const struct orl_scene *scene,
+                                    const struct orl_heldout *heldout,
+                                    const struct orl_render_params *render, const bool *skip,
+                                    bool psnr_alone, struct orl_metrics *metrics)
+{
+    struct orl_frame frame = {0};
+    struct orl_image picture = {0};
+    struct orl_render_params params = *render;
+    memset(metrics, 0, sizeof *metrics);
+    params.leave_out |= ORL_LAYER_NORMAL | ORL_LAYER_DEPTH;
+    enum orl_result result = orl_renderer_draw(renderer, &heldout->view, &params, skip, &frame);
+    if (result == ORL_OK)
+        result = orl_heldout_expose(log, scene, heldout->photo, render, &frame.color, &picture);
+    if (result == ORL_OK && psnr_alone)
+        metrics->psnr_db = orl_metrics_psnr_db(&picture, &heldout->picture);
+    else if (result == ORL_OK)
+        result =
+            orl_metrics_compare(log, &picture, &heldout->picture, &frame.coverage, metrics);
+    orl_image_finish(&picture);
+    orl_frame_finish(&frame);
+    return result;
 }

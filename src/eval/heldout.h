@@ -3,6 +3,7 @@
 #ifndef ORL_EVAL_HELDOUT_H
 #define ORL_EVAL_HELDOUT_H
 
+#include "eval/metrics.h"
 #include "oriel/render.h"
 
 // A photograph that a rendering is compared with.
@@ -18,6 +19,13 @@ struct orl_heldout {
 enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_scene *scene,
                                  size_t photo, int divide,
                                  struct orl_heldout *heldout) ORL_CHECK_RESULT;
+// The number of photographs that are held out.
+size_t orl_heldout_count(const struct orl_scene *scene);
+// Reads `wanted` held-out photographs, evenly chosen; 0, or more than there are: all. Each of
+// *views is finished with orl_heldout_finish, then the array with free(), also after a failure.
+enum orl_result orl_heldout_load_some(const struct orl_log *log, const struct orl_scene *scene,
+                                      size_t wanted, int divide, struct orl_heldout **views,
+                                      size_t *view_count) ORL_CHECK_RESULT;
 // Averages divide x divide pixels in linear light. Pixels left over at the end of a row or column
 // are dropped. U8 x3.
 enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_image *from,
@@ -32,5 +40,15 @@ enum orl_result orl_heldout_expose(const struct orl_log *log, const struct orl_s
                                    size_t photo, const struct orl_render_params *render,
                                    struct orl_image *color,
                                    struct orl_image *picture) ORL_CHECK_RESULT;
+
+// Renders the photograph's view without the photographs that `skip` marks (NULL: none), as
+// orl_renderer_draw does, and compares the picture with the photograph. `scene` is the one that the
+// photograph was loaded from; the renderer may draw another of the same place. psnr_alone: the other
+// figures, which take longer than a fast frame, stay 0.
+enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_renderer *renderer,
+                                    const struct orl_scene *scene,
+                                    const struct orl_heldout *heldout,
+                                    const struct orl_render_params *render, const bool *skip,
+                                    bool psnr_alone, struct orl_metrics *metrics) ORL_CHECK_RESULT;
 
 #endif

@@ -259,6 +259,14 @@ static enum orl_result measure_rephoto(const struct orl_log *log, const struct o
     return ORL_OK;
 }
 
+double orl_metrics_psnr_db(const struct orl_image *a, const struct orl_image *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < pixel_count(a); i++)
+        sum += squared_error(&a->u8[3 * i], &b->u8[3 * i]);
+    return psnr_db(sum, 3.0 * (double)pixel_count(a));
+}
+
 enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_image *a,
                                     const struct orl_image *b, const struct orl_image *coverage,
                                     struct orl_metrics *metrics)

@@ -7,8 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/process.h"
-#include "eval/heldout.h"
-#include "eval/metrics.h"
+#include "eval/judges.h"
 
 enum { ROUNDS_MAX = 8 };
 
@@ -18,79 +17,31 @@ struct job {
     const struct orl_scene *scene;
     const struct orl_tune_params *params;
     struct orl_tune *tune;
-    struct orl_heldout *targets; // owned
-    size_t target_count;
-    bool *skip; // owned
+    struct orl_judges targets;
     double start_s;
     double done, total; // number of renderings, for the progress report
 };
 
-// --- targets ---
-
-static enum orl_result load_targets(struct job *job)
-{
-    const struct orl_scene *scene = job->scene;
-    size_t train = 0, at = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        train += !scene->photos[i].test;
-    if (train < 3)
-        return orl_fail(job->log, ORL_ERR_DATA,
-                        "%s: %zu photographs that are not held out; three are needed, to render "
-                        "one from two others", scene->dir, train);
-    size_t wanted = job->params->views && job->params->views < train ? job->params->views : train;
-    job->targets = orl_array(job->log, train, sizeof *job->targets);
-    job->skip = orl_array(job->log, scene->photo_count, sizeof *job->skip);
-    enum orl_result result = job->targets && job->skip ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        if (scene->photos[i].test)
-            continue;
-        if ((at + 1) * wanted / train > at * wanted / train)
-            result = orl_heldout_load(job->log, scene, i, job->params->size_divide,
-                                      &job->targets[job->target_count++]);
-        at++;
-    }
-    job->tune->views = job->target_count;
-    return result;
-}
-
 // --- one trial ---
-
-static enum orl_result compare(struct job *job, const struct orl_heldout *target,
-                               const struct orl_render_params *render, struct orl_metrics *metrics)
-{
-    struct orl_frame frame = {0};
-    struct orl_image picture = {0};
-    job->skip[target->photo] = true;
-    enum orl_result result =
-        orl_renderer_draw(job->renderer, &target->view, render, job->skip, &frame);
-    job->skip[target->photo] = false;
-    if (result == ORL_OK)
-        result = orl_heldout_expose(job->log, job->scene, target->photo, render, &frame.color,
-                                    &picture);
-    if (result == ORL_OK)
-        result = orl_metrics_compare(job->log, &picture, &target->picture, &frame.coverage,
-                                     metrics);
-    orl_image_finish(&picture);
-    orl_frame_finish(&frame);
-    return result;
-}
 
 static enum orl_result run_trial(struct job *job, const struct orl_render_params *render,
                                  struct orl_tune_trial *trial)
 {
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < job->target_count; i++) {
+    const struct orl_judges *targets = &job->targets;
+    for (size_t i = 0; result == ORL_OK && i < targets->count; i++) {
         struct orl_metrics metrics;
         if (orl_progress_cancelled(job->params->progress))
             return ORL_ERR_CANCELLED;
         orl_progress_report(job->params->progress, "tune", job->done, job->total,
-                            job->scene->photos[job->targets[i].photo].name);
-        result = compare(job, &job->targets[i], render, &metrics);
+                            job->scene->photos[targets->views[i].photo].name);
+        result = orl_judges_compare(job->log, job->renderer, targets, i, render, NULL, false,
+                                    &metrics);
         if (result != ORL_OK)
             break;
         job->done++;
-        trial->psnr_db += metrics.psnr_db / (double)job->target_count;
-        trial->ssim += metrics.ssim / (double)job->target_count;
+        trial->psnr_db += metrics.psnr_db / (double)targets->count;
+        trial->ssim += metrics.ssim / (double)targets->count;
     }
     return result;
 }
@@ -216,14 +167,6 @@ static enum orl_result search(struct job *job)
     return result;
 }
 
-static void finish(struct job *job)
-{
-    for (size_t i = 0; i < job->target_count; i++)
-        orl_heldout_finish(&job->targets[i]);
-    free(job->targets);
-    free(job->skip);
-}
-
 enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              const struct orl_scene *scene, const struct orl_tune_params *params,
                              struct orl_tune *tune)
@@ -235,15 +178,17 @@ enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     tune->best = *params->start;
     enum orl_result result = check_keys(&job);
     if (result == ORL_OK)
-        result = load_targets(&job);
+        result = orl_judges_load(job.log, scene, params->views, params->size_divide,
+                                 &job.targets);
+    tune->views = job.targets.count;
     for (const struct orl_render_option *o = orl_render_options; o->key; o++)
         // An estimate, for the progress report.
-        job.total += is_chosen(&job, o) ? 3.0 * (double)job.target_count : 0;
+        job.total += is_chosen(&job, o) ? 3.0 * (double)job.targets.count : 0;
     if (result == ORL_OK)
         result = search(&job);
     if (result == ORL_OK)
         orl_progress_report(params->progress, "tune", 1, 1, NULL);
-    finish(&job);
+    orl_judges_finish(&job.targets);
     if (result != ORL_OK)
         orl_tune_finish(tune);
     return result;

@@ -5,36 +5,14 @@
 #include <string.h>
 
 #include "core/json.h"
+#include "eval/choice.h"
 #include "scene/tuned_settings.h"
-
-static double value_of(const struct orl_render_params *params,
-                       const struct orl_render_option *option)
-{
-    float value;
-    memcpy(&value, (const char *)params + option->offset, sizeof value);
-    return (double)value;
-}
-
-json_t *orl_tune_settings(const struct orl_render_params *best,
-                          const struct orl_render_params *method)
-{
-    json_t *settings = json_object();
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-        double value = o->try_count ? value_of(best, o) : 0;
-        char text[32];
-        if (o->try_count == 0 || value == value_of(method, o))
-            continue;
-        snprintf(text, sizeof text, "%.6g", value); // writes 0.1, not the nearest float
-        json_object_set_new(settings, o->key, json_real(atof(text)));
-    }
-    return settings;
-}
 
 static json_t *record(const struct orl_method *method, int size_divide,
                       const struct orl_tune *tune)
 {
     return json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
-                     orl_tune_settings(&tune->best, &method->params), "before_psnr_db",
+                     orl_choice_settings(method, &tune->best, true), "before_psnr_db",
                      tune->start_db, "psnr_db", tune->best_db, "photographs",
                      (json_int_t)tune->views, "size_divide", size_divide, "complete",
                      tune->complete);

@@ -6,10 +6,6 @@
 
 #include "eval/tune.h"
 
-// Keys and numbers of `best`, among all tunable options, that differ from the method's own. A new
-// reference.
-json_t *orl_tune_settings(const struct orl_render_params *best,
-                          const struct orl_render_params *method);
 enum orl_result orl_tune_write_json(const struct orl_log *log, const char *path,
                                     const struct orl_scene *scene,
                                     const struct orl_method *method, const char *device,

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "gpu/bc7.h"
+#include "gpu/texel_block.h"
 
-enum { TEXELS = 16, RGB = 3 };
+enum { TEXELS = ORL_BLOCK_TEXELS, RGB = 3 };
 
 static const unsigned char weights[16] = {0,  4,  9,  13, 17, 21, 26, 30,
                                           34, 38, 43, 47, 51, 55, 60, 64};
@@ -176,14 +177,12 @@ void orl_bc7_encode(const uint8_t *rgba, int width, int height, uint8_t *blocks)
 {
     for (int y = 0; y < height; y += 4) {
         for (int x = 0; x < width; x += 4, blocks += ORL_BC7_BLOCK_BYTES) {
+            uint8_t block[TEXELS][4];
             float texels[TEXELS][RGB];
-            for (int i = 0; i < TEXELS; i++) { // outside: the last column and row
-                int u = x + i % 4 < width ? x + i % 4 : width - 1;
-                int v = y + i / 4 < height ? y + i / 4 : height - 1;
-                const uint8_t *from = &rgba[4 * ((size_t)v * (size_t)width + (size_t)u)];
+            orl_texel_block(rgba, width, height, x, y, block);
+            for (int i = 0; i < TEXELS; i++)
                 for (int c = 0; c < RGB; c++)
-                    texels[i][c] = from[c];
-            }
+                    texels[i][c] = block[i][c];
             encode_block(texels, blocks);
         }
     }

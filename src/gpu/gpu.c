@@ -30,6 +30,30 @@ static EGLDisplay open_surfaceless_display(void)
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
 }
 
+// With robust access a shader that reads or writes outside of a buffer harms nobody, and with reset
+// notification a device that was reset says so. Drivers need not offer either.
+static EGLContext create_context(EGLDisplay display, EGLConfig config, bool debug)
+{
+    const EGLint attribs[] = {EGL_CONTEXT_MAJOR_VERSION, 4,
+                              EGL_CONTEXT_MINOR_VERSION, 5,
+                              EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                              EGL_CONTEXT_OPENGL_DEBUG, debug ? EGL_TRUE : EGL_FALSE,
+                              EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                              EGL_LOSE_CONTEXT_ON_RESET,
+                              EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
+                              EGL_NONE};
+    enum { LEAST = 4 }; // pairs that must be granted: those ahead of the reset notification
+    EGLint asked[ORL_COUNT(attribs)];
+    for (int pairs = (int)ORL_COUNT(attribs) / 2; pairs >= LEAST; pairs--) {
+        memcpy(asked, attribs, sizeof asked);
+        asked[2 * pairs] = EGL_NONE;
+        EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, asked);
+        if (context != EGL_NO_CONTEXT)
+            return context;
+    }
+    return EGL_NO_CONTEXT;
+}
+
 // Makes a context on `display` current. On failure returns false and leaves nothing allocated.
 static bool open_context(struct orl_gpu *gpu, EGLDisplay display, bool debug)
 {
@@ -39,16 +63,10 @@ static bool open_context(struct orl_gpu *gpu, EGLDisplay display, bool debug)
         return false;
     const EGLint config_attribs[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                                      EGL_NONE};
-    const EGLint context_attribs[] = {EGL_CONTEXT_MAJOR_VERSION, 4,
-                                      EGL_CONTEXT_MINOR_VERSION, 5,
-                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                      EGL_CONTEXT_OPENGL_DEBUG, debug ? EGL_TRUE : EGL_FALSE,
-                                      EGL_NONE};
     if (eglBindAPI(EGL_OPENGL_API)) {
         if (!eglChooseConfig(display, config_attribs, &config, 1, &config_count) || !config_count)
             config = EGL_NO_CONFIG_KHR;
-        gpu->context = eglCreateContext(display, config, EGL_NO_CONTEXT, context_attribs);
+        gpu->context = create_context(display, config, debug);
         if (gpu->context != EGL_NO_CONTEXT &&
             eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context)) {
             gpu->display = display;
@@ -116,6 +134,7 @@ enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_p
         result = ORL_ERR_MEMORY;
         goto fail;
     }
+    orl_mesa_cache_guard(log);
     if (!open_any_context(gpu, params && params->debug)) {
         result = orl_fail(log, ORL_ERR_GPU, "no usable OpenGL device (EGL error 0x%04x). %s",
                           (unsigned)eglGetError(), mesa_advice);
@@ -182,14 +201,47 @@ size_t orl_gpu_bytes(const struct orl_gpu *gpu)
     return gpu->live_bytes;
 }
 
+// A lost context is never whole again: what it held is gone, and reads give anything.
+static void lose(struct orl_gpu *gpu, const char *cause)
+{
+    if (!gpu->lost)
+        orl_logf(gpu->log, ORL_LOG_ERROR, "the graphics device was reset%s: what was being made is "
+                 "lost. Run the command again; prepare and densify take --resume", cause);
+    gpu->lost = true;
+}
+
+static void check_lost(struct orl_gpu *gpu)
+{
+    switch (glGetGraphicsResetStatus()) {
+    case GL_NO_ERROR:
+        break;
+    case GL_GUILTY_CONTEXT_RESET:
+        lose(gpu, " for a fault of this frame, or since a pass took too long");
+        break;
+    case GL_INNOCENT_CONTEXT_RESET:
+        lose(gpu, " by another program");
+        break;
+    default:
+        lose(gpu, "");
+    }
+}
+
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where)
 {
     bool clean = true;
     for (GLenum error; (error = glGetError()) != GL_NO_ERROR; clean = false) {
         gpu->failed = true;
-        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: OpenGL error 0x%04x", where, (unsigned)error);
-        if (error == GL_CONTEXT_LOST)
+        if (error == GL_CONTEXT_LOST) {
+            check_lost(gpu);
+            lose(gpu, "");
             return false;
+        }
+        if (error == GL_OUT_OF_MEMORY)
+            orl_logf(gpu->log, ORL_LOG_ERROR, "%s: the device is out of memory; Oriel holds %zu "
+                     "MiB of it. Give less with --max-vram MIB, or a smaller --size", where,
+                     gpu->live_bytes >> 20);
+        else
+            orl_logf(gpu->log, ORL_LOG_ERROR, "%s: OpenGL error 0x%04x", where, (unsigned)error);
     }
     return clean;
 }
@@ -198,7 +250,8 @@ enum orl_result orl_gpu_finish(struct orl_gpu *gpu)
 {
     glFinish();
     orl_gpu_check_errors(gpu, "finish");
-    bool failed = gpu->failed;
+    check_lost(gpu);
+    bool failed = gpu->failed || gpu->lost;
     gpu->failed = false;
     return failed ? ORL_ERR_GPU : ORL_OK;
 }

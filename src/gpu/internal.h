@@ -23,6 +23,7 @@ struct orl_gpu {
     char *program_cache; // folder, owned; NULL: no cache
     size_t cached_progs; // programs taken from the cache
     bool failed;      // sticky: a GL error or a high-severity message
+    bool lost;        // for good: the device was reset
     bool current;     // the context could be made current
     struct orl_prog **progs; // programs made so far, owned
     size_t prog_count, prog_capacity;
@@ -54,7 +55,14 @@ enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
                                        const struct orl_slot *slots, const char *defines,
                                        struct shader_source *source);
 void orl_shader_source_finish(struct shader_source *source);
+// With ORIEL_SHADER_DUMP=DIR in the environment, writes the expanded source to DIR. False, logged,
+// if that fails.
+bool orl_shader_dump(struct orl_gpu *gpu, GLenum type, const struct shader_source *source);
 
+// Mesa maps its cache of programs into memory and ends by SIGBUS when the disk is full. Oriel's own
+// cache does not spare it: it lacks the machine code of the software renderer. So this turns it off,
+// in the environment, where the disk has little room. Before the display is opened.
+void orl_mesa_cache_guard(const struct orl_log *log);
 // Cache of linked programs (program_cache.c). dir: cache_dir of struct orl_gpu_params.
 void orl_program_cache_open(struct orl_gpu *gpu, const char *dir);
 void orl_program_cache_close(struct orl_gpu *gpu);
@@ -66,6 +74,10 @@ void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *so
 
 // program.c: makes the program current with these parameters. False, a sticky failure, on error.
 bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params, size_t size);
+// Binds textures and images, ORL_BINDINGS_MAX of each, as orl_dispatch has them. image_layers may
+// be NULL.
+void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_image_binding *images,
+                  const int *image_layers);
 void orl_gpu_free_programs(struct orl_gpu *gpu);
 void orl_gpu_free_raster(struct orl_gpu *gpu);
 

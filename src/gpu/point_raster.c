@@ -81,9 +81,11 @@ void orl_point_raster_draw(struct orl_point_raster *r, const float clip_from_wor
     const struct orl_raster draw = {
         .prog = orl_prog_get_raster(r->gpu, "proxy/points.vert", "proxy/points.frag", NULL),
         .params = clip_from_world, .params_size = 16 * sizeof(float),
-        .inputs = {{r->vertices, 0, sizeof(struct vertex), 3, GL_FLOAT},
-                   {r->vertices, offsetof(struct vertex, color), sizeof(struct vertex), 4,
-                    GL_UNSIGNED_BYTE}},
+        .inputs = {{.buf = r->vertices, .stride = sizeof(struct vertex), .components = 3,
+                    .type = GL_FLOAT},
+                   {.buf = r->vertices, .offset = offsetof(struct vertex, color),
+                    .stride = sizeof(struct vertex), .components = 4,
+                    .type = GL_UNSIGNED_BYTE}},
         .primitive = GL_POINTS, .count = r->count, .targets = {r->color}, .depth = r->depth,
     };
     orl_pass_begin(r->gpu, "GL_POINTS");

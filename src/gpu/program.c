@@ -84,7 +84,8 @@ static bool make(struct orl_gpu *gpu, const struct stage *stages, size_t count,
     double start = orl_time_s();
     bool ok = true, cached = false;
     for (size_t i = 0; ok && i < count; i++)
-        ok = orl_shader_source_load(gpu, stages[i].file, slots, defines, &sources[i]) == ORL_OK;
+        ok = orl_shader_source_load(gpu, stages[i].file, slots, defines, &sources[i]) == ORL_OK &&
+             orl_shader_dump(gpu, stages[i].type, &sources[i]);
     prog->id = glCreateProgram();
     // Only compute programs take long to compile.
     bool cacheable = count == 1;
@@ -214,6 +215,22 @@ bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params
     return true;
 }
 
+void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_image_binding *images,
+                  const int *image_layers)
+{
+    for (GLuint i = 0; i < ORL_BINDINGS_MAX; i++) {
+        const struct orl_image_binding *image = &images[i];
+        int layer = image_layers ? image_layers[i] : 0;
+        if (textures[i])
+            glBindTextureUnit(i, textures[i]->id);
+        if (image->tex)
+            glBindImageTexture(i, image->tex->id, image->level,
+                               image->tex->params.layers > 0 && layer == 0,
+                               layer > 0 ? layer - 1 : 0, image->access,
+                               image->tex->params.format);
+    }
+}
+
 void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
 {
     if (!orl_prog_use(gpu, d->prog, d->params, d->params_size))
@@ -223,16 +240,8 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
         if (b->buf)
             glBindBufferRange(GL_SHADER_STORAGE_BUFFER, i, b->buf->id, (GLintptr)b->offset,
                               (GLsizeiptr)(b->size ? b->size : b->buf->size - b->offset));
-        if (d->textures[i])
-            glBindTextureUnit(i, d->textures[i]->id);
-        const struct orl_image_binding *image = &d->images[i];
-        int layer = d->image_layers[i];
-        if (image->tex)
-            glBindImageTexture(i, image->tex->id, image->level,
-                               image->tex->params.layers > 0 && layer == 0,
-                               layer > 0 ? layer - 1 : 0, image->access,
-                               image->tex->params.format);
     }
+    orl_gpu_bind(d->textures, d->images, d->image_layers);
     if (d->indirect) {
         glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, d->indirect->id);
         glDispatchComputeIndirect(0);

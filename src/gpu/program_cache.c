@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/statvfs.h>
 #include <xxhash.h>
 
 #include "core/file.h"
@@ -36,6 +37,37 @@ static char *cache_dir(const char *asked)
         return orl_path_join(NULL, xdg, "oriel");
     return home && *home ? orl_path_join(NULL, home, ".cache/oriel") : NULL;
 }
+
+// --- Mesa's own cache ---
+
+// The folder of Mesa's cache, or the nearest folder above it that there is. Owned; NULL: unknown.
+static char *mesa_cache_dir(void)
+{
+    const char *set = getenv("MESA_SHADER_CACHE_DIR"), *xdg = getenv("XDG_CACHE_HOME");
+    const char *home = getenv("HOME");
+    char *dir = set && *set   ? orl_strdup(NULL, set)
+                : xdg && *xdg ? orl_strdup(NULL, xdg)
+                : home        ? orl_path_join(NULL, home, ".cache")
+                              : NULL;
+    for (char *slash; dir && !orl_path_is_dir(dir) && (slash = strrchr(dir, '/')) && slash > dir;)
+        *slash = '\0';
+    return dir;
+}
+
+void orl_mesa_cache_guard(const struct orl_log *log)
+{
+    static const unsigned long long least_bytes = 64 << 20;
+    struct statvfs disk;
+    char *dir = mesa_cache_dir();
+    if (dir && statvfs(dir, &disk) == 0 &&
+        (unsigned long long)disk.f_bavail * disk.f_frsize < least_bytes) {
+        orl_logf(log, ORL_LOG_DEBUG, "%s: little room, so that Mesa keeps no programs there", dir);
+        setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
+    }
+    free(dir);
+}
+
+// --- Oriel's cache ---
 
 void orl_program_cache_open(struct orl_gpu *gpu, const char *dir)
 {

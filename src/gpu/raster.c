@@ -22,6 +22,7 @@ static void bind_inputs(GLuint array, const struct orl_raster *r)
         }
         glVertexArrayVertexBuffer(array, i, input->buf->id, (GLintptr)input->offset,
                                   (GLsizei)input->stride);
+        glVertexArrayBindingDivisor(array, i, input->per_instance);
         if (input->type == GL_UNSIGNED_INT)
             glVertexArrayAttribIFormat(array, i, input->components, input->type, 0);
         else
@@ -83,17 +84,26 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     }
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, gpu->framebuffer);
     glViewport(0, 0, any->params.width, any->params.height);
-    clear_targets(gpu, r);
+    if (r->over) {
+        glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT); // after shader writes of earlier passes
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    } else {
+        clear_targets(gpu, r);
+    }
     if (r->depth)
         glEnable(GL_DEPTH_TEST);
     bind_inputs(gpu->vertex_array, r);
+    orl_gpu_bind(r->textures, r->images, NULL);
     glBindVertexArray(gpu->vertex_array);
+    GLsizei count = (GLsizei)r->count, instances = r->instances ? (GLsizei)r->instances : 1;
     if (r->indices)
-        glDrawElements(r->primitive, (GLsizei)r->count, GL_UNSIGNED_INT, NULL);
+        glDrawElementsInstanced(r->primitive, count, GL_UNSIGNED_INT, NULL, instances);
     else
-        glDrawArrays(r->primitive, 0, (GLsizei)r->count);
+        glDrawArraysInstanced(r->primitive, 0, count, instances);
     glBindVertexArray(0);
     glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     if (r->barrier)
         glMemoryBarrier(r->barrier);

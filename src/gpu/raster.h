@@ -13,9 +13,11 @@ struct orl_raster_input {
     int components;            // 1 to 4
     GLenum type;               // GL_FLOAT, GL_UNSIGNED_BYTE (normalised: 255 reads as 1) or
                                // GL_UNSIGNED_INT (which reads as an integer)
+    bool per_instance;         // advances with the instance, not with the vertex
 };
 
-// One draw into textures of one size. They are cleared first: colours to 0, depth to 1.
+// One draw into textures of one size. They are cleared first: colours to 0, depth to 1. With `over`
+// they keep what they have, and colours premultiplied by alpha are laid over it in order.
 struct orl_raster {
     struct orl_prog *prog;     // from orl_prog_get_raster
     const void *params;        // contents of the uniform block at binding 0
@@ -24,6 +26,10 @@ struct orl_raster {
     const struct orl_buf *indices; // 32-bit; NULL: vertices in order
     GLenum primitive;              // GL_TRIANGLES or GL_POINTS
     size_t count;                  // number of indices, or of vertices
+    size_t instances;              // how often they are drawn; 0 counts as 1
+    bool over;                     // blends, see above
+    const struct orl_tex *textures[ORL_BINDINGS_MAX];     // what both programs read, by binding
+    struct orl_image_binding images[ORL_BINDINGS_MAX];
     const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by output location
     const struct orl_tex *depth;   // GL_DEPTH_COMPONENT32F; NULL: no depth test
     GLbitfield barrier;            // glMemoryBarrier bits, applied after the draw

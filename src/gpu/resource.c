@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "gpu/bc1.h"
 #include "gpu/bc7.h"
 #include "gpu/internal.h"
 
@@ -264,11 +265,10 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
     for (int level = 0; result == ORL_OK && level < p->levels; level++) {
         int width = level_side(p->width, level), height = level_side(p->height, level);
         orl_tex_read(from, level, GL_RGBA, GL_UNSIGNED_BYTE, room, pixels);
-        if (!bc7) { // BC1: the driver compresses
-            orl_tex_write(to, level, layer, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
-            continue;
-        }
-        orl_bc7_encode(pixels, width, height, blocks);
+        if (bc7)
+            orl_bc7_encode(pixels, width, height, blocks);
+        else
+            orl_bc1_encode(pixels, width, height, blocks);
         struct orl_tex_params one = {.width = width, .height = height, .format = p->format};
         glCompressedTextureSubImage3D(to->id, level, 0, 0, layer, width, height, 1, p->format,
                                       (GLsizei)orl_tex_layer_bytes(&one), blocks);
@@ -289,11 +289,16 @@ void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)
         glGenerateTextureMipmap(tex->id);
         return;
     }
-    // The view restricts the work to one layer; glGenerateTextureMipmap would redo every layer.
-    GLuint view;
-    glGenTextures(1, &view);
-    glTextureView(view, GL_TEXTURE_2D, tex->id, tex->params.format, 0,
-                  (GLuint)tex->params.levels, (GLuint)layer, 1);
-    glGenerateTextureMipmap(view);
-    glDeleteTextures(1, &view);
+    // glGenerateTextureMipmap would redo every layer; with Mesa even on a view of one layer.
+    const struct orl_tex_params *p = &tex->params;
+    GLuint one;
+    glCreateTextures(GL_TEXTURE_2D, 1, &one);
+    glTextureStorage2D(one, p->levels, p->format, p->width, p->height);
+    glCopyImageSubData(tex->id, GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, one, GL_TEXTURE_2D, 0, 0, 0, 0,
+                       p->width, p->height, 1);
+    glGenerateTextureMipmap(one);
+    for (int level = 1; level < p->levels; level++)
+        glCopyImageSubData(one, GL_TEXTURE_2D, level, 0, 0, 0, tex->id, GL_TEXTURE_2D_ARRAY, level, 0,
+                           0, layer, level_side(p->width, level), level_side(p->height, level), 1);
+    glDeleteTextures(1, &one);
 }

@@ -9,17 +9,24 @@
 
 const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1] = {"fused", "series"};
 
-// Range of exposures of the photographs in use, in stops.
-static double exposure_range(const struct orl_scene *scene, const bool *use)
+// What the photographs in use have.
+struct range {
+    double low, high; // exposures, in stops
+    bool radiance;    // at least one is radiance
+};
+
+static struct range find_range(const struct orl_scene *scene, const bool *use)
 {
-    double low = INFINITY, high = -INFINITY;
+    struct range range = {INFINITY, -INFINITY, false};
     for (size_t i = 0; i < scene->photo_count; i++) {
-        if (use ? !use[i] : scene->photos[i].test)
+        const struct orl_photo *photo = &scene->photos[i];
+        if (use ? !use[i] : photo->test)
             continue;
-        low = fmin(low, scene->photos[i].exposure_ev);
-        high = fmax(high, scene->photos[i].exposure_ev);
+        range.low = fmin(range.low, photo->exposure_ev);
+        range.high = fmax(range.high, photo->exposure_ev);
+        range.radiance = range.radiance || photo->radiance;
     }
-    return high - low;
+    return range;
 }
 
 enum orl_result orl_hdr_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -28,13 +35,17 @@ enum orl_result orl_hdr_create(struct orl_gpu *gpu, const struct orl_scene *scen
     const struct orl_log *log = orl_gpu_log(gpu);
     *out = NULL;
     ORL_REQUIRE(log, params->samples >= 1 && params->samples <= 4);
+    struct range range = find_range(scene, params->use);
+    if (range.radiance && params->merge == ORL_HDR_SERIES)
+        return orl_fail(log, ORL_ERR_ARGUMENT,
+                        "%s: its photographs are radiance already: use --merge fused", scene->dir);
     struct orl_hdr *hdr = orl_array(log, 1, sizeof *hdr);
     if (!hdr)
         return ORL_ERR_MEMORY;
     hdr->gpu = gpu;
     hdr->scene = scene;
     hdr->params = *params;
-    if (!(exposure_range(scene, params->use) > 0.5))
+    if (!range.radiance && !(range.high - range.low > 0.5))
         orl_logf(log, ORL_LOG_WARNING,
                  "%s: the photographs have one exposure: what it clips stays clipped", scene->dir);
     struct orl_renderer_params renderer = {.use = params->use, .radiance = true,

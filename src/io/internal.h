@@ -50,7 +50,7 @@ enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *pat
                                       const uint8_t *data, size_t size,
                                       struct orl_image *image);
 
-// TIFF and RAW are read from the file at `path`, as their libraries require. Values are linear
+// TIFF, RAW and HEIF are read from the file at `path`, as their libraries require. Values are linear
 // light, F32 x3; exif is filled from the header.
 enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
                                  struct orl_picture_info *info, struct orl_exif *exif);
@@ -60,6 +60,13 @@ enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
                                 struct orl_picture_info *info, struct orl_exif *exif);
 enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *path,
                                       struct orl_image *image);
+
+// HEIC and AVIF, recognised by their first 12 bytes.
+bool orl_heif_is(const uint8_t *data, size_t size);
+enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
+                                 struct orl_picture_info *info, struct orl_exif *exif);
+enum orl_result orl_heif_decode_linear(const struct orl_log *log, const char *path,
+                                       struct orl_image *image);
 
 // A conversion from the RGB space of a colour profile (ICC) to linear light, Rec. 709 primaries.
 struct orl_profile;

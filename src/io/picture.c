@@ -13,7 +13,7 @@
 #include "io/internal.h"
 
 enum format { FORMAT_UNKNOWN, FORMAT_JPEG, FORMAT_PNG, FORMAT_TIFF, FORMAT_EXR, FORMAT_RAW,
-              FORMAT_PNM };
+              FORMAT_PNM, FORMAT_HEIF };
 
 static const size_t max_file_bytes = (size_t)1 << 30;
 
@@ -27,6 +27,12 @@ bool orl_picture_is_raw(const char *path)
         if (strcasecmp(dot + 1, known[i]) == 0)
             return true;
     return false;
+}
+
+bool orl_picture_is_png(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, ".png") == 0;
 }
 
 static enum format format_of(const char *path, const uint8_t *data, size_t size)
@@ -48,6 +54,8 @@ static enum format format_of(const char *path, const uint8_t *data, size_t size)
             format = known[i].format;
     if (format == FORMAT_UNKNOWN && orl_pnm_is(data, size))
         format = FORMAT_PNM;
+    if (format == FORMAT_UNKNOWN && orl_heif_is(data, size))
+        format = FORMAT_HEIF;
     bool may_be_raw = format == FORMAT_UNKNOWN || format == FORMAT_TIFF;
     return may_be_raw && size && orl_picture_is_raw(path) ? FORMAT_RAW : format;
 }
@@ -55,7 +63,7 @@ static enum format format_of(const char *path, const uint8_t *data, size_t size)
 static enum orl_result fail_unknown(const struct orl_log *log, const char *path)
 {
     return orl_fail(log, ORL_ERR_FORMAT, "%s: not a picture of a known kind "
-                    "(JPEG, PNG, PNM, TIFF, EXR, RAW)", path);
+                    "(JPEG, PNG, PNM, TIFF, EXR, HEIC, AVIF, RAW)", path);
 }
 
 enum orl_result orl_picture_check_size(const struct orl_log *log, const char *path,
@@ -92,7 +100,7 @@ enum orl_result orl_picture_check_memory(const struct orl_log *log, const char *
 static enum orl_result open_file(const struct orl_log *log, const char *path, FILE **stream,
                                  enum format *format)
 {
-    uint8_t magic[8];
+    uint8_t magic[12];
     enum orl_result result = orl_file_open(log, path, stream);
     if (result != ORL_OK)
         return result;
@@ -143,6 +151,9 @@ static enum orl_result read_header(const struct orl_log *log, const char *path,
         break;
     case FORMAT_TIFF:
         result = orl_tiff_inspect(log, path, info, exif ? exif : &unused);
+        break;
+    case FORMAT_HEIF:
+        result = orl_heif_inspect(log, path, info, exif ? exif : &unused);
         break;
     case FORMAT_RAW:
         result = orl_raw_inspect(log, path, info, exif ? exif : &unused);
@@ -225,6 +236,8 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
         return read_exr(log, path, image);
     if (format == FORMAT_TIFF)
         return orl_tiff_decode_linear(log, path, image);
+    if (format == FORMAT_HEIF)
+        return orl_heif_decode_linear(log, path, image);
     if (format == FORMAT_RAW)
         return orl_raw_decode_linear(log, path, image);
     struct orl_image eight = {0};

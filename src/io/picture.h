@@ -1,5 +1,6 @@
-// Photographs and pictures as files. JPEG, PNG, binary PNM of 8 bits, TIFF and EXR are recognised
-// by content, camera RAW files by their extension, since many of them begin like TIFF.
+// Photographs and pictures as files. JPEG, PNG, binary PNM of 8 bits, TIFF, EXR and HEIF (HEIC,
+// AVIF) are recognised by content, camera RAW files by their extension, since many of them begin
+// like TIFF.
 #ifndef ORL_IO_PICTURE_H
 #define ORL_IO_PICTURE_H
 
@@ -18,17 +19,20 @@ enum orl_result orl_picture_size(const struct orl_log *log, const char *path, in
                                  int *height) ORL_CHECK_RESULT;
 // Reads 8-bit samples; `channels` is 1 (luma) or 3 (RGB). Alpha is dropped, 16-bit samples are
 // rounded, linear light is clipped and sRGB-encoded. EXIF orientation is ignored: pixels stay in
-// the stored order. A truncated file is an error.
+// the stored order; only HEIF files are turned as they ask, and have orientation 1. A truncated file
+// is an error.
 enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
                                  struct orl_image *image) ORL_CHECK_RESULT;
 // Reads linear light, F32 x3, Rec. 709 primaries. 8- and 16-bit samples are taken as sRGB with
-// white at 1, except that a TIFF file's colour profile is applied and a PNG file with a gamma of 1
-// is linear. Float TIFF and EXR samples (R, G, B, or Y) are taken unchanged. RAW files get the
+// white at 1, except that the colour profile of a TIFF or HEIF file is applied and a PNG file with a
+// gamma of 1 is linear. Float TIFF and EXR samples (R, G, B, or Y) are taken unchanged. RAW files get the
 // camera's white balance and are 1 where the sensor saturates.
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image) ORL_CHECK_RESULT;
 // True when the extension is that of a camera RAW format.
 bool orl_picture_is_raw(const char *path);
+// True when the extension is that of PNG.
+bool orl_picture_is_png(const char *path);
 
 // Writes 8-bit pictures of 1 or 3 channels, atomically.
 enum orl_result orl_png_write(const struct orl_log *log, const char *path,

@@ -275,13 +275,18 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
     return result;
 }
 
+// Where point i of a block is stored in its chunk.
+static size_t place_in_chunk(size_t i, size_t block, size_t block_count)
+{
+    return (i / ORL_ITEM_POINTS * block_count + block) * ORL_ITEM_POINTS + i % ORL_ITEM_POINTS;
+}
+
 static void fill_block(const struct orl_points *points, const struct key *order, size_t count,
                        size_t block, struct host_chunk *host)
 {
     float positions[BLOCK][4];
     for (size_t i = 0; i < BLOCK; i++) {
-        size_t to = (i / ORL_ITEM_POINTS * host->block_count + block) * ORL_ITEM_POINTS +
-                    i % ORL_ITEM_POINTS;
+        size_t to = place_in_chunk(i, block, host->block_count);
         if (i >= count) { // padding: a point that projects into no pixel
             for (int k = 0; k < 4; k++)
                 host->positions[to][k] = NAN;
@@ -322,6 +327,38 @@ static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points
     return result;
 }
 
+// Points of a chunk: whole blocks, as many as the device can read of a buffer.
+static size_t chunk_points(const struct orl_gpu *gpu)
+{
+    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / BLOCK * BLOCK;
+    return most < CHUNK_POINTS ? most : CHUNK_POINTS;
+}
+
+enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points *points,
+                              uint32_t **map, size_t *count)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    size_t most = chunk_points(gpu), used = 0;
+    struct key *order = NULL;
+    *map = NULL;
+    enum orl_result result = find_order(log, points, &order, &used);
+    *count = (used + BLOCK - 1) / BLOCK * BLOCK;
+    if (result == ORL_OK)
+        *map = orl_array(log, *count, sizeof **map);
+    if (!*map) {
+        free(order);
+        return result == ORL_OK ? ORL_ERR_MEMORY : result;
+    }
+    memset(*map, 0xff, *count * sizeof **map);
+    for (size_t i = 0; i < used; i++) {
+        size_t first = i / most * most, here = used - first < most ? used - first : most;
+        size_t block = (i - first) / BLOCK, blocks = (here + BLOCK - 1) / BLOCK;
+        (*map)[first + place_in_chunk(i % BLOCK, block, blocks)] = order[i].point;
+    }
+    free(order);
+    return ORL_OK;
+}
+
 enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct cloud *cloud)
 {
@@ -329,9 +366,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     memset(cloud, 0, sizeof *cloud);
     if (points->count > INT32_MAX - BLOCK)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
-    // Whole blocks, as many as the device can read of a buffer.
-    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / BLOCK * BLOCK;
-    most = most < CHUNK_POINTS ? most : CHUNK_POINTS;
+    size_t most = chunk_points(gpu);
     struct key *order = NULL;
     size_t count = 0;
     enum orl_result result = find_order(log, points, &order, &count);

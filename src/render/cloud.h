@@ -26,6 +26,10 @@ struct cloud {
 enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct cloud *cloud);
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);
+// Finds which point of `points` each point on the device is: (*map)[i], owned by the caller (free),
+// for index i of the splat index texture; UINT32_MAX: padding.
+enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points *points,
+                              uint32_t **map, size_t *count) ORL_CHECK_RESULT;
 // Lists the points to draw of each chunk. The counts and the first index in `block` are
 // overwritten.
 void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block);

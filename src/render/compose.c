@@ -4,6 +4,7 @@
 #include "render/fill.h"
 #include "render/gather.h"
 #include "render/method.h"
+#include "render/room.h"
 #include "render/soften.h"
 
 static bool always(const struct frame *frame)
@@ -36,6 +37,7 @@ static void compose(const struct frame *frame)
         .image_size = {frame->surface.width, frame->surface.height},
         .points_show = orl_painter_of(frame->params) == &orl_paint_points,
         .fills = fills(frame),
+        .layers = orl_painter_of(frame->params)->layers,
     };
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block,
@@ -76,6 +78,7 @@ static void median(const struct frame *frame)
 }
 
 const struct post_pass orl_post_passes[] = {
+    {"room", orl_frame_shows_room, orl_room_show},
     {"fill", fills, orl_fill_color},
     {"soften", softens, orl_soften_prepare},
     {"compose", always, compose},

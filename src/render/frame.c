@@ -33,6 +33,17 @@ void orl_frame_ground(const struct frame *frame, float out[4])
     out[3] = (float)(1 / (GROUND_REACH * ground->height));
 }
 
+void orl_set_pose(const struct orl_pose *pose, float rotation[3][4], float eye[4])
+{
+    double centre[3];
+    orl_pose_centre(pose, centre);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            rotation[i][j] = (float)pose->r[i][j];
+        eye[i] = (float)centre[i];
+    }
+}
+
 void orl_set_focal(const struct orl_camera *camera, float focal[4])
 {
     focal[0] = (float)camera->fx;

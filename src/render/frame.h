@@ -19,9 +19,10 @@ struct frame {
     const struct orl_render_params *params;
     bool radiance;             // photographs are sampled as radiance
     bool finishes;             // the painter leaves finished pixels (struct painter)
+    struct orl_progressive *progressive; // NULL: the frame waits for its photographs
     const bool *skip;          // per photograph: leave it out; NULL: use all
     struct proxy *proxy;       // draws the surfaces of this view and of the photographs
-    uint64_t proxy_key;        // orl_proxy_key of these parameters
+    uint64_t depth_key;        // orl_photos_depth_key of this frame
     struct surface surface;    // surface that the view sees
     struct photos *photos;     // photographs on the device
     struct gather *gather;     // parameters of the photographs in use
@@ -37,6 +38,7 @@ struct frame {
     // finishes pixels.
     struct orl_tex *picture;
     struct orl_tex *trusted;   // radiance: weight * confidence, weight, blur; else NULL
+    struct orl_tex *room;      // RGBA32F, room.h; NULL: not shown
     struct orl_tex *states[2]; // RGBA32F, state of a combination between sweeps, and output of
                                // a filter; else NULL
 };
@@ -48,6 +50,8 @@ bool orl_frame_guesses(const struct frame *frame);
 // The scene's ground for image_block and gather_block; zeros if the frame's estimated depth is not
 // limited by the ground.
 void orl_frame_ground(const struct frame *frame, float ground[4]);
+// The rows of cam_from_world's rotation, and the camera's centre.
+void orl_set_pose(const struct orl_pose *pose, float rotation[3][4], float eye[4]);
 void orl_set_focal(const struct orl_camera *camera, float focal[4]);
 
 #endif

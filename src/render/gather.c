@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "render/photos.h"
+#include "render/progressive.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 _Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
@@ -89,8 +90,9 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
     orl_set_focal(&state->color_camera, data->focal);
     data->size[0] = (float)state->color_camera.width;
     data->size[1] = (float)state->color_camera.height;
-    data->size[2] = (float)state->depth_camera.width;
-    data->size[3] = (float)state->depth_camera.height;
+    struct orl_camera depth = orl_photos_depth_camera(state, state->depth_divide);
+    data->size[2] = (float)depth.width;
+    data->size[3] = (float)depth.height;
     for (int c = 0; c < 3; c++) {
         data->gain[c] = aligned || frame->radiance ? photo->gain[c] : 1;
         data->lens[c] = aligned ? photo->vignette[c] : 0;
@@ -124,7 +126,7 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
     struct gather *g = frame->gather;
     const struct photos *photos = frame->photos;
     const struct orl_render_params *params = frame->params;
-    const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth->params;
+    const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth_params;
     for (size_t i = 0; i < count; i++) {
         describe_photo(frame, frame->chosen[first + i], &g->list[i]);
         memcpy(g->list[i].selected, frame->selected[first + i], sizeof g->list[i].selected);
@@ -253,7 +255,9 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
     struct orl_dispatch d = {
         .prog = generic_program(frame, &slots, sweep),
         .params = &block, .params_size = sizeof block,
-        .textures = {frame->photos->color, frame->photos->depth},
+        // Without depth maps no shader reads them, but a sampler wants a texture.
+        .textures = {frame->photos->color,
+                     frame->photos->depth ? frame->photos->depth : frame->photos->color},
         .images = {{frame->surface.depth, 0, GL_READ_ONLY},
                    {frame->picture, 0, GL_READ_WRITE},
                    {frame->radiance ? frame->trusted : frame->states[0], 0, GL_READ_WRITE},
@@ -275,15 +279,23 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
     return ORL_OK;
 }
 
+static bool reads_depth(const struct frame *frame)
+{
+    const char *visibility = frame->params->visibility;
+    // Radiance has a visibility of its own in place of `facing`.
+    return strcmp(visibility, "none") != 0 &&
+           (frame->radiance || strcmp(visibility, "facing") != 0);
+}
+
 // Sweeps over all photographs, in turns of as many as are resident together.
 static enum orl_result sweep_over(const struct frame *frame, int sweep)
 {
     size_t turn = (size_t)frame->photos->slot_count;
-    bool depth = strcmp(frame->params->visibility, "none") != 0;
+    bool depth = reads_depth(frame);
     for (size_t first = 0; first < frame->chosen_count; first += turn) {
         size_t left = frame->chosen_count - first, count = left < turn ? left : turn;
         enum orl_result result = ORL_OK;
-        for (size_t i = 0; result == ORL_OK && i < count; i++)
+        for (size_t i = 0; !frame->progressive && result == ORL_OK && i < count; i++)
             result = orl_photos_require(frame, frame->chosen[first + i], depth);
         if (result == ORL_OK)
             result = gather(frame, first, count, sweep);
@@ -293,7 +305,7 @@ static enum orl_result sweep_over(const struct frame *frame, int sweep)
     return ORL_OK;
 }
 
-static void clear(const struct frame *frame)
+void orl_gather_clear(const struct frame *frame)
 {
     struct orl_tex *const targets[] = {frame->picture, frame->trusted, frame->states[0],
                                        frame->states[1]};
@@ -305,11 +317,15 @@ static void clear(const struct frame *frame)
 static enum orl_result paint_gather(struct frame *frame)
 {
     int sweeps = frame->radiance ? 1 : orl_combine_of(frame->params)->sweeps;
-    clear(frame);
+    orl_gather_clear(frame);
     enum orl_result result =
         orl_selection_of(frame->params)->choose(frame, (size_t)frame->photos->slot_count);
+    if (result == ORL_OK && frame->progressive)
+        result = orl_progressive_admit(frame, reads_depth(frame));
     for (int sweep = 0; result == ORL_OK && sweep < sweeps; sweep++)
         result = sweep_over(frame, sweep);
+    if (result == ORL_OK)
+        orl_progressive_underpaint(frame);
     return result;
 }
 
@@ -322,8 +338,9 @@ static enum orl_result paint_points(struct frame *frame)
 {
     const struct proxy *proxy = frame->proxy;
     orl_pass_begin(frame->gpu, "gather");
-    clear(frame);
-    proxy->kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, frame->picture);
+    orl_gather_clear(frame);
+    const struct paint_into into = {.picture = frame->picture};
+    proxy->kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, &into);
     orl_pass_end(frame->gpu);
     return ORL_OK;
 }

@@ -33,6 +33,8 @@ struct gather_slots {
     struct orl_slot slots[GATHER_SLOTS];
 };
 void orl_gather_slots(const struct frame *frame, struct gather_slots *out);
+// Empties the picture and what belongs to it.
+void orl_gather_clear(const struct frame *frame);
 // Ensures room for `bytes` in *buf, whose contents may be lost.
 enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
                               struct orl_buf **buf);

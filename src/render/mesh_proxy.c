@@ -1,4 +1,4 @@
-// A triangle mesh as the proxy: SCENE/mesh.ply, drawn by the graphics pipeline.
+// A triangle mesh as the proxy (orl_scene_mesh_path), drawn by the graphics pipeline.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,36 +7,12 @@
 #include "core/memory.h"
 #include "gpu/raster.h"
 #include "render/frame.h"
-#include "render/proxy.h"
-#include "scene/mesh.h"
+#include "render/mesh_proxy.h"
+#include "render/raster_target.h"
 #include "shared/render_blocks.h"
 
-struct mesh_state {
-    struct orl_mesh mesh; // owned
-    struct orl_buf *vertices, *indices;
-    float low[3], high[3]; // bounding box, world
-};
-
-struct mesh_target {
-    int width, height;
-    struct orl_tex *depth, *normal; // of struct surface
-    struct orl_tex *test;           // the depth test's own
-};
-
-static void destroy(struct orl_gpu *gpu, void **handle)
-{
-    struct mesh_state *state = *handle;
-    if (!state)
-        return;
-    orl_buf_destroy(gpu, &state->vertices);
-    orl_buf_destroy(gpu, &state->indices);
-    orl_mesh_finish(&state->mesh);
-    free(state);
-    *handle = NULL;
-}
-
-static void vertices(const void *handle, const struct orl_scene *scene, const float (**out)[3],
-                     size_t *count)
+void orl_mesh_vertices(const void *handle, const struct orl_scene *scene,
+                       const float (**out)[3], size_t *count)
 {
     const struct mesh_state *state = handle;
     (void)scene;
@@ -44,7 +20,7 @@ static void vertices(const void *handle, const struct orl_scene *scene, const fl
     *count = state->mesh.vertex_count;
 }
 
-static enum orl_result upload(struct orl_gpu *gpu, struct mesh_state *state)
+enum orl_result orl_mesh_state_upload(struct orl_gpu *gpu, struct mesh_state *state)
 {
     const struct orl_mesh *mesh = &state->mesh;
     memcpy(state->low, mesh->position[0], sizeof state->low);
@@ -64,81 +40,62 @@ static enum orl_result upload(struct orl_gpu *gpu, struct mesh_state *state)
     return result;
 }
 
-static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene, void **out)
+void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state)
+{
+    orl_buf_destroy(gpu, &state->vertices);
+    orl_buf_destroy(gpu, &state->indices);
+    orl_mesh_finish(&state->mesh);
+}
+
+static void destroy(struct orl_gpu *gpu, void **handle)
+{
+    struct mesh_state *state = *handle;
+    if (!state)
+        return;
+    orl_mesh_state_finish(gpu, state);
+    free(state);
+    *handle = NULL;
+}
+
+static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
+                            struct mesh_state *state)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    struct mesh_state *state = orl_array(log, 1, sizeof *state);
     char *path = orl_scene_mesh_path(log, scene);
-    enum orl_result result = state && path ? ORL_OK : ORL_ERR_MEMORY;
-    *out = state;
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    orl_mesh_state_finish(gpu, state);
+    state->moment = scene->frame;
     if (result == ORL_OK && !orl_path_is_file(path))
         result = orl_fail(log, ORL_ERR_NOT_FOUND,
-                          "%s: not there; oriel import --mesh makes a scene with a mesh", path);
+                          "%s: not there; --mesh of oriel prepare or oriel import makes one", path);
     if (result == ORL_OK)
         result = orl_mesh_read(log, path, &state->mesh);
     if (result == ORL_OK)
-        result = upload(gpu, state);
-    if (result != ORL_OK)
-        destroy(gpu, out);
+        result = orl_mesh_state_upload(gpu, state);
     free(path);
     return result;
 }
 
-static void free_target(struct orl_gpu *gpu, void **handle)
+static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene, void **out)
 {
-    struct mesh_target *target = *handle;
-    if (!target)
-        return;
-    orl_tex_destroy(gpu, &target->depth);
-    orl_tex_destroy(gpu, &target->normal);
-    orl_tex_destroy(gpu, &target->test);
-    free(target);
-    *handle = NULL;
-}
-
-static enum orl_result resize(struct orl_gpu *gpu, const void *state, int width, int height,
-                              void **out)
-{
-    struct mesh_target *target = *out;
-    (void)state;
-    if (target && target->width == width && target->height == height)
-        return ORL_OK;
-    free_target(gpu, out);
-    target = orl_array(orl_gpu_log(gpu), 1, sizeof *target);
-    *out = target;
-    if (!target)
-        return ORL_ERR_MEMORY;
-    target->width = width;
-    target->height = height;
-    const struct {
-        const char *tag;
-        GLenum format;
-        struct orl_tex **tex;
-    } rows[] = {
-        {"proxy depth", GL_R32F, &target->depth},
-        {"proxy normal", GL_RGBA16F, &target->normal},
-        {"mesh depth test", GL_DEPTH_COMPONENT32F, &target->test},
-    };
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
-        struct orl_tex_params params = {.width = width, .height = height,
-                                        .format = rows[i].format, .tag = rows[i].tag};
-        result = orl_tex_create(gpu, &params, rows[i].tex);
-    }
+    struct mesh_state *state = orl_array(orl_gpu_log(gpu), 1, sizeof *state);
+    enum orl_result result = state ? load(gpu, scene, state) : ORL_ERR_MEMORY;
+    *out = state;
     if (result != ORL_OK)
-        free_target(gpu, out);
+        destroy(gpu, out);
     return result;
 }
 
-static size_t target_bytes(const void *state, int width, int height)
+// Moments of a sequence may have meshes of their own.
+static enum orl_result update(const struct frame *frame, void *handle, bool *changed)
 {
-    (void)state;
-    return (size_t)width * (size_t)height * (4 + 8 + 4);
+    struct mesh_state *state = handle;
+    *changed = state->moment != frame->scene->frame;
+    return *changed ? load(frame->gpu, frame->scene, state) : ORL_OK;
 }
 
-// Nearest depth that the bounding box may have before the camera; a small share of the farthest
-// where the camera stands within it.
-static float nearest(const struct mesh_state *state, const struct orl_view *view)
+void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view, float *near,
+                    float *far)
 {
     double low = INFINITY, high = 0;
     for (int corner = 0; corner < 8; corner++) {
@@ -149,30 +106,27 @@ static float nearest(const struct mesh_state *state, const struct orl_view *view
         low = fmin(low, q[2]);
         high = fmax(high, q[2]);
     }
-    return (float)fmax(0.999 * low, 1e-4 * high);
+    // Where the camera stands within the box, or has it behind, any range ahead will do.
+    *far = high > 0 ? (float)(1.001 * high) : 1;
+    *near = (float)fmax(0.999 * low, 1e-4 * (double)*far);
 }
 
-static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
-                 const struct orl_render_params *params, bool normals, void *memory,
-                 struct surface *surface)
+void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
+                   const struct orl_render_params *params, bool normals, void *memory,
+                   struct surface *surface)
 {
     const struct mesh_state *state = handle;
-    struct mesh_target *target = memory;
-    struct mesh_block block = {.view_size = {target->width, target->height},
-                               .depth_near = nearest(state, view)};
-    double eye[3];
+    struct raster_target *target = memory;
+    struct mesh_block block = {.view_size = {target->width, target->height}};
+    orl_mesh_range(state, view, &block.depth_near, &block.depth_far);
     (void)params, (void)normals; // nothing to choose, and normals come along
-    orl_pose_centre(&view->cam_from_world, eye);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            block.rotation[i][j] = (float)view->cam_from_world.r[i][j];
-        block.eye[i] = (float)eye[i];
-    }
+    orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
     orl_set_focal(&view->camera, block.focal);
     const struct orl_raster raster = {
         .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", "proxy/mesh.frag", NULL),
         .params = &block, .params_size = sizeof block,
-        .inputs = {{state->vertices, 0, 3 * sizeof(float), 3, GL_FLOAT}},
+        .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
+                    .type = GL_FLOAT}},
         .indices = state->indices, .primitive = GL_TRIANGLES, .count = 3 * state->mesh.triangle_count,
         .targets = {target->depth, target->normal}, .depth = target->test,
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
@@ -185,6 +139,8 @@ static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view 
 }
 
 const struct proxy_kind orl_proxy_mesh = {
-    .name = "mesh", .create = create, .vertices = vertices, .destroy = destroy, .resize = resize,
-    .free_target = free_target, .target_bytes = target_bytes, .draw = draw,
+    .name = "mesh", .create = create, .update = update, .vertices = orl_mesh_vertices,
+    .destroy = destroy, .resize = orl_raster_target_resize,
+    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,
+    .draw = orl_mesh_draw,
 };

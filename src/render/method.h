@@ -29,6 +29,7 @@ struct painter {
     const char *needs; // required choices, as readers of option_list.h; all must hold
     bool finishes;     // finishes all pixels that it does not list (shaders/shared/pixel.glsl),
                        // except in radiance
+    bool layers;               // the fourth channel is alpha: what is behind shows through
     bool (*reads_normals)(const struct frame *frame); // the surface's normals; NULL: never
     enum orl_result (*paint)(struct frame *frame);
 };

@@ -1,8 +1,11 @@
 // All methods: one row each. What the names in a row stand for is in the tables below them.
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
+#include "render/billboards.h"
 #include "render/gather.h"
 #include "render/method.h"
 #include "render/princ.h"
@@ -48,6 +51,13 @@ const struct orl_method orl_methods[] = {
      "Princ 2014, 2.3",
      {DEFAULTS .select = "princ", .nearest = 6, .visibility = "none", .weight = "princ",
       .combine = "best", .border_px = 0}},
+    {"li", "a hull of the silhouettes, all photographs that see it alike, before the room's walls",
+     "Li 2003, sections 4 and 5",
+     {DEFAULTS .proxy = "hull", .visibility = "opaque", .weight = "equal", .fill = ORL_FILL_ROOM,
+      .border_px = 0, .hull_side = 128}},
+    {"goldluecke", "voxels of silhouettes as billboards, each from the two photographs nearest by axis",
+     "Goldluecke 2003, section 3",
+     {DEFAULTS .proxy = "voxels", .paint = "billboards", .fill = ORL_FILL_NONE}},
     {"points", "the splats' own colour: the baseline", "-",
      {DEFAULTS .paint = "points", .front_layer = 0.01f, .min_support = 8}},
     {0},
@@ -58,13 +68,15 @@ const struct orl_method orl_methods[] = {
 static const struct selection *const selections[] = {&orl_select_all, &orl_select_nearest,
                                                     &orl_select_preselect, &orl_select_princ};
 static const struct painter *const painters[] = {&orl_paint_gather, &orl_paint_tiled,
-                                                 &orl_paint_points};
-static const struct proxy_kind *const proxies[] = {&orl_proxy_splats, &orl_proxy_mesh};
+                                                 &orl_paint_points, &orl_paint_billboards};
+static const struct proxy_kind *const proxies[] = {&orl_proxy_splats, &orl_proxy_mesh,
+                                                   &orl_proxy_hull, &orl_proxy_voxels};
 static const struct combine combines[] = {
     {"mean", .sweeps = 1},
     {"top", .sweeps = 2, .states = 2},
     {"sigma", .sweeps = 2, .states = 2},
     {"best", .sweeps = 1},
+    {"recurrence", .sweeps = 1, .states = 1},
     {"robust", .sweeps = 0},
 };
 
@@ -148,6 +160,11 @@ const struct orl_method *orl_method_find(const struct orl_log *log, const char *
     return NULL;
 }
 
+const char *orl_method_default(const struct orl_scene *scene)
+{
+    return scene && scene->defaults.method ? scene->defaults.method : orl_methods[0].name;
+}
+
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params)
 {
@@ -167,21 +184,54 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
     return ORL_OK;
 }
 
+static bool has_silhouettes(const struct orl_scene *scene)
+{
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (scene->photos[i].masked && !scene->photos[i].test)
+            return true;
+    return false;
+}
+
+static bool has_mesh(const struct orl_scene *scene)
+{
+    char *path = orl_scene_mesh_path(NULL, scene);
+    bool there = path && orl_path_is_file(path);
+    free(path);
+    return there;
+}
+
+// Takes another proxy where the scene lacks what the method's own is made of.
+static void suit_scene(const struct orl_scene *scene, struct orl_render_params *params)
+{
+    const struct proxy_kind *kind = orl_proxy_kind_of(params);
+    // Silhouettes leave a mesh and no points.
+    if (kind == &orl_proxy_splats && !scene->points.count && strcmp(params->paint, "points") != 0)
+        snprintf(params->proxy, sizeof params->proxy, "%s", orl_proxy_mesh.name);
+    if (kind == &orl_proxy_hull && !has_silhouettes(scene))
+        snprintf(params->proxy, sizeof params->proxy, "%s",
+                 has_mesh(scene) || !scene->points.count ? orl_proxy_mesh.name
+                                                         : orl_proxy_splats.name);
+    // Voxels of points have holes where a hull has none.
+    if (kind == &orl_proxy_voxels && !has_silhouettes(scene))
+        params->fill = ORL_FILL_COLOR;
+}
+
 enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
                                         const struct orl_scene *scene,
                                         struct orl_render_params *params)
 {
     enum orl_result result = ORL_OK;
     *params = method->params;
-    // Silhouettes leave a mesh and no points.
-    if (scene->points.count == 0 && strcmp(params->paint, "points") != 0)
-        snprintf(params->proxy, sizeof params->proxy, "%s", orl_proxy_mesh.name);
+    suit_scene(scene, params);
     for (size_t i = 0; result == ORL_OK && i < scene->tuned_count; i++) {
         const struct orl_tuned *tuned = &scene->tuned[i];
-        char assignment[128];
+        char assignment[160];
         if (strcmp(tuned->method, method->name) != 0)
             continue;
-        snprintf(assignment, sizeof assignment, "%s=%.9g", tuned->key, tuned->value);
+        if (tuned->name)
+            snprintf(assignment, sizeof assignment, "%s=%s", tuned->key, tuned->name);
+        else
+            snprintf(assignment, sizeof assignment, "%s=%.9g", tuned->key, tuned->value);
         result = orl_render_params_set(log, params, assignment);
         if (result != ORL_OK)
             result = orl_fail(log, ORL_ERR_FORMAT,

@@ -2,10 +2,16 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
+#include "bridge/bridge.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "io/picture.h"
+#include "render/method.h"
 #include "render/photos.h"
+#include "scene/silhouette.h"
+#include "shared/hull_blocks.h"
 #include "shared/render_blocks.h"
 
 enum {
@@ -27,9 +33,11 @@ static struct orl_camera camera_of(const struct orl_photo *photo, int divide)
     return orl_camera_resized(c, divided(c->width, divide), divided(c->height, divide));
 }
 
-static struct orl_camera depth_camera_of(const struct orl_camera *color)
+// least: the scene's depth_divide
+static struct orl_camera depth_camera_of(const struct orl_camera *color, int least)
 {
-    int side = color->width > color->height ? color->width : color->height, divide = 1;
+    int side = color->width > color->height ? color->width : color->height;
+    int divide = least > 1 ? least : 1;
     while (side / divide > DEPTH_SIDE_MAX)
         divide++;
     return orl_camera_resized(color, divided(color->width, divide),
@@ -53,7 +61,8 @@ static struct slot_size slot_size(const struct photos *photos, int divide)
         if (!photos->states[i].usable)
             continue;
         struct orl_camera color = camera_of(&photos->scene->photos[i], divide);
-        struct orl_camera depth = depth_camera_of(&color);
+        struct orl_camera depth =
+            depth_camera_of(&color, photos->scene->defaults.depth_divide);
         size.width = larger(size.width, color.width);
         size.height = larger(size.height, color.height);
         size.depth_width = larger(size.depth_width, depth.width);
@@ -94,7 +103,8 @@ static size_t slot_budget(const struct photos *photos, const struct slot_size *s
 static size_t slot_bytes(const struct photos *photos, const struct slot_size *size)
 {
     return color_bytes(photos, size) +
-           (size_t)size->depth_width * (size_t)size->depth_height * 4;
+           (size_t)size->depth_width * (size_t)size->depth_height *
+               (photos->scene->defaults.depth_half ? 2 : 4);
 }
 
 static bool fits_all(const struct photos *photos, const struct slot_size *size, int count,
@@ -178,7 +188,9 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     const bool *use = params->use;
     memset(photos, 0, sizeof *photos);
     photos->scene = scene;
+    photos->moment = scene->frame;
     photos->radiance = params->radiance;
+    photos->progress = params->progress;
     photos->sensor = params->sensor ? *params->sensor
                                     : (struct orl_sensor){ORL_SENSOR_DEFAULTS};
     photos->states = orl_array(log, scene->photo_count, sizeof *photos->states);
@@ -190,11 +202,17 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     }
     find_exposures(photos);
     photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
-    struct slot_size size = plan(gpu, budget_bytes, params->textures, photos);
+    enum orl_textures textures = ORL_TEXTURES_AUTO;
+    enum orl_result result = orl_textures_choose(log, scene, params, &textures);
+    if (result != ORL_OK) {
+        orl_photos_finish(gpu, photos);
+        return result;
+    }
+    struct slot_size size = plan(gpu, budget_bytes, textures, photos);
     for (size_t i = 0; i < scene->photo_count; i++) {
         struct photo_state *state = &photos->states[i];
         state->color_camera = camera_of(&scene->photos[i], photos->divide);
-        state->depth_camera = depth_camera_of(&state->color_camera);
+        state->depth_camera = depth_camera_of(&state->color_camera, scene->defaults.depth_divide);
     }
     struct orl_tex_params color = {.width = size.width, .height = size.height,
                                    .layers = photos->slot_count,
@@ -202,18 +220,11 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
                                    .format = photos->format,
                                    .linear = true, .owner = ORL_OWNER_PHOTOGRAPHS,
                                    .tag = "photographs"};
-    struct orl_tex_params loading = color;
-    loading.layers = 0;
-    loading.format = GL_SRGB8_ALPHA8;
-    loading.tag = "photograph being loaded";
-    struct orl_tex_params depth = {.width = size.depth_width, .height = size.depth_height,
-                                   .layers = photos->slot_count, .format = GL_R32F,
-                                   .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph depth"};
-    enum orl_result result = orl_tex_create(gpu, &color, &photos->color);
-    if (result == ORL_OK)
-        result = orl_tex_create(gpu, &depth, &photos->depth);
-    if (result == ORL_OK && is_compressed(photos))
-        result = orl_tex_create(gpu, &loading, &photos->loading);
+    photos->depth_params = (struct orl_tex_params){
+        .width = size.depth_width, .height = size.depth_height, .layers = photos->slot_count,
+        .format = scene->defaults.depth_half ? GL_R16F : GL_R32F,
+        .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph depth"};
+    result = orl_tex_create(gpu, &color, &photos->color);
     if (result != ORL_OK)
         orl_photos_finish(gpu, photos);
     return result;
@@ -221,9 +232,12 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
 
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
 {
+    orl_photo_loader_destroy(&photos->loader);
     orl_tex_destroy(gpu, &photos->color);
     orl_tex_destroy(gpu, &photos->depth);
     orl_tex_destroy(gpu, &photos->loading);
+    orl_tex_destroy(gpu, &photos->mask);
+    orl_tex_destroy(gpu, &photos->background);
     free(photos->states);
     memset(photos, 0, sizeof *photos);
 }
@@ -234,6 +248,13 @@ static struct photo_state *state_in_slot(struct photos *photos, int slot)
         if (photos->states[i].slot == slot)
             return &photos->states[i];
     return NULL;
+}
+
+static void evict(struct photo_state *state)
+{
+    state->slot = -1;
+    state->depth_divide = 0;
+    state->has_mask = state->has_background = false;
 }
 
 // Returns a free slot, or else evicts the least recently used photograph.
@@ -248,9 +269,18 @@ static int take_slot(struct photos *photos)
             oldest = state;
     }
     int slot = oldest->slot;
-    oldest->slot = -1;
-    oldest->has_depth = false;
+    evict(oldest);
     return slot;
+}
+
+void orl_photos_follow_moment(struct photos *photos)
+{
+    if (photos->moment == photos->scene->frame)
+        return;
+    orl_photo_loader_destroy(&photos->loader); // what it has read is of the other moment
+    for (size_t i = 0; i < photos->scene->photo_count; i++)
+        evict(&photos->states[i]);
+    photos->moment = photos->scene->frame;
 }
 
 // Writes sRGB-encoded RGB, or radiance times confidence, and the confidence.
@@ -294,6 +324,7 @@ static enum orl_result make_radiance(const struct orl_log *log, struct photos *p
         .sensor = &photos->sensor, .ev_above = photo_ev(photo) - photos->ev_darkest,
         .linear = photo->response >= 0 ? scene->responses[photo->response].linear : NULL,
         .centre = {(float)photo->view.camera.cx, (float)photo->view.camera.cy},
+        .unclipped = photo->radiance,
     };
     memcpy(response.vignette, photo->vignette, sizeof response.vignette);
     struct orl_image radiance;
@@ -311,89 +342,270 @@ static enum orl_result make_radiance(const struct orl_log *log, struct photos *p
     return ORL_OK;
 }
 
-// Reads the file; for radiance its linear version, if there is one.
-static enum orl_result read_photo(const struct orl_log *log, const struct photos *photos,
-                                  size_t index, struct orl_image *image)
+// Makes the texture in which photographs are complete before they are compressed.
+static enum orl_result make_loading(struct orl_gpu *gpu, struct photos *photos)
 {
-    const struct orl_photo *photo = &photos->scene->photos[index];
-    const struct orl_camera *c = &photo->view.camera;
-    bool linear = photos->radiance && photo->linear;
-    char *path = linear ? orl_scene_linear_path(log, photos->scene, index)
-                        : orl_scene_photo_path(log, photos->scene, index);
-    enum orl_result result = !path   ? ORL_ERR_MEMORY
-                             : linear ? orl_picture_read_linear(log, path, image)
-                                      : orl_picture_read(log, path, 3, image);
-    if (result == ORL_OK && (image->width != c->width || image->height != c->height))
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path,
-                          image->width, image->height, c->width, c->height);
-    free(path);
+    if (photos->loading) { // remains of an earlier photograph would bleed into the mipmaps
+        orl_tex_clear(photos->loading, 0);
+        return ORL_OK;
+    }
+    struct orl_tex_params params = photos->color->params;
+    params.layers = 0;
+    params.format = GL_SRGB8_ALPHA8;
+    params.tag = "photograph being loaded";
+    return orl_tex_create(gpu, &params, &photos->loading);
+}
+
+// Once every photograph has its slot, none will be loaded again.
+static void drop_loading(struct orl_gpu *gpu, struct photos *photos)
+{
+    for (size_t i = 0; i < photos->scene->photo_count; i++)
+        if (photos->states[i].usable && photos->states[i].slot < 0)
+            return;
+    orl_tex_destroy(gpu, &photos->loading);
+}
+
+enum orl_result orl_photos_put(struct orl_gpu *gpu, struct photos *photos, size_t index,
+                               struct orl_image *image)
+{
+    enum orl_result result = ORL_OK;
+    if (photos->radiance)
+        result = make_radiance(orl_gpu_log(gpu), photos, index, image);
+    if (result == ORL_OK && is_compressed(photos))
+        result = make_loading(gpu, photos);
+    if (result != ORL_OK)
+        return result;
+    int slot = take_slot(photos);
+    // Coarser levels are made before compression, so that compression errors do not accumulate.
+    struct orl_tex *to = photos->loading ? photos->loading : photos->color;
+    int layer = photos->loading ? 0 : slot;
+    if (photos->divide > 1)
+        result = upload_smaller(gpu, image, photos->divide, to, layer);
+    else
+        write_pixels(image, to, layer);
+    orl_tex_make_mipmaps(to, layer);
+    if (result == ORL_OK && photos->loading)
+        result = orl_tex_compress_layer(gpu, photos->loading, photos->color, slot);
+    if (result == ORL_OK) {
+        photos->states[index].slot = slot;
+        drop_loading(gpu, photos);
+        photos->uploaded += orl_image_bytes(image);
+    }
     return result;
 }
 
 static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, size_t index)
 {
-    const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_image image = {0};
-    enum orl_result result = read_photo(log, photos, index, &image);
-    if (result == ORL_OK && photos->radiance)
-        result = make_radiance(log, photos, index, &image);
-    if (result != ORL_OK)
-        goto end;
-    int slot = take_slot(photos);
-    // Coarser levels are made before compression, so that compression errors do not accumulate.
-    struct orl_tex *to = photos->loading ? photos->loading : photos->color;
-    int layer = photos->loading ? 0 : slot;
-    if (photos->loading) // remains of an earlier photograph would bleed into the mipmaps
-        orl_tex_clear(photos->loading, 0);
-    if (photos->divide > 1)
-        result = upload_smaller(gpu, &image, photos->divide, to, layer);
-    else
-        write_pixels(&image, to, layer);
-    orl_tex_make_mipmaps(to, layer);
-    if (result == ORL_OK && photos->loading)
-        result = orl_tex_compress_layer(gpu, photos->loading, photos->color, slot);
+    enum orl_result result = orl_photo_read(orl_gpu_log(gpu), photos->scene, index,
+                                            photos->radiance, &image);
     if (result == ORL_OK)
-        photos->states[index].slot = slot;
-end:
+        result = orl_photos_put(gpu, photos, index, &image);
     orl_image_finish(&image);
     return result;
 }
 
-// Draws the depth that the photograph sees into its slot, with estimated depth in the holes.
-static enum orl_result make_depth(const struct frame *frame, size_t index)
+struct orl_camera orl_photos_depth_camera(const struct photo_state *state, int divide)
+{
+    const struct orl_camera *c = &state->depth_camera;
+    return divide > 1 ? orl_camera_resized(c, divided(c->width, divide), divided(c->height, divide))
+                      : *c;
+}
+
+// Writes a depth map into a slot by a program of a parameter block.
+static void write_depth(const struct frame *frame, const struct surface *surface, int slot,
+                        const char *file, const void *block, size_t size)
+{
+    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, file, NULL, NULL),
+                             .params = block, .params_size = size,
+                             .images = {{surface->depth, 0, GL_READ_ONLY},
+                                        {frame->photos->depth, 0, GL_WRITE_ONLY}},
+                             .image_layers = {[1] = slot + 1},
+                             .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
+    orl_pixel_groups(surface->width, surface->height, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+}
+
+// The depth that a photograph sees, with estimated depth in the holes.
+static void fill_holes(const struct frame *frame, const struct surface *surface, int slot)
+{
+    struct image_block block = {.image_size = {surface->width, surface->height}};
+    write_depth(frame, surface, slot, "proxy/photo_holes.comp", &block, sizeof block);
+}
+
+// The same as a shadow map with fat outlines.
+static void fatten(const struct frame *frame, const struct surface *surface, int slot)
+{
+    // Twice what the shadow test allows.
+    struct fatten_block block = {.size = {surface->width, surface->height},
+                                 .radius = frame->params->fatten_px,
+                                 .line_offset = 1 + 2 * frame->params->depth_tolerance};
+    write_depth(frame, surface, slot, "proxy/fatten.comp", &block, sizeof block);
+}
+
+static bool has_shadow_maps(const struct frame *frame)
+{
+    return orl_render_params_equal(frame->params, "visibility=opaque");
+}
+
+uint64_t orl_photos_depth_key(const struct frame *frame)
+{
+    const float shadow[2] = {frame->params->fatten_px, frame->params->depth_tolerance};
+    uint64_t key = orl_proxy_key(frame->proxy, frame->params);
+    return has_shadow_maps(frame) ? XXH3_64bits_withSeed(shadow, sizeof shadow, key) : key;
+}
+
+enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, int divide)
 {
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[index];
-    struct orl_view view = {.camera = state->depth_camera,
+    struct orl_view view = {.camera = orl_photos_depth_camera(state, divide),
                             .cam_from_world = photos->scene->photos[index].view.cam_from_world};
     struct surface surface;
-    enum orl_result result = orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false,
-                                            &frame->proxy->photo_target, &surface);
+    void **target = divide > 1 ? &frame->proxy->coarse_target : &frame->proxy->photo_target;
+    enum orl_result result = ORL_OK;
+    if (!photos->depth)
+        result = orl_tex_create(frame->gpu, &photos->depth_params, &photos->depth);
+    if (result == ORL_OK)
+        result = orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false, target,
+                                &surface);
     if (result != ORL_OK)
         return result;
-    struct image_block block = {.image_size = {surface.width, surface.height}};
-    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "proxy/photo_holes.comp", NULL, NULL),
-                             .params = &block, .params_size = sizeof block,
-                             .images = {{surface.depth, 0, GL_READ_ONLY},
-                                        {photos->depth, 0, GL_WRITE_ONLY}},
-                             .image_layers = {[1] = state->slot + 1},
-                             .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups(surface.width, surface.height, d.groups);
-    orl_gpu_dispatch(frame->gpu, &d);
-    state->depth_key = frame->proxy_key;
-    state->has_depth = true;
+    if (has_shadow_maps(frame))
+        fatten(frame, &surface, state->slot);
+    else
+        fill_holes(frame, &surface, state->slot);
+    state->depth_key = frame->depth_key;
+    state->depth_divide = divide;
     return ORL_OK;
+}
+
+int orl_photos_depth_divide(const struct frame *frame, size_t photo)
+{
+    const struct photo_state *state = &frame->photos->states[photo];
+    return state->depth_key == frame->depth_key ? state->depth_divide : 0;
 }
 
 enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool depth)
 {
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
+    if (orl_progress_cancelled(photos->progress))
+        return ORL_ERR_CANCELLED;
     state->last_use = ++photos->clock;
     enum orl_result result = ORL_OK;
     if (state->slot < 0)
         result = load_color(frame->gpu, photos, photo);
-    if (result == ORL_OK && depth && (!state->has_depth || state->depth_key != frame->proxy_key))
-        result = make_depth(frame, photo);
+    if (result == ORL_OK && depth && orl_photos_depth_divide(frame, photo) != 1)
+        result = orl_photos_draw_depth(frame, photo, 1);
+    return result;
+}
+
+// --- what lies behind the subject ---
+
+bool orl_photos_backgrounds(const struct photos *photos)
+{
+    const struct orl_scene *scene = photos->scene;
+    bool all = !photos->radiance;
+    for (size_t i = 0; all && i < scene->photo_count; i++) {
+        if (!photos->states[i].usable)
+            continue;
+        char *path = orl_scene_background_path(NULL, scene, i);
+        all = path && orl_path_is_file(path);
+        free(path);
+    }
+    return all;
+}
+
+enum orl_result orl_photos_require_background(const struct frame *frame, size_t photo)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    struct photos *photos = frame->photos;
+    struct photo_state *state = &photos->states[photo];
+    struct orl_tex_params params = photos->color->params;
+    struct orl_image whole = {0}, image = {0};
+    params.format = GL_SRGB8_ALPHA8;
+    params.tag = "backgrounds";
+    if (state->has_background)
+        return ORL_OK;
+    char *path = orl_scene_background_path(log, photos->scene, photo);
+    enum orl_result result = path ? orl_picture_read(log, path, 3, &whole) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !photos->background)
+        result = orl_tex_create(frame->gpu, &params, &photos->background);
+    if (result == ORL_OK)
+        result = orl_bridge_resize(log, &whole, state->color_camera.width,
+                                   state->color_camera.height, &image);
+    if (result == ORL_OK) {
+        write_pixels(&image, photos->background, state->slot);
+        orl_tex_make_mipmaps(photos->background, state->slot);
+        state->has_background = true;
+    }
+    orl_image_finish(&whole);
+    orl_image_finish(&image);
+    free(path);
+    return result;
+}
+
+// --- masks ---
+
+enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_scene *scene,
+                                    size_t photo, struct orl_image *mask)
+{
+    const struct orl_camera *c = &scene->photos[photo].view.camera;
+    char *path = orl_scene_mask_path(log, scene, photo);
+    enum orl_result result = path ? orl_picture_read(log, path, 1, mask) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && (mask->width != c->width || mask->height != c->height)) {
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its photograph has %dx%d",
+                          path, mask->width, mask->height, c->width, c->height);
+        orl_image_finish(mask);
+    }
+    free(path);
+    return result;
+}
+
+// The alpha of a photograph at its resident size.
+static enum orl_result make_alpha(const struct orl_log *log, const struct photos *photos,
+                                  size_t index, struct orl_image *alpha)
+{
+    const struct orl_camera *c = &photos->states[index].color_camera;
+    struct orl_image mask = {0};
+    if (!photos->scene->photos[index].masked) {
+        enum orl_result result =
+            orl_image_init(log, alpha, c->width, c->height, 1, ORL_PIXEL_U8);
+        if (result == ORL_OK)
+            memset(alpha->u8, ORL_ALPHA_IN, orl_image_bytes(alpha));
+        return result;
+    }
+    enum orl_result result = orl_photo_mask_read(log, photos->scene, index, &mask);
+    if (result == ORL_OK) {
+        orl_silhouette_mark_edges(&mask);
+        result = orl_bridge_resize(log, &mask, c->width, c->height, alpha);
+    }
+    orl_image_finish(&mask);
+    return result;
+}
+
+enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
+{
+    struct photos *photos = frame->photos;
+    struct photo_state *state = &photos->states[photo];
+    struct orl_tex_params params = photos->color->params;
+    struct orl_image alpha = {0};
+    params.format = GL_R8;
+    params.tag = "photograph masks";
+    if (state->has_mask)
+        return ORL_OK;
+    enum orl_result result =
+        photos->mask ? ORL_OK : orl_tex_create(frame->gpu, &params, &photos->mask);
+    if (result == ORL_OK)
+        result = make_alpha(orl_gpu_log(frame->gpu), photos, photo, &alpha);
+    if (result == ORL_OK) {
+        orl_tex_write_part(photos->mask, 0, state->slot, alpha.width, alpha.height, GL_RED,
+                           GL_UNSIGNED_BYTE, alpha.data);
+        orl_tex_make_mipmaps(photos->mask, state->slot);
+        photos->uploaded += orl_image_bytes(&alpha);
+        state->has_mask = true;
+    }
+    orl_image_finish(&alpha);
     return result;
 }

@@ -3,6 +3,7 @@
 #define ORL_RENDER_PHOTOS_H
 
 #include "render/frame.h"
+#include "render/photo_loader.h"
 #include "oriel/radiance.h"
 
 // Where a photograph is stored. All photographs share two texture arrays. A slot is one layer of
@@ -10,8 +11,9 @@
 struct photo_state {
     bool usable;
     int slot; // layer of the arrays; -1: not resident
-    bool has_depth;
-    uint64_t depth_key; // orl_proxy_key with which its depth was drawn
+    bool has_mask, has_background;
+    int depth_divide;   // its depth has 1/depth_divide of the size of depth_camera; 0: no depth
+    uint64_t depth_key; // of the frame that its depth was drawn for
     unsigned last_use;
     float white;  // of radiance: scale of its colours on the device
     bool rounded; // its values were rounded to 8 bits
@@ -23,23 +25,64 @@ struct photos {
     struct photo_state *states; // per photograph of the scene
     struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence
     GLenum format;              // of color
-    struct orl_tex *loading;    // a photograph before compression; NULL: no compression
-    struct orl_tex *depth;      // z; < 0: estimated in a hole, 0: none
+    struct orl_tex *loading;    // a photograph before compression; NULL: none is being loaded
+    struct orl_tex *depth;      // z; < 0: estimated in a hole, 0: none; NULL: no method asked for it
+    struct orl_tex_params depth_params; // of depth
+    struct orl_tex *mask;       // R8: which pixels are the subject's; NULL: not asked for yet
+    struct orl_tex *background; // pictures of the place without the subject; NULL: not asked for
+    const struct orl_progress *progress; // see struct orl_renderer_params
+    size_t uploaded;            // bytes of photographs and masks that went to the device
     int slot_count, divide;     // divide: photographs are loaded at 1/divide of their size
     unsigned clock;
+    int moment;                 // scene->frame of what is resident
     bool radiance;              // see struct orl_renderer_params
     struct orl_sensor sensor;
     float ev_darkest, ev_brightest; // of the photographs in use
+    struct photo_loader *loader;    // NULL until progressive.c needs it
+    struct photo_costs {            // seconds that each took last, for progressive.c
+        double color, coarse, depth;
+    } costs;
 };
 
+// textures.c: the texture format that was asked for, or that the scene states. ORL_ERR_FORMAT: the
+// scene states one that is unknown to this program.
+enum orl_result orl_textures_choose(const struct orl_log *log, const struct orl_scene *scene,
+                                    const struct orl_renderer_params *params,
+                                    enum orl_textures *textures) ORL_CHECK_RESULT;
 // textures.c: the texture format for `textures`, if the device and the kind of pixels allow it.
 GLenum orl_textures_format(const struct orl_gpu *gpu, bool radiance, enum orl_textures textures);
 enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene,
                                 const struct orl_renderer_params *params, size_t budget_bytes,
                                 struct photos *photos);
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
+// Evicts all photographs if the scene shows another moment than they do.
+void orl_photos_follow_moment(struct photos *photos);
 // Makes a photograph's colour resident, and its depth if asked for, drawn by the frame's proxy with
 // the frame's parameters. Evicts the least recently used photograph if all slots are taken.
 enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool depth);
+// Brings the mask of a resident photograph to the device: 1 within the subject, 0.5 on its boundary
+// (Goldluecke 2003, section 3), 1 throughout where the photograph has none.
+enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo);
+// What the depth maps of photographs are made of: equal keys mean equal maps.
+uint64_t orl_photos_depth_key(const struct frame *frame);
+// True if all photographs in use have such a picture.
+bool orl_photos_backgrounds(const struct photos *photos);
+// Brings the picture to the device, into the slot of its photograph, which must be resident.
+enum orl_result orl_photos_require_background(const struct frame *frame, size_t photo);
+// Reads a photograph's mask, of the size of its camera.
+enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_scene *scene,
+                                    size_t photo, struct orl_image *mask);
+
+// --- the steps of the above, for progressive.c ---
+
+// Makes a photograph's colour resident. The pixels of `image` may be replaced.
+enum orl_result orl_photos_put(struct orl_gpu *gpu, struct photos *photos, size_t index,
+                               struct orl_image *image) ORL_CHECK_RESULT;
+// Draws the depth of a resident photograph at 1/divide of its size.
+enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index,
+                                      int divide) ORL_CHECK_RESULT;
+// The photograph's depth_divide if its depth was drawn as this frame asks for it, else 0.
+int orl_photos_depth_divide(const struct frame *frame, size_t photo);
+struct orl_camera orl_photos_depth_camera(const struct photo_state *state, int divide);
 
 #endif

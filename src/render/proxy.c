@@ -5,6 +5,7 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "render/frame.h"
 #include "render/method.h"
 
 static void find_extent(struct proxy *proxy)
@@ -26,14 +27,35 @@ static void find_extent(struct proxy *proxy)
     }
 }
 
+static void find_vertices(struct proxy *proxy, const struct orl_scene *scene)
+{
+    proxy->kind->vertices(proxy->state, scene, &proxy->vertices, &proxy->vertex_count);
+    memset(&proxy->extent, 0, sizeof proxy->extent);
+    find_extent(proxy);
+    free(proxy->aspects);
+    proxy->aspects = NULL;
+}
+
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                  const struct proxy_kind *kind, struct proxy *proxy)
 {
     *proxy = (struct proxy){.kind = kind};
     enum orl_result result = kind->create(gpu, scene, &proxy->state);
-    if (result == ORL_OK) {
-        kind->vertices(proxy->state, scene, &proxy->vertices, &proxy->vertex_count);
-        find_extent(proxy);
+    if (result == ORL_OK)
+        find_vertices(proxy, scene);
+    return result;
+}
+
+enum orl_result orl_proxy_update(const struct frame *frame)
+{
+    struct proxy *proxy = frame->proxy;
+    bool changed = false;
+    if (!proxy->kind->update)
+        return ORL_OK;
+    enum orl_result result = proxy->kind->update(frame, proxy->state, &changed);
+    if (result == ORL_OK && changed) {
+        proxy->version++;
+        find_vertices(proxy, frame->scene);
     }
     return result;
 }
@@ -44,6 +66,7 @@ void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
         return;
     proxy->kind->free_target(gpu, &proxy->view_target);
     proxy->kind->free_target(gpu, &proxy->photo_target);
+    proxy->kind->free_target(gpu, &proxy->coarse_target);
     proxy->kind->destroy(gpu, &proxy->state);
     free(proxy->aspects);
     memset(proxy, 0, sizeof *proxy);
@@ -64,14 +87,17 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
 // True if this option belongs to the proxy.
 static bool is_read_by(const struct orl_render_option *option, const struct proxy_kind *kind)
 {
-    const char *reader = strstr(option->readers, "proxy=");
     size_t length = strlen(kind->name);
-    return reader && strncmp(reader + strlen("proxy="), kind->name, length) == 0;
+    for (const char *at = option->readers; (at = strstr(at, "proxy=")); at++)
+        if (strncmp(at + strlen("proxy="), kind->name, length) == 0)
+            return true;
+    return false;
 }
 
 uint64_t orl_proxy_key(const struct proxy *proxy, const struct orl_render_params *params)
 {
-    uint64_t key = XXH3_64bits(proxy->kind->name, strlen(proxy->kind->name));
+    uint64_t key = XXH3_64bits_withSeed(proxy->kind->name, strlen(proxy->kind->name),
+                                        proxy->version);
     for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
         char text[ORL_OPTION_NAME_BYTES];
         if (!is_read_by(o, proxy->kind))

@@ -11,10 +11,24 @@ struct surface {
     struct orl_tex *normal; // RGBA16F: camera frame, 0: none; w: 1 if a primitive is visible
 };
 
+struct frame;
+
+// A picture that receives the proxy's own colours (shaders/shared/pixel.glsl). Other pixels are
+// left unchanged.
+struct paint_into {
+    struct orl_tex *picture; // GL_RGBA32F; GL_RGBA16F with `seeds`
+    struct orl_tex *seeds;   // of a painter that finishes pixels: sums over 2x2 pixels, which are
+                             // increased by the new colours; NULL: the pixels are blended ones
+    bool only_unpainted;     // pixels with a sample keep it
+};
+
 // One kind of proxy. `state`: its data on the device; `target`: its textures for one picture size.
 struct proxy_kind {
     const char *name;
     enum orl_result (*create)(struct orl_gpu *gpu, const struct orl_scene *scene, void **state);
+    // Brings what depends on the frame's photographs and options up to date; *changed: the surfaces
+    // are others now. NULL: nothing does.
+    enum orl_result (*update)(const struct frame *frame, void *state, bool *changed);
     // Its vertices, which live as long as the state and the scene.
     void (*vertices)(const void *state, const struct orl_scene *scene, const float (**vertices)[3],
                      size_t *count);
@@ -31,13 +45,14 @@ struct proxy_kind {
                  const struct orl_render_params *params, bool normals, void *target,
                  struct surface *surface);
     // Writes the proxy's own colours, linear with weight 1, where its primitives are visible in a
-    // drawn target, into `color` (GL_RGBA32F). Other pixels are left unchanged. NULL: it has no
-    // colours.
+    // target that was drawn with normals. NULL: it has no colours.
     void (*color)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
-                  const void *target, struct orl_tex *color);
+                  const void *target, const struct paint_into *into);
 };
 extern const struct proxy_kind orl_proxy_splats; // splats.c
 extern const struct proxy_kind orl_proxy_mesh;   // mesh_proxy.c
+extern const struct proxy_kind orl_proxy_hull;   // hull_proxy.c
+extern const struct proxy_kind orl_proxy_voxels; // voxel_proxy.c
 
 // Extent of the proxy's vertices, world.
 struct proxy_extent {
@@ -59,11 +74,15 @@ struct proxy {
     struct proxy_extent extent;
     struct photo_aspect *aspects; // owned, one per photograph; NULL until princ.c needs them
     void *state, *view_target, *photo_target;
+    void *coarse_target; // for coarse depth of photographs; NULL until progressive.c needs it
+    uint64_t version; // how often it changed
 };
 
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                  const struct proxy_kind *kind, struct proxy *proxy);
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
+// Brings the frame's proxy up to date, before its key is asked for.
+enum orl_result orl_proxy_update(const struct frame *frame);
 // Draws into *target, one of the proxy's own targets, which is resized to the view.
 enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
                                const struct orl_view *view,

@@ -83,7 +83,7 @@ static void init_decoder(const struct orl_photo_response *response, const struct
         if (isfinite(image->f32[i]))
             d->white = fmaxf(d->white, image->f32[i]);
     // Interpolation and sharpening overshoot a little in files that clip at 1.
-    d->clips = d->white < 1.5f;
+    d->clips = !response->unclipped && d->white < 1.5f;
 }
 
 static void decode_pixel(const struct decoder *d, const struct orl_image *image, int x, int y,

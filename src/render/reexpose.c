@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/color.h"
+#include "scene/meter.h"
 
 // The 8-bit value to which the curve gives the nearest exposure. The curve increases.
 static uint8_t nearest_value(const float curve[256], float exposure)
@@ -23,18 +24,23 @@ static uint8_t nearest_value(const float curve[256], float exposure)
     return (uint8_t)(exposure - curve[low] < curve[high] - exposure ? low : high);
 }
 
-// Relative illumination of a pixel. For a picture of another size, the principal point and the
-// diagonal are scaled.
+// Relative illumination of a pixel of a picture of any size.
 static float illumination(const struct orl_photo *photo, const struct orl_image *light, int x,
                           int y)
 {
-    const struct orl_camera *c = &photo->view.camera;
-    const struct orl_camera seen = orl_camera_resized(c, light->width, light->height);
-    double dx = x + 0.5 - seen.cx, dy = y + 0.5 - seen.cy;
-    double half2 = 0.25 * ((double)seen.width * seen.width + (double)seen.height * seen.height);
-    double r2 = (dx * dx + dy * dy) / half2;
-    const float *v = photo->vignette;
-    return (float)(1 + r2 * ((double)v[0] + r2 * ((double)v[1] + r2 * (double)v[2])));
+    const struct orl_camera seen =
+        orl_camera_resized(&photo->view.camera, light->width, light->height);
+    return orl_illumination(photo->vignette, &seen, x + 0.5, y + 0.5);
+}
+
+// The gain of the photograph for a picture of this light: its own if it has no metering.
+static void metered_gain(const struct orl_photo *photo, const struct orl_image *color,
+                         float gain[3])
+{
+    double stops = photo->metering == 0 ? 0
+                                        : orl_picture_metered(color) - (double)photo->metered_ev;
+    for (int c = 0; c < 3; c++)
+        gain[c] = photo->gain[c] * (float)exp2((double)photo->metering * stops);
 }
 
 enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_scene *scene,
@@ -47,6 +53,8 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
     const struct orl_photo *photo = &scene->photos[index];
     const struct orl_response *response =
         photo->response >= 0 ? &scene->responses[photo->response] : NULL;
+    float gain[3];
+    metered_gain(photo, light, gain);
     bool vignetted = photo->vignette[0] != 0 || photo->vignette[1] != 0 || photo->vignette[2] != 0;
     enum orl_result result = orl_image_init(log, picture, light->width, light->height, 3,
                                             ORL_PIXEL_U8);
@@ -55,7 +63,7 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
             size_t at = 3 * ((size_t)y * (size_t)light->width + (size_t)x);
             float dimmed = vignetted ? illumination(photo, light, x, y) : 1;
             for (size_t c = 0; c < 3; c++) {
-                float exposure = light->f32[at + c] / photo->gain[c] * dimmed;
+                float exposure = light->f32[at + c] / gain[c] * dimmed;
                 picture->u8[at + c] =
                     response ? nearest_value(response->linear[c], exposure)
                              : (uint8_t)lrintf(255 * orl_srgb_encode(exposure));
@@ -64,17 +72,15 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// Solves y = gain x / (1 + x ((gain - 1 - third) + third x^2)), the mapping of photo_aligned in
-// shaders/gather/sample/srgb.glsl, for x by bisection, since the right side increases.
+// Solves y = orl_light_aligned(gain, x) for x by bisection, since the right side increases.
 static float unaligned(float gain, float y)
 {
-    float third = fminf(gain - 1, 0.5f);
     float low = 0, high = 1;
     if (y >= 1)
         return y;
     for (int i = 0; i < 20; i++) {
         float x = 0.5f * (low + high);
-        if (gain * x / (1 + x * (gain - 1 - third + third * x * x)) < y)
+        if (orl_light_aligned(gain, x) < y)
             low = x;
         else
             high = x;
@@ -84,12 +90,14 @@ static float unaligned(float gain, float y)
 
 void orl_photo_unalign(const struct orl_photo *photo, struct orl_image *color)
 {
+    float gain[3];
+    metered_gain(photo, color, gain);
     for (int y = 0; y < color->height; y++)
         for (int x = 0; x < color->width; x++) {
             float dimmed = fmaxf(illumination(photo, color, x, y), 0.1f);
             float *pixel =
                 color->f32 + 3 * ((size_t)y * (size_t)color->width + (size_t)x);
             for (int c = 0; c < 3; c++)
-                pixel[c] = unaligned(photo->gain[c] / dimmed, pixel[c]);
+                pixel[c] = unaligned(gain[c] / dimmed, pixel[c]);
         }
 }

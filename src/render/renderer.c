@@ -11,6 +11,7 @@
 #include "render/photos.h"
 #include "render/proxy.h"
 #include "render/read_back.h"
+#include "render/room.h"
 #include "render/soften.h"
 
 enum { PROXIES_MAX = 4 };
@@ -26,7 +27,7 @@ struct orl_renderer {
     struct soften soften;
     struct edges edges;
     struct gather gather;
-    struct orl_tex *picture, *trusted, *states[2]; // textures of struct frame
+    struct orl_tex *picture, *trusted, *room, *states[2]; // textures of struct frame
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
     struct orl_image staging; // for read_back.h
@@ -118,12 +119,18 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->picture);
     orl_tex_destroy(r->gpu, &r->trusted);
+    orl_tex_destroy(r->gpu, &r->room);
     orl_tex_destroy(r->gpu, &r->states[0]);
     orl_tex_destroy(r->gpu, &r->states[1]);
     free(r->chosen);
     free(r->selected);
     free(r);
     *renderer = NULL;
+}
+
+size_t orl_renderer_uploaded(const struct orl_renderer *renderer)
+{
+    return renderer->photos.uploaded;
 }
 
 // Makes *tex fit the size and the format. Destroys it if it is not `wanted`.
@@ -154,6 +161,7 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
     } targets[] = {
         {"accumulated colour", true, frame->finishes ? GL_RGBA16F : GL_RGBA32F, &r->picture},
         {"accumulated trust", frame->radiance, GL_RGBA32F, &r->trusted},
+        {"room", orl_frame_shows_room(frame), GL_RGBA32F, &r->room},
         {"combination", states > 0, GL_RGBA32F, &r->states[0]},
         {"combination", states > 1, GL_RGBA32F, &r->states[1]},
     };
@@ -179,7 +187,10 @@ static enum orl_result draw(struct frame *frame, bool normals)
         return result;
     if (orl_frame_guesses(frame) && painter != &orl_paint_points)
         orl_fill_depth(frame);
-    result = painter->paint(frame);
+    if (orl_frame_shows_room(frame))
+        result = orl_room_paint(frame);
+    if (result == ORL_OK)
+        result = painter->paint(frame);
     for (const struct post_pass *pass = orl_post_passes; result == ORL_OK && pass->name; pass++) {
         if (!pass->applies(frame))
             continue;
@@ -198,7 +209,7 @@ static struct frame start_frame(struct orl_renderer *r, struct proxy *proxy,
         .gpu = r->gpu, .scene = r->scene, .view = view, .params = params, .skip = skip,
         .radiance = r->photos.radiance,
         .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
-        .proxy = proxy, .proxy_key = orl_proxy_key(proxy, params), .photos = &r->photos,
+        .proxy = proxy, .photos = &r->photos,
         .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges,
         .chosen = r->chosen, .selected = r->selected};
 }
@@ -212,9 +223,9 @@ void orl_frame_finish(struct orl_frame *frame)
     orl_image_finish(&frame->confidence);
 }
 
-enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view *view,
-                                  const struct orl_render_params *params, const bool *skip,
-                                  struct orl_frame *out)
+static enum orl_result render(struct orl_renderer *r, const struct orl_view *view,
+                              const struct orl_render_params *params, const bool *skip,
+                              struct orl_progressive *progressive, struct orl_frame *out)
 {
     const struct orl_log *log = orl_gpu_log(r->gpu);
     if (out)
@@ -230,12 +241,18 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
     if (result != ORL_OK)
         return result;
     struct frame frame = start_frame(r, proxy, view, params, skip);
-    result = resize(r, &frame);
+    frame.progressive = progressive;
+    orl_photos_follow_moment(&r->photos);
+    result = orl_proxy_update(&frame);
+    frame.depth_key = orl_photos_depth_key(&frame);
+    if (result == ORL_OK)
+        result = resize(r, &frame);
     frame.picture = r->picture;
     frame.trusted = r->trusted;
+    frame.room = r->room;
     memcpy(frame.states, r->states, sizeof frame.states);
     if (result == ORL_OK)
-        result = draw(&frame, out && !(params->leave_out & ORL_LAYER_NORMAL));
+        result = draw(&frame, progressive || (out && !(params->leave_out & ORL_LAYER_NORMAL)));
     if (result == ORL_OK && out)
         result = orl_read_back(&frame, &r->staging, out);
     if (result == ORL_OK)
@@ -243,4 +260,21 @@ enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view 
     if (result != ORL_OK && out)
         orl_frame_finish(out);
     return result;
+}
+
+enum orl_result orl_renderer_draw(struct orl_renderer *r, const struct orl_view *view,
+                                  const struct orl_render_params *params, const bool *skip,
+                                  struct orl_frame *out)
+{
+    return render(r, view, params, skip, NULL, out);
+}
+
+enum orl_result orl_renderer_draw_progressive(struct orl_renderer *r, const struct orl_view *view,
+                                              const struct orl_render_params *params,
+                                              struct orl_progressive *progress,
+                                              struct orl_frame *out)
+{
+    progress->missing = 0; // methods without photographs miss none
+    progress->spent = 0;
+    return render(r, view, params, NULL, progress, out);
 }

@@ -322,23 +322,27 @@ static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *
 }
 
 static void color(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
-                  const void *target, struct orl_tex *color)
+                  const void *target, const struct paint_into *into)
 {
     const struct cloud *cloud = state;
     const struct splat_target *t = target;
     struct splat_block block = splat_params(view, NULL);
+    const char *defines = !into->only_unpainted ? NULL : into->seeds ? "UNDER\nFINISHED" : "UNDER";
     for (size_t i = 0; i < cloud->chunk_count; i++) {
         const struct point_chunk *chunk = &cloud->chunks[i];
         block.point_count = chunk->count;
         block.first_point = chunk->first;
-        struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/points_color.comp", NULL, NULL),
-                                 .params = &block, .params_size = sizeof block,
-                                 .images = {{chunk->attribute_texels, 0, GL_READ_ONLY},
-                                            {t->splat_index, 0, GL_READ_ONLY},
-                                            {t->normal, 0, GL_READ_ONLY},
-                                            {color, 0, GL_WRITE_ONLY}},
-                                 .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-        orl_pixel_groups(t->width, t->height, d.groups);
+        struct orl_dispatch d = {
+            .prog = orl_prog_get(gpu, "proxy/points_color.comp", NULL, defines),
+            .params = &block, .params_size = sizeof block,
+            .images = {{chunk->attribute_texels, 0, GL_READ_ONLY},
+                       {t->splat_index, 0, GL_READ_ONLY},
+                       {t->normal, 0, GL_READ_ONLY},
+                       {into->picture, 0, into->only_unpainted ? GL_READ_WRITE : GL_WRITE_ONLY},
+                       {into->seeds, 0, GL_READ_WRITE}},
+            .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+        // One invocation handles 2x2 pixels.
+        orl_pixel_groups((t->width + 1) / 2, (t->height + 1) / 2, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }
 }

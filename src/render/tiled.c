@@ -6,6 +6,7 @@
 #include "render/fill.h"
 #include "render/gather.h"
 #include "render/photos.h"
+#include "render/progressive.h"
 #include "render/soften.h"
 
 // Makes room for the lists of photographs of each tile and of unfinished work groups.
@@ -58,7 +59,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
     enum orl_result result = make_lists(frame, across * down, (size_t)groups[0] * groups[1]);
     if (result != ORL_OK)
         return result;
-    if (frame->chosen_count == 0) {
+    if (frame->chosen_count == 0 && !frame->progressive) {
         orl_tex_clear(frame->picture, 0);
         return ORL_OK;
     }
@@ -87,9 +88,15 @@ static enum orl_result paint(struct frame *frame)
     // Depth is always needed: the selection per tile tests occlusion even if the pixels do not.
     enum orl_result result =
         orl_selection_of(frame->params)->choose(frame, (size_t)frame->photos->slot_count);
-    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++)
+    if (result == ORL_OK && frame->progressive)
+        result = orl_progressive_admit(frame, true);
+    for (size_t i = 0; !frame->progressive && result == ORL_OK && i < frame->chosen_count; i++)
         result = orl_photos_require(frame, frame->chosen[i], true);
-    return result == ORL_OK ? paint_chosen(frame) : result;
+    if (result == ORL_OK)
+        result = paint_chosen(frame);
+    if (result == ORL_OK)
+        orl_progressive_underpaint(frame);
+    return result;
 }
 
 const struct painter orl_paint_tiled = {

@@ -66,16 +66,26 @@ static double clamped(double v, int end)
     return v < 0 ? 0 : v > end ? end : v;
 }
 
+// How far a box reaches beyond the picture, pixels.
+static double beyond(const struct table *t, const double low[2], const double high[2])
+{
+    double x = fmax(-low[0], high[0] - t->width), y = fmax(-low[1], high[1] - t->height);
+    return fmax(fmax(x, y), 0);
+}
+
 // True when a pixel of the box, given in pixel coordinates, belongs to the subject or may do so
-// outside the picture.
+// outside the picture, where a subject that leaves it may spread by 45 degrees.
 static bool any_inside(const struct table *t, const double low[2], const double high[2])
 {
-    bool outside = low[0] < 0 || low[1] < 0 || high[0] >= t->width || high[1] >= t->height;
-    if (outside && t->open)
-        return true;
-    int x0 = (int)clamped(floor(low[0]), t->width), x1 = (int)clamped(floor(high[0]) + 1, t->width);
-    int y0 = (int)clamped(floor(low[1]), t->height);
-    int y1 = (int)clamped(floor(high[1]) + 1, t->height);
+    double spread = t->open ? beyond(t, low, high) : 0;
+    int x0 = (int)clamped(floor(low[0] - spread), t->width - (t->open && spread > 0));
+    int x1 = (int)clamped(floor(high[0] + spread) + 1, t->width);
+    int y0 = (int)clamped(floor(low[1] - spread), t->height - (t->open && spread > 0));
+    int y1 = (int)clamped(floor(high[1] + spread) + 1, t->height);
+    if (t->open && spread > 0) { // what lies wholly beyond still has the nearest row or column
+        x1 = x1 > 0 ? x1 : 1;
+        y1 = y1 > 0 ? y1 : 1;
+    }
     const uint32_t *top = t->sum + (size_t)y0 * (size_t)(t->width + 1);
     const uint32_t *bottom = t->sum + (size_t)y1 * (size_t)(t->width + 1);
     return bottom[x1] - bottom[x0] - top[x1] + top[x0] != 0;
@@ -210,45 +220,58 @@ static enum orl_result carve_all(const struct orl_log *log,
     return result;
 }
 
-// Carves a coarse cube around the centre, and larger ones while the hull reaches the cube's faces.
-// The result is the bounding box of the hull with a margin of one voxel.
+// Carves a coarse cube around the centre. The result is the bounding box of the hull with a margin
+// of one voxel; *cut: the hull reaches the cube's faces.
+static enum orl_result try_bounds(const struct orl_log *log,
+                                  const struct orl_silhouette *silhouettes, size_t count,
+                                  const double centre[3], double reach, double origin[3],
+                                  double *size, bool *cut)
+{
+    enum { COARSE = 48 };
+    struct orl_hull hull;
+    int low[3], high[3], most = 0;
+    const double start[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach};
+    enum orl_result result = orl_hull_init(log, &hull, COARSE, start, 2 * reach);
+    if (result == ORL_OK)
+        result = carve_all(log, silhouettes, count, 1, &hull);
+    bool any = result == ORL_OK && occupied(&hull, low, high);
+    orl_hull_finish(&hull);
+    if (result != ORL_OK)
+        return result;
+    if (!any)
+        return orl_fail(log, ORL_ERR_DATA, "the silhouettes have no place in common: are "
+                        "cameras and masks of the same moment?");
+    *cut = false;
+    for (int k = 0; k < 3; k++) {
+        *cut = *cut || low[k] == 0 || high[k] == COARSE - 1;
+        most = high[k] - low[k] + 3 > most ? high[k] - low[k] + 3 : most;
+    }
+    double voxel = 2 * reach / COARSE;
+    *size = most * voxel;
+    for (int k = 0; k < 3; k++)
+        origin[k] = start[k] + 0.5 * (low[k] + high[k] + 1 - most) * voxel;
+    return ORL_OK;
+}
+
+// Tries larger cubes while the hull reaches the cube's faces. If it does not end, specks at the
+// borders of silhouettes are more likely than a large subject, and the first cube is the result.
 static enum orl_result search_bounds(const struct orl_log *log,
                                      const struct orl_silhouette *silhouettes, size_t count,
                                      const double centre[3], double reach, double origin[3],
                                      double *size)
 {
-    enum { COARSE = 48, ROUNDS = 4 };
-    for (int round = 0; round < ROUNDS; round++, reach *= 2) {
-        struct orl_hull hull;
-        int low[3], high[3], most = 0;
-        bool cut = false;
-        const double start[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach};
-        enum orl_result result = orl_hull_init(log, &hull, COARSE, start, 2 * reach);
-        if (result == ORL_OK)
-            result = carve_all(log, silhouettes, count, 1, &hull);
-        bool any = result == ORL_OK && occupied(&hull, low, high);
-        orl_hull_finish(&hull);
-        if (result != ORL_OK)
-            return result;
-        if (!any)
-            return orl_fail(log, ORL_ERR_DATA, "the silhouettes have no place in common: are "
-                            "cameras and masks of the same moment?");
-        for (int k = 0; k < 3; k++) {
-            cut = cut || low[k] == 0 || high[k] == COARSE - 1;
-            most = high[k] - low[k] + 3 > most ? high[k] - low[k] + 3 : most;
-        }
-        if (cut && round + 1 < ROUNDS)
-            continue;
-        double voxel = 2 * reach / COARSE;
-        *size = most * voxel;
-        for (int k = 0; k < 3; k++)
-            origin[k] = start[k] + 0.5 * (low[k] + high[k] + 1 - most) * voxel;
-        if (cut)
-            orl_logf(log, ORL_LOG_WARNING, "the silhouettes leave room without end; the hull is "
-                     "cut off %g around the middle", reach);
-        break;
+    enum { ROUNDS = 4 };
+    bool cut = true;
+    enum orl_result result = ORL_OK;
+    for (int round = 0; result == ORL_OK && cut && round < ROUNDS; round++)
+        result = try_bounds(log, silhouettes, count, centre, ldexp(reach, round), origin, size,
+                            &cut);
+    if (result == ORL_OK && cut) {
+        orl_logf(log, ORL_LOG_WARNING, "the silhouettes leave room without end; the hull is cut "
+                 "off %g around the middle", reach);
+        result = try_bounds(log, silhouettes, count, centre, reach, origin, size, &cut);
     }
-    return ORL_OK;
+    return result;
 }
 
 enum orl_result orl_hull_bounds(const struct orl_log *log, const struct orl_silhouette *silhouettes,
@@ -296,28 +319,25 @@ double orl_hull_volume(const struct orl_hull *hull)
     return (double)inside * hull->voxel * hull->voxel * hull->voxel;
 }
 
-enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *hull,
-                              size_t triangles, struct orl_mesh *mesh)
+enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_hull *cube,
+                                    const float *field, size_t triangles, struct orl_mesh *mesh)
 {
-    // Samples are the voxels' centres, with a border of empty samples around.
-    int n = hull->side + 2;
+    // Samples are the voxels' centres, with a border of samples outside the subject around.
+    int n = cube->side + 2;
+    size_t side = (size_t)cube->side, count = (size_t)n * (size_t)n * (size_t)n;
     memset(mesh, 0, sizeof *mesh);
-    float *value = orl_array(log, (size_t)n * (size_t)n * (size_t)n, sizeof *value);
+    float *value = orl_array(log, count, sizeof *value);
     if (!value)
         return ORL_ERR_MEMORY;
-    for (int z = 0; z < n; z++)
-        for (int y = 0; y < n; y++)
-            for (int x = 0; x < n; x++) {
-                bool edge = x == 0 || y == 0 || z == 0 || x > hull->side || y > hull->side ||
-                            z > hull->side;
-                size_t side = (size_t)hull->side;
-                bool in = !edge && hull->inside[(size_t)(x - 1) + side * ((size_t)(y - 1) +
-                                                               side * (size_t)(z - 1))];
-                value[(size_t)x + (size_t)n * ((size_t)y + (size_t)n * (size_t)z)] = in ? -1 : 1;
-            }
-    struct orl_grid grid = {.size = {n, n, n}, .spacing = hull->voxel, .value = value};
+    for (size_t i = 0; i < count; i++)
+        value[i] = (float)cube->voxel;
+    for (size_t z = 0; z < side; z++)
+        for (size_t y = 0; y < side; y++)
+            memcpy(value + 1 + (size_t)n * (y + 1 + (size_t)n * (z + 1)),
+                   field + side * (y + side * z), side * sizeof *value);
+    struct orl_grid grid = {.size = {n, n, n}, .spacing = cube->voxel, .value = value};
     for (int k = 0; k < 3; k++)
-        grid.origin[k] = hull->origin[k] - 0.5 * hull->voxel;
+        grid.origin[k] = cube->origin[k] - 0.5 * cube->voxel;
     enum orl_result result = orl_isosurface(log, &grid, mesh);
     free(value);
     if (result == ORL_OK && !mesh->triangle_count)
@@ -328,5 +348,20 @@ enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *
         result = orl_mesh_set_normals(log, mesh);
     if (result != ORL_OK)
         orl_mesh_finish(mesh);
+    return result;
+}
+
+enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *hull,
+                              size_t triangles, struct orl_mesh *mesh)
+{
+    size_t count = (size_t)hull->side * (size_t)hull->side * (size_t)hull->side;
+    memset(mesh, 0, sizeof *mesh);
+    float *field = orl_array(log, count, sizeof *field);
+    if (!field)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        field[i] = (float)(hull->inside[i] ? -hull->voxel : hull->voxel);
+    enum orl_result result = orl_hull_field_mesh(log, hull, field, triangles, mesh);
+    free(field);
     return result;
 }

@@ -33,8 +33,8 @@ void orl_hull_finish(struct orl_hull *hull);
 // Intersects the hull with the partial hull of one silhouette (Goldluecke 2003, section 3).
 // `reach` scales the radius of the voxel's circumscribed sphere that is tested. At 1 a voxel is
 // removed only when it lies wholly outside the silhouette, so the hull contains the subject; at 0
-// only its centre is tested. Where the silhouette touches the picture's border, voxels outside the
-// picture stay.
+// only its centre is tested. Where the silhouette leaves the picture, voxels outside it stay within
+// 45 degrees of that place.
 enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silhouette *silhouette,
                                double reach, struct orl_hull *hull) ORL_CHECK_RESULT;
 // Makes the hull of all silhouettes, in the cube that orl_hull_bounds gives.
@@ -45,5 +45,10 @@ double orl_hull_volume(const struct orl_hull *hull);
 // Makes the hull's surface, with normals, of at most about `triangles` (0: unlimited).
 enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *hull,
                               size_t triangles, struct orl_mesh *mesh) ORL_CHECK_RESULT;
+// The same of a field that is negative inside: a value at each voxel's centre of the cube, x fastest.
+// The surface lies where it is 0. cube->inside is not read.
+enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_hull *cube,
+                                    const float *field, size_t triangles,
+                                    struct orl_mesh *mesh) ORL_CHECK_RESULT;
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef ORL_SCENE_KNOWN_CAMERAS_H
 #define ORL_SCENE_KNOWN_CAMERAS_H
 
+#include "oriel/scene.h"
 #include "scene/colmap.h"
 
 // What a file does not state about a camera, to be completed from one of its pictures.
@@ -19,12 +20,13 @@ struct orl_known_cameras {
     // `folder`. Entries and the array may be NULL; owned.
     char **paths;
     size_t path_count;
+    struct orl_room room; // that the file states
     char *folder; // owned; base of the paths, where pictures are searched for
 };
 
 // Reads cameras. The format is recognised by content:
 // - a COLMAP model, or a folder that has one (sparse/0, sparse, or the folder itself);
-// - cameras.json: {"pixel_centre": 0, "cameras": [{"name", "width", "height", "K": 3 rows,
+// - cameras.json: {"pixel_centre": 0, "room": [[x, y, z], [x, y, z]], "cameras": [{"name", "width", "height", "K": 3 rows,
 //   "R": 3 rows, "t", "dist": [k1, k2, p1, p2, k3, k4, k5, k6] or fewer}]}, x_cam = R x + t;
 // - Inria's cameras.json; nerfstudio's transforms.json;
 // - Bundler's bundle.out, with list.txt beside it; Middlebury's NAME_par.txt;

@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "scene/json_views.h"
 #include "scene/known_internal.h"
+#include "scene/manifest.h"
 
 // The entry being read.
 struct entry {
@@ -190,6 +191,8 @@ enum orl_result orl_known_read_json(const struct orl_log *log, const char *path,
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: \"pixel_centre\" is not from 0 to 0.5", path);
     else
         result = read_items(&e, schema, root, list, known);
+    if (result == ORL_OK)
+        result = orl_manifest_read_room(log, path, root, &known->room);
     json_decref(root);
     return result;
 }

@@ -22,16 +22,19 @@ static enum orl_result read_split(const struct orl_json_place *place, const json
 static enum orl_result read_exposure(const struct orl_json_place *place, const json_t *entry,
                                      struct orl_photo *photo)
 {
-    double gain[3] = {1, 1, 1}, ev = NAN;
+    double gain[3] = {1, 1, 1}, ev = NAN, metering[2] = {0};
     enum orl_result result;
     if ((result = orl_json_number(place, entry, "exposure_ev", -64, 64, &ev)) != ORL_OK ||
         (result = orl_json_integer(place, entry, "series", 0, 65535, &photo->series)) != ORL_OK ||
-        (result = orl_json_numbers(place, entry, "gain", 3, 1e-6, 1e6, gain)) != ORL_OK)
+        (result = orl_json_numbers(place, entry, "gain", 3, 1e-6, 1e6, gain)) != ORL_OK ||
+        (result = orl_json_numbers(place, entry, "metering", 2, -16, 16, metering)) != ORL_OK)
         return result;
     photo->has_exposure = !isnan(ev);
     photo->exposure_ev = photo->has_exposure ? ev : 0;
     for (int i = 0; i < 3; i++)
         photo->gain[i] = (float)gain[i];
+    photo->metering = (float)metering[0];
+    photo->metered_ev = (float)metering[1];
     return ORL_OK;
 }
 
@@ -65,6 +68,17 @@ static enum orl_result read_mask(const struct orl_json_place *place, const json_
     return result;
 }
 
+static enum orl_result read_radiance(const struct orl_json_place *place, const json_t *entry,
+                                     struct orl_photo *photo)
+{
+    enum orl_result result = orl_json_bool(place, entry, "radiance", &photo->radiance);
+    if (result == ORL_OK && photo->radiance && !photo->linear)
+        result = orl_fail(place->log, ORL_ERR_NOT_FOUND,
+                          "%s: %s is radiance, but its file in images_linear is missing",
+                          place->path, place->what);
+    return result;
+}
+
 static enum orl_result read_photo(const struct orl_json_place *place, const json_t *entry,
                                   const struct orl_scene *scene, struct orl_photo *photo)
 {
@@ -73,6 +87,8 @@ static enum orl_result read_photo(const struct orl_json_place *place, const json
         result = read_exposure(place, entry, photo);
     if (result == ORL_OK)
         result = read_optics(place, entry, scene, photo);
+    if (result == ORL_OK)
+        result = read_radiance(place, entry, photo);
     return result == ORL_OK ? read_mask(place, entry, scene, photo) : result;
 }
 
@@ -174,6 +190,31 @@ static enum orl_result read_ground(const struct orl_log *log, const char *path,
     return ORL_OK;
 }
 
+enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *path,
+                                       const json_t *root, struct orl_room *room)
+{
+    const json_t *told = json_object_get(root, "room");
+    if (!told || json_is_null(told))
+        return ORL_OK;
+    bool good = json_array_size(told) == 2 &&
+                orl_json_read_numbers(json_array_get(told, 0), 3, room->low) &&
+                orl_json_read_numbers(json_array_get(told, 1), 3, room->high);
+    for (int k = 0; good && k < 3; k++)
+        good = room->low[k] < room->high[k];
+    if (!good)
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: \"room\" is not its lowest and its highest "
+                        "corner, of 3 numbers each", path);
+    room->known = true;
+    return ORL_OK;
+}
+
+json_t *orl_manifest_room(const struct orl_room *room)
+{
+    const double *a = room->low, *b = room->high;
+    return room->known ? json_pack("[[f,f,f],[f,f,f]]", a[0], a[1], a[2], b[0], b[1], b[2])
+                       : json_null();
+}
+
 // Logs and counts each file of DIR that does not match its checksum in the manifest `root`. Checks
 // only the files in the NULL-terminated list `names`, or all files when `names` is NULL.
 static enum orl_result check_files(const struct orl_log *log, const char *dir,
@@ -234,6 +275,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
         result = orl_tuned_read(log, path, root, scene);
     if (result == ORL_OK)
         result = read_ground(log, path, root, &scene->ground);
+    if (result == ORL_OK)
+        result = orl_manifest_read_room(log, path, root, &scene->room);
     if (result == ORL_OK)
         result = check_files(log, scene->dir, root, read_on_opening, ORL_LOG_WARNING, &changed);
     json_decref(root);

@@ -16,6 +16,12 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
 // file that is missing or changed is logged as an error and counted in *bad.
 enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, size_t *bad,
                                    size_t *files) ORL_CHECK_RESULT;
+// Reads "room" of scene.json or cameras.json, its lowest and its highest corner; it may be missing.
+enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *path,
+                                       const json_t *root,
+                                       struct orl_room *room) ORL_CHECK_RESULT;
+// The value of "room", released with json_decref; JSON null where it is not known.
+json_t *orl_manifest_room(const struct orl_room *room);
 // The value of "ground", released with json_decref; JSON null where there is no ground.
 json_t *orl_manifest_ground(const struct orl_ground *ground);
 // ORL_OK when prepare never worked on this folder. Otherwise logs the first missing stage and

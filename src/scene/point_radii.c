@@ -222,6 +222,17 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
     return result;
 }
 
+struct orl_radii_limits orl_radii_limits_of(const struct orl_radii_params *params)
+{
+    const struct orl_radii_params usual = {ORL_RADII_DEFAULTS};
+    struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
+    float scale = params->overlap / usual.overlap *
+                  sqrtf((float)params->neighbours / (float)usual.neighbours);
+    limits.largest_px *= scale;
+    limits.isolated_px *= scale;
+    return limits;
+}
+
 // Pixels per scene unit at the point, in the photograph that shows it largest; 0 when
 // the point is in no photograph's frame.
 static double finest_scale(const struct orl_view *views, size_t view_count, const float p[3])
@@ -238,22 +249,46 @@ static double finest_scale(const struct orl_view *views, size_t view_count, cons
     return finest;
 }
 
+// By how much a sparse cloud widens the limits: its typical disc is as large as it must be to meet
+// the next.
+static double sparseness(float *sizes_px, size_t count, double largest_px)
+{
+    static const double typical = 2; // a disc this many times the median is nothing unusual
+    qsort(sizes_px, count, sizeof *sizes_px, compare_floats);
+    double median = count ? (double)sizes_px[count / 2] : 0;
+    return fmax(1, typical * median / largest_px);
+}
+
 enum orl_result orl_points_limit_radii(const struct orl_log *log,
                                        const struct orl_radii_limits *limits,
                                        const struct orl_view *views, size_t view_count,
                                        struct orl_points *points)
 {
     ORL_REQUIRE(log, limits->largest_px > 0 && limits->isolated_px >= limits->largest_px);
-    size_t kept = 0;
+    size_t kept = 0, seen = 0;
+    double *scales = orl_array(log, points->count, sizeof *scales);
+    float *sizes = orl_array(log, points->count, sizeof *sizes);
+    if (!scales || !sizes) {
+        free(scales);
+        free(sizes);
+        return ORL_ERR_MEMORY;
+    }
     for (size_t i = 0; i < points->count; i++) {
-        double scale = finest_scale(views, view_count, points->position[i]);
-        double size_px = scale * (double)points->radius[i];
-        if (size_px > (double)limits->isolated_px)
+        scales[i] = finest_scale(views, view_count, points->position[i]);
+        if (scales[i] > 0)
+            sizes[seen++] = (float)(scales[i] * (double)points->radius[i]);
+    }
+    double wider = sparseness(sizes, seen, (double)limits->largest_px);
+    for (size_t i = 0; i < points->count; i++) {
+        double size_px = scales[i] * (double)points->radius[i];
+        if (size_px > wider * (double)limits->isolated_px)
             continue;
-        if (size_px > (double)limits->largest_px)
-            points->radius[i] = (float)((double)limits->largest_px / scale);
+        if (size_px > wider * (double)limits->largest_px)
+            points->radius[i] = (float)(wider * (double)limits->largest_px / scales[i]);
         orl_points_copy(points, i, points, kept++);
     }
+    free(scales);
+    free(sizes);
     if (kept < points->count)
         orl_logf(log, ORL_LOG_INFO, "%zu of %zu points stand alone: dropped",
                  points->count - kept, points->count);

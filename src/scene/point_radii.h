@@ -29,6 +29,11 @@ struct orl_radii_limits {
 };
 #define ORL_RADII_LIMITS_DEFAULTS .largest_px = 9.0f, .isolated_px = 16.0f
 
+// The limits for radii of these parameters: in proportion to the radii that they give on a surface,
+// where the distance to the k-th neighbour grows as the square root of k. So the same points are
+// isolated, whatever the overlap.
+struct orl_radii_limits orl_radii_limits_of(const struct orl_radii_params *params);
+
 // Limits radii that the sampling of a fused cloud cannot explain. Stereo gives some
 // outliers in mid-air, and with the distance to its neighbours as radius a single outlier
 // may hide a whole picture. A disc's size in pixels is the largest among the photographs

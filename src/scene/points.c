@@ -65,44 +65,58 @@ void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *poin
     points->count = kept;
 }
 
-// Size of a record in the file, which is packed: six floats, a colour, a radius and a count.
-enum { RECORD_SIZE = 6 * 4 + 3 + 4 + 1 };
+// Size of the larger record in the file, which is packed: six floats, a colour, a radius and a
+// count.
+enum { RECORD_SIZE_MAX = 6 * 4 + 3 + 4 + 1 };
 
-static void pack_point(const struct orl_points *points, size_t i, uint8_t record[RECORD_SIZE])
+// Returns the record's size.
+static size_t pack_point(const struct orl_points *points, size_t i, bool small,
+                         uint8_t record[RECORD_SIZE_MAX])
 {
+    size_t at = 12;
     memcpy(record, points->position[i], 12);
-    memcpy(record + 12, points->normal[i], 12);
-    memcpy(record + 24, points->color[i], 3);
-    memcpy(record + 27, &points->radius[i], 4);
-    record[31] = points->photographs[i];
+    for (int k = 0; small && k < 3; k++)
+        record[at++] = (uint8_t)(int8_t)lrintf(127 * points->normal[i][k]);
+    if (!small) {
+        memcpy(record + at, points->normal[i], 12);
+        at += 12;
+    }
+    memcpy(record + at, points->color[i], 3);
+    memcpy(record + at + 3, &points->radius[i], 4);
+    at += 7;
+    if (!small)
+        record[at++] = points->photographs[i];
+    return at;
 }
 
-static bool write_points(FILE *stream, const struct orl_points *points)
+static bool write_points(FILE *stream, const struct orl_points *points, bool small)
 {
+    const char *normal = small ? "char" : "float";
     bool ok = fprintf(stream, "ply\nformat binary_little_endian 1.0\n"
                               "element vertex %zu\n"
                               "property float x\nproperty float y\nproperty float z\n"
-                              "property float nx\nproperty float ny\nproperty float nz\n"
+                              "property %s nx\nproperty %s ny\nproperty %s nz\n"
                               "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                              "property float radius\nproperty uchar photographs\nend_header\n",
-                      points->count) > 0;
+                              "property float radius\n%send_header\n",
+                      points->count, normal, normal, normal,
+                      small ? "" : "property uchar photographs\n") > 0;
     for (size_t i = 0; ok && i < points->count; i++) {
-        uint8_t record[RECORD_SIZE];
-        pack_point(points, i, record);
-        ok = fwrite(record, RECORD_SIZE, 1, stream) == 1;
+        uint8_t record[RECORD_SIZE_MAX];
+        size_t size = pack_point(points, i, small, record);
+        ok = fwrite(record, size, 1, stream) == 1;
     }
     return ok;
 }
 
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
-                                 const struct orl_points *points)
+                                 const struct orl_points *points, bool small)
 {
     struct orl_atomic_file file = {0};
     enum orl_result result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         return result;
     FILE *stream = orl_atomic_stream(&file);
-    bool ok = stream && write_points(stream, points);
+    bool ok = stream && write_points(stream, points, small);
     if (stream && fclose(stream) != 0)
         ok = false;
     result = ok ? orl_atomic_commit(log, &file)

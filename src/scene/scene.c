@@ -80,7 +80,9 @@ static enum orl_result check_photo_files(const struct orl_log *log, struct orl_s
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
         result = check_photo(log, scene, i);
-    return result;
+    bool mesh;
+    return result == ORL_OK ? check_if_there(log, scene, orl_scene_mesh_path(log, scene), &mesh)
+                            : result;
 }
 
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene, int frame)
@@ -295,8 +297,8 @@ static enum orl_result check_files_inside(const struct orl_log *log, const struc
     return result;
 }
 
-static enum orl_result read_model(const struct orl_log *log, const struct orl_scene *scene,
-                                  struct orl_colmap_model *model)
+enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl_scene *scene,
+                                     struct orl_colmap_model *model)
 {
     char *sparse = orl_path_join(log, scene->dir, "sparse");
     char *first = sparse ? orl_path_join(log, sparse, "0") : NULL;
@@ -363,15 +365,11 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
     if ((result = check_inside(log, scene, points)) != ORL_OK ||
         (folder->manifest &&
          (result = check_inside(log, scene, folder->manifest)) != ORL_OK) ||
-        (result = read_model(log, scene, model)) != ORL_OK ||
+        (result = orl_scene_read_model(log, scene, model)) != ORL_OK ||
         (result = set_photos(log, scene, model)) != ORL_OK)
         return result;
     if (folder->manifest &&
         (result = orl_manifest_read(log, folder->manifest, scene)) != ORL_OK)
-        return result;
-    bool there;
-    result = check_if_there(log, scene, orl_scene_mesh_path(log, scene), &there);
-    if (result != ORL_OK)
         return result;
     return add_points(log, scene, model, points, folder->manifest != NULL);
 }
@@ -435,8 +433,11 @@ void orl_scene_destroy(struct orl_scene **handle)
     for (size_t i = 0; i < scene->tuned_count; i++) {
         free(scene->tuned[i].method);
         free(scene->tuned[i].key);
+        free(scene->tuned[i].name);
     }
     free(scene->tuned);
+    free(scene->defaults.method);
+    free(scene->defaults.textures);
     orl_points_finish(&scene->points);
     free(scene->dir);
     free(scene);
@@ -486,6 +487,12 @@ char *orl_scene_background_path(const struct orl_log *log, const struct orl_scen
 
 char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene)
 {
+    if (shows_moment(scene)) {
+        char *path = orl_format(log, "%s/frames/%05d/mesh.ply", scene->dir, scene->frame);
+        if (!path || orl_path_is_file(path))
+            return path;
+        free(path);
+    }
     return orl_path_join(log, scene->dir, "mesh.ply");
 }
 

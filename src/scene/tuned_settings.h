@@ -1,4 +1,4 @@
-// "tuned" of scene.json: settings of a method that suit the scene.
+// "tuned" and "render" of scene.json: how the scene is drawn best.
 #ifndef ORL_SCENE_TUNED_SETTINGS_H
 #define ORL_SCENE_TUNED_SETTINGS_H
 
@@ -6,12 +6,17 @@
 
 #include "oriel/scene.h"
 
-// Sets scene->tuned from the manifest `root`, read from the file `path`.
+// Sets scene->tuned and scene->defaults from the manifest `root`, read from the file `path`.
 enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, const json_t *root,
                                struct orl_scene *scene) ORL_CHECK_RESULT;
 // Sets the entry of a method in "tuned" of DIR/scene.json. Takes ownership of `record`, whose
-// "settings" maps option keys to numbers. ORL_ERR_NOT_FOUND: there is no scene.json.
+// "settings" maps option keys to numbers or names. ORL_ERR_NOT_FOUND: there is no scene.json.
 enum orl_result orl_tuned_write(const struct orl_log *log, const char *dir, const char *method,
                                 json_t *record) ORL_CHECK_RESULT;
+// Sets "render" of DIR/scene.json in the same way.
+enum orl_result orl_defaults_write(const struct orl_log *log, const char *dir,
+                                   const struct orl_scene_defaults *defaults) ORL_CHECK_RESULT;
+// The value of "render", a new reference.
+json_t *orl_defaults_json(const struct orl_scene_defaults *defaults);
 
 #endif

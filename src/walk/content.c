@@ -25,37 +25,66 @@ static json_t *photo_json(const struct orl_photo *photo, size_t number)
     return json;
 }
 
-static enum orl_result make_manifest(struct content *content, const char *title)
+// The texts that the settings change: page and manifest.
+static enum orl_result make_texts(struct content *content)
 {
+    const struct orl_log *log = content->log;
     size_t start;
-    enum orl_result result = orl_walk_start(content->log, content->scene, &start);
+    enum orl_result result = orl_walk_start(log, content->scene, &start);
     if (result != ORL_OK)
         return result;
-    json_t *root = orl_walk_manifest(content->scene, title, start), *photos = json_array();
+    char *title = orl_walk_title(log, content->scene, content->title, content->settings);
+    char *index = title ? orl_walk_index(log, title, "") : NULL;
+    json_t *root = orl_walk_manifest(content->scene, content->settings, title ? title : "", start);
+    json_t *photos = json_array();
     for (size_t i = 0; i < content->photo_count; i++)
         json_array_append_new(photos, photo_json(&content->scene->photos[content->photos[i]], i));
     json_object_set_new(root, "photos", photos);
     json_object_set_new(root, "live", json_true());
-    content->manifest = json_dumps(root, JSON_INDENT(1));
+    json_object_set_new(root, "edits", json_boolean(content->edits));
+    char *manifest = json_dumps(root, JSON_INDENT(1));
     json_decref(root);
-    return content->manifest ? ORL_OK : ORL_ERR_MEMORY;
+    free(title);
+    if (!index || !manifest) {
+        free(index);
+        free(manifest);
+        return ORL_ERR_MEMORY;
+    }
+    free(content->index);
+    free(content->manifest);
+    content->index = index;
+    content->manifest = manifest;
+    return ORL_OK;
 }
 
 enum orl_result orl_content_init(const struct orl_log *log, const struct orl_scene *scene,
-                             const char *title, struct content *content)
+                                 const char *title, bool edits, struct content *content)
 {
-    *content = (struct content){.log = log, .scene = scene};
+    *content = (struct content){.log = log, .scene = scene, .title = title, .edits = edits};
     content->photos = orl_array(log, scene->photo_count, sizeof *content->photos);
-    content->index = content->photos ? orl_walk_index(log, title, "") : NULL;
-    enum orl_result result = content->index ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = content->photos ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
         if (!scene->photos[i].test)
             content->photos[content->photo_count++] = i;
     if (result == ORL_OK)
-        result = make_manifest(content, title);
+        result = orl_walk_settings_read(log, scene, &content->settings);
+    if (result == ORL_OK)
+        result = make_texts(content);
     if (result != ORL_OK)
         orl_content_finish(content);
     return result;
+}
+
+enum orl_result orl_content_change(struct content *content, json_t *settings)
+{
+    enum orl_result result = orl_walk_settings_check(content->log, "a client's settings", settings);
+    if (result == ORL_OK)
+        result = orl_walk_settings_write(content->log, content->scene, settings);
+    if (result != ORL_OK)
+        return result;
+    json_decref(content->settings);
+    content->settings = json_incref(settings);
+    return make_texts(content);
 }
 
 void orl_content_finish(struct content *content)
@@ -63,6 +92,7 @@ void orl_content_finish(struct content *content)
     free(content->index);
     free(content->manifest);
     free(content->photos);
+    json_decref(content->settings);
     *content = (struct content){0};
 }
 
@@ -72,6 +102,18 @@ static struct content_file text_file(const char *type, const char *text)
 {
     return (struct content_file){.type = type, .data = (const uint8_t *)text,
                                  .size = strlen(text)};
+}
+
+// A text that may change while the file is being sent.
+static enum orl_result copy_text(const struct content *content, const char *type, const char *text,
+                                 struct content_file *file)
+{
+    char *copy = orl_strdup(content->log, text);
+    if (!copy)
+        return ORL_ERR_MEMORY;
+    *file = text_file(type, copy);
+    file->owned = (uint8_t *)copy;
+    return ORL_OK;
 }
 
 static enum orl_result make_picture(const struct content *content, size_t number, int side,
@@ -123,14 +165,12 @@ enum orl_result orl_content_find(const struct content *content, const char *path
 {
     size_t number;
     *file = (struct content_file){0};
-    if (strcmp(path, "/") == 0 || strcmp(path, "/index.html") == 0) {
-        *file = text_file("text/html", content->index);
-        return ORL_OK;
-    }
+    if (strcmp(path, "/") == 0 || strcmp(path, "/index.html") == 0)
+        return copy_text(content, "text/html", content->index, file);
     if (strcmp(path, "/manifest.json") == 0) {
-        *file = text_file("application/json", content->manifest);
+        enum orl_result result = copy_text(content, "application/json", content->manifest, file);
         file->is_private = true;
-        return ORL_OK;
+        return result;
     }
     if (photo_number(content, path, "/thumbs/", &number))
         return make_picture(content, number, THUMB_SIDE, THUMB_QUALITY, file);

@@ -2,12 +2,17 @@
 #ifndef ORL_WALK_CONTENT_INTERNAL_H
 #define ORL_WALK_CONTENT_INTERNAL_H
 
+#include <jansson.h>
+
 #include "oriel/log.h"
 #include "oriel/scene.h"
 
 struct content {
     const struct orl_log *log;
     const struct orl_scene *scene;
+    const char *title;      // that was asked for; NULL: none
+    bool edits;             // clients may change the settings
+    json_t *settings;       // owned: settings.h
     char *index, *manifest; // owned
     size_t *photos;         // owned: index in the scene for each of the page's photographs
     size_t photo_count;
@@ -21,8 +26,13 @@ struct content_file {
     bool is_private;       // belongs to the scene, not to the page alone
 };
 
+// title: NULL to take that of the settings. edits: clients may change the settings.
 enum orl_result orl_content_init(const struct orl_log *log, const struct orl_scene *scene,
-                             const char *title, struct content *content) ORL_CHECK_RESULT;
+                                 const char *title, bool edits,
+                                 struct content *content) ORL_CHECK_RESULT;
+// Saves settings from a client with the scene, and shows them from now on. ORL_ERR_FORMAT: they are
+// not valid, and nothing has changed.
+enum orl_result orl_content_change(struct content *content, json_t *settings) ORL_CHECK_RESULT;
 void orl_content_finish(struct content *content);
 // `path` as in a request, starting with its slash. ORL_ERR_NOT_FOUND, not logged: no such file.
 enum orl_result orl_content_find(const struct content *content, const char *path,

@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/process.h"
 #include "io/picture.h"
 #include "walk/internal.h"
 
@@ -47,6 +47,31 @@ static bool read_view(const json_t *root, struct orl_view *view)
     return orl_camera_valid(c);
 }
 
+// "ev": stops, within what a scene of several exposures spans.
+static bool read_exposure(const json_t *root, struct walk_request *request)
+{
+    const json_t *ev = json_object_get(root, "ev");
+    request->ev = json_number_value(ev);
+    return !ev || (json_is_number(ev) && fabs(request->ev) <= 16);
+}
+
+// "pick": a pixel of the frame.
+static bool read_pick(const json_t *root, struct walk_request *request)
+{
+    const json_t *pick = json_object_get(root, "pick");
+    double at[2];
+    if (!pick)
+        return true;
+    const struct orl_camera *c = &request->view.camera;
+    if (!orl_json_read_numbers(pick, 2, at) || !(at[0] >= 0 && at[0] < c->width) ||
+        !(at[1] >= 0 && at[1] < c->height))
+        return false;
+    request->picks = true;
+    request->pick_x = (int)at[0];
+    request->pick_y = (int)at[1];
+    return true;
+}
+
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request)
 {
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
@@ -57,23 +82,18 @@ bool orl_walk_request_read(const char *text, size_t size, struct walk_request *r
         index++;
     *request = (struct walk_request){.number = (uint32_t)json_integer_value(number),
                                      .layer = (enum walk_layer)index,
-                                     .quality = (int)json_integer_value(quality)};
+                                     .quality = (int)json_integer_value(quality),
+                                     .at_rest = json_is_true(json_object_get(root, "rest"))};
     bool valid = layer && index < WALK_LAYERS && json_is_integer(number) &&
                  json_integer_value(number) >= 0 && json_integer_value(number) <= UINT32_MAX &&
                  json_is_integer(quality) && json_integer_value(quality) >= 1 &&
-                 json_integer_value(quality) <= 100 && read_view(root, &request->view);
+                 json_integer_value(quality) <= 100 && read_view(root, &request->view) &&
+                 read_pick(root, request) && read_exposure(root, request);
     json_decref(root);
     return valid;
 }
 
 // --- answers ---
-
-static double seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 // Shows a layer in the colours that the page's shaders use (web/shaders/show.frag).
 static void show_pixel(const struct orl_frame *frame, enum walk_layer layer, float typical, size_t i,
@@ -90,43 +110,87 @@ static void show_pixel(const struct orl_frame *frame, enum walk_layer layer, flo
     }
 }
 
-static enum orl_result draw(const struct walk_renderer *walk, const struct walk_request *request,
-                            struct orl_image *picture)
+// Seconds that a frame may spend on photographs. While the view moves, a frame with loading must
+// not take much longer than one without; at rest, the answer to the next movement must not.
+static double loading_seconds(const struct walk_renderer *walk, bool at_rest)
+{
+    static const double share = 0.25, rest_s = 0.15;
+    return at_rest ? rest_s : share * walk->draw_s;
+}
+
+static void expose(struct orl_image *linear, double ev)
+{
+    size_t count = 3 * (size_t)linear->width * (size_t)linear->height;
+    float factor = (float)exp2(ev);
+    for (size_t i = 0; ev != 0 && i < count; i++)
+        linear->f32[i] *= factor;
+}
+
+// What a frame says beside its picture.
+struct outcome {
+    size_t missing; // photographs that are not complete yet
+    float picked;   // depth under the picked pixel; 0: none
+};
+
+static enum orl_result draw_timed(struct walk_renderer *walk, const struct walk_request *request,
+                                  const struct orl_render_params *params, size_t *missing,
+                                  struct orl_frame *frame)
+{
+    struct orl_progressive progress = {.seconds = loading_seconds(walk, request->at_rest),
+                                       .at_rest = request->at_rest};
+    double start = orl_time_s();
+    enum orl_result result = orl_renderer_draw_progressive(walk->renderer, &request->view, params,
+                                                           &progress, frame);
+    double took = orl_time_s() - start - progress.spent;
+    walk->draw_s += (walk->draw_s > 0 ? 0.2 : 1) * (took - walk->draw_s);
+    *missing = progress.missing;
+    return result;
+}
+
+static enum orl_result draw(struct walk_renderer *walk, const struct walk_request *request,
+                            struct orl_image *picture, struct outcome *outcome)
 {
     static const unsigned needed[WALK_LAYERS] = {[WALK_DEPTH] = ORL_LAYER_DEPTH,
                                                  [WALK_NORMAL] = ORL_LAYER_NORMAL,
                                                  [WALK_COVERAGE] = ORL_LAYER_COVERAGE};
+    unsigned layers = needed[request->layer] | (request->picks ? ORL_LAYER_DEPTH : 0);
     struct orl_render_params params = *walk->render;
     if (request->layer == WALK_POINTS)
         params = orl_method_find(walk->log, "points")->params;
     params.leave_out = (ORL_LAYER_DEPTH | ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE |
-                        ORL_LAYER_CONFIDENCE) & ~needed[request->layer];
+                        ORL_LAYER_CONFIDENCE) & ~layers;
     struct orl_frame frame;
-    enum orl_result result = orl_renderer_draw(walk->renderer, &request->view, &params, NULL,
-                                               &frame);
+    enum orl_result result = draw_timed(walk, request, &params, &outcome->missing, &frame);
     if (result != ORL_OK)
         return result;
+    expose(&frame.color, request->ev);
     result = orl_tone_srgb(walk->log, &frame.color, picture);
-    size_t count = (size_t)frame.color.width * (size_t)frame.color.height;
+    size_t width = (size_t)frame.color.width, count = width * (size_t)frame.color.height;
     for (size_t i = 0; result == ORL_OK && needed[request->layer] && i < count; i++)
         show_pixel(&frame, request->layer, walk->typical, i, picture->u8 + 3 * i);
+    if (request->picks)
+        outcome->picked = fabsf(
+            frame.depth.f32[(size_t)request->pick_y * width + (size_t)request->pick_x]);
     orl_frame_finish(&frame);
     return result;
 }
 
-enum orl_result orl_walk_frame(const struct walk_renderer *walk, const struct walk_request *request,
+enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_request *request,
                                size_t before, uint8_t **data, size_t *size)
 {
     struct orl_image picture = {0};
+    struct outcome outcome = {0};
     uint8_t *jpeg = NULL;
     size_t jpeg_size = 0;
-    double start = seconds();
-    enum orl_result result = draw(walk, request, &picture);
+    double start = orl_time_s();
+    enum orl_result result = draw(walk, request, &picture, &outcome);
     if (result == ORL_OK)
         result = orl_jpeg_encode(walk->log, &picture, request->quality, &jpeg, &jpeg_size);
-    const uint32_t header[4] = {request->number, (uint32_t)(1e6 * (seconds() - start)),
-                                (uint32_t)picture.width, (uint32_t)picture.height};
+    uint32_t header[6] = {request->number, (uint32_t)(1e6 * (orl_time_s() - start)),
+                          (uint32_t)picture.width, (uint32_t)picture.height,
+                          (uint32_t)outcome.missing};
     _Static_assert(sizeof header == WALK_FRAME_HEADER, "the header of a frame");
+    memcpy(&header[5], &outcome.picked, sizeof outcome.picked);
     if (result == ORL_OK) {
         *data = orl_array(walk->log, before + sizeof header + jpeg_size, 1);
         result = *data ? ORL_OK : ORL_ERR_MEMORY;
@@ -138,5 +202,34 @@ enum orl_result orl_walk_frame(const struct walk_renderer *walk, const struct wa
     }
     free(jpeg);
     orl_image_finish(&picture);
+    return result;
+}
+
+enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene)
+{
+    enum { WIDTH = 640 };
+    static const double most_s = 2;
+    struct walk_request request = {.at_rest = true, .quality = 75};
+    size_t start_photo;
+    enum orl_result result = orl_walk_start(walk->log, scene, &start_photo);
+    if (result != ORL_OK)
+        return result;
+    request.view = scene->photos[start_photo].view;
+    struct orl_camera *c = &request.view.camera;
+    *c = orl_camera_resized(c, WIDTH, WIDTH * c->height / c->width + 1);
+    // The first frame compiles the programs, which is no measure of those that follow.
+    struct outcome outcome = {.missing = 1};
+    double start = 0;
+    for (int i = 0; result == ORL_OK && outcome.missing > 0; i++) {
+        struct orl_image picture = {0};
+        result = draw(walk, &request, &picture, &outcome);
+        orl_image_finish(&picture);
+        if (i < 2) { // the second one compiles those that photographs need
+            start = orl_time_s();
+            walk->draw_s = 0;
+        } else if (orl_time_s() - start > most_s) {
+            break;
+        }
+    }
     return result;
 }

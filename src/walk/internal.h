@@ -5,6 +5,7 @@
 #include <jansson.h>
 
 #include "walk/publish.h"
+#include "walk/settings.h"
 
 struct site {
     const struct orl_log *log;
@@ -14,7 +15,8 @@ struct site {
     struct orl_renderer *renderer;
     struct orl_render_params render; // options of the method oriel, as tuned for the scene
     char *dir;                       // owned: the folder that is written to
-    size_t start;                    // the photograph at which the walk begins
+    json_t *settings;                // owned: settings.h
+    size_t start;                    // the photograph at which the walk begins unless they say
     struct orl_publish_report *report;
 };
 
@@ -43,13 +45,16 @@ enum orl_result orl_site_poster(struct site *site);
 enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos);
 
 // The entries that the manifests of a site and of a server have in common.
-json_t *orl_walk_manifest(const struct orl_scene *scene, const char *title, size_t start);
+json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,
+                          size_t start);
 json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *camera);
 // Finds the training photograph that is nearest to all others. ORL_ERR_DATA: there is none.
 enum orl_result orl_walk_start(const struct orl_log *log, const struct orl_scene *scene,
                                size_t *start);
-// The name of the scene's folder without its parent folders; the caller releases it with free().
-char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene);
+// The title asked for, else that of the settings, else the name of the scene's folder without its
+// parent folders; the caller releases it with free().
+char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene, const char *asked,
+                     const json_t *settings);
 
 // --- page (page.c) ---
 
@@ -70,22 +75,32 @@ struct walk_request {
     uint32_t number; // the client's number for the request, returned with the frame
     struct orl_view view;
     enum walk_layer layer;
-    int quality; // quality of the JPEG
+    int quality;     // quality of the JPEG
+    double ev;       // stops by which the picture is brightened
+    bool at_rest;    // the client's view does not move
+    bool picks;      // asks for the depth under a pixel
+    int pick_x, pick_y;
 };
 // Reads a request from a message. Returns false for a message that the server does not answer.
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request);
 
-enum { WALK_FRAME_HEADER = 16 }; // four 32-bit words: number, microseconds, width, height
+// Six 32-bit words: number, microseconds, width, height, photographs that are not complete yet, and
+// as a float the depth under the pixel that the request picks (0: none).
+enum { WALK_FRAME_HEADER = 24 };
 
 struct walk_renderer {
     const struct orl_log *log;
     struct orl_renderer *renderer;
     const struct orl_render_params *render;
     float typical; // typical depth of the scene
+    double draw_s; // seconds that a frame takes without loading photographs, smoothed
 };
 // Draws and encodes a frame, with `before` bytes of room in front of its header. The caller
 // releases it with free().
-enum orl_result orl_walk_frame(const struct walk_renderer *walk, const struct walk_request *request,
+enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_request *request,
                                size_t before, uint8_t **data, size_t *size);
+// Draws the start view until its first photographs are there, for a second or two: the first frame
+// of a client finds programs compiled and something to paint from.
+enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene);
 
 #endif

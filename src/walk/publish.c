@@ -131,6 +131,8 @@ static enum orl_result write_site(struct site *site)
     return result;
 }
 
+// The page paints by the first method (web/shaders), whichever method the scene's default is. The
+// poster must look like the page.
 static enum orl_result make_renderer(struct site *site)
 {
     enum orl_result result = orl_render_params_tuned(site->log, &orl_methods[0], site->scene,
@@ -155,18 +157,18 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_publish_params params = *asked;
-    char *title = params.title ? orl_strdup(log, params.title) : orl_walk_title(log, scene);
-    if (!title)
-        return ORL_ERR_MEMORY;
-    params.title = title;
+    char *title = NULL;
     *report = (struct orl_publish_report){0};
     struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
                         .report = report};
     enum orl_result result = check_out(log, params.out, params.single_file);
+    if (result == ORL_OK)
+        result = orl_walk_settings_read(log, scene, &site.settings);
     if (result != ORL_OK)
         goto end;
+    params.title = title = orl_walk_title(log, scene, asked->title, site.settings);
     site.dir = part_name(log, params.out);
-    result = site.dir ? make_renderer(&site) : ORL_ERR_MEMORY;
+    result = site.dir && title ? make_renderer(&site) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = write_site(&site);
     if (result == ORL_OK)
@@ -178,6 +180,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
         result = ORL_ERR_IO;
 end:
     orl_renderer_destroy(&site.renderer);
+    json_decref(site.settings);
     free(site.dir);
     free(title);
     return result;

@@ -16,9 +16,11 @@
 #include "core/memory.h"
 #include "walk/content_internal.h"
 #include "walk/internal.h"
+#include "walk/rendering.h"
 
 enum {
-    MESSAGE_MOST = 4096, // greatest size of a request for a frame, bytes
+    MESSAGE_MOST = 65536, // greatest size of a message, bytes
+    RECEIVE = 4096,      // bytes of a message that are received at once
     CLIENTS_MOST = 64,
     CHUNK = 16384,       // bytes of a file that are written at once
     TOKEN_BYTES = 16,
@@ -36,8 +38,10 @@ struct session {
     unsigned waits_since;
     uint8_t *frame; // owned, with LWS_PRE bytes of room before it; NULL: no frame to send
     size_t frame_size;
-    char message[MESSAGE_MOST]; // the part that has arrived
-    size_t message_size;
+    char *message;      // owned: the part that has arrived
+    size_t message_size, message_room;
+    unsigned char *reply; // owned, with LWS_PRE bytes of room before it: JSON to send; NULL: none
+    size_t reply_size;
     // A request for a file.
     struct content_file file;
     size_t written;
@@ -53,6 +57,10 @@ struct server {
     size_t session_count;
     unsigned clock;
     char token[2 * TOKEN_BYTES + 1]; // "": no token is needed
+    json_t *to_render;         // owned: what a client wants rendered; NULL: nothing
+    struct session *renders_for; // that client; NULL: it has gone
+    bool rendering;            // it is under way
+    enum orl_result result;    // the first failure while it was
 };
 
 // --- access ---
@@ -168,9 +176,12 @@ static void remove_session(struct server *server, struct session *session)
             server->session_count--;
             break;
         }
+    if (server->renders_for == session)
+        server->renders_for = NULL;
     free(session->frame);
-    session->frame = NULL;
-    session->walks = false;
+    free(session->message);
+    free(session->reply);
+    *session = (struct session){0};
 }
 
 static int close_for(struct lws *wsi, enum lws_close_status status)
@@ -179,23 +190,92 @@ static int close_for(struct lws *wsi, enum lws_close_status status)
     return -1;
 }
 
-// A newer request replaces an older one for which no frame has been drawn.
+// Sends a JSON object, which is released, as soon as the client takes it. It replaces a reply that
+// has not been sent: a newer one says more.
+static enum orl_result reply(const struct server *server, struct session *session, json_t *object)
+{
+    char *text = object ? json_dumps(object, JSON_COMPACT) : NULL;
+    size_t size = text ? strlen(text) : 0;
+    unsigned char *data = text ? orl_array(server->log, LWS_PRE + size, 1) : NULL;
+    json_decref(object);
+    if (data) {
+        memcpy(data + LWS_PRE, text, size);
+        free(session->reply);
+        session->reply = data;
+        session->reply_size = size;
+        lws_callback_on_writable(session->wsi);
+    }
+    free(text);
+    return data ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+static enum orl_result refuse_rendering(const struct server *server, struct session *session,
+                                        const char *problem)
+{
+    return reply(server, session, json_pack("{s:{s:i, s:i, s:s}}", "rendering", "done", 0, "total", 0,
+                                            "problem", problem));
+}
+
+// One rendering at a time; serve() begins it.
+static bool take_rendering(struct server *server, struct session *session, json_t *message)
+{
+    if (server->to_render || server->rendering)
+        return refuse_rendering(server, session, "another one is under way") == ORL_OK;
+    server->to_render = json_incref(message);
+    server->renders_for = session;
+    return true;
+}
+
+// A message about something else than a frame: {"save": settings} or {"render": path}. Returns false
+// for a message that is none of these.
+static bool take_command(struct server *server, struct session *session)
+{
+    json_t *root = json_loadb(session->message, session->message_size, JSON_REJECT_DUPLICATES, NULL);
+    json_t *settings = json_object_get(root, "save");
+    bool known = settings && server->content.edits;
+    if (server->content.edits && orl_walk_rendering_asked(root)) {
+        known = take_rendering(server, session, root);
+    } else if (known) {
+        enum orl_result result = orl_content_change(&server->content, settings);
+        known = reply(server, session,
+                      json_pack("{s:b, s:s}", "saved", result == ORL_OK, "reason",
+                                result == ORL_OK ? "" : orl_result_message(result))) == ORL_OK;
+    }
+    json_decref(root);
+    return known;
+}
+
+static bool add_part(const struct server *server, struct session *session, const char *data,
+                     size_t size)
+{
+    if (orl_grow(server->log, (void **)&session->message, &session->message_room,
+                 session->message_size + size, 1) != ORL_OK)
+        return false;
+    memcpy(session->message + session->message_size, data, size);
+    session->message_size += size;
+    return true;
+}
+
+// A newer request for a frame replaces an older one for which no frame has been drawn.
 static int take_message(struct server *server, struct lws *wsi, struct session *session,
                         const char *data, size_t size)
 {
     if (lws_frame_is_binary(wsi))
         return close_for(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE);
-    if (size > sizeof session->message - session->message_size)
+    if (size > MESSAGE_MOST - session->message_size)
         return close_for(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE);
-    memcpy(session->message + session->message_size, data, size);
-    session->message_size += size;
-    if (!lws_is_final_fragment(wsi))
+    if (!add_part(server, session, data, size))
+        return -1;
+    if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi) > 0)
         return 0;
     struct walk_request request;
-    bool valid = orl_walk_request_read(session->message, session->message_size, &request);
+    bool asks = orl_walk_request_read(session->message, session->message_size, &request);
+    bool valid = asks || take_command(server, session);
     session->message_size = 0;
     if (!valid)
         return close_for(wsi, LWS_CLOSE_STATUS_INVALID_PAYLOAD);
+    if (!asks)
+        return 0;
     session->request = request;
     if (!session->wants)
         session->waits_since = server->clock++;
@@ -203,9 +283,20 @@ static int take_message(struct server *server, struct lws *wsi, struct session *
     return 0;
 }
 
+static int write_reply(struct lws *wsi, struct session *session)
+{
+    int written = lws_write(wsi, session->reply + LWS_PRE, session->reply_size, LWS_WRITE_TEXT);
+    free(session->reply);
+    session->reply = NULL;
+    lws_callback_on_writable(wsi);
+    return written < 0 ? -1 : 0;
+}
+
 // Sends the frame. The next one is drawn only after this one has been handed to the network.
 static int write_frame(struct lws *wsi, struct session *session)
 {
+    if (session->reply)
+        return write_reply(wsi, session);
     if (!session->frame) {
         session->sending = false;
         return 0;
@@ -313,8 +404,8 @@ static enum orl_result check_address(const struct orl_log *log, const char *host
 static enum orl_result listen_there(struct server *server)
 {
     static const struct lws_protocols protocols[] = {
-        {"http", on_event, sizeof(struct session), MESSAGE_MOST, 0, NULL, 0},
-        {"oriel-walk", on_event, sizeof(struct session), MESSAGE_MOST, 0, NULL, 0},
+        {"http", on_event, sizeof(struct session), RECEIVE, 0, NULL, 0},
+        {"oriel-walk", on_event, sizeof(struct session), RECEIVE, 0, NULL, 0},
         {NULL, NULL, 0, 0, 0, NULL, 0}};
     const struct orl_walk_params *params = server->params;
     struct lws_context_creation_info info = {
@@ -334,19 +425,59 @@ static enum orl_result listen_there(struct server *server)
     return ORL_OK;
 }
 
+// At most one frame, and what has come from the network. waits: until something comes.
+static enum orl_result serve_once(struct server *server, bool waits)
+{
+    struct session *session = longest_waiting(server);
+    enum orl_result result = session ? answer(server, session) : ORL_OK;
+    if (session || !waits)
+        lws_cancel_service(server->context); // process network events without waiting
+    if (result == ORL_OK && lws_service(server->context, 0) < 0 && errno != EINTR)
+        result = orl_fail(server->log, ORL_ERR_IO, "the network cannot be served");
+    return result;
+}
+
+// Between two frames of a rendering, clients are served.
+static void report_rendering(void *priv, size_t done, size_t total, const char *file)
+{
+    struct server *server = priv;
+    enum orl_result result = server->result;
+    if (result == ORL_OK && server->renders_for)
+        result = reply(server, server->renders_for,
+                       json_pack("{s:{s:I, s:I, s:s}}", "rendering", "done", (json_int_t)done,
+                                 "total", (json_int_t)total, "file", file));
+    if (result == ORL_OK)
+        result = serve_once(server, false);
+    server->result = result;
+}
+
+// What a client asks for may fail without ending the server.
+static void render_path(struct server *server)
+{
+    const struct walk_rendering rendering = {
+        .log = server->log, .scene = server->content.scene, .renderer = server->walk.renderer,
+        .render = server->walk.render, .progress = server->params->progress,
+        .report = report_rendering, .priv = server};
+    json_t *message = server->to_render;
+    server->to_render = NULL;
+    server->rendering = true;
+    enum orl_result result = orl_walk_rendering_run(&rendering, message);
+    if (result != ORL_OK && server->renders_for && server->result == ORL_OK)
+        server->result = refuse_rendering(server, server->renders_for, orl_result_message(result));
+    server->rendering = false;
+    server->renders_for = NULL;
+    json_decref(message);
+}
+
 static enum orl_result serve(struct server *server)
 {
-    enum orl_result result = ORL_OK;
-    while (result == ORL_OK && !orl_progress_cancelled(server->params->progress)) {
-        struct session *session = longest_waiting(server);
-        if (session) {
-            result = answer(server, session);
-            lws_cancel_service(server->context); // process network events without waiting
-        }
-        if (result == ORL_OK && lws_service(server->context, 0) < 0 && errno != EINTR)
-            result = orl_fail(server->log, ORL_ERR_IO, "the network cannot be served");
+    while (server->result == ORL_OK && !orl_progress_cancelled(server->params->progress)) {
+        if (server->to_render)
+            render_path(server);
+        if (server->result == ORL_OK)
+            server->result = serve_once(server, !server->to_render);
     }
-    return result;
+    return server->result;
 }
 
 enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *renderer,
@@ -357,13 +488,14 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
     server.walk = (struct walk_renderer){
         .log = log, .renderer = renderer, .render = params->render,
         .typical = scene->photo_distance > 0 ? (float)scene->photo_distance : 1};
-    char *title = params->title ? orl_strdup(log, params->title) : orl_walk_title(log, scene);
-    enum orl_result result = title ? orl_content_init(log, scene, title, &server.content)
-                                   : ORL_ERR_MEMORY;
+    bool edits = is_local(params->host) || params->edits;
+    enum orl_result result = orl_content_init(log, scene, params->title, edits, &server.content);
     if (result == ORL_OK)
         result = check_address(log, params->host);
     if (result == ORL_OK)
         result = make_token(&server);
+    if (result == ORL_OK)
+        result = orl_walk_warm_up(&server.walk, scene);
     if (result == ORL_OK)
         result = listen_there(&server);
     if (result == ORL_OK)
@@ -371,6 +503,6 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
     if (server.context)
         lws_context_destroy(server.context);
     orl_content_finish(&server.content);
-    free(title);
+    json_decref(server.to_render);
     return result;
 }

@@ -8,7 +8,8 @@
 struct orl_walk_params {
     const char *host;  // address to listen on; any other than 127.0.0.1 requires a token
     int port;          // 0: any free port
-    const char *title; // title of the page
+    const char *title; // title of the page; NULL: as the scene's settings say
+    bool edits;        // clients may change the settings; on 127.0.0.1 they always may
     const struct orl_render_params *render;
     const struct orl_progress *progress; // the server stops when this is cancelled
     // Called with the address of the page once the server listens.

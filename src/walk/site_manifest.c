@@ -61,8 +61,12 @@ enum orl_result orl_walk_start(const struct orl_log *log, const struct orl_scene
                                       "may be shown");
 }
 
-char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene)
+char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene, const char *asked,
+                     const json_t *settings)
 {
+    const char *own = orl_json_text(settings, "title");
+    if (asked || (own && *own))
+        return orl_strdup(log, asked ? asked : own);
     char *name = orl_strdup(log, scene->dir);
     size_t length = name ? strlen(name) : 0;
     while (length > 1 && name[length - 1] == '/')
@@ -98,17 +102,20 @@ json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *c
                      c->cy, "cam_from_world", pose_json(&photo->view.cam_from_world));
 }
 
-json_t *orl_walk_manifest(const struct orl_scene *scene, const char *title, size_t start)
+json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,
+                          size_t start)
 {
-    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:o, s:I}", "format", "oriel site", "version",
+    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:o, s:I, s:O}", "format", "oriel site", "version",
                      1, "made_by", "oriel " ORL_VERSION, "title", title, "up", up_json(scene),
                      "distance", scene->photo_distance > 0 ? scene->photo_distance : 1.0, "ground",
-                     orl_manifest_ground(&scene->ground), "start", number_of(scene, start));
+                     orl_manifest_ground(&scene->ground), "start", number_of(scene, start), "walk",
+                     settings);
 }
 
 enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos)
 {
-    json_t *root = orl_walk_manifest(site->scene, site->params->title, site->start);
+    json_t *root = orl_walk_manifest(site->scene, site->settings, site->params->title,
+                                     site->start);
     json_t *more = json_pack("{s:o, s:o, s:o, s:o}", "poster", orl_site_file(site, "poster.jpg"),
                              "options", options_json(&site->render), "points", points, "photos",
                              photos);

@@ -211,6 +211,7 @@ enum orl_result orl_site_poster(struct site *site)
     struct orl_view view = site->scene->photos[site->start].view;
     struct orl_frame frame;
     struct orl_image srgb = {0};
+    (void)orl_walk_settings_start(site->settings, &view.camera, &view);
     view.camera = orl_camera_reframed(&view.camera, POSTER_WIDTH, POSTER_HEIGHT);
     enum orl_result result = orl_renderer_draw(site->renderer, &view, &site->render, NULL, &frame);
     if (result != ORL_OK)

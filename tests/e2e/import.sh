@@ -26,6 +26,16 @@ done
 [ "$(count moving triangles)" -le 3000 ] || fail "the hull has too many triangles"
 runs 0 "$oriel" info moving
 
+# The room comes from the file of cameras, or from the user; both methods of silhouettes draw it.
+tr -d ' \n' <moving/scene.json | grep -q '"room":\[\[-4.0,0.0,-4.0\],\[4.0,3.0,4.0\]\]' ||
+    fail "does not note the room"
+runs 2 "$oriel" import set --masks set/masks --out other --room 0,0,0,1,1
+grep -q 'lowest and its highest corner' stderr.txt || fail "does not say what a room is"
+for method in li goldluecke; do
+    runs 0 "$oriel" eval moving --method "$method" --set fill=room
+    grep -q '^cam04' stdout.txt || fail "$method does not draw the camera that is held out"
+done
+
 # The same as clips, silhouettes by difference from a background clip.
 if command -v ffmpeg >/dev/null; then
     for camera in 00 01 02; do

@@ -21,7 +21,7 @@ at_least() {
 cd "$work"
 "$oriel" synth monument --out photos --size 384x256 --count 12
 # Retrieval is what larger sets get.
-"$oriel" prepare photos --out scene --test-list 0004.jpg,0009.jpg --matching retrieval
+"$oriel" prepare photos --out scene --test-list 0004.jpg,0009.jpg --matching retrieval --mesh poisson
 "$oriel" info scene --json >info.json
 grep -q '"name": *"0012.jpg"' info.json
 
@@ -40,6 +40,14 @@ at_least "airieau coverage" "$(mean airieau.json coverage)" 0.5
 at_least "airieau above points, dB on covered pixels" \
     "$(awk -v a="$(mean airieau.json psnr_covered_db)" -v p="$(mean points.json psnr_covered_db)" \
         'BEGIN { print a - p }')" 1
+
+# The mesh of the points is a surface as good as the points, within what a small set allows.
+"$oriel" eval scene --method orzan-surface --json splats.json
+"$oriel" eval scene --method orzan-surface --set proxy=mesh --json mesh.json
+at_least "mesh beside splats, dB on covered pixels" \
+    "$(awk -v m="$(mean mesh.json psnr_covered_db)" -v s="$(mean splats.json psnr_covered_db)" \
+        'BEGIN { print m - s }')" -2
+at_least "mesh coverage" "$(mean mesh.json coverage)" 0.5
 
 "$oriel" eval scene --merge fused --truth photos-truth --json radiance.json
 at_least "radiance pu21_psnr_db" "$(mean radiance.json pu21_psnr_db)" 16
@@ -68,3 +76,10 @@ if command -v ffmpeg >/dev/null; then
     "$oriel" render scene --path walk.json --out walk.mp4 --size 161x121
     [ -s walk.mp4 ] && [ ! -e walk.mp4.frames ]
 fi
+
+# Last, because it changes how the scene is drawn: all stages are done, so only --adapt is left.
+"$oriel" prepare photos --out scene --test-list 0004.jpg,0009.jpg --matching retrieval --resume \
+    --adapt --adapt-budget 3 | tee adapt.txt
+grep -q "dB.*chosen" adapt.txt || { echo "--adapt does not say what it chose" >&2; exit 1; }
+"$oriel" info scene | grep "^drawn  *by "
+"$oriel" eval scene --quiet

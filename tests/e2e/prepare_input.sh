@@ -16,23 +16,62 @@ photos "$work/one" a.png
 run 2 prepare "$work/one" --out "$work/s"
 says "$work/one: 1 usable photograph of 1; at least three are needed"
 
-photos "$work/deep/inner" a.png b.png c.png
-run 2 prepare "$work/deep" --out "$work/s"
-says "name $work/deep/inner instead"
-[ -e "$work/s" ] && fail "a scene folder was left behind"
-
-# Videos: what to do with them, wherever they are, and no scene folder.
-mkdir -p "$work/film/cam1" "$work/films"
-echo x >"$work/film/cam1/a.avi"
-echo x >"$work/films/B.MP4"
-for given in film film/cam1 films films/B.MP4; do
-    run 2 prepare "$work/$given" --out "$work/s"
-    says "$work/$given: "
-    says "video"
-    says "take frames out of one whose camera moved"
-    says "ffmpeg -i VIDEO -vf fps=2 FRAMES/%05d.png"
-    [ -e "$work/s" ] && fail "a scene folder was left behind"
+# Sub-folders, one of them reached again through a link; not hidden ones, nor scenes.
+photos "$work/deep/inner" a.png b.png
+photos "$work/deep/.hidden" x.png
+photos "$work/deep" a.png
+ln -s .. "$work/deep/inner/loop"
+for option in "" --resume; do
+    run 0 prepare "$work/deep" --out "$work/deep/scene" --test-list inner/b $option
+    prints "3 given, 3 used, 3 registered (2 train, 1 held out)"
 done
+[ -f "$work/deep/scene/images/inner_b.png" ] || fail "no photograph is named after its folder"
+run 2 prepare "$work/deep/a.png" "$work/deep/inner" --out "$work/s"
+says "have the same name, a.png: rename one, or give the folder that holds both"
+
+# Photographs of one picture are named, and left out if that is wanted.
+photos "$work/same" a.png b.png c.png
+run 2 prepare "$work/same" --out "$work/s" --leave-out duplicates
+says "b.png: shows the same as a.png; skipped"
+says "1 usable photograph of 3"
+run 0 prepare "$work/same" --out "$work/same-s"
+says "c.png: shows the same as a.png (see --leave-out)"
+
+# HEIC, as phones write it: COLMAP gets JPEG files.
+if command -v heif-enc >/dev/null; then
+    photos "$work/phone" a.png
+    for quality in 50 70 90; do
+        heif-enc -q $quality "$work/phone/a.png" -o "$work/phone/$quality.HEIC" >/dev/null 2>&1
+    done
+    rm "$work/phone/a.png"
+    ln "$work/phone/70.HEIC" "$work/phone/80.heif" # the same file
+    run 0 prepare "$work/phone" --out "$work/phone-s" --max-size 96
+    prints "4 given, 3 used, 3 registered"
+    [ -f "$work/phone-s/images/70.jpg" ] || fail "no JPEG is made of a HEIC file"
+fi
+
+# Videos: frames of those that are named or alone in a folder. What cannot be decoded is named.
+mkdir -p "$work/films/cam1"
+echo x >"$work/films/broken.MP4"
+if command -v ffmpeg >/dev/null; then
+    # Three seconds of a camera that moves, then two of one that stands still.
+    ffmpeg -loglevel error -f lavfi -i testsrc2=size=96x80:rate=12:duration=3 -c:v ffv1 \
+        -vf scroll=horizontal=0.05,tpad=stop_mode=clone:stop_duration=2 "$work/films/cam1/walk.mkv"
+    run 0 prepare "$work/films" --out "$work/film-s" --max-size 96
+    says "broken.MP4: ffmpeg finds no frames in it; skipped"
+    says "the camera stands still in 3 frames"
+    prints "8 given, 7 used, 7 registered"
+    [ -f "$work/film-s/images/cam1_walk_00001.jpg" ] || fail "no frame is named after its video"
+    run 0 prepare "$work/films" --out "$work/film-s" --max-size 96 --resume
+    says "calibrate: done already"
+    run 0 prepare "$work/films/cam1/walk.mkv" --out "$work/few-s" --frames 5 --max-size 96
+    [ "$(ls "$work/few-s/images" | wc -l)" = 4 ] || fail "not the frames that were asked for"
+else
+    run 2 prepare "$work/films" --out "$work/s"
+    says "ffmpeg is needed"
+fi
+run 2 prepare "$work/films/broken.MP4" --out "$work/s" --fps 1 --frames 5
+says "exclude each other"
 
 # Not writable: below a regular file, which stops root too.
 photos "$work/p" a.png b.png c.png d.png e.png
@@ -70,7 +109,7 @@ run 0 prepare "$work/p" --out "$work/s" --test-list e
 for name in cut.png text.jpg nothing.jpg; do
     says "$work/p/$name: "
 done
-says "$work/p: videos are left out: 1"
+says "$work/p: videos beside photographs are left out: 1"
 prints "8 given, 5 used, 5 registered (4 train, 1 held out)"
 run 0 info "$work/s"
 prints "left out     $work/p/cut.png"

@@ -9,6 +9,9 @@ DOUBLE_NO_MODEL=1 run 2 prepare "$work/p" --out "$work/still"
 says "only 0 of 5 photographs could be placed"
 says "all show one view, as of a camera that stood still"
 
+# A COLMAP whose options have other names.
+DOUBLE_NEW=1 run 0 prepare "$work/p" --out "$work/new"
+
 # No overlap (grey pictures, which have nothing alike): an error with advice, and what was
 # done is kept.
 mkdir "$work/grey"

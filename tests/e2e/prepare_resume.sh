@@ -83,6 +83,27 @@ run 0 info "$scene" --check
 # Where they are asked for, or needed, they are.
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 grep -q patch_match_stereo "$work/trace" || fail "--keep all made no depth maps"
+# Other radii: with depth maps, which the ground asks for, nothing before them is done again. The
+# usual values are those without the options.
+sum=$(md5sum <"$scene/points.ply")
+: >"$work/trace"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all --radius-overlap 2
+says "fuse: done already"
+grep -q "radii: done already" "$work/err" && fail "radii of another overlap were kept"
+[ "$(md5sum <"$scene/points.ply")" = "$sum" ] && fail "--radius-overlap changes nothing"
+grep -q '"overlap": 2.0' "$scene/scene.json" || fail "scene.json does not tell of the overlap"
+doubled=$(md5sum <"$scene/points.ply")
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all --radius-neighbours 3
+[ "$(md5sum <"$scene/points.ply")" = "$sum" ] && fail "--radius-neighbours changes nothing"
+[ "$(md5sum <"$scene/points.ply")" = "$doubled" ] && fail "the overlap of an earlier run stayed"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all \
+    --radius-neighbours 6 --radius-overlap 1
+[ "$(md5sum <"$scene/points.ply")" = "$sum" ] || fail "the usual radii are others when asked for"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
+says "radii: done already"
+[ -s "$work/trace" ] && fail "radii need COLMAP"
+run 2 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all --radius-overlap 9
+says "--radius-overlap 9: must be a number from 0.01 to 8"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep minimal
 : >"$work/trace"
 rm "$scene/.oriel/fused.ply"

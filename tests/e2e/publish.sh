@@ -3,6 +3,10 @@
 . "$(dirname "$0")/command_lib"
 monument_scene || exit 1
 
+cat >made/walk.json <<JSON
+{"attribution": "Drawn by nobody", "modes": ["fly", "walk"], "notes": [
+    {"title": "Far <b>ahead</b>", "text": "One.\nTwo.", "position": [0, 0, 0]}]}
+JSON
 runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
 grep -q ': 6 photographs' stdout.txt || fail "publish does not say what it wrote"
 site=served/path/site
@@ -27,6 +31,11 @@ runs 2 "$oriel" publish made --out foreign
 [ -e foreign/precious ] || fail "a folder that is no site was emptied"
 runs 2 "$oriel" publish made --out foreign/precious
 runs 2 "$oriel" publish made
+cp made/walk.json kept.json
+echo '{"modes": ["swim"]}' >made/walk.json
+runs 2 "$oriel" publish made --out other
+grep -q 'walk.json: "modes"' stderr.txt || fail "a wrong walk.json is not named"
+mv kept.json made/walk.json
 runs 2 "$oriel" publish no-such-scene --out other
 [ -e other ] && fail "a site of no scene"
 runs 2 "$oriel" publish made --out foreign --single-file

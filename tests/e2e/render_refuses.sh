@@ -40,6 +40,16 @@ end_header
 END
 "$oriel" render ws --at 0001 --out good.png || { echo "the workspace itself fails" >&2; exit 1; }
 
+# Parts of a path's frames are the frames of the whole.
+path=(render ws --path photos --frames 5 --size 48x32 --quiet)
+"$oriel" "${path[@]}" --out whole &&
+    "$oriel" "${path[@]}" --out parts --part 2/2 && [ "$(ls parts | head -n 1)" = 00002.png ] &&
+    "$oriel" "${path[@]}" --out parts --part 1/2 && diff -r whole parts ||
+    { echo "parts of a path are not the whole" >&2; failed=1; }
+refuses 2 'not K/N' "$oriel" "${path[@]}" --out out.d --part 3/2
+refuses 2 'have parts' "$oriel" "${path[@]}" --out out.mp4 --part 1/2
+refuses 2 'have parts' "$oriel" render ws --at 0001 --out out.png --part 1/2
+
 refuses 2 'one of --at' "$oriel" render ws --out out.png
 refuses 2 '\-\-out' "$oriel" render ws --at 0001
 refuses 2 'nonsense.*airieau' "$oriel" render ws --at 0001 --out out.png --method nonsense

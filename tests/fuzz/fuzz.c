@@ -16,7 +16,8 @@ const struct fuzz_target fuzz_targets[] = {
     {"path_text", fuzz_path_text},         {"exposures", fuzz_exposures},
     {"exif", fuzz_exif},                   {"jpeg", fuzz_jpeg},
     {"png", fuzz_png},                     {"tiff", fuzz_tiff},
-    {"exr", fuzz_exr},                     {"raw", fuzz_raw},
+    {"heif", fuzz_heif},                   {"exr", fuzz_exr},
+    {"raw", fuzz_raw},
     {"options", fuzz_options},             {"shader", fuzz_shader},
     {0},
 };

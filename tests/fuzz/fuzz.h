@@ -44,6 +44,7 @@ void fuzz_exif(const uint8_t *data, size_t size);
 void fuzz_jpeg(const uint8_t *data, size_t size);
 void fuzz_png(const uint8_t *data, size_t size);
 void fuzz_tiff(const uint8_t *data, size_t size);
+void fuzz_heif(const uint8_t *data, size_t size);
 void fuzz_exr(const uint8_t *data, size_t size);
 void fuzz_raw(const uint8_t *data, size_t size);
 void fuzz_options(const uint8_t *data, size_t size);

@@ -33,6 +33,7 @@ readers=(
     "jpeg src/io/jpeg.c src/io/picture.c"
     "png src/io/png.c"
     "tiff src/io/tiff.c src/io/profile.c"
+    "heif src/io/heif.c"
     "exr src/io/exr_read.c"
     "raw src/io/raw.c"
     "options src/render/options.c"

@@ -67,6 +67,11 @@ void fuzz_tiff(const uint8_t *data, size_t size)
     read_if(size > 2 && (data[0] == 'I' || data[0] == 'M'), "a.tif", data, size);
 }
 
+void fuzz_heif(const uint8_t *data, size_t size)
+{
+    read_if(orl_heif_is(data, size), "a.heic", data, size);
+}
+
 void fuzz_raw(const uint8_t *data, size_t size)
 {
     read_if(true, "a.dng", data, size);

@@ -127,7 +127,7 @@ static void use_points(struct orl_points *points)
                          isfinite(points->radius[i]), "points are usable");
     if (points->count > 256)
         return;
-    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("again.ply"), points) == ORL_OK &&
+    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("again.ply"), points, false) == ORL_OK &&
                      orl_points_read(&fuzz_log, fuzz_path("again.ply"), &other) == ORL_OK &&
                      other.count == points->count, "points can be written");
     fuzz_require(orl_points_set_radii(&fuzz_log, NULL, &radii, viewers, 1, points) == ORL_OK,

@@ -578,6 +578,36 @@ static void test_cancel_and_go_on(void **state)
     test_dir_remove(straight);
 }
 
+static struct stopper reset = {.stop_at = 1.5};
+
+static GLenum GLAPIENTRY reset_status(void)
+{
+    return reset.stopped ? GL_GUILTY_CONTEXT_RESET : GL_NO_ERROR;
+}
+
+// The device is reset in the middle of the second photograph.
+static void test_reset_device_leaves_no_map(void **state)
+{
+    (void)state;
+    struct plane_scene scene = make_scene(80, 64, 0, 0);
+    char *dir = make_workspace(&scene);
+    struct orl_progress progress = {.report = watch, .priv = &reset};
+    PFNGLGETGRAPHICSRESETSTATUSPROC real = epoxy_glGetGraphicsResetStatus;
+    epoxy_glGetGraphicsResetStatus = reset_status;
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, &progress), ORL_ERR_GPU);
+    epoxy_glGetGraphicsResetStatus = real;
+    assert_true(orl_path_is_file(map_path(dir, "depth", 0, "photometric")));
+    assert_false(orl_path_is_file(map_path(dir, "depth", 1, "photometric")));
+    // A lost device stays lost; another goes on.
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_GPU);
+    assert_false(orl_path_is_file(map_path(dir, "depth", 1, "photometric")));
+    orl_gpu_destroy(&gpu);
+    gpu = gpu_test_device();
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_OK);
+    assert_recovered(&scene, dir);
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -595,6 +625,7 @@ int main(void)
         cmocka_unit_test(test_bad_settings),
         cmocka_unit_test(test_little_memory),
         cmocka_unit_test(test_cancel_and_go_on),
+        cmocka_unit_test(test_reset_device_leaves_no_map),
     };
     gpu = gpu_test_device();
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

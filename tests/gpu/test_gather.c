@@ -295,6 +295,40 @@ static void absurd_cameras_and_wrong_photographs_are_refused(void **state)
     teardown(&f);
 }
 
+static bool is_cancelled(void *priv)
+{
+    return (*(int *)priv)-- <= 0;
+}
+
+// A frame of many photographs ends between two of them, and can be drawn again.
+static void a_frame_can_be_cancelled(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_renderer *renderer;
+    struct orl_frame frame;
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    int left = 2;
+    struct orl_progress progress = {.cancelled = is_cancelled, .priv = &left};
+    setup(&f, false);
+    for (int i = 0; i < 4; i++)
+        add_photo(&f, look_from(0.1 * i, 0, 0, SIDE, 40), green);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene,
+                                         &(struct orl_renderer_params){.progress = &progress},
+                                         &renderer), ORL_OK);
+    const struct orl_render_params *params = &orl_method_find(NULL, "airieau")->params;
+    assert_int_equal(orl_renderer_draw(renderer, &view, params, NULL, &frame),
+                     ORL_ERR_CANCELLED);
+    assert_null(frame.color.data);
+    assert_int_equal(left, -1); // two were loaded, the third was asked for
+    left = 100;
+    assert_int_equal(orl_renderer_draw(renderer, &view, params, NULL, &frame), ORL_OK);
+    assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[1], 1, 0.02);
+    orl_frame_finish(&frame);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -310,6 +344,7 @@ int main(void)
         cmocka_unit_test(unknown_names_and_values_are_refused),
         cmocka_unit_test(layers_can_be_left_out),
         cmocka_unit_test(absurd_cameras_and_wrong_photographs_are_refused),
+        cmocka_unit_test(a_frame_can_be_cancelled),
     };
     int failed = cmocka_run_group_tests_name("gather", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

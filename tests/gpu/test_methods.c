@@ -1,5 +1,6 @@
 // Methods made of slots, against answers found by hand.
 #include <math.h>
+#include <string.h>
 
 #include "render/select.h"
 #include "oriel/points.h"
@@ -200,12 +201,47 @@ static void every_method_gives_radiance(void **state)
     add_photo(&f, look_from(-0.3, 0, 0, SIDE, 40), green);
     for (const struct orl_method *m = orl_methods; m->name; m++) {
         const struct orl_renderer_params radiance = {.radiance = true};
-        struct orl_frame frame = draw_by(gpu, &f, view, &m->params, &radiance);
+        struct orl_render_params params;
+        assert_int_equal(orl_render_params_tuned(NULL, m, &f.scene, &params), ORL_OK);
+        struct orl_frame frame = draw_by(gpu, &f, view, &params, &radiance);
         const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
         bool own = strcmp(m->params.paint, "points") == 0; // the wall's splats are red
         assert_float_equal(middle[own ? 0 : 1], 1, 0.02);
         assert_float_equal(middle[2], 0, 0.02);
         orl_frame_finish(&frame);
+    }
+    teardown(&f);
+}
+
+// Every file of a slot works in the generic gather, whether a method of the list names it or not.
+static void every_slot_paints(void **state)
+{
+    (void)state;
+    static const char *const slots[] = {"visibility", "weight", "combine"};
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    add_photo(&f, look_from(0.3, 0, 0, SIDE, 40), green);
+    add_photo(&f, look_from(-0.3, 0, 0, SIDE, 40), green);
+    for (size_t i = 0; i < ORL_COUNT(slots); i++) {
+        char folder[64], assignment[128];
+        snprintf(folder, sizeof folder, "gather/%s", slots[i]);
+        const char *file;
+        for (size_t k = 0; (file = orl_shader_file(folder, k)); k++) {
+            const char *name = file + strlen(folder) + 1;
+            snprintf(assignment, sizeof assignment, "%s=%.*s", slots[i], (int)strcspn(name, "."),
+                     name);
+            struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+            if (strstr(assignment, "princ") || strstr(assignment, "selected"))
+                params = orl_method_find(NULL, "princ")->params; // weights that a selection gives
+            const char *const assignments[] = {assignment};
+            assert_int_equal(orl_render_params_assign(NULL, &params, assignments, 1), ORL_OK);
+            struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+            const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
+            assert_float_equal(middle[1], 1, 0.02);
+            assert_float_equal(middle[0] + middle[2], 0, 0.02);
+            orl_frame_finish(&frame);
+        }
     }
     teardown(&f);
 }
@@ -221,6 +257,7 @@ int main(void)
         cmocka_unit_test(at_its_own_place_a_photograph_shows),
         cmocka_unit_test(without_depth_a_photograph_is_rejected),
         cmocka_unit_test(every_method_gives_radiance),
+        cmocka_unit_test(every_slot_paints),
     };
     int failed = cmocka_run_group_tests_name("methods", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

@@ -130,6 +130,29 @@ static void weights_are_those_of_the_equation(void **state)
     teardown(&f);
 }
 
+// Photographs have no depth maps until a method with a shadow test asks for them.
+static void depth_maps_take_no_memory(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    for (int i = 0; i < 3; i++)
+        add_photo(&f, look_from(0.5 * i, 0, 0, SIDE, 40), red);
+    struct orl_renderer *renderer;
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    size_t bytes[2];
+    const char *const names[2] = {"princ", "airieau"};
+    for (int i = 0; i < 2; i++) {
+        const struct orl_method *method = orl_method_find(NULL, names[i]);
+        assert_int_equal(orl_renderer_draw(renderer, &view, &method->params, NULL, NULL), ORL_OK);
+        bytes[i] = orl_gpu_owner_bytes(gpu, ORL_OWNER_PHOTOGRAPHS);
+    }
+    assert_int_equal(bytes[1] - bytes[0], 3 * SIDE * SIDE * 4);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -137,6 +160,7 @@ int main(void)
         cmocka_unit_test(one_photograph_paints_a_pixel),
         cmocka_unit_test(extras_paint_oblique_surfaces),
         cmocka_unit_test(weights_are_those_of_the_equation),
+        cmocka_unit_test(depth_maps_take_no_memory),
     };
     int failed = cmocka_run_group_tests_name("Princ", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

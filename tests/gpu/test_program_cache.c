@@ -155,6 +155,23 @@ static void a_folder_that_cannot_be_made_is_no_error(void **state)
     dir = plain;
 }
 
+// Mesa maps its cache, which ends a program when the disk is full: it is used where there is room.
+static void mesa_keeps_nothing_on_a_full_disk(void **state)
+{
+    (void)state;
+    struct orl_gpu *gpu;
+    unsetenv("MESA_SHADER_CACHE_DISABLE");
+    setenv("MESA_SHADER_CACHE_DIR", dir, 1);
+    gpu = open_device("");
+    orl_gpu_destroy(&gpu);
+    assert_null(getenv("MESA_SHADER_CACHE_DISABLE"));
+    setenv("MESA_SHADER_CACHE_DIR", "/proc/mesa", 1); // a file system without any room
+    gpu = open_device("");
+    orl_gpu_destroy(&gpu);
+    assert_string_equal(getenv("MESA_SHADER_CACHE_DISABLE"), "true");
+    unsetenv("MESA_SHADER_CACHE_DIR");
+}
+
 int main(void)
 {
     struct orl_gpu *gpu = gpu_test_device();
@@ -173,6 +190,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(it_can_be_switched_off, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_folder_that_cannot_be_made_is_no_error, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(mesa_keeps_nothing_on_a_full_disk, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("program cache", tests, NULL, NULL);
 }

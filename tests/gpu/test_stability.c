@@ -179,8 +179,10 @@ static struct orl_stability walk(struct fixture *f, const char *method, bool sti
     for (size_t i = 0; still && i < FRAMES; i++)
         path.views[i] = look(0.02);
     assert_int_equal(orl_renderer_create(gpu, &f->scene, NULL, &renderer), ORL_OK);
+    struct orl_render_params render;
+    assert_int_equal(orl_render_params_tuned(NULL, row, &f->scene, &render), ORL_OK);
     const struct orl_stability_params params = {
-        .method = method, .render = &row->params, .views = path.views, .view_count = FRAMES,
+        .method = method, .render = &render, .views = path.views, .view_count = FRAMES,
         .skip = pops ? half_way : NULL, .skip_priv = skip};
     assert_int_equal(orl_stability_run(gpu, renderer, &params, &s), ORL_OK);
     assert_int_equal(s.step_count, FRAMES - 1);

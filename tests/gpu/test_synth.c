@@ -448,10 +448,51 @@ static void seeds_differ(void **state)
 
 // --- refusals ---
 
+// What gloss, bars and plain walls change, and what they leave alone.
+static void troubles_are_where_they_belong(void **state)
+{
+    (void)state;
+    const struct orl_view *view = &drawn.views[drawn.index_a];
+    struct orl_synth_params glossy = small_params(), barred = glossy, plain = glossy;
+    const struct orl_synth_params *all[3] = {&glossy, &barred, &plain};
+    struct orl_synth_frame frames[3];
+    glossy.gloss = 1;
+    barred.bars_m = 0.4;
+    plain.plain = 1;
+    for (int i = 0; i < 3; i++) {
+        struct orl_synth *synth;
+        assert_int_equal(orl_synth_create(gpu, all[i], &synth), ORL_OK);
+        assert_int_equal(orl_synth_draw(synth, NULL, view, &frames[i]), ORL_OK);
+        orl_synth_destroy(&synth);
+    }
+    size_t wall_pixel = 0, gloss_changes = 0, sky_changes = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        bool sky = drawn.a.depth.f32[i] <= 0;
+        bool changed = memcmp(&frames[0].radiance.f32[3 * i], &drawn.a.radiance.f32[3 * i],
+                              3 * sizeof(float)) != 0;
+        assert_float_equal(frames[0].depth.f32[i], drawn.a.depth.f32[i], 1e-3);
+        gloss_changes += changed;
+        sky_changes += sky && changed;
+        wall_pixel += frames[2].textured.f32[i] <= 0;
+        assert_true(!sky || frames[2].textured.f32[i] > 0);
+    }
+    assert_true(gloss_changes > WIDTH * HEIGHT / 10);
+    assert_true(sky_changes < WIDTH * HEIGHT / 50); // samples of its outline
+    assert_true(wall_pixel > WIDTH * HEIGHT / 5);
+    assert_null(frames[0].textured.data);
+    // The middle bar hides what is behind it, at its own depth.
+    double pixel[2], z;
+    assert_true(orl_view_project(view, (double[]){0, 2, 2.6}, pixel, &z));
+    double found = (double)frames[1].depth.f32[(int)pixel[1] * WIDTH + (int)pixel[0]];
+    assert_in_range((int)(1000 * (z - found)), 100, 300);
+    for (int i = 0; i < 3; i++)
+        orl_synth_frame_finish(&frames[i]);
+}
+
 static void refuses_what_is_out_of_range(void **state)
 {
     (void)state;
-    struct orl_synth_params good = small_params(), bad[11];
+    struct orl_synth_params good = small_params(), bad[14];
     assert_int_equal(orl_synth_check(NULL, &good), ORL_OK);
     for (size_t i = 0; i < ORL_COUNT(bad); i++)
         bad[i] = good;
@@ -467,6 +508,9 @@ static void refuses_what_is_out_of_range(void **state)
     bad[8].exposure_count = ORL_SYNTH_EXPOSURES_MAX + 1;
     bad[9].vignette = 0.95;
     bad[10].drift_ev = NAN;
+    bad[11].gloss = 1.1;
+    bad[12].bars_m = NAN;
+    bad[13].plain = -0.1;
     for (size_t i = 0; i < ORL_COUNT(bad); i++)
         assert_int_equal(orl_synth_check(NULL, &bad[i]), ORL_ERR_ARGUMENT);
 }
@@ -513,6 +557,7 @@ int main(void)
         cmocka_unit_test(depth_agrees_between_views),
         cmocka_unit_test(ground_is_flat),
         cmocka_unit_test(normals_face_the_camera),
+        cmocka_unit_test(troubles_are_where_they_belong),
     };
     const struct CMUnitTest files[] = {
         cmocka_unit_test(exposure_follows_the_srgb_curve),

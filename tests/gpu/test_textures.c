@@ -126,6 +126,38 @@ static void bc1_shows_like_colours_in_an_eighth(void **state)
     check_flat(ORL_TEXTURES_BC1, 8, 0.04f);
 }
 
+// The scene's own textures and depth maps are used, and a command's textures win.
+static void the_scene_says_how_photographs_are_kept(void **state)
+{
+    (void)state;
+    if (!device_has(ORL_TEXTURES_BC1))
+        skip();
+    struct fixture f;
+    setup_row(&f, 3);
+    struct orl_renderer *plain = renderer_of(&f, NULL);
+    struct orl_frame wanted = draw_at(plain, 0.7);
+    size_t color = bytes_of("photographs"), depth = bytes_of("photograph depth");
+    orl_renderer_destroy(&plain);
+    f.scene.defaults = (struct orl_scene_defaults){NULL, (char[]){"bc1"}, 2, true};
+    struct orl_renderer *small = renderer_of(&f, NULL);
+    struct orl_frame frame = draw_at(small, 0.7);
+    assert_true(bytes_of("photographs") <= color / 7);
+    assert_int_equal(bytes_of("photograph depth"), depth / 8);
+    // Each photograph is in its place, so that what they are made from is not kept.
+    assert_int_equal(bytes_of("photograph being loaded"), 0);
+    assert_true(largest_difference(&wanted, &frame) < 0.04f);
+    orl_renderer_destroy(&small);
+    struct orl_renderer *full =
+        renderer_of(&f, &(struct orl_renderer_params){.textures = ORL_TEXTURES_FULL});
+    assert_int_equal(bytes_of("photographs"), color);
+    orl_renderer_destroy(&full);
+    f.scene.defaults.textures = (char[]){"of_tomorrow"};
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &full), ORL_ERR_FORMAT);
+    orl_frame_finish(&wanted);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // `auto` compresses before it halves.
 static void short_of_memory_compresses_first(void **state)
 {
@@ -247,6 +279,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bc7_shows_the_same_colours_in_a_quarter),
         cmocka_unit_test(bc1_shows_like_colours_in_an_eighth),
+        cmocka_unit_test(the_scene_says_how_photographs_are_kept),
         cmocka_unit_test(short_of_memory_compresses_first),
         cmocka_unit_test(bc7_keeps_texels_along_a_line),
         cmocka_unit_test(photographs_are_loaded_as_the_viewer_moves),

@@ -1,29 +1,29 @@
 #!/usr/bin/env bash
-# Writes docs/measured/robustness.md: fuzzes every reader, injects every fault, counts.
-# usage: tests/stability/report.sh BUILD SECONDS [all]
-# SECONDS of fuzzing for each reader, 0: only the inputs that there are. all: every call fails in
-# turn, which takes an hour, instead of the first ones of a kind and then ever fewer. BUILD is a build folder with the program and tests. Inputs tried add up over the runs of
-# tests/fuzz/run.sh in build-fuzz.
-set -eu
-[ $# -ge 2 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
+# Writes docs/measured/robustness.md: fuzzes every reader, injects every fault, soaks, counts.
+# usage: tests/stability/report.sh BUILD SECONDS|keep [all]
+# SECONDS of fuzzing for each reader, 0: only the inputs that there are; keep: leave what the page
+# says of fuzzing. all: every call fails in turn, which takes an hour, instead of the first ones of a
+# kind and then ever fewer. BUILD is a build folder with the program and tests. Inputs tried add up
+# over the runs of tests/fuzz/run.sh in build-fuzz. SOAK_FRAMES and SOAK_ROUNDS: 10000 and 1000.
+set -eu -o pipefail
+[ $# -ge 2 ] || { sed -n '2,8s/^# *//p' "$0"; exit 2; }
 source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1") seconds=$2 all=${3:-}
 fuzz=${FUZZ_DIR:-$source/build-fuzz} page=$source/docs/measured/robustness.md
 status=0
-mkdir -p "$source/docs/measured"
-"$source/tests/fuzz/run.sh" "$seconds" || status=1
-"$source/tests/stability/inject.sh" "$build/oriel" "$source" "$build/tests/libinject.so" $all |
-    tee "$fuzz/injected.txt" || status=1
+mkdir -p "$source/docs/measured" "$fuzz/failures"
+[ "$seconds" = keep ] || "$source/tests/fuzz/run.sh" "$seconds" || status=1
+: >"$fuzz/injected.txt"
+for script in inject inject_prepare; do
+    "$source/tests/stability/$script.sh" "$build/oriel" "$source" "$build/tests/libinject.so" $all 2>&1 |
+        tee -a "$fuzz/injected.txt" || status=1
+done
+"$source/tests/stability/soak.sh" "$build/oriel" "$source" "$build/tests/soak" \
+    "${SOAK_FRAMES:-10000}" "${SOAK_ROUNDS:-1000}" 2>&1 | tee "$fuzz/soaked.txt" || status=1
+"$source/tests/stability/valgrind.sh" "$build" "$source" | tee "$fuzz/valgrind.txt" || status=1
 
 failures() { find "$fuzz/failures" -type f | wc -l; }
 
-{
-    cat <<'END'
-# Robustness: what was tried, and what failed
-
-Made by `tests/stability/report.sh BUILD SECONDS`. SECURITY.md says what Oriel promises; the inputs
-and checks below are in `tests/fuzz` and `tests/stability`.
-
-END
+fuzzing() {
     echo "## Inputs tried"
     echo
     echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
@@ -45,17 +45,49 @@ END
     echo "|---|--:|--:|"
     awk '{ printf "| `%s` | %d | %.0f %% |\n", $3, $5, 100 * $4 / ($5 ? $5 : 1) }' "$fuzz/lines.txt"
     echo
+}
+
+{
+    cat <<'END'
+# Robustness: what was tried, and what failed
+
+Made by `tests/stability/report.sh BUILD SECONDS`. SECURITY.md says what Oriel promises; the inputs
+and checks below are in `tests/fuzz` and `tests/stability`.
+
+END
+    if [ "$seconds" = keep ]; then
+        sed -n '/^## Inputs tried/,/^## Faults/{/^## Faults/!p}' "$page"
+    else
+        fuzzing
+    fi
     echo "## Faults injected"
     echo
     echo "A call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
     echo "(PNG, EXR), \`hdr\` and \`synth\`. Afterwards a final name holds what it held before or the whole"
-    echo "result, the exit status tells, and only a killed program leaves a temporary file."
+    echo "result, the exit status tells, and only a killed program leaves a temporary file. So too in"
+    echo "\`prepare\`, from the start and resumed half-way, with a stand-in for COLMAP; afterwards"
+    echo "\`--resume\` gives the bytes of a job that nothing disturbed."
     echo
     echo "| fault | times | files cut, crashes, wrong statuses |"
     echo "|---|--:|--:|"
     sed -n 's/^injected: \(.*\) \([0-9]*\)$/\1|\2/p' "$fuzz/injected.txt" | while IFS='|' read -r kind times; do
-        echo "| $kind | $times | $(grep -cE "^FAILED.*: ${kind% kill} " "$fuzz/injected.txt" || true) |"
+        echo "| $kind | $times | $(grep -cE "^FAILED.*: (${kind% kill} [0-9]|$kind: call )" "$fuzz/injected.txt" || true) |"
     done
+    echo
+    echo "## Soaked"
+    echo
+    echo "Random views of a small scene by all methods in turn, then the scene opened, drawn once and"
+    echo "closed again and again, the device too every twentieth time. Every pixel must be finite, no"
+    echo "buffer or texture may stay, and resident memory may grow by 16 MiB at most."
+    echo
+    echo "| what | growth of memory after the first fifth, KiB |"
+    echo "|---|--:|"
+    sed -n 's/^soaked: \(.*\), memory \([-+0-9]*\) KiB.*/| \1 | \2 |/p' "$fuzz/soaked.txt"
+    echo
+    echo "## Uninitialized memory"
+    echo
+    echo "The stored inputs of every reader under valgrind: $(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"),"
+    echo "$(grep -c ^FAILED "$fuzz/valgrind.txt" || true) readers with an error."
     echo
     echo "## Found, mended, and kept as tests"
     echo

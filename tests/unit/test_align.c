@@ -298,19 +298,20 @@ static void guesses_follow_what_predicts(void **state)
     (void)state;
     struct orl_gain_view views[7];
     uint32_t shared[7 * 6], own[7];
+    double metering[2];
     // A trend along the row: neighbours tell.
     make_row(views, shared, own);
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 3; c++)
             views[i].gain[c] = (float)exp2(0.3 * (i - 2.5));
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own), ORL_GUESS_NEIGHBOURS);
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_NEIGHBOURS);
     assert_true(fabs(log2((double)views[6].gain[1])) < 0.05);
     // Without rhyme or reason: the reference.
     const float odd[6] = {1.5f, 0.6f, 1.6f, 0.5f, 1.4f, 0.7f};
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 3; c++)
             views[i].gain[c] = odd[i];
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own), ORL_GUESS_REFERENCE);
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_REFERENCE);
     assert_float_equal(views[6].gain[0], 1, 0);
     // EXIF tells them.
     for (int i = 0; i < 6; i++) {
@@ -319,9 +320,39 @@ static void guesses_follow_what_predicts(void **state)
     }
     views[6].known = true;
     views[6].ev = 1.5;
-    enum orl_gain_guess guess = orl_gains_guess(views, 6, views + 6, 1, shared, own);
+    enum orl_gain_guess guess = orl_gains_guess(views, 6, views + 6, 1, shared, own, metering);
     assert_true(guess == ORL_GUESS_EXPOSURE || guess == ORL_GUESS_BOTH);
     assert_float_equal(views[6].gain[2], exp2(-1.5), 1e-5);
+    assert_float_equal(metering[0], 0, 0);
+}
+
+// A camera that evens out four fifths of the differences of light, over a trend along the row that
+// the neighbours tell.
+static void guesses_follow_automatic_exposure(void **state)
+{
+    (void)state;
+    static const double light[6] = {-3, -1.2, -2.9, -0.8, -3.1, -1};
+    struct orl_gain_view views[7];
+    uint32_t shared[7 * 6], own[7];
+    double metering[2], mean = -2;
+    make_row(views, shared, own);
+    for (int i = 0; i < 6; i++) {
+        views[i].light = light[i];
+        for (int c = 0; c < 3; c++)
+            views[i].gain[c] = (float)exp2(0.8 * (light[i] - mean) + 0.1 * c);
+    }
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering),
+                     ORL_GUESS_METER);
+    assert_float_equal(metering[0], 0.8, 1e-5);
+    assert_float_equal(metering[1], mean, 1e-9);
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(views[6].gain[c], exp2(0.1 * c), 1e-5);
+    for (int i = 0; i < 6; i++)
+        for (int c = 0; c < 3; c++)
+            views[i].gain[c] *= (float)exp2(0.2 * (i - 2.5));
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering),
+                     ORL_GUESS_METER_NEAR);
+    assert_true(fabs(log2((double)views[6].gain[0])) < 0.05);
 }
 
 // --- lists ---
@@ -381,6 +412,7 @@ int main(void)
         cmocka_unit_test(response_is_found),
         cmocka_unit_test(response_stays_srgb_without_reason),
         cmocka_unit_test(guesses_follow_what_predicts),
+        cmocka_unit_test(guesses_follow_automatic_exposure),
         cmocka_unit_test(lists_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

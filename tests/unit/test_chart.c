@@ -104,12 +104,12 @@ static void means_over_scenes(void **state)
 static void ids_are_file_names(void **state)
 {
     (void)state;
-    char id[128];
-    orl_chart_id("oriel-fast", "", id);
+    char id[ORL_ROW_ID_MAX];
+    orl_row_id("oriel-fast", "", id);
     assert_string_equal(id, "oriel-fast");
-    orl_chart_id("oriel", "photographs at 1/2", id);
+    orl_row_id("oriel", "photographs at 1/2", id);
     assert_string_equal(id, "oriel.photographs-at-1-2");
-    orl_chart_id("../peer", "x=1", id);
+    orl_row_id("../peer", "x=1", id);
     assert_null(strchr(id, '/'));
 }
 

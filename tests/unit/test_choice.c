@@ -23,8 +23,8 @@ static size_t count_methods(void)
 static void settings_win_over_tuned_over_own(void **state)
 {
     (void)state;
-    struct orl_tuned tuned[] = {{(char[]){"oriel"}, (char[]){"depth_tolerance"}, 0.25},
-                                {(char[]){"oriel"}, (char[]){"splat_scale"}, 2}};
+    struct orl_tuned tuned[] = {{(char[]){"oriel"}, (char[]){"depth_tolerance"}, 0.25, NULL},
+                                {(char[]){"oriel"}, (char[]){"splat_scale"}, 2, NULL}};
     const struct orl_scene scene = {.dir = (char[]){"somewhere"}, .points.count = 1, .tuned = tuned,
                                     .tuned_count = 2};
     struct orl_names none = {0}, settings = names_of("splat_scale=3", NULL);
@@ -37,6 +37,27 @@ static void settings_win_over_tuned_over_own(void **state)
     assert_int_equal(orl_choice_make(NULL, &scene, ORL_SAMPLE_SRGB, "points", &none, &choice), ORL_OK);
     assert_float_equal(choice.params.splat_scale, choice.method->params.splat_scale, 0);
     orl_names_finish(&settings);
+}
+
+static void scenes_default_method(void **state)
+{
+    (void)state;
+    const struct orl_names none = {0};
+    struct orl_scene scene = {.dir = (char[]){"somewhere"}, .points.count = 1,
+                              .defaults.method = (char[]){"points"}};
+    struct orl_choice choice;
+    struct orl_choices choices;
+    assert_int_equal(orl_choice_make(NULL, &scene, ORL_SAMPLE_SRGB, NULL, &none, &choice), ORL_OK);
+    assert_string_equal(choice.method->name, "points");
+    assert_int_equal(orl_choices_make(NULL, &scene, ORL_SAMPLE_SRGB, &none, &none, NULL, &choices),
+                     ORL_OK);
+    assert_string_equal(choices.items[0].method->name, "points");
+    orl_choices_finish(&choices);
+    assert_int_equal(orl_choice_make(NULL, NULL, ORL_SAMPLE_SRGB, NULL, &none, &choice), ORL_OK);
+    assert_ptr_equal(choice.method, &orl_methods[0]);
+    scene.defaults.method = (char[]){"of_tomorrow"};
+    assert_int_not_equal(orl_choice_make(NULL, &scene, ORL_SAMPLE_SRGB, NULL, &none, &choice),
+                         ORL_OK);
 }
 
 static void lists_of_methods(void **state)
@@ -99,6 +120,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(settings_win_over_tuned_over_own),
+        cmocka_unit_test(scenes_default_method),
         cmocka_unit_test(lists_of_methods),
         cmocka_unit_test(varied),
         cmocka_unit_test(unknown),

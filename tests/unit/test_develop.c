@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "core/color.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "eval/truth.h"
 #include "io/exr.h"
@@ -77,15 +78,20 @@ static void write_sixteen(const char *name)
     assert_true(test_opencv_write_rgb16(path, W, H, rgb));
 }
 
-static void write_eight(const char *name, float grey)
+static void write_with_exif(const char *name, float grey, const struct orl_exif *exif)
 {
     char path[4096];
     struct orl_image image;
     assert_int_equal(orl_image_init(NULL, &image, W, H, 3, ORL_PIXEL_U8), ORL_OK);
     memset(image.u8, (int)grey, W * H * 3);
     path_of(path, photos, name);
-    assert_int_equal(orl_jpeg_write(NULL, path, &image, 95, NULL), ORL_OK);
+    assert_int_equal(orl_jpeg_write(NULL, path, &image, 95, exif), ORL_OK);
     orl_image_finish(&image);
+}
+
+static void write_eight(const char *name, float grey)
+{
+    write_with_exif(name, grey, NULL);
 }
 
 static void prepare(struct said *said, bool resume)
@@ -224,12 +230,46 @@ static void without_deep_photographs_the_folder_goes(void **state)
     assert_false(orl_path_is_dir(path));
 }
 
+// Photographs of a zoom at two focal lengths, of another maker, and without EXIF.
+static void cameras_are_told_apart_and_places_kept(void **state)
+{
+    (void)state;
+    struct said said;
+    char path[4096];
+    json_t *root, *photo;
+    size_t i, found = 0;
+    const struct orl_exif wide = {.make = "A", .focal_mm = 24}, tele = {.make = "A", .focal_mm = 70};
+    const struct orl_exif placed = {.make = "B", .focal_mm = 24, .placed = true,
+                                    .latitude = 48.25, .longitude = -3.5};
+    write_with_exif("h.jpg", 60, &wide);
+    write_with_exif("i.jpg", 70, &wide);
+    write_with_exif("j.jpg", 80, &tele);
+    write_with_exif("k.jpg", 90, &placed);
+    prepare(&said, true);
+    // a, f and g have no EXIF, and all sizes are one: one camera.
+    assert_non_null(strstr(said.text, "7 photographs, 4 cameras"));
+    path_of(path, scene_dir, "scene.json");
+    assert_int_equal(orl_json_read(NULL, path, &root), ORL_OK);
+    json_array_foreach(json_object_get(root, "photographs"), i, photo) {
+        const json_t *gps = json_object_get(photo, "gps");
+        found += gps != NULL;
+        if (gps) {
+            assert_string_equal(orl_json_text(photo, "name"), "k.jpg");
+            assert_float_equal(json_number_value(json_array_get(gps, 0)), 48.25, 1e-6);
+            assert_float_equal(json_number_value(json_array_get(gps, 1)), -3.5, 1e-6);
+        }
+    }
+    assert_int_equal(found, 1);
+    json_decref(root);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(deep_photographs_get_twins_and_linear_light),
         cmocka_unit_test(true_radiance_is_undistorted),
         cmocka_unit_test(without_deep_photographs_the_folder_goes),
+        cmocka_unit_test(cameras_are_told_apart_and_places_kept),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -15,7 +15,7 @@ struct yard {
     char *dir;
     struct orl_scene scene;
     struct orl_photo photos[PHOTOS];
-    char names[PHOTOS][8];
+    char names[PHOTOS][16];
 };
 
 // Light of the ground, y = 1.6, at x and z: tiles of many sizes.

@@ -127,6 +127,20 @@ static void copies_where_links_are_unknown(void **state)
     test_dir_remove(dir);
 }
 
+static void refuses_what_the_disk_cannot_hold(void **state)
+{
+    (void)state;
+    struct said said;
+    struct orl_log log = log_to(&said);
+    char *dir = test_dir_make();
+    const struct orl_job job = {.log = &log, .dir = dir};
+    assert_int_equal(orl_job_need_disk(&job, "densify", 4096), ORL_OK);
+    assert_int_equal(orl_job_need_disk(&job, "densify", 1e24), ORL_ERR_IO);
+    assert_non_null(strstr(said.text, "densify writes about"));
+    assert_non_null(strstr(said.text, dir));
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +148,7 @@ int main(void)
         cmocka_unit_test(loser_leaves_the_winner_alone),
         cmocka_unit_test(goes_on_without_locks),
         cmocka_unit_test(copies_where_links_are_unknown),
+        cmocka_unit_test(refuses_what_the_disk_cannot_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

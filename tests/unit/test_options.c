@@ -118,9 +118,9 @@ static void scenes_settings_are_used(void **state)
 {
     (void)state;
     const struct orl_method *method = &orl_methods[0];
-    struct orl_tuned tuned[] = {{(char *)"other", (char *)"min_support", 3},
-                                {(char *)method->name, (char *)"min_support", 5},
-                                {(char *)method->name, (char *)"front_layer", 0.05}};
+    struct orl_tuned tuned[] = {{(char *)"other", (char *)"min_support", 3, NULL},
+                                {(char *)method->name, (char *)"min_support", 5, NULL},
+                                {(char *)method->name, (char *)"front_layer", 0.05, NULL}};
     struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
                               .tuned_count = 3};
     struct orl_render_params params;
@@ -128,6 +128,10 @@ static void scenes_settings_are_used(void **state)
     assert_float_equal(params.min_support, 5, 0);
     assert_float_equal(params.front_layer, 0.05, 1e-6);
     assert_float_equal(params.splat_scale, method->params.splat_scale, 0);
+    tuned[0] = (struct orl_tuned){(char *)method->name, (char *)"antialias", 0, (char *)"off"};
+    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    assert_int_equal(params.antialias, ORL_ANTIALIAS_OFF);
+    assert_int_equal(method->params.antialias, ORL_ANTIALIAS_ON);
     tuned[1].value = 1e6; // out of range
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_ERR_FORMAT);
     tuned[1].value = 5;

@@ -179,24 +179,26 @@ static void few_photographs_are_no_trouble(void **state)
 // --- pairs that likeness alone does not find ---
 
 // Photographs 0 and 1 share six features. More than a hundred others are more like each of them, and
-// match none: they have each of its features twice, so that neither is distinct. Photograph 2, if there
-// is one between the two, overlaps both.
+// match none: they have half of its features, each twice, so that none is distinct. Photograph 2, if
+// there is one between the two, overlaps both. Trying a pair takes time as the square of the number of
+// features, so the many have few.
 static void begin_misleading(struct collection *c, bool between)
 {
+    enum { OWN = 24, HALF = OWN / 2, OTHERS = 210 };
     begin(c);
     for (uint32_t i = 0; i < 2; i++) {
-        struct orl_pair_photo *photo = add_photo(c, 2 * FEATURES);
+        struct orl_pair_photo *photo = add_photo(c, 6 + OWN);
         add_features(c, photo, 5000, 6, SAME);
-        add_features(c, photo, 10000 * i, FEATURES, SAME);
+        add_features(c, photo, 10000 * i, OWN, SAME);
     }
     for (uint32_t i = 0; i < 2 && between; i++) {
-        struct orl_pair_photo *photo = i ? &c->photos[2] : add_photo(c, 2 * FEATURES);
-        add_features(c, photo, 10000 * i, FEATURES, SAME);
+        struct orl_pair_photo *photo = i ? &c->photos[2] : add_photo(c, 2 * OWN);
+        add_features(c, photo, 10000 * i, OWN, SAME);
     }
-    for (uint32_t i = 0; i < 220; i++) {
-        struct orl_pair_photo *photo = add_photo(c, 2 * FEATURES);
+    for (uint32_t i = 0; i < OTHERS; i++) {
+        struct orl_pair_photo *photo = add_photo(c, 2 * HALF);
         for (int k = 0; k < 2; k++)
-            add_features(c, photo, i % 2 * 10000, FEATURES, SAME);
+            add_features(c, photo, i % 2 * 10000, HALF, SAME);
     }
 }
 

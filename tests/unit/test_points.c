@@ -34,7 +34,7 @@ static void round_trips(void **state)
     snprintf(path, sizeof path, "%s/points.ply", dir);
     struct orl_points points, back;
     make_points(&points, 7);
-    assert_int_equal(orl_points_write(NULL, path, &points), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_OK);
     assert_int_equal(orl_points_read(NULL, path, &back), ORL_OK);
     assert_int_equal(back.count, 7);
     assert_memory_equal(back.position, points.position, 7 * sizeof *points.position);
@@ -132,7 +132,7 @@ static void refuses_truncated(void **state)
     snprintf(path, sizeof path, "%s/points.ply", dir);
     struct orl_points points;
     make_points(&points, 3);
-    assert_int_equal(orl_points_write(NULL, path, &points), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_OK);
     orl_points_finish(&points);
     uint8_t *data;
     size_t whole;
@@ -158,7 +158,7 @@ static void drops_what_is_not_finite(void **state)
     points.radius[2] = -1;
     points.radius[3] = NAN;
     points.normal[5][0] = NAN;
-    assert_int_equal(orl_points_write(NULL, path, &points), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_OK);
     orl_points_finish(&points);
     struct said said;
     struct orl_log log = log_to(&said);
@@ -188,7 +188,7 @@ static void leaves_nothing_when_the_disk_is_full(void **state)
     small = old;
     small.rlim_cur = 8192;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-    enum orl_result result = orl_points_write(NULL, path, &points);
+    enum orl_result result = orl_points_write(NULL, path, &points, false);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
     assert_int_equal(result, ORL_ERR_IO);
     struct orl_names names;
@@ -198,7 +198,7 @@ static void leaves_nothing_when_the_disk_is_full(void **state)
     // Below a regular file nothing can be written, not even by root.
     save(path, "x", 1);
     strcat(path, "/points.ply");
-    assert_int_equal(orl_points_write(NULL, path, &points), ORL_ERR_IO);
+    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_ERR_IO);
     orl_points_finish(&points);
     test_dir_remove(dir);
 }

@@ -6,7 +6,7 @@
 
 #include "preprocess/expose/expose.h"
 #include "preprocess/job/colmap_run.h"
-#include "preprocess/photos/advice.h"
+#include "preprocess/photos/doubts.h"
 #include "preprocess/photos/collect.h"
 #include "oriel/prepare.h"
 #include "test.h"

@@ -152,7 +152,10 @@ static void limits_radii_by_pixels(void **state)
                                 {{64, 64, 100, 100, 32, 32}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                                               {0, 0, 1}}}};
     struct orl_points points;
-    assert_int_equal(orl_points_init(NULL, &points, 5), ORL_OK);
+    enum { FINE = 10 }; // points of the cloud that the others are judged by, one pixel each
+    assert_int_equal(orl_points_init(NULL, &points, 5 + FINE), ORL_OK);
+    for (int i = 5; i < 5 + FINE; i++)
+        points.radius[i] = 0.01f;
     const float radii[5] = {0.05f, 0.1f, 0.3f, 0.07f, 500};
     for (int i = 0; i < 5; i++) {
         points.radius[i] = radii[i];
@@ -161,7 +164,7 @@ static void limits_radii_by_pixels(void **state)
     points.position[4][0] = 1000; // in no photograph's frame
     const struct orl_radii_limits limits = {.largest_px = 6, .isolated_px = 20};
     assert_int_equal(orl_points_limit_radii(NULL, &limits, views, 2, &points), ORL_OK);
-    assert_int_equal(points.count, 4);
+    assert_int_equal(points.count, 4 + FINE);
     const float expected[4] = {0.05f, 0.06f, 0.06f, 500};
     const uint8_t colors[4] = {10, 11, 13, 14};
     for (int i = 0; i < 4; i++) {
@@ -169,6 +172,69 @@ static void limits_radii_by_pixels(void **state)
         assert_int_equal(points.color[i][0], colors[i]);
     }
     orl_points_finish(&points);
+}
+
+// A cloud of one point for every hundred pixels is thin, not made of outliers.
+static void a_sparse_cloud_stays(void **state)
+{
+    (void)state;
+    enum { POINTS = 50 };
+    const struct orl_view view = {{64, 64, 100, 100, 32, 32},
+                                  {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 1}}};
+    const struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, POINTS), ORL_OK);
+    for (int i = 0; i < POINTS; i++)
+        points.radius[i] = 0.2f; // 20 pixels
+    points.radius[0] = 5;
+    assert_int_equal(orl_points_limit_radii(NULL, &limits, &view, 1, &points), ORL_OK);
+    assert_int_equal(points.count, POINTS - 1);
+    for (size_t i = 0; i < points.count; i++)
+        assert_float_equal(points.radius[i], 0.2f, 1e-6);
+    orl_points_finish(&points);
+}
+
+// A wall of points a unit apart, seen at five pixels to the unit, and one point before it.
+static void set_wall(const struct orl_radii_params *params, struct orl_points *points)
+{
+    enum { SIDE = 12 };
+    const struct orl_view view = {{64, 64, 100, 100, 2, 2},
+                                  {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 20}}};
+    const struct orl_radii_limits limits = orl_radii_limits_of(params);
+    assert_int_equal(orl_points_init(NULL, points, SIDE * SIDE + 1), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        points->position[i][0] = (float)(i % SIDE);
+        points->position[i][1] = (float)(i / SIDE);
+    }
+    points->position[SIDE * SIDE][2] = -10;
+    assert_int_equal(orl_points_set_radii(NULL, NULL, params, NULL, 0, points), ORL_OK);
+    assert_int_equal(orl_points_limit_radii(NULL, &limits, &view, 1, points), ORL_OK);
+    assert_int_equal(points->count, SIDE * SIDE); // the one before it stands alone
+}
+
+// The overlap and the neighbours change sizes, not which points are isolated.
+static void limits_follow_the_overlap(void **state)
+{
+    (void)state;
+    const struct orl_radii_params usual = {ORL_RADII_DEFAULTS};
+    const struct orl_radii_limits limits = orl_radii_limits_of(&usual);
+    assert_float_equal(limits.largest_px, 9, 0);
+    assert_float_equal(limits.isolated_px, 16, 0);
+    const float overlaps[] = {0.25f, 1, 4};
+    struct orl_points all;
+    set_wall(&usual, &all);
+    for (size_t n = 0; n < ORL_COUNT(overlaps); n++) {
+        struct orl_points points;
+        set_wall(&(struct orl_radii_params){usual.neighbours, overlaps[n]}, &points);
+        for (size_t i = 0; i < points.count; i++)
+            assert_float_equal(points.radius[i], overlaps[n] * all.radius[i], 0);
+        orl_points_finish(&points);
+    }
+    struct orl_points points;
+    set_wall(&(struct orl_radii_params){24, 1}, &points); // five by five points of the grid
+    assert_float_equal(points.radius[12 * 6 + 6], 2 * sqrt(2), 1e-5);
+    orl_points_finish(&points);
+    orl_points_finish(&all);
 }
 
 static bool always(void *priv)
@@ -198,6 +264,8 @@ int main(void)
         cmocka_unit_test(drops_points_beyond_the_world),
         cmocka_unit_test(takes_few_points),
         cmocka_unit_test(limits_radii_by_pixels),
+        cmocka_unit_test(a_sparse_cloud_stays),
+        cmocka_unit_test(limits_follow_the_overlap),
         cmocka_unit_test(stops_when_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,6 +5,7 @@
 #include "core/color.h"
 #include "render/reexpose.h"
 #include "render/tone.h"
+#include "scene/meter.h"
 
 enum { W = 41, H = 31 };
 
@@ -116,10 +117,48 @@ static void corners_lose_light(void **state)
     orl_image_finish(&picture);
 }
 
+// An even picture four times as light as the metering's: half of the two stops go into the gain.
+static void gain_follows_metered_light(void **state)
+{
+    (void)state;
+    struct orl_image light = {0};
+    assert_int_equal(orl_image_init(NULL, &light, W, H, 3, ORL_PIXEL_F32), ORL_OK);
+    for (int i = 0; i < W * H * 3; i++)
+        light.f32[i] = 0.4f;
+    assert_float_equal(orl_picture_metered(&light), log2(0.4), 1e-6);
+    photo.metering = 0.5f;
+    photo.metered_ev = (float)log2(0.1);
+    struct orl_image picture = expose(&light);
+    assert_int_equal(picture.u8[0], (int)lrintf(255 * orl_srgb_encode(0.2f)));
+    orl_image_finish(&picture);
+    orl_image_finish(&light);
+}
+
+// The centre counts more than the border, and light above white as white.
+static void metering_is_centre_weighted(void **state)
+{
+    (void)state;
+    struct orl_meter centre = {0}, border = {0}, white = {0};
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            bool inner = x >= W / 4 && x < 3 * W / 4 && y >= H / 4 && y < 3 * H / 4;
+            const float in[3] = {inner, inner, inner}, out[3] = {!inner, !inner, !inner};
+            const float sun[3] = {9, 9, 9};
+            orl_meter_add(&centre, in, x + 0.5, y + 0.5, W, H);
+            orl_meter_add(&border, out, x + 0.5, y + 0.5, W, H);
+            orl_meter_add(&white, sun, x + 0.5, y + 0.5, W, H);
+        }
+    assert_float_equal(exp2(orl_meter_log2(&centre)) + exp2(orl_meter_log2(&border)), 1, 1e-5);
+    assert_true(exp2(orl_meter_log2(&centre)) > 0.45); // a quarter of the area
+    assert_float_equal(orl_meter_log2(&white), 0, 1e-6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(plain_photographs_are_srgb, set_up),
+        cmocka_unit_test_setup(gain_follows_metered_light, set_up),
+        cmocka_unit_test_setup(metering_is_centre_weighted, set_up),
         cmocka_unit_test_setup(gain_is_undone_per_channel, set_up),
         cmocka_unit_test_setup(curves_are_inverted, set_up),
         cmocka_unit_test_setup(corners_lose_light, set_up),

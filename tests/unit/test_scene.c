@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "oriel/scene.h"
+#include "scene/tuned_settings.h"
 #include "test.h"
 
 static void save(const char *dir, const char *name, const char *text)
@@ -284,7 +285,7 @@ static void reads_tuned_settings(void **state)
     char *dir = whole(), text[2048];
     struct orl_scene *scene;
     snprintf(text, sizeof text, "%.*s, \"tuned\": {\"m\": {\"settings\": {\"a\": 2, \"b\": "
-             "0.5}}, \"n\": {}, \"o\": {\"settings\": {\"a\": -1}}}}",
+             "0.5}}, \"n\": {}, \"o\": {\"settings\": {\"a\": \"off\"}}}}",
              (int)(strrchr(manifest, '}') - manifest), manifest);
     save(dir, "scene.json", text);
     assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
@@ -292,11 +293,42 @@ static void reads_tuned_settings(void **state)
     assert_string_equal(scene->tuned[1].method, "m");
     assert_string_equal(scene->tuned[1].key, "b");
     assert_float_equal(scene->tuned[1].value, 0.5, 0);
+    assert_null(scene->tuned[1].name);
     assert_string_equal(scene->tuned[2].method, "o");
+    assert_string_equal(scene->tuned[2].name, "off");
     orl_scene_destroy(&scene);
-    static const char *const bad[] = {"\"x\"", "null", "[1]", "{}"};
+    static const char *const bad[] = {"true", "null", "[1]", "{}"};
     for (size_t i = 0; i < ORL_COUNT(bad); i++) {
         snprintf(text, sizeof text, "%.*s, \"tuned\": {\"m\": {\"settings\": {\"a\": %s}}}}",
+                 (int)(strrchr(manifest, '}') - manifest), manifest, bad[i]);
+        save(dir, "scene.json", text);
+        assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_ERR_FORMAT);
+    }
+    test_dir_remove(dir);
+}
+
+static void reads_how_to_render(void **state)
+{
+    (void)state;
+    char *dir = whole(), text[2048];
+    struct orl_scene *scene;
+    const struct orl_scene_defaults chosen = {(char[]){"points"}, (char[]){"bc1"}, 3, true};
+    save(dir, "scene.json", manifest);
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_null(scene->defaults.method);
+    assert_false(scene->defaults.depth_half);
+    orl_scene_destroy(&scene);
+    assert_int_equal(orl_defaults_write(NULL, dir, &chosen), ORL_OK);
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_string_equal(scene->defaults.method, "points");
+    assert_string_equal(scene->defaults.textures, "bc1");
+    assert_int_equal(scene->defaults.depth_divide, 3);
+    assert_true(scene->defaults.depth_half);
+    orl_scene_destroy(&scene);
+    static const char *const bad[] = {"\"method\": 3", "\"textures\": []",
+                                      "\"depth_divide\": 0", "\"depth_bits\": \"x\""};
+    for (size_t i = 0; i < ORL_COUNT(bad); i++) {
+        snprintf(text, sizeof text, "%.*s, \"render\": {%s}}",
                  (int)(strrchr(manifest, '}') - manifest), manifest, bad[i]);
         save(dir, "scene.json", text);
         assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_ERR_FORMAT);
@@ -384,6 +416,7 @@ int main(void)
         cmocka_unit_test(reads_optics),
         cmocka_unit_test(warns_of_other_points),
         cmocka_unit_test(reads_tuned_settings),
+        cmocka_unit_test(reads_how_to_render),
         cmocka_unit_test(reads_ground),
         cmocka_unit_test(links_out_of_the_scene_are_refused),
     };

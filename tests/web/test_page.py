@@ -161,7 +161,7 @@ class Page(unittest.TestCase):
         self.assertGreater(self.moved(before)[2], 0)
 
     def test_orbit_keeps_the_middle(self):
-        self.press("3", "Digit3")
+        self.browser.js("oriel.navigator.setMode('orbit')") # visitors of this site have no key for it
         before = self.browser.js("return oriel.navigator.pivot")
         self.drag((120, 70), (150, 70))
         self.browser.settle()
@@ -177,6 +177,101 @@ class Page(unittest.TestCase):
         self.browser.keys("KeyS", "s", 4)
         self.browser.settle()
         self.assertLess(self.browser.js("return oriel.navigator.outness"), 1.0)
+
+    def test_gamepad_moves(self):
+        before = self.view()
+        self.browser.js("""
+            const pad = {axes: [0, -1, 0, 0], buttons: []};
+            oriel.getPads = navigator.getGamepads;
+            navigator.getGamepads = () => [pad];
+            window.dispatchEvent(new Event("gamepadconnected"));""")
+        self.browser.wait(f"return oriel.navigator.view.eye[2] !== {before['eye'][2]!r}")
+        self.browser.js("navigator.getGamepads = () => []; delete oriel.getPads;")
+        self.browser.settle()
+        self.assertGreater(self.moved(before)[2], 0)
+
+    # --- paths and measurements ---
+
+    def rendered(self, path, name):
+        """The first frame of a path as `oriel render` draws it."""
+        with open(self.file(f"{name}.json"), "w") as file:
+            json.dump(path, file)
+        run(ORIEL, "render", SCENE, "--path", self.file(f"{name}.json"), "--out", self.file(name),
+            "--quiet")
+        return f"{self.file(name)}/00000.png"
+
+    def test_path_is_recorded_edited_and_saved(self):
+        self.press("r", "KeyR")
+        self.browser.js("oriel.navigator.browse(1)")
+        self.press("r", "KeyR")
+        self.assertFalse(self.browser.js("return document.getElementById('path').hidden"))
+        rows = "return document.querySelectorAll('#path li').length"
+        self.assertEqual(self.browser.js(rows), 2)
+        self.browser.js("document.querySelectorAll('#path li')[0].querySelectorAll('button')[3].click()")
+        keys = self.browser.js("return oriel.path.keys.map(k => k.eye)")
+        self.assertEqual(keys[1], self.browser.js("return oriel.navigator.home.eye"))
+        home = self.browser.js("return oriel.manifest.photos[oriel.manifest.start].name")
+        own = self.file("own.png")
+        run(ORIEL, "render", SCENE, "--at", home, "--out", own, "--quiet")
+        for kind in ("oriel", "nerfstudio"):
+            path = self.browser.js(f"""
+                return import("oriel/path.js").then(m => m.{kind}Path([oriel.path.keys[1]], 1));""")
+            if kind == "nerfstudio": # its size is that of a video
+                path["render_width"], path["render_height"] = self.size(own)
+            self.assertGreaterEqual(psnr(self.rendered(path, kind), own), 32, kind)
+        many = self.browser.js("""
+            return import("oriel/path.js").then(m => m.orielPath(oriel.path.keys, 2));""")
+        self.assertEqual((many["frames"], len(many["keyframes"])), (49, 2))
+        self.browser.js("""
+            const slider = document.querySelector("#path input[type=range]");
+            slider.value = 1;
+            slider.dispatchEvent(new Event("input"));""")
+        self.browser.settle()
+        for own, key in zip(self.view()["eye"], keys[1]):
+            self.assertAlmostEqual(own, key, places=9)
+        self.browser.js("""
+            document.querySelectorAll('#path li').forEach(() =>
+                document.querySelector('#path li button:last-child').click());
+            document.getElementById('path').hidden = true;""")
+        self.assertEqual(self.browser.js(rows), 0)
+
+    def size(self, file):
+        with open(file, "rb") as png:
+            head = png.read(24)
+        return int.from_bytes(head[16:20], "big"), int.from_bytes(head[20:24], "big")
+
+    def test_benchmark(self):
+        before = self.view()
+        figures = self.browser.js("return import('oriel/benchmark.js').then(m => m.benchmark(oriel, 1))")
+        self.assertGreater(figures["frames"], 0)
+        self.assertGreaterEqual(figures["frame_ms"]["longest"], figures["frame_ms"]["median"])
+        self.browser.settle()
+        self.assertEqual(self.view()["eye"], before["eye"])
+
+    def test_exposure(self):
+        dark, bright = self.file("dark.png"), self.file("bright.png")
+        self.browser.capture(dark, self.cameras[0])
+        self.browser.js("oriel.setExposure(1)")
+        self.browser.capture(bright, self.cameras[0])
+        self.browser.js("oriel.setExposure(0)")
+        self.assertLess(psnr(dark, bright), 25)
+
+    # --- what its maker says ---
+
+    def test_settings_of_the_walk(self):
+        self.assertEqual(self.browser.js("return document.getElementById('attribution').textContent"),
+                         "Drawn by nobody")
+        self.assertEqual(self.browser.js("return oriel.navigator.modes"), ["walk", "fly"])
+        self.assertIsNone(self.browser.js("return document.getElementById('tool-orbit')"))
+        self.assertIsNone(self.browser.js("return document.getElementById('tool-maker')"))
+
+    def test_annotations_are_read(self):
+        self.browser.js("document.querySelector('.mark').click()")
+        note = self.browser.js("return document.getElementById('note').innerText")
+        self.assertIn("Far <b>ahead</b>", note) # as text
+        self.assertIn("Two.", note)
+        self.browser.js("document.querySelector('#note button').click()")
+        self.assertTrue(self.browser.js("return document.getElementById('note').hidden"))
 
     # --- photographs ---
 

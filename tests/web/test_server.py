@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 """The walk's server and its page. Made by tests/e2e/walk.sh: test_server.py ORIEL TOOL SCENE."""
-import base64
-import http.client
 import json
 import os
 import socket
+import shutil
 import struct
 import subprocess
 import sys
@@ -13,6 +12,7 @@ import time
 import unittest
 
 from browser import Browser
+from client import Client, Walk as Program
 
 ORIEL, TOOL, SCENE = sys.argv[1:4]
 WIDTH, HEIGHT = 360, 240
@@ -23,88 +23,9 @@ def run(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
-class Walk:
-    """The program, serving."""
-
+class Walk(Program):
     def __init__(self, *options):
-        self.process = subprocess.Popen([ORIEL, "walk", SCENE, "--port", "0", *options],
-                                        stdout=subprocess.PIPE, text=True)
-        self.address = self.process.stdout.readline().strip()
-        self.host, self.port = self.address.split("/")[2].split(":")
-
-    def get(self, path, **headers):
-        connection = http.client.HTTPConnection(self.host, int(self.port), timeout=60)
-        connection.putrequest("GET", path, skip_host="Host" in headers)
-        for name, value in headers.items():
-            connection.putheader(name, value)
-        connection.endheaders()
-        answer = connection.getresponse()
-        body = answer.read()
-        connection.close()
-        return answer.status, body
-
-    def close(self):
-        self.process.terminate()
-        self.process.stdout.close()
-        return self.process.wait(60)
-
-
-class Client:
-    """A WebSocket, as little of it as the tests need."""
-
-    def __init__(self, walk, path="/live", **headers):
-        self.socket = socket.create_connection((walk.host, int(walk.port)), timeout=60)
-        lines = {"Host": f"{walk.host}:{walk.port}", "Upgrade": "websocket", "Connection": "Upgrade",
-                 "Sec-WebSocket-Key": base64.b64encode(os.urandom(16)).decode(),
-                 "Sec-WebSocket-Version": "13", "Sec-WebSocket-Protocol": "oriel-walk", **headers}
-        request = f"GET {path} HTTP/1.1\r\n" + "".join(f"{k}: {v}\r\n" for k, v in lines.items())
-        self.socket.sendall(request.encode() + b"\r\n")
-        self.answer = b""
-        while b"\r\n\r\n" not in self.answer:
-            part = self.socket.recv(1)
-            if not part:
-                break
-            self.answer += part
-        self.open = b" 101 " in self.answer
-
-    def send(self, data, opcode=1):
-        data = data if isinstance(data, bytes) else json.dumps(data).encode()
-        mask = os.urandom(4)
-        size = (bytes([0x80 | len(data)]) if len(data) < 126 else
-                b"\xfe" + struct.pack(">H", len(data)) if len(data) < 65536 else
-                b"\xff" + struct.pack(">Q", len(data)))
-        self.socket.sendall(bytes([0x80 | opcode]) + size + mask +
-                            bytes(x ^ mask[i % 4] for i, x in enumerate(data)))
-
-    def exactly(self, size):
-        data = b""
-        while len(data) < size:
-            part = self.socket.recv(size - len(data))
-            if not part:
-                raise ConnectionError
-            data += part
-        return data
-
-    def receive(self):
-        """Opcode and data of the next message."""
-        first, size = self.exactly(2)
-        size &= 127
-        if size == 126:
-            size = struct.unpack(">H", self.exactly(2))[0]
-        elif size == 127:
-            size = struct.unpack(">Q", self.exactly(8))[0]
-        return first & 15, self.exactly(size)
-
-    def closed_for(self):
-        """The reason that the server closed with; 0: none."""
-        try:
-            opcode, data = self.receive()
-        except (ConnectionError, OSError):
-            return 0
-        return struct.unpack(">H", data[:2])[0] if opcode == 8 and len(data) >= 2 else 0
-
-    def close(self):
-        self.socket.close()
+        super().__init__(ORIEL, SCENE, *options)
 
 
 def opens(walk, path="/live", **headers):
@@ -133,7 +54,7 @@ class Server(unittest.TestCase):
         opcode, data = client.receive()
         self.assertEqual(opcode, 2)
         number, _, width, height = struct.unpack("<4I", data[:16])
-        self.assertEqual(data[16:18], b"\xff\xd8")
+        self.assertEqual(data[24:26], b"\xff\xd8")
         return number, width, height
 
     def works(self):
@@ -200,6 +121,40 @@ class Server(unittest.TestCase):
         self.assertEqual(client.closed_for(), 1003)
         self.works()
 
+    def test_settings_are_saved_with_the_scene(self):
+        settings = {"title": "Arch", "notes": [{"title": "a", "position": [1, 2, 3]}] * 150}
+        client = Client(self.walk)
+        client.send({"save": settings}) # longer than what is received at once
+        self.assertEqual(json.loads(client.receive()[1])["saved"], True)
+        client.send({"save": {"modes": []}})
+        self.assertEqual(json.loads(client.receive()[1])["saved"], False)
+        client.close()
+        with open(f"{SCENE}/walk.json") as file:
+            self.assertEqual(json.load(file), settings)
+        manifest = json.loads(self.walk.get("/manifest.json")[1])
+        self.assertEqual((manifest["title"], manifest["walk"]), ("Arch", settings))
+        self.assertIn(b"<title>Arch</title>", self.walk.get("/")[1])
+        os.remove(f"{SCENE}/walk.json")
+        self.works()
+
+    def test_a_path_is_rendered(self):
+        client = Client(self.walk)
+        client.send({"render": {"keyframes": [{"photo": self.camera["name"]}]}, "format": "png"})
+        said = []
+        while not said or said[-1]["done"] < said[-1]["total"]:
+            said.append(json.loads(client.receive()[1])["rendering"])
+        self.assertEqual(said[-1]["total"], 1)
+        self.assertTrue(said[-1]["file"].endswith("renders/001"))
+        with open(f"{SCENE}/renders/001/00000.png", "rb") as file:
+            head = file.read(24)
+        self.assertEqual((int.from_bytes(head[16:20], "big"), int.from_bytes(head[20:24], "big")), (1280, 720))
+        client.send({"render": {"keyframes": [{"photo": "none"}]}, "format": "mp4"})
+        self.assertTrue(json.loads(client.receive()[1])["rendering"]["problem"])
+        self.assertEqual(sorted(os.listdir(f"{SCENE}/renders")), ["001", "001.path.json"])
+        client.close()
+        shutil.rmtree(f"{SCENE}/renders")
+        self.works()
+
     def test_oversized_messages_are_refused(self):
         client = Client(self.walk)
         try:
@@ -242,6 +197,11 @@ class Token(unittest.TestCase):
             self.assertEqual(walk.get("/manifest.json")[0], 403)
             self.assertEqual(walk.get("/photos/00000.jpg?token=" + "0" * 32)[0], 403)
             self.assertEqual(walk.get(f"/manifest.json?token={token}", Host="any.example")[0], 200)
+            client = Client(walk, f"/live?token={token}") # may not change anything
+            client.send({"save": {"title": "x"}})
+            self.assertEqual(client.closed_for(), 1007)
+            client.close()
+            self.assertFalse(os.path.exists(f"{SCENE}/walk.json"))
             self.assertFalse(opens(walk))
             self.assertTrue(opens(walk, f"/live?token={token}"))
         finally:
@@ -271,6 +231,23 @@ class Page(unittest.TestCase):
             time.sleep(0.2)
             browser.settle()
             self.assertEqual(browser.js("return oriel.layer"), 1)
+            browser.js("oriel.setLayer(0)")
+            browser.js("oriel.notes.title.value = 'Here'; return oriel.notes.place(180, 120)")
+            browser.wait("return oriel.notes.said.textContent === 'Saved.'")
+            x, y, shows = browser.js("""
+                const mark = document.querySelector(".mark"), box = mark.getBoundingClientRect();
+                return [box.x + box.width / 2, box.y + box.height / 2, !mark.hidden];""")
+            self.assertTrue(shows)
+            self.assertAlmostEqual(x, 180, delta=1.5)
+            self.assertAlmostEqual(y, 120, delta=1.5)
+            browser.js("return oriel.notes.change({start: oriel.notes.settings.notes[0].view})")
+            home = browser.js("return oriel.navigator.view.eye")
+            browser.driver.get("about:blank")
+            browser.open(walk.address)
+            self.assertEqual(browser.js("return document.querySelectorAll('.mark').length"), 1)
+            for a, b in zip(home, browser.js("return oriel.navigator.home.eye")):
+                self.assertAlmostEqual(a, b, places=5)
+            os.remove(f"{SCENE}/walk.json")
             self.assertEqual(browser.errors(), [])
         finally:
             browser.close()

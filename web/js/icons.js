@@ -14,5 +14,8 @@ export const icons = {
     panel: "M5 7h9M18 7h1M5 12h2M11 12h8M5 17h9M18 17h1M16 5v4M9 10v4M16 15v4",
     screenshot: "M4 7h4l2-2h4l2 2h4v12H4zM12 10a3 3 0 100 6 3 3 0 000-6",
     full: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
+    path: "M4 18c0-8 8-2 8-8s8-2 8-6M4 18v.1M20 4v.1",
+    record: "M12 5v14M5 12h14",
+    maker: "M12 21s-6-6-6-11a6 6 0 0112 0c0 5-6 11-6 11zM12 8v4M10 10h4",
     help: "M9 9a3 3 0 116 0c0 2-3 2-3 5M12 18v.1",
 };

@@ -1,10 +1,14 @@
 // Keys, mouse, wheel and fingers, as the navigator understands them.
+import {clamp} from "oriel/math.js";
+
 const MOVES = { // right, up, forward
     KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, -1, 0],
     KeyE: [0, 1, 0], ArrowUp: [0, 0, 1], ArrowDown: [0, 0, -1], ArrowLeft: [-1, 0, 0],
     ArrowRight: [1, 0, 0],
 };
 const TURNS = {ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0]};
+const DEAD = 0.15;          // of a stick's way, which means nothing
+const PAD_EVERY = 100;      // milliseconds between two looks at a gamepad at rest
 const WHEEL_STEP = 0.0004;  // of the scene's distance, per pixel of the wheel
 const FINGER_STEP = 0.0015; // the same per pixel of two fingers
 
@@ -30,6 +34,31 @@ export class Input {
             canvas.addEventListener(kind, event => this.pointers.delete(event.pointerId));
         canvas.addEventListener("wheel", event => this.wheel(event), {passive: false});
         canvas.addEventListener("contextmenu", event => event.preventDefault());
+        window.addEventListener("gamepadconnected", () => this.watchPads());
+    }
+
+    // --- gamepads, which have no events of their sticks ---
+
+    watchPads()
+    {
+        this.watching = this.watching || setInterval(() => {
+            if (Object.values(this.pads()).flat().some(x => x !== 0))
+                this.wake();
+        }, PAD_EVERY);
+    }
+
+    // {keys, turn} of all gamepads: the left stick moves, the right one looks, triggers lift and lower.
+    pads()
+    {
+        const live = x => Math.abs(x) > DEAD ? x : 0, keys = [0, 0, 0], turn = [0, 0];
+        for (const pad of this.watching ? navigator.getGamepads() : []) {
+            if (!pad || pad.axes.length < 4)
+                continue;
+            const [x, y, turnX, turnY] = pad.axes.map(live), lift = i => pad.buttons[i] ? pad.buttons[i].value : 0;
+            [x, lift(7) - lift(6), -y].forEach((v, k) => keys[k] += v);
+            [turnX, -turnY].forEach((v, k) => turn[k] += v);
+        }
+        return {keys, turn};
     }
 
     get dragging() { return this.pointers.size > 0; }
@@ -83,7 +112,8 @@ export class Input {
             else
                 MOVES[code].forEach((x, k) => keys[k] += x);
         }
-        return {keys: keys.map(Math.sign), turn: turn.map(Math.sign), fast: this.fast};
+        const pads = this.pads(), both = (own, pad) => own.map((x, k) => clamp(Math.sign(x) + pad[k], -1, 1));
+        return {keys: both(keys, pads.keys), turn: both(turn, pads.turn), fast: this.fast};
     }
 
     // --- pointers ---

@@ -1,11 +1,13 @@
 // The picture as a server draws it: one request for a frame at a time over a WebSocket.
+import {add, rotateBack, scale} from "oriel/math.js";
 import {text} from "oriel/strings.js";
 
-const HEADER_BYTES = 16;
+const HEADER_BYTES = 24;
 const LAYERS = ["color", "depth", "normal", "coverage", "points"];
 const QUALITY_MOVING = 75, QUALITY_STILL = 90;
 const PIXELS_MOST = 2.0e6; // the server refuses more than 4 million
 const RETRY_MS = 1500;
+const LOADING_MOST = 48; // photographs of a frame
 
 export class LivePicture {
     static async open(canvas, files, manifest, photos, onChange)
@@ -29,6 +31,9 @@ export class LivePicture {
         this.shown = null;     // number, milliseconds, size of the frame that shows
         this.waiting = [];     // for a picture of its own: {request, done}
         this.bytes = 0;
+        this.ev = 0;
+        this.saving = [];      // resolve() of each settings that were sent
+        this.onRendering = () => {};
     }
 
     connect(files)
@@ -43,7 +48,8 @@ export class LivePicture {
                 resolve();
                 this.onChange();
             };
-            this.socket.onmessage = event => this.receive(event.data);
+            this.socket.onmessage = event => typeof event.data === "string"
+                ? this.hear(JSON.parse(event.data)) : this.receive(event.data);
             this.socket.onclose = () => {
                 reject(new Error(text.noServer));
                 this.lost = true;
@@ -57,16 +63,21 @@ export class LivePicture {
 
     draw(full, camera, layer)
     {
-        this.next = this.describe(camera, layer, camera === full ? QUALITY_STILL : QUALITY_MOVING);
+        const rests = camera === full;
+        this.next = this.describe(camera, layer, rests ? QUALITY_STILL : QUALITY_MOVING, rests);
+        this.latest = this.next;
         this.ask();
     }
 
-    describe(camera, layer, quality)
+    // rest: the view does not move, so the server may take more time for its photographs
+    describe(camera, layer, quality, rest)
     {
         const {width, height, fx, fy, cx, cy, r, eye} = camera;
         return {number: ++this.number, size: [width, height], focal: [fx, fy, cx, cy], r, eye,
-                layer: LAYERS[layer], quality};
+                layer: LAYERS[layer], quality, rest, ev: this.ev};
     }
+
+    setExposure(ev) { this.ev = ev; }
 
     ask()
     {
@@ -81,38 +92,82 @@ export class LivePicture {
 
     async receive(data)
     {
-        const [number, microseconds, width, height] = new Uint32Array(data, 0, 4);
+        const [number, microseconds, width, height, missing] = new Uint32Array(data, 0, 5);
+        const [picked] = new Float32Array(data, 20, 1);
         const image = await createImageBitmap(new Blob([data.slice(HEADER_BYTES)], {type: "image/jpeg"}));
         const took = performance.now() - this.asked.at;
         this.bytes += data.byteLength;
         this.asked = null;
-        if (this.waiting.length && this.waiting[0].request.number === number) {
-            this.waiting.shift().done(image);
+        const own = this.waiting.length && this.waiting[0].request.number === number ? this.waiting[0] : null;
+        if (own && missing) {
+            image.close(); // asked for again until its photographs are there
+        } else if (own) {
+            this.waiting.shift().done({image, picked});
         } else {
             Object.assign(this.canvas, {width, height});
             this.context.drawImage(image, 0, 0);
             image.close();
-            this.shown = {number, took, server: microseconds / 1000, width, height};
+            this.shown = {number, took, server: microseconds / 1000, width, height, missing};
         }
+        // A picture at rest gets better while its photographs come.
+        const {latest} = this;
+        if (missing && !own && !this.next && latest.rest && latest.number === number)
+            this.next = this.latest = {...latest, number: ++this.number};
         this.ask();
         this.onChange(took);
     }
 
     get complete() { return !this.asked && !this.next && !this.lost && this.shown !== null; }
     get presentable() { return this.shown !== null; }
-    get loadedShare() { return 1; }
+    get loadedShare() { return this.shown ? 1 - Math.min(this.shown.missing / LOADING_MOST, 0.9) : 0; }
 
     // A frame of its own.
     async capture(camera, layer)
     {
-        const image = await new Promise(done => {
-            this.waiting.push({request: this.describe(camera, layer, 100), done});
-            this.ask();
-        });
+        const {image} = await this.own(camera, layer, {});
         const canvas = Object.assign(document.createElement("canvas"), {width: image.width, height: image.height});
         canvas.getContext("2d").drawImage(image, 0, 0);
         return canvas;
     }
+
+    own(camera, layer, more)
+    {
+        return new Promise(done => {
+            this.waiting.push({request: {...this.describe(camera, layer, 100, true), ...more}, done});
+            this.ask();
+        });
+    }
+
+    // The point under a pixel of the window's camera; null: nothing is known of it.
+    async pick(camera, x, y)
+    {
+        const at = [Math.floor(x), Math.floor(y)];
+        const {image, picked} = await this.own(camera, 0, {pick: at});
+        image.close();
+        const ray = [(at[0] + 0.5 - camera.cx) / camera.fx, (at[1] + 0.5 - camera.cy) / camera.fy, 1];
+        return picked > 0 ? add(camera.eye, rotateBack(camera.r, scale(ray, picked))) : null;
+    }
+
+    // --- what is no frame ---
+
+    hear(message)
+    {
+        if ("saved" in message && this.saving.length)
+            this.saving.shift()(message.saved);
+        if (message.rendering)
+            this.onRendering(message.rendering);
+    }
+
+    // True once the settings of the walk are with the scene.
+    save(settings)
+    {
+        return new Promise(done => {
+            this.saving.push(done);
+            this.socket.send(JSON.stringify({save: settings}));
+        });
+    }
+
+    render(path, format) { this.socket.send(JSON.stringify({render: path, format})); }
 
     middle() { return null; }
     forEachPoint() {}

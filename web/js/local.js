@@ -142,6 +142,15 @@ export class LocalPicture {
         return canvas;
     }
 
+    setExposure(ev) { this.renderer.exposure = 2 ** ev; }
+
+    // The point under a pixel of the window's camera; null: nothing is known of it.
+    async pick(camera, x, y)
+    {
+        const f = this.renderer.frame;
+        return f ? this.renderer.pointAt(x * f.width / camera.width, y * f.height / camera.height) : null;
+    }
+
     // What the middle of the picture shows, in the world; null: nothing is known of it.
     middle()
     {

@@ -1,14 +1,17 @@
 // The walk: loads the site, draws when something changes, and joins input, picture and tools.
+import {benchmark} from "oriel/benchmark.js";
 import {Files} from "oriel/files.js";
 import {Input} from "oriel/input.js";
 import {LivePicture} from "oriel/live.js";
 import {LocalPicture} from "oriel/local.js";
 import {Map2d} from "oriel/map.js";
 import {clamp} from "oriel/math.js";
-import {Navigator, MODES} from "oriel/navigation.js";
+import {Navigator} from "oriel/navigation.js";
+import {Notes} from "oriel/notes.js";
+import {PathEditor} from "oriel/path.js";
 import {makePhotos} from "oriel/photos.js";
 import {text} from "oriel/strings.js";
-import {buildHelp, byId, Compare, Panel, showHint, showProgress, Thumbs, Tools} from "oriel/ui.js";
+import {buildHelp, byId, Compare, Panel, save, showHint, showProgress, Thumbs, Tools} from "oriel/ui.js";
 import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "oriel/view.js";
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
@@ -56,10 +59,12 @@ class Walk {
     {
         if (!this.picture)
             return;
-        if (took !== undefined)
+        if (took !== undefined) {
             this.adapt(took, 0);
-        else
+            this.showFrame();
+        } else {
             this.refined = false;
+        }
         this.wake();
     }
 
@@ -73,6 +78,7 @@ class Walk {
             this.wake();
         };
         const shown = id => () => !byId(id).hidden;
+        const edits = Boolean(this.manifest.edits);
         const mode = name => ({run: () => this.act(() => nav.setMode(name)), pressed: () => nav.mode === name});
         this.thumbs = new Thumbs(this.photos, this.files, photo => this.act(() => nav.goTo(photo)));
         const actions = {
@@ -80,7 +86,7 @@ class Walk {
             previous: {key: ",", run: () => this.act(() => nav.browse(-1))},
             next: {key: ".", run: () => this.act(() => nav.browse(1))},
             snap: {key: "p", run: () => this.act(() => nav.snap())},
-            ...Object.fromEntries(MODES.map((name, i) => [name, {key: String(i + 1), ...mode(name)}])),
+            ...Object.fromEntries(nav.modes.map((name, i) => [name, {key: String(i + 1), ...mode(name)}])),
             layer: {key: "l", run: () => this.setLayer((this.layer + 1) % this.picture.layers.length)},
             compare: {key: "c", run: () => this.toggleCompare(), pressed: () => this.compare.on},
             thumbs: {key: "t", pressed: shown("thumbs"), run: () => {
@@ -89,19 +95,62 @@ class Walk {
             }},
             map: {key: "m", run: toggle("map"), pressed: shown("map")},
             panel: {key: "i", run: toggle("panel"), pressed: shown("panel")},
+            path: {key: "k", run: toggle("path"), pressed: shown("path")},
+            record: {key: "r", run: () => this.act(() => this.path.add())},
+            ...(edits ? {maker: {key: "n", run: toggle("maker"), pressed: shown("maker")}} : {}),
             screenshot: {key: "x", run: () => this.saveScreenshot()},
             full: {key: "f", run: () => this.toggleFull(), pressed: () => document.fullscreenElement !== null},
             help: {key: "?", run: () => help.showModal()},
         };
         this.tools = new Tools(actions);
         this.compare = new Compare(this.files);
-        this.panel = new Panel({layers: this.picture.layers, layer: this.layer, onLayer: layer => this.setLayer(layer)});
+        this.panel = new Panel({layers: this.picture.layers, layer: this.layer,
+                                onLayer: layer => this.setLayer(layer),
+                                onExposure: ev => this.setExposure(ev), onBenchmark: () => this.measure()});
+        this.makePath(edits);
+        this.notes = new Notes(nav, this.manifest.walk, {
+            canvas: this.canvas, wake: () => this.wake(),
+            pick: (x, y) => this.pick(x, y), save: edits ? settings => this.picture.save(settings) : null,
+        });
+        byId("attribution").textContent = this.manifest.walk.attribution || "";
         this.map = new Map2d(nav, this.picture, photo => this.act(() => nav.goTo(photo)));
         this.input = new Input(this.canvas, nav, {
             focal: () => this.windowCamera(1).fx, wake: () => this.wake(),
             actions: new Map(Object.values(actions).map(a => [a.key, a.run])),
         });
         document.addEventListener("fullscreenchange", () => this.wake());
+    }
+
+    makePath(edits)
+    {
+        this.path = new PathEditor(this.navigator, {
+            wake: () => this.wake(), name: () => this.manifest.title,
+            render: edits ? (path, format) => this.picture.render(path, format) : null,
+        });
+        if (edits)
+            this.picture.onRendering = state => this.path.showRendering(state);
+    }
+
+    // The point of a surface under a place of the window, CSS pixels; null: there is none.
+    pick(x, y)
+    {
+        const camera = this.windowCamera(1), s = camera.width / window.innerWidth;
+        return this.picture.pick(camera, x * s, y * s);
+    }
+
+    setExposure(ev)
+    {
+        this.picture.setExposure(ev);
+        this.refined = false;
+        this.wake();
+    }
+
+    async measure()
+    {
+        this.panel.bench.disabled = true;
+        showHint(text.measuring);
+        save(`${this.manifest.title}.benchmark.json`, await benchmark(this));
+        this.panel.bench.disabled = false;
     }
 
     act(what)
@@ -137,13 +186,7 @@ class Walk {
     async saveScreenshot()
     {
         const canvas = await this.picture.capture(this.windowCamera(1), this.layer);
-        canvas.toBlob(blob => {
-            const link = document.createElement("a");
-            link.href = URL.createObjectURL(blob);
-            link.download = `${this.manifest.title}.png`;
-            link.click();
-            setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-        });
+        canvas.toBlob(blob => save(`${this.manifest.title}.png`, blob));
         this.refined = false;
         this.wake();
     }
@@ -155,7 +198,7 @@ class Walk {
         const parts = new URLSearchParams(location.hash.slice(1)), nav = this.navigator;
         const photo = parts.has("p") ? this.photos[Number(parts.get("p")) - 1] : undefined;
         const view = parts.has("v") ? viewFromText(parts.get("v"), nav.home) : null;
-        if (MODES.includes(parts.get("mode")))
+        if (nav.modes.includes(parts.get("mode")))
             nav.setMode(parts.get("mode"));
         if (photo)
             nav.setView(photoView(photo), photo);
@@ -171,7 +214,7 @@ class Walk {
             parts.set("p", nav.at.number + 1);
         else
             parts.set("v", viewToText(nav.view));
-        if (nav.mode !== "walk")
+        if (nav.mode !== nav.homeMode)
             parts.set("mode", nav.mode);
         const hash = `#${parts.toString().replaceAll("%2C", ",")}`;
         if (hash !== location.hash)
@@ -232,9 +275,18 @@ class Walk {
         const camera = scale ? this.windowCamera(SCALES[scale]) : full;
         this.picture.draw(full, camera, this.layer);
         this.refined = scale === 0;
-        if (!this.manifest.live) // else frames tell when they come
+        if (!this.manifest.live) { // else frames tell when they come
             this.adapt(passed, performance.now() - started);
+            this.showFrame();
+        }
         this.showState();
+    }
+
+    // A frame has been drawn, or has come.
+    showFrame()
+    {
+        if (this.onFrame)
+            this.onFrame();
     }
 
     // While moving, frames follow one another as fast as they are drawn.
@@ -266,6 +318,7 @@ class Walk {
         const nav = this.navigator;
         this.tools.update();
         this.map.draw();
+        this.notes.update(cameraOf(nav.view, window.innerWidth, window.innerHeight));
         this.thumbs.mark(nav.at);
         this.compare.update(nav.at, nav.view);
         byId("place").textContent = nav.at ? text.atPhoto(nav.at.number + 1, this.photos.length, nav.at.name) : "";
@@ -282,7 +335,7 @@ class Walk {
     // The poster is the start view: it stays until the picture is as good, or the viewer moves on.
     shouldShowPicture()
     {
-        const start = this.navigator.at && this.navigator.at.number === this.manifest.start;
+        const start = this.navigator.view === this.navigator.home;
         return !start || this.picture.presentable;
     }
 
@@ -291,7 +344,7 @@ class Walk {
         const poster = byId("poster"), frame = this.navigator.home.frame;
         const h = frameHeight(frame, window.innerWidth, window.innerHeight);
         Object.assign(poster.style, {height: `${h}px`, width: `${h / POSTER_SHARE}px`});
-        if (!this.navigator.at || this.navigator.at.number !== this.manifest.start)
+        if (this.navigator.view !== this.navigator.home)
             poster.classList.add("away");
     }
 }

@@ -2,7 +2,7 @@
 import {add, clamp, distance, dot, length, mix, multiply, normalize, rotate, rotateBack, rotation,
         scale, sub} from "oriel/math.js";
 import {nearestPhoto} from "oriel/photos.js";
-import {forwardOf, mixViews, photoView, rightOf, upOf} from "oriel/view.js";
+import {forwardOf, mixViews, photoView, rightOf, upOf, viewFromKey} from "oriel/view.js";
 
 const SPEED = 0.35;          // of the scene's distance, a second
 const FASTER = 3;
@@ -32,14 +32,18 @@ export class Navigator {
         this.distance = manifest.distance;
         this.calm = calm;
         this.pivotAt = pivotAt;
-        this.home = photoView(photos[manifest.start]);
-        this.mode = "walk";
+        const first = photoView(photos[manifest.start]), settings = manifest.walk || {};
+        const start = settings.start ? viewFromKey(settings.start, {...first.frame, x: 0, y: 0}) : null;
+        this.home = start || first;
+        this.homePhoto = start ? null : photos[manifest.start];
+        this.modes = MODES.filter(mode => !settings.modes || settings.modes.includes(mode));
+        this.mode = this.homeMode = this.modes[0];
         this.speed = [0, 0, 0]; // right, up, forward
         this.flight = null;
         this.pivot = null;
         const apart = photos.map(p => Math.min(...photos.filter(q => q !== p).map(q => distance(p.eye, q.eye))));
         this.room = Math.max(ROOM * this.distance, 2 * median(apart.filter(Number.isFinite)));
-        this.setView(this.home, photos[manifest.start]);
+        this.setView(this.home, this.homePhoto);
     }
 
     // photo: the one whose view this is, if any
@@ -208,8 +212,8 @@ export class Navigator {
         this.flight = this.calm ? null : {from: this.view, to: view, photo, seconds, passed: 0};
         if (this.calm)
             this.setView(view, photo);
-        if (this.mode === "orbit")
-            this.mode = "fly";
+        if (this.mode === "orbit") // another place has another middle
+            this.setMode(this.modes.find(mode => mode !== "orbit") || "orbit");
     }
 
     fly(seconds)
@@ -227,7 +231,7 @@ export class Navigator {
     }
 
     goTo(photo) { this.flyTo(photoView(photo), photo); }
-    goHome() { this.flyTo(this.home, this.photos.find(p => p.eye === this.home.eye) || null); }
+    goHome() { this.flyTo(this.home, this.homePhoto); }
     snap() { this.goTo(nearestPhoto(this.photos, this.view)); }
 
     // The photograph that is `by` further on, from the one that the viewer is at or flies to.

@@ -108,6 +108,7 @@ export class Renderer {
         this.programs = makePrograms(device, sources);
         this.photos = new PhotoStore(device, this.programs, photos, photoBytes);
         this.frame = null;
+        this.exposure = 1; // factor on light
         this.used = 0; // photographs of the last frame
         this.drawn = 0; // points
     }
@@ -279,7 +280,7 @@ export class Renderer {
                          {composed: f.composed.textures[0], depth: this.depth.textures[0],
                           normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
-                          scale: [f.width / width, f.height / height]});
+                          exposure: this.exposure, scale: [f.width / width, f.height / height]});
     }
 
     // A frame of its own as RGBA bytes, top row first.

@@ -5,11 +5,28 @@ import {frameHeight} from "oriel/view.js";
 
 export const byId = id => document.getElementById(id);
 
-function make(tag, properties = {}, ...children)
+export function make(tag, properties = {}, ...children)
 {
     const element = Object.assign(document.createElement(tag), properties);
     element.append(...children);
     return element;
+}
+
+export function button(label, run)
+{
+    const element = make("button", {type: "button", textContent: label});
+    element.addEventListener("click", run);
+    return element;
+}
+
+// Offers a Blob, or a value as JSON, as a file to keep.
+export function save(name, what)
+{
+    const blob = what instanceof Blob ? what
+                                      : new Blob([JSON.stringify(what, null, 1)], {type: "application/json"});
+    const link = make("a", {href: URL.createObjectURL(blob), download: name});
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
 function icon(name)
@@ -51,7 +68,7 @@ export class Tools {
 // --- panel ---
 
 export class Panel {
-    constructor({layers, layer, onLayer})
+    constructor({layers, layer, onLayer, onExposure, onBenchmark})
     {
         this.element = byId("panel");
         this.choices = layers.map((id, i) => {
@@ -66,9 +83,17 @@ export class Panel {
             this.figures[id] = make("dd", {id: `figure-${id}`});
             list.append(make("dt", {textContent: label}), this.figures[id]);
         }
+        const exposure = make("input", {type: "range", min: -6, max: 6, step: 0.1, value: 0});
+        const stops = make("output", {textContent: text.stops(0)});
+        exposure.addEventListener("input", () => {
+            stops.textContent = text.stops(Number(exposure.value));
+            onExposure(Number(exposure.value));
+        });
         this.element.setAttribute("aria-label", text.actions.panel);
         this.element.append(make("fieldset", {}, make("legend", {textContent: text.layerLegend}), ...labels),
+                            make("label", {className: "line"}, text.exposure, stops, exposure),
                             make("h2", {textContent: text.figures}), list,
+                            this.bench = button(text.benchmark, onBenchmark),
                             make("p", {textContent: text.madeBy}));
     }
 

@@ -1,7 +1,7 @@
 // Views: where the viewer is, where they look, and what part of it the window frames.
 // A frame is a picture of height 1: focal lengths and the principal point's offset from the
 // middle in that unit, so that a photograph's own framing survives any window.
-import {mix, mix3, normalize, quatFromRotation, rotateBack, rotationFromQuat, row, scale, slerp}
+import {dot, mix, mix3, normalize, quatFromRotation, rotateBack, rotationFromQuat, row, scale, slerp}
     from "oriel/math.js";
 
 export function photoView(photo)
@@ -45,6 +45,25 @@ export function mixViews(a, b, t)
 export function rayOf(camera, x, y)
 {
     return normalize(rotateBack(camera.r, [(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1]));
+}
+
+// --- in files: keyframes of src/scene/path.c ---
+
+export function viewToKey({r, eye, frame})
+{
+    const rows = [0, 1, 2].map(i => [...row(r, i), -dot(row(r, i), eye)]);
+    return {cam_from_world: rows, fov_y_deg: 2 * Math.atan(0.5 / frame.fy) * 180 / Math.PI};
+}
+
+// null unless it is one; the frame is `frame`, its focal length aside.
+export function viewFromKey(key, frame)
+{
+    const rows = key.cam_from_world, fy = 0.5 / Math.tan(key.fov_y_deg * Math.PI / 360);
+    if (!(fy > 0.05 && fy < 50))
+        return null;
+    const r = rows.flatMap(line => line.slice(0, 3));
+    return {r, eye: scale(rotateBack(r, rows.map(line => line[3])), -1),
+            frame: {...frame, fx: fy * frame.fx / frame.fy, fy}};
 }
 
 // --- in the address ---

@@ -32,7 +32,8 @@ sight consider(int i, vec3 p, bool guessed)
         return sight(NOT_SEEN, i, vec2(0.0), 0.0);
     vec4 seen = photo_depths(shot, pixel);
     float penalty = photo_penalty(shot, p);
-    float sees = guessed ? photo_unhidden_share(shot, seen, z) * photo_beside(penalty)
+    float sees = guessed ? photo_unhidden_share(shot, seen, z) * photo_past_share(shot, seen, z) *
+                              photo_beside(penalty)
                          : photo_seen_share(seen, z);
     penalty = guessed ? penalty : photo_surface_penalty(penalty);
     float sure = sees * photo_border(shot, pixel, guessed);

@@ -3,6 +3,7 @@
 uniform sampler2D composed, depth, normals, source;
 uniform int layer;     // as LAYERS of renderer.js
 uniform float typical; // depth
+uniform float exposure; // factor on light
 uniform vec2 scale;    // pixels of the frame per pixel of the target
 layout(location = 0) out vec4 color;
 
@@ -57,8 +58,8 @@ void main()
     place.y = float(area.y) - place.y;
 #endif
     ivec2 at = clamp(ivec2(place), ivec2(0), area - 1);
-    vec3 plain = srgb_encode(scale == vec2(1.0) ? antialiased(at)
-                                                : texture(composed, place / vec2(area)).rgb);
+    vec3 light = scale == vec2(1.0) ? antialiased(at) : texture(composed, place / vec2(area)).rgb;
+    vec3 plain = srgb_encode(light * exposure);
     float z = texelFetch(depth, at, 0).x;
     vec4 normal = texelFetch(normals, at, 0), from = texelFetch(source, at, 0);
     float near = 1.0 / (1.0 + abs(z) / typical);

@@ -1,0 +1,173 @@
+#include "preprocess/cloud/mesh_stage.h"
+
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "oriel/points.h"
+#include "preprocess/job/colmap_run.h"
+#include "scene/mesh.h"
+
+// Depth of Poisson's octree, below which density leaves are trimmed, and the most triangles.
+struct detail {
+    int depth, trim;
+    size_t triangles;
+};
+
+static struct detail detail_of(const struct orl_prepare_params *params)
+{
+    static const struct detail details[] = {[ORL_QUALITY_DRAFT] = {9, 6, 200000},
+                                            [ORL_QUALITY_STANDARD] = {10, 7, 500000},
+                                            [ORL_QUALITY_HIGH] = {11, 8, 1000000}};
+    return details[params->quality];
+}
+
+// --- input ---
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+// Drops points far outside the box of the middle 98 % of the points. The octree divides the bounding
+// box, so that a few outliers at the horizon would leave the subject a handful of cells.
+static enum orl_result crop(const struct orl_log *log, struct orl_points *points)
+{
+    static const float margin = 0.25f; // of the box's side
+    float *values = orl_array(log, points->count, sizeof *values);
+    float low[3], high[3];
+    if (!values)
+        return ORL_ERR_MEMORY;
+    for (int k = 0; k < 3; k++) {
+        for (size_t i = 0; i < points->count; i++)
+            values[i] = points->position[i][k];
+        qsort(values, points->count, sizeof *values, compare_floats);
+        float first = values[points->count / 100];
+        float last = values[points->count - 1 - points->count / 100];
+        low[k] = first - margin * (last - first);
+        high[k] = last + margin * (last - first);
+    }
+    free(values);
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        const float *p = points->position[i];
+        bool inside = true;
+        for (int k = 0; k < 3; k++)
+            inside = inside && p[k] >= low[k] && p[k] <= high[k];
+        if (inside)
+            orl_points_copy(points, i, points, kept++);
+    }
+    points->count = kept;
+    return ORL_OK;
+}
+
+static enum orl_result write_points(const struct orl_job *job, const char *to)
+{
+    struct orl_points points = {0};
+    char *from = orl_job_path(job, "points.ply");
+    enum orl_result result = from ? orl_points_read(job->log, from, &points) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && points.count)
+        result = crop(job->log, &points);
+    if (result == ORL_OK)
+        result = orl_points_write(job->log, to, &points, false);
+    orl_points_finish(&points);
+    free(from);
+    return result;
+}
+
+// The sparse model of the photographs that are not held out.
+static enum orl_result write_train_model(struct orl_job *job, const char *to)
+{
+    const struct orl_colmap_model *model;
+    enum orl_result result = orl_job_sparse(job, &model);
+    if (result == ORL_OK)
+        result = orl_dir_make(job->log, to);
+    if (result != ORL_OK)
+        return result;
+    struct orl_colmap_model train = *model;
+    train.image_count = 0;
+    train.images = orl_array(job->log, model->image_count, sizeof *train.images);
+    if (!train.images)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < model->image_count; i++)
+        if (!orl_job_find(job, model->images[i].name)->test)
+            train.images[train.image_count++] = model->images[i];
+    result = orl_colmap_write(job->log, to, &train);
+    free(train.images);
+    return result;
+}
+
+// --- meshing ---
+
+static enum orl_result run_mesher(struct orl_job *job, const char *input, const char *output)
+{
+    const struct detail detail = detail_of(job->params);
+    bool poisson = job->params->mesh == ORL_MESH_POISSON;
+    struct orl_colmap_args args = {0};
+    orl_colmap_arg(&args, "--input_path", "%s", input);
+    orl_colmap_arg(&args, "--output_path", "%s", output);
+    if (poisson) {
+        orl_colmap_arg(&args, "--PoissonMeshing.depth", "%d", detail.depth);
+        orl_colmap_arg(&args, "--PoissonMeshing.trim", "%d", detail.trim);
+        // With several threads the mesh depends on thread timing.
+        orl_colmap_arg(&args, "--PoissonMeshing.num_threads", "1");
+    } else {
+        orl_colmap_arg(&args, "--input_type", "sparse");
+    }
+    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = poisson ? "poisson_mesher" : "delaunay_mesher", .step = "mesh", .share = 1,
+        .total = 1}, &args);
+    if (result != ORL_OK && !poisson)
+        orl_logf(job->log, ORL_LOG_ERROR, "delaunay needs a COLMAP that was built with CGAL; "
+                 "--mesh poisson needs none");
+    return result;
+}
+
+static enum orl_result write_mesh(const struct orl_job *job, const char *from, size_t *triangles)
+{
+    struct orl_mesh mesh = {0};
+    size_t most = detail_of(job->params).triangles;
+    char *to = orl_job_path(job, "mesh.ply");
+    enum orl_result result = to ? orl_mesh_read(job->log, from, &mesh) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && mesh.triangle_count > most)
+        result = orl_mesh_decimate(job->log, most, &mesh);
+    if (result == ORL_OK)
+        result = orl_mesh_set_normals(job->log, &mesh);
+    if (result == ORL_OK)
+        result = orl_mesh_write(job->log, to, &mesh);
+    if (result == ORL_ERR_IO)
+        orl_job_hint_disk(job);
+    *triangles = mesh.triangle_count;
+    orl_mesh_finish(&mesh);
+    free(to);
+    return result;
+}
+
+enum orl_result orl_stage_mesh(struct orl_job *job, json_t *record)
+{
+    bool poisson = job->params->mesh == ORL_MESH_POISSON;
+    size_t triangles = 0;
+    char *input = orl_job_path(job, poisson ? ".oriel/mesh.tmp/points.ply" : ".oriel/mesh.tmp/sparse");
+    char *output = orl_job_path(job, ".oriel/mesh.tmp/mesh.ply");
+    enum orl_result result = input && output ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_job_fresh_dir(job, ".oriel/mesh.tmp");
+    if (result == ORL_OK)
+        result = poisson ? write_points(job, input) : write_train_model(job, input);
+    if (result == ORL_OK)
+        result = run_mesher(job, input, output);
+    if (result == ORL_OK)
+        result = write_mesh(job, output, &triangles);
+    if (result == ORL_OK)
+        result = orl_job_remove(job, ".oriel/mesh.tmp");
+    if (result == ORL_OK) {
+        json_object_set_new(record, "tool", json_sprintf("COLMAP %s, %s", job->colmap_version,
+                                                         orl_prepare_mesh_names[job->params->mesh]));
+        json_object_set_new(record, "triangles", json_integer((json_int_t)triangles));
+        orl_progress_report(job->progress, "mesh", 1, 1, NULL);
+    }
+    free(input);
+    free(output);
+    return result;
+}

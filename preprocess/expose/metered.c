@@ -1,0 +1,30 @@
+#include "preprocess/expose/metered.h"
+
+#include "core/color.h"
+#include "io/picture.h"
+#include "scene/meter.h"
+
+enum { SAMPLES_ACROSS = 256 }; // of the longer side; more do not change a mean
+
+enum orl_result orl_photo_metered(const struct orl_log *log, const char *path,
+                                  const struct orl_camera *camera, const float gain[3],
+                                  const float vignette[3], double *light)
+{
+    struct orl_image image = {0};
+    struct orl_meter meter = {0};
+    enum orl_result result = orl_picture_read(log, path, 3, &image);
+    int longer = image.width > image.height ? image.width : image.height;
+    int step = longer > SAMPLES_ACROSS ? longer / SAMPLES_ACROSS : 1;
+    for (int y = step / 2; y < image.height; y += step)
+        for (int x = step / 2; x < image.width; x += step) {
+            const uint8_t *v = image.u8 + 3 * ((size_t)y * (size_t)image.width + (size_t)x);
+            float rgb[3], dimmed = orl_illumination(vignette, camera, x + 0.5, y + 0.5);
+            for (int c = 0; c < 3; c++)
+                rgb[c] = orl_light_aligned(gain[c] / (dimmed > 0.1f ? dimmed : 0.1f),
+                                           orl_srgb_decode((float)v[c] / 255));
+            orl_meter_add(&meter, rgb, x + 0.5, y + 0.5, image.width, image.height);
+        }
+    orl_image_finish(&image);
+    *light = orl_meter_log2(&meter);
+    return result;
+}

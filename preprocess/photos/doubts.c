@@ -1,0 +1,131 @@
+#include "preprocess/photos/doubts.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+// --- looks, kept in .oriel/looks ---
+
+static char *look_path(const struct orl_job *job, const struct orl_source *source)
+{
+    return orl_job_path(job, ".oriel/looks/%016" PRIx64, source->hash);
+}
+
+void orl_doubts_keep_look(const struct orl_job *job, const struct orl_source *source,
+                          const struct orl_image *luma)
+{
+    struct orl_look look;
+    char *path = look_path(job, source), *dir = orl_job_path(job, ".oriel/looks");
+    enum orl_result result = path && dir ? orl_look_make(NULL, luma, &look) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_dir_make(NULL, dir);
+    if (result == ORL_OK)
+        result = orl_file_write(NULL, path, &look, sizeof look);
+    if (result != ORL_OK)
+        orl_logf(job->log, ORL_LOG_DEBUG, "%s: its look is not kept", source->name);
+    free(path);
+    free(dir);
+}
+
+bool orl_doubts_has_look(const struct orl_job *job, const struct orl_source *source)
+{
+    char *path = look_path(job, source);
+    bool has = path && orl_path_is_file(path);
+    free(path);
+    return has;
+}
+
+enum orl_result orl_doubts_look(const struct orl_job *job, const struct orl_source *source,
+                                struct orl_look *look)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    char *path = look_path(job, source);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(path) &&
+        orl_file_read(NULL, path, sizeof *look, &data, &size) == ORL_OK && size == sizeof *look) {
+        memcpy(look, data, sizeof *look);
+    } else if (result == ORL_OK) {
+        struct orl_image luma = {0};
+        result = orl_picture_read(job->log, source->path, 1, &luma);
+        if (result == ORL_OK)
+            result = orl_look_make(job->log, &luma, look);
+        orl_image_finish(&luma);
+    }
+    free(data);
+    free(path);
+    return result;
+}
+
+// --- judging ---
+
+static enum orl_result find_blurred(const struct orl_job *job, const struct orl_look *looks,
+                                    struct orl_doubt *doubts)
+{
+    size_t n = job->source_count;
+    float *sharpness = orl_array(job->log, n, sizeof *sharpness);
+    enum orl_result result = sharpness ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < n; i++)
+        sharpness[i] = looks[i].sharpness;
+    float limit = 0;
+    if (result == ORL_OK)
+        result = orl_look_blurred_below(job->log, sharpness, n, &limit);
+    for (size_t i = 0; result == ORL_OK && i < n; i++) {
+        doubts[i].blurred = sharpness[i] < limit;
+        orl_logf(job->log, ORL_LOG_DEBUG, "%s: sharpness 2^%.2f", job->sources[i].name,
+                 (double)sharpness[i]);
+    }
+    free(sharpness);
+    return result;
+}
+
+static void find_same(const struct orl_job *job, const struct orl_look *looks,
+                      struct orl_doubt *doubts)
+{
+    for (size_t i = 0; i < job->source_count; i++) {
+        doubts[i].same = -1;
+        for (size_t k = 0; k < i && doubts[i].same < 0; k++)
+            if (doubts[k].same < 0 && !doubts[k].blurred &&
+                orl_look_same_picture(&looks[k], &looks[i]))
+                doubts[i].same = (int)k;
+    }
+}
+
+enum orl_result orl_doubts_find(const struct orl_job *job, struct orl_doubt *doubts)
+{
+    struct orl_look *looks = orl_array(job->log, job->source_count, sizeof *looks);
+    enum orl_result result = looks ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
+        result = orl_progress_cancelled(job->progress)
+                     ? ORL_ERR_CANCELLED
+                     : orl_doubts_look(job, &job->sources[i], &looks[i]);
+    if (result == ORL_OK)
+        result = find_blurred(job, looks, doubts);
+    if (result == ORL_OK)
+        find_same(job, looks, doubts);
+    free(looks);
+    return result;
+}
+
+enum orl_result orl_count_views(const struct orl_job *job, size_t enough, size_t *views)
+{
+    struct orl_look *looks = orl_array(job->log, enough + 1, sizeof *looks);
+    enum orl_result result = looks ? ORL_OK : ORL_ERR_MEMORY;
+    *views = 0;
+    for (size_t i = 0; result == ORL_OK && *views < enough && i < job->source_count; i++) {
+        struct orl_look *look = &looks[*views];
+        result = orl_progress_cancelled(job->progress)
+                     ? ORL_ERR_CANCELLED
+                     : orl_doubts_look(job, &job->sources[i], look);
+        bool known = false;
+        for (size_t k = 0; result == ORL_OK && k < *views && !known; k++)
+            known = orl_look_same_view(&looks[k], look);
+        *views += result == ORL_OK && !known;
+    }
+    free(looks);
+    return result;
+}

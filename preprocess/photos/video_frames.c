@@ -1,0 +1,241 @@
+#include "preprocess/photos/video_frames.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/process.h"
+#include "io/picture.h"
+#include "preprocess/photos/look.h"
+
+enum {
+    STRETCH = 6, // frames looked at for each that is taken
+    VERSION = 1, // raised when the same video gives other frames
+};
+static const double FPS = 2; // frames taken of a second
+
+// --- running ffmpeg ---
+
+struct clip {
+    struct orl_job *job;
+    const char *path;
+    double seconds;
+    double rate;  // frames looked at, of a second
+    float *blur;  // owned; per frame looked at
+    size_t count, capacity;
+    enum orl_result result; // of the callbacks
+};
+
+static void find_duration(void *priv, const char *line)
+{
+    struct clip *clip = priv;
+    double seconds;
+    if (sscanf(line, "duration=%lf", &seconds) == 1 && isfinite(seconds) && seconds > 0)
+        clip->seconds = seconds;
+}
+
+static enum orl_result run_tool(const struct clip *clip, const char *const *argv,
+                                void (*line)(void *priv, const char *line))
+{
+    enum orl_result result = orl_process_run(clip->job->log, &(struct orl_process_params){
+        .argv = argv, .progress = clip->job->progress, .line = line,
+        .line_priv = (void *)clip}, NULL);
+    return result == ORL_ERR_NOT_FOUND
+               ? orl_fail(clip->job->log, result, "%s: ffmpeg is needed to take frames out of a "
+                          "video (Debian: apt install ffmpeg)", clip->path)
+               : result;
+}
+
+static enum orl_result measure_duration(struct clip *clip)
+{
+    const char *const argv[] = {"ffprobe", "-v", "error", "-show_entries", "format=duration",
+                                "-of", "default=noprint_wrappers=1", clip->path, NULL};
+    enum orl_result result = run_tool(clip, argv, find_duration);
+    if (result == ORL_OK && !(clip->seconds > 0))
+        result = orl_fail(clip->job->log, ORL_ERR_DATA, "%s: its length is not known", clip->path);
+    return result;
+}
+
+// ffmpeg prints a line with the frame's number, then one with its blur; a frame without edges has
+// none or NaN.
+static void take_blur(void *priv, const char *line)
+{
+    struct clip *clip = priv;
+    size_t frame;
+    float blur;
+    if (sscanf(line, "frame:%zu", &frame) == 1 && frame == clip->count &&
+        clip->result == ORL_OK) {
+        clip->result = orl_grow(clip->job->log, (void **)&clip->blur, &clip->capacity, frame + 1,
+                                sizeof *clip->blur);
+        if (clip->result == ORL_OK)
+            clip->blur[clip->count++] = INFINITY;
+        orl_progress_report(clip->job->progress, "frames", 0.8 * (double)frame,
+                            clip->seconds * clip->rate, NULL);
+    }
+    if (sscanf(line, "lavfi.blur=%f", &blur) == 1 && isfinite(blur) && clip->count)
+        clip->blur[clip->count - 1] = blur;
+}
+
+static enum orl_result measure_blur(struct clip *clip)
+{
+    char *filter = orl_format(clip->job->log, "fps=%.6f,scale='min(960,iw)':-2,blurdetect,"
+                              "metadata=mode=print:key=lavfi.blur:file=-", clip->rate);
+    const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
+                                "-map", "0:v:0", "-vf", filter, "-f", "null", "/dev/null", NULL};
+    enum orl_result result = filter ? run_tool(clip, argv, take_blur) : ORL_ERR_MEMORY;
+    free(filter);
+    if (result == ORL_OK)
+        result = clip->result;
+    if (result == ORL_OK && !clip->count)
+        result = orl_fail(clip->job->log, ORL_ERR_DATA, "%s: no frame can be decoded", clip->path);
+    return result;
+}
+
+size_t orl_frames_choose(const float *blur, size_t count, size_t stretch, size_t *chosen)
+{
+    size_t found = 0, within = (2 * stretch + 2) / 3;
+    for (size_t first = 0; first < count; first += stretch) {
+        size_t best = first;
+        for (size_t i = first; i < count && i < first + within; i++)
+            if (blur[i] < blur[best])
+                best = i;
+        chosen[found++] = best;
+    }
+    return found;
+}
+
+// Writes the chosen frames as 00001.jpg, ...
+static enum orl_result write_frames(const struct clip *clip, const size_t *chosen, size_t count,
+                                    const char *dir)
+{
+    const struct orl_log *log = clip->job->log;
+    // ffmpeg reads long filters from a file.
+    char *script = orl_path_join(log, dir, "filter");
+    char *pattern = orl_path_join(log, dir, "%05d.jpg");
+    char *text = orl_array(log, 64 + 32 * count, 1);
+    enum orl_result result = script && pattern && text ? ORL_OK : ORL_ERR_MEMORY;
+    size_t length = 0;
+    if (result == ORL_OK)
+        length = (size_t)sprintf(text, "fps=%.6f,select='", clip->rate);
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        length += (size_t)sprintf(text + length, "%seq(n,%zu)", i ? "+" : "", chosen[i]);
+    if (result == ORL_OK)
+        length += (size_t)sprintf(text + length, "'");
+    if (result == ORL_OK)
+        result = orl_file_write(log, script, text, length);
+    if (result == ORL_OK) {
+        const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
+                                    "-map", "0:v:0", "-filter_script:v", script, "-vsync", "0",
+                                    "-q:v", "1", "-qmin", "1", pattern, NULL};
+        result = run_tool(clip, argv, NULL);
+    }
+    if (result == ORL_OK)
+        result = orl_dir_remove(log, script);
+    free(script);
+    free(pattern);
+    free(text);
+    return result;
+}
+
+// --- a camera that stands still ---
+
+static enum orl_result drop_still(const struct clip *clip, const char *dir)
+{
+    const struct orl_log *log = clip->job->log;
+    struct orl_names names;
+    struct orl_look last = {0};
+    size_t dropped = 0;
+    enum orl_result result = orl_dir_list(log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        struct orl_image luma = {0};
+        struct orl_look look;
+        char *path = orl_path_join(log, dir, names.items[i]);
+        result = path ? orl_picture_read(log, path, 1, &luma) : ORL_ERR_MEMORY;
+        if (result == ORL_OK)
+            result = orl_look_make(log, &luma, &look);
+        if (result == ORL_OK && i && orl_look_same_picture(&last, &look)) {
+            dropped += unlink(path) == 0;
+        } else if (result == ORL_OK) {
+            last = look;
+        }
+        orl_image_finish(&luma);
+        free(path);
+    }
+    orl_names_finish(&names);
+    if (dropped)
+        orl_logf(log, ORL_LOG_INFO, "%s: the camera stands still in %zu frames, which are left out",
+                 clip->path, dropped);
+    return result;
+}
+
+// --- all of it ---
+
+static enum orl_result make_frames(struct clip *clip, const char *dir)
+{
+    enum orl_result result = measure_duration(clip);
+    if (result != ORL_OK)
+        return result;
+    const struct orl_prepare_params *params = clip->job->params;
+    double fps = params->frames ? params->frames / clip->seconds
+                 : params->fps > 0 ? params->fps : FPS;
+    clip->rate = fps * STRETCH;
+    if ((result = measure_blur(clip)) != ORL_OK)
+        return result;
+    size_t *chosen = orl_array(clip->job->log, clip->count / STRETCH + 1, sizeof *chosen);
+    if (!chosen)
+        return ORL_ERR_MEMORY;
+    size_t count = orl_frames_choose(clip->blur, clip->count, STRETCH, chosen);
+    // The last stretch may be a rest.
+    if (params->frames && count > (size_t)params->frames)
+        count = (size_t)params->frames;
+    result = write_frames(clip, chosen, count, dir);
+    free(chosen);
+    return result == ORL_OK ? drop_still(clip, dir) : result;
+}
+
+// The folder of the frames that this video gives with these settings.
+static enum orl_result name_folder(const struct orl_job *job, const char *path, char **dir)
+{
+    uint64_t hash;
+    enum orl_result result = orl_file_hash(job->log, path, &hash);
+    if (result != ORL_OK)
+        return result;
+    *dir = job->params->frames
+               ? orl_job_path(job, ".oriel/frames/%016" PRIx64 "-%d-n%d", hash, VERSION,
+                              job->params->frames)
+               : orl_job_path(job, ".oriel/frames/%016" PRIx64 "-%d-f%g", hash, VERSION,
+                              job->params->fps > 0 ? job->params->fps : FPS);
+    return *dir ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+enum orl_result orl_frames_take(struct orl_job *job, const char *path, char **dir,
+                                struct orl_names *names)
+{
+    struct clip clip = {.job = job, .path = path};
+    *dir = NULL;
+    *names = (struct orl_names){0};
+    enum orl_result result = name_folder(job, path, dir);
+    if (result == ORL_OK && !orl_path_is_dir(*dir)) {
+        static const char temp[] = ".oriel/frames.tmp";
+        char *made = orl_job_path(job, "%s", temp), *parent = orl_job_path(job, ".oriel/frames");
+        result = made && parent ? orl_dir_make(job->log, parent) : ORL_ERR_MEMORY;
+        if (result == ORL_OK)
+            result = orl_job_fresh_dir(job, temp);
+        if (result == ORL_OK)
+            result = make_frames(&clip, made);
+        if (result == ORL_OK && rename(made, *dir) != 0)
+            result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be renamed to %s", made, *dir);
+        orl_progress_report(job->progress, "frames", 1, 1, NULL);
+        free(made);
+        free(parent);
+    }
+    if (result == ORL_OK)
+        result = orl_dir_list(job->log, *dir, names);
+    free(clip.blur);
+    return result;
+}

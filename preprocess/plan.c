@@ -1,0 +1,302 @@
+#include "preprocess/plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "preprocess/densify_stage.h"
+
+// Processor time and memory with llvmpipe on a core of an AMD EPYC (docs/how/scale.md has how they
+// were measured).
+static const double PASS_S_PER_MPX = 8, FINISH_S_PER_MPX = 4;
+static const double PART_BASE_BYTES = 140 << 20, PART_BYTES_PER_PX = 300;
+static const double FINISH_BASE_BYTES = 100 << 20, FINISH_BYTES_PER_PX = 48;
+enum {
+    PASS_BYTES = 16,       // of a pixel in depth and normal maps
+    CONFIDENCE_BYTES = 4,  // and in the last pass
+    CLOUD_BYTES = 4,       // of points.ply, a pixel of the photographs
+};
+
+struct planner {
+    const struct orl_log *log;
+    char *dir;         // owned; the scene, absolute
+    json_t *arguments; // of oriel prepare
+    struct orl_names photos;
+    struct orl_colmap_model model;
+    struct orl_densify_params densify;
+    const char *max_vram; // MiB, NULL: no limit
+    bool masks;
+    int parts;
+    bool *reads;       // owned; [part * parts + other]: has part a source in the other?
+    double *pixels;    // owned; of each photograph
+    json_t *jobs;
+};
+
+// --- what the scene says ---
+
+static const char *argument(const struct planner *p, const char *option)
+{
+    for (size_t i = 0; i + 1 < json_array_size(p->arguments); i++)
+        if (strcmp(json_string_value(json_array_get(p->arguments, i)), option) == 0)
+            return json_string_value(json_array_get(p->arguments, i + 1));
+    return NULL;
+}
+
+static enum orl_quality quality_of(const struct planner *p)
+{
+    const char *name = argument(p, "--quality");
+    int quality = ORL_QUALITY_STANDARD;
+    for (int i = 0; name && orl_quality_names[i]; i++)
+        if (strcmp(name, orl_quality_names[i]) == 0)
+            quality = i;
+    return (enum orl_quality)quality;
+}
+
+static enum orl_result read_arguments(struct planner *p)
+{
+    json_t *stages = NULL;
+    char *path = orl_path_join(p->log, p->dir, ".oriel/stages.json");
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(path))
+        result = orl_json_read(p->log, path, &stages);
+    const json_t *undistorted = json_object_get(json_object_get(stages, "done"), "undistort");
+    json_t *arguments = json_object_get(stages, "arguments");
+    bool texts = json_array_size(arguments) > 0;
+    for (size_t i = 0; i < json_array_size(arguments); i++)
+        texts = texts && json_is_string(json_array_get(arguments, i));
+    if (result == ORL_OK && (!undistorted || !texts))
+        result = orl_fail(p->log, ORL_ERR_DATA, "%s: nothing to plan yet: run oriel prepare PHOTOS "
+                          "--out %s --until undistort first", p->dir, p->dir);
+    if (result == ORL_OK)
+        p->arguments = json_incref(arguments);
+    json_decref(stages);
+    free(path);
+    return result;
+}
+
+// The training photographs that the stereo was begun with; none for COLMAP's stereo, which has no
+// parts.
+static enum orl_result read_photos(struct planner *p)
+{
+    uint8_t *data = NULL;
+    size_t size;
+    char *rest = NULL, *begun = orl_path_join(p->log, p->dir, "stereo/densify.json");
+    char *list = orl_path_join(p->log, p->dir, "stereo/fusion.cfg");
+    enum orl_result result = begun && list ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(begun))
+        result = orl_file_read(p->log, list, (size_t)1 << 30, &data, &size);
+    for (char *line = data ? strtok_r((char *)data, "\n", &rest) : NULL;
+         result == ORL_OK && line; line = strtok_r(NULL, "\n", &rest))
+        result = orl_names_add(p->log, &p->photos, line);
+    free(data);
+    free(begun);
+    free(list);
+    return result;
+}
+
+static enum orl_result read_scene(struct planner *p, int photographs)
+{
+    char *sparse = orl_path_join(p->log, p->dir, "sparse");
+    enum orl_result result = sparse ? orl_colmap_read(p->log, sparse, &p->model) : ORL_ERR_MEMORY;
+    free(sparse);
+    if (result != ORL_OK || (result = read_photos(p)) != ORL_OK)
+        return result;
+    size_t count = p->photos.count;
+    p->parts = (int)((count + (size_t)photographs - 1) / (size_t)photographs);
+    p->densify = orl_densify_quality(quality_of(p));
+    p->max_vram = argument(p, "--max-vram");
+    p->masks = argument(p, "--masks") != NULL;
+    p->pixels = orl_array(p->log, count + 1, sizeof *p->pixels);
+    p->reads = orl_array(p->log, (size_t)p->parts * (size_t)p->parts + 1, sizeof *p->reads);
+    if (!p->pixels || !p->reads)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        const struct orl_colmap_image *image =
+            orl_colmap_image_by_name(&p->model, p->photos.items[i]);
+        if (!image)
+            return orl_fail(p->log, ORL_ERR_DATA, "%s/stereo/fusion.cfg: %s is not in the model",
+                            p->dir, p->photos.items[i]);
+        const struct orl_camera *camera =
+            &orl_colmap_camera_by_id(&p->model, image->camera_id)->pinhole;
+        p->pixels[i] = (double)camera->width * camera->height;
+    }
+    return count ? orl_densify_part_sources(p->log, &p->model, &p->photos, p->densify.sources,
+                                            p->parts, p->reads)
+                 : ORL_OK;
+}
+
+// --- jobs ---
+
+static size_t part_begin(const struct planner *p, int part)
+{
+    return p->photos.count * (size_t)part / (size_t)p->parts;
+}
+
+static json_t *job_name(const struct planner *p, int pass, int part)
+{
+    int digits = p->parts > 9999 ? 6 : 4;
+    return json_sprintf("densify-%d-%0*d", pass, digits, part + 1);
+}
+
+static void add_text(json_t *list, const char *text)
+{
+    json_array_append_new(list, json_string(text));
+}
+
+static void add_option(json_t *list, const char *option, int value)
+{
+    add_text(list, option);
+    json_array_append_new(list, json_sprintf("%d", value));
+}
+
+static json_t *densify_command(const struct planner *p, int pass, int part)
+{
+    json_t *list = json_array();
+    add_text(list, "oriel");
+    add_text(list, "densify");
+    add_text(list, p->dir);
+    add_text(list, "--photos");
+    json_array_append_new(list, json_sprintf("%s/stereo/fusion.cfg", p->dir));
+    add_option(list, "--sources", p->densify.sources);
+    add_option(list, "--iterations", p->densify.iterations);
+    add_option(list, "--geometric-passes", p->densify.geometric_passes);
+    add_text(list, "--seed");
+    add_text(list, argument(p, "--seed"));
+    if (p->masks) {
+        add_text(list, "--masks");
+        json_array_append_new(list, json_sprintf("%s/masks", p->dir));
+    }
+    if (p->max_vram) {
+        add_text(list, "--max-vram");
+        add_text(list, p->max_vram);
+    }
+    add_option(list, "--pass", pass);
+    add_text(list, "--part");
+    json_array_append_new(list, json_sprintf("%d/%d", part + 1, p->parts));
+    return list;
+}
+
+// The maps that a pass leaves, by the names that the stereo gives them.
+static json_t *densify_outputs(const struct planner *p, int pass, int part)
+{
+    static const char *const kinds[] = {"depth", "normal", "confidence"};
+    json_t *list = json_array();
+    char kind[ORL_DENSIFY_KIND_SIZE];
+    bool last = pass == p->densify.geometric_passes;
+    orl_densify_pass_kind(pass, p->densify.geometric_passes, kind);
+    for (size_t i = part_begin(p, part); i < part_begin(p, part + 1); i++)
+        for (int k = 0; k < 2 + last; k++)
+            json_array_append_new(list, json_sprintf("%s/stereo/%s_maps/%s.%s.bin", p->dir,
+                                                     kinds[k], p->photos.items[i], kind));
+    return list;
+}
+
+static json_t *densify_needs(const struct planner *p, int pass, int part)
+{
+    json_t *list = json_array();
+    for (int other = 0; pass > 0 && other < p->parts; other++)
+        if (other == part || p->reads[part * p->parts + other])
+            json_array_append_new(list, job_name(p, pass - 1, other));
+    return list;
+}
+
+static void plan_part(struct planner *p, int pass, int part)
+{
+    double pixels = 0, largest = 0;
+    bool last = pass == p->densify.geometric_passes;
+    for (size_t i = part_begin(p, part); i < part_begin(p, part + 1); i++) {
+        pixels += p->pixels[i];
+        largest = p->pixels[i] > largest ? p->pixels[i] : largest;
+    }
+    // A geometric pass reads its own maps of the pass before and the depths of its sources.
+    double read = pass ? pixels * (PASS_BYTES + 4.0 * p->densify.sources) : 0;
+    json_array_append_new(p->jobs, json_pack(
+        "{s:o, s:s, s:o, s:o, s:[s+, s+, s+, s+], s:o, s:i, s:f, s:f, s:f, s:f}",
+        "name", job_name(p, pass, part), "kind", "densify", "command",
+        densify_command(p, pass, part), "needs", densify_needs(p, pass, part), "inputs", p->dir,
+        "/images", p->dir, "/sparse", p->dir, "/stereo/fusion.cfg", p->dir,
+        "/stereo/densify.json", "outputs", densify_outputs(p, pass, part), "threads", 2, "cpu_s",
+        pixels * 1e-6 * PASS_S_PER_MPX, "memory_bytes",
+        PART_BASE_BYTES + PART_BYTES_PER_PX * largest, "read_bytes", read, "written_bytes",
+        pixels * (PASS_BYTES + (last ? CONFIDENCE_BYTES : 0))));
+}
+
+static void plan_finish(struct planner *p)
+{
+    json_t *command = json_pack("[s, s]", "oriel", "prepare"), *needs = json_array();
+    double pixels = 0;
+    json_array_extend(command, p->arguments);
+    add_text(command, "--out");
+    add_text(command, p->dir);
+    add_text(command, "--resume");
+    for (int part = 0; part < p->parts; part++)
+        json_array_append_new(needs, job_name(p, p->densify.geometric_passes, part));
+    for (size_t i = 0; i < p->photos.count; i++)
+        pixels += p->pixels[i];
+    json_array_append_new(p->jobs, json_pack(
+        "{s:s, s:s, s:o, s:o, s:[s+], s:[s+, s+], s:i, s:f, s:f, s:f, s:f}", "name", "finish",
+        "kind", "finish", "command", command, "needs", needs, "inputs", p->dir, "/stereo",
+        "outputs", p->dir, "/points.ply", p->dir, "/scene.json", "threads", 1, "cpu_s",
+        pixels * 1e-6 * FINISH_S_PER_MPX, "memory_bytes",
+        FINISH_BASE_BYTES + FINISH_BYTES_PER_PX * pixels, "read_bytes",
+        pixels * 3 * PASS_BYTES, "written_bytes", pixels * CLOUD_BYTES));
+}
+
+static enum orl_result plan_jobs(struct planner *p)
+{
+    for (int pass = 0; p->parts && pass <= p->densify.geometric_passes; pass++)
+        for (int part = 0; part < p->parts; part++)
+            plan_part(p, pass, part);
+    plan_finish(p);
+    return ORL_OK;
+}
+
+static json_t *sum_jobs(const json_t *jobs)
+{
+    static const char *const keys[] = {"cpu_s", "read_bytes", "written_bytes"};
+    json_t *sum = json_object(), *job;
+    size_t i;
+    for (size_t k = 0; k < ORL_COUNT(keys); k++) {
+        double total = 0;
+        json_array_foreach(jobs, i, job)
+            total += json_number_value(json_object_get(job, keys[k]));
+        json_object_set_new(sum, keys[k], json_real(total));
+    }
+    return sum;
+}
+
+enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photographs,
+                         json_t **plan)
+{
+    struct planner p = {.log = log, .dir = realpath(scene, NULL), .jobs = json_array()};
+    *plan = NULL;
+    enum orl_result result = p.dir ? ORL_OK
+                                   : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder", scene);
+    char *manifest = p.dir ? orl_path_join(log, p.dir, "scene.json") : NULL;
+    if (result == ORL_OK && (!manifest || !p.jobs))
+        result = ORL_ERR_MEMORY;
+    if (result == ORL_OK && !orl_path_is_file(manifest)) {
+        result = read_arguments(&p);
+        if (result == ORL_OK)
+            result = read_scene(&p, photographs);
+        if (result == ORL_OK)
+            result = plan_jobs(&p);
+    }
+    if (result == ORL_OK)
+        *plan = json_pack("{s:i, s:s, s:I, s:O, s:o}", "version", 1, "scene", p.dir,
+                          "photographs", (json_int_t)p.photos.count, "jobs", p.jobs, "sum",
+                          sum_jobs(p.jobs));
+    if (result == ORL_OK && !*plan)
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: a name is not UTF-8", scene);
+    json_decref(p.jobs);
+    json_decref(p.arguments);
+    orl_names_finish(&p.photos);
+    orl_colmap_finish(&p.model);
+    free(p.pixels);
+    free(p.reads);
+    free(p.dir);
+    free(manifest);
+    return result;
+}

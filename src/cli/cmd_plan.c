@@ -1,0 +1,78 @@
+// oriel plan: what is left of a scene's work, as a graph of commands.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "core/json.h"
+#include "preprocess/plan.h"
+
+struct options {
+    int photographs;
+    bool json;
+};
+
+static double number(const json_t *job, const char *key)
+{
+    return json_number_value(json_object_get(job, key));
+}
+
+// One line for the jobs of a kind.
+static void print_kind(const json_t *jobs, const char *kind)
+{
+    size_t i, count = 0;
+    double cpu = 0, memory = 0, written = 0;
+    const json_t *job;
+    json_array_foreach(jobs, i, job) {
+        if (strcmp(orl_json_text(job, "kind"), kind) != 0)
+            continue;
+        count++;
+        cpu += number(job, "cpu_s");
+        written += number(job, "written_bytes");
+        memory = number(job, "memory_bytes") > memory ? number(job, "memory_bytes") : memory;
+    }
+    if (count)
+        printf("%-9s %5zu job%s  %9.0f s of CPU  up to %6.0f MiB of memory  %9.1f MiB written\n",
+               kind, count, count == 1 ? " " : "s", cpu, memory / (1 << 20), written / (1 << 20));
+}
+
+static enum orl_result run(const struct terminal *terminal, const void *options,
+                           const struct arg_common *common, const char *scene)
+{
+    const struct options *o = options;
+    json_t *plan;
+    (void)common;
+    enum orl_result result = orl_plan(&terminal->log, scene, o->photographs, &plan);
+    if (result != ORL_OK)
+        return result;
+    const json_t *jobs = json_object_get(plan, "jobs");
+    char *text = o->json ? json_dumps(plan, JSON_INDENT(1)) : NULL;
+    if (o->json && !text)
+        result = ORL_ERR_MEMORY;
+    else if (text)
+        printf("%s\n", text);
+    else if (!json_array_size(jobs))
+        printf("%s is whole: there is nothing left to do\n", scene);
+    print_kind(o->json ? NULL : jobs, "densify");
+    print_kind(o->json ? NULL : jobs, "finish");
+    free(text);
+    json_decref(plan);
+    return result;
+}
+
+int cmd_plan(int argc, char **argv)
+{
+    struct options o = {.photographs = 16};
+    const struct arg_option table[] = {
+        {"photographs", ARG_INT, &o.photographs, "N", "of a job, at most; default 16", 1, 100000},
+        {"json", ARG_FLAG, &o.json, NULL, "the graph, with each job's command, costs and files",
+         0, 0},
+        {0},
+    };
+    const struct arg_command command = {
+        "plan", "SCENE [options]",
+        "Says what is left to do for a scene that oriel prepare --until undistort has begun, as\n"
+        "jobs that may run on several machines. cluster/Snakefile runs them.",
+        table, 1, 1};
+    return command_main(&command, argc, argv, run, &o);
+}

@@ -1,0 +1,166 @@
+// oriel trim: the least model of a scene that still serves.
+#include <stdio.h>
+
+#include "cli/commands.h"
+#include "eval/trim.h"
+
+struct options {
+    const char *method, *out, *json, *plots;
+    struct orl_names settings;
+    double tolerance_db, worst_db, max_mib, max_frame_ms, budget_s;
+    int views, size_divide;
+    bool explain, random, keep_options;
+};
+
+enum { MIB = 1 << 20 };
+
+// --- what is printed ---
+
+static void print_step(void *priv, const struct orl_trim_step *s)
+{
+    (void)priv;
+    if (s->taken)
+        printf("%-36s %8.3f %8.3f %9.2f %9.1f\n", s->what, s->loss_db, s->total_loss_db,
+               s->bytes / MIB, s->ms);
+    fflush(stdout);
+}
+
+static void print_rate(double db, double saved, double least)
+{
+    if (saved > least)
+        printf(" %12.4f", db / saved);
+    else
+        printf(" %12s", "-");
+}
+
+// What each part of the model buys, from the first trial of each.
+static void print_parts(const struct orl_trim *trim)
+{
+    printf("\n%-36s %8s %9s %9s %12s %12s\n", "without it", "loss dB", "MiB less", "ms less",
+           "dB per MiB", "dB per ms");
+    for (size_t i = 0; i < trim->step_count; i++) {
+        const struct orl_trim_step *s = &trim->steps[i];
+        if (!s->first)
+            continue;
+        printf("%-36s %8.3f %9.2f %9.1f", s->what, s->loss_db, s->saved_bytes / MIB, s->saved_ms);
+        print_rate(s->loss_db, s->saved_bytes / MIB, 1e-3);
+        print_rate(s->loss_db, s->saved_ms, 0.02 * trim->before.frame_ms);
+        printf("\n");
+    }
+}
+
+static void print_row(const char *name, const struct orl_trim_figures *f)
+{
+    printf("%-10s %9zu %6zu %9.2f %9.2f %9.2f %9.1f %8.2f %7.4f %8.2f %7.4f\n", name, f->points,
+           f->photographs, (double)(f->point_bytes + f->photo_bytes) / MIB,
+           (double)f->device_bytes / MIB, (double)f->file_bytes / MIB, f->frame_ms, f->psnr_db,
+           f->ssim, f->held_psnr_db, f->held_ssim);
+}
+
+static void print_summary(const struct options *o, const struct orl_trim *trim)
+{
+    const struct orl_trim_figures *a = &trim->before, *b = &trim->after;
+    printf("\n%-10s %9s %6s %9s %9s %9s %9s %8s %7s %8s %7s\n", "", "points", "photos",
+           "model MiB", "all MiB", "file MiB", "frame ms", "PSNR dB", "SSIM", "held out", "SSIM");
+    print_row("whole", a);
+    print_row("trimmed", b);
+    for (size_t i = 0; i < trim->random_count; i++)
+        printf("removed at random: %.2f MiB, %.2f dB lost\n", trim->random[i].bytes / MIB,
+               trim->random[i].loss_db);
+    printf("%s: %.1f times smaller on the device; training photographs lost %.3f dB, the worst of "
+           "them %.3f%s\n", o->out,
+           (double)(a->point_bytes + a->photo_bytes) / (double)(b->point_bytes + b->photo_bytes),
+           a->psnr_db - b->psnr_db, b->worst_loss_db,
+           trim->complete ? "" : "; the budget ended the search");
+    if (trim->undone)
+        printf("%zu steps were taken back, because all photographs together lost too much\n",
+               trim->undone);
+}
+
+// --- the job ---
+
+static enum orl_result check(const struct orl_log *log, const struct options *o)
+{
+    if (!o->out)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "trim: --out SCENE2 is missing");
+    return ORL_OK;
+}
+
+static enum orl_result run(const struct terminal *terminal, const void *options,
+                           const struct arg_common *common, const char *dir)
+{
+    const struct options *o = options;
+    const struct orl_log *log = &terminal->log;
+    struct orl_scene *scene = NULL;
+    struct orl_gpu *gpu = NULL;
+    struct orl_choice start;
+    struct orl_trim trim = {0};
+    enum orl_result result = check(log, o);
+    if (result == ORL_OK)
+        result = orl_scene_open(log, dir, &scene);
+    if (result == ORL_OK)
+        result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
+    const struct orl_trim_params params = {
+        .start = &start, .out = o->out, .tolerance_db = o->tolerance_db, .worst_db = o->worst_db,
+        .max_bytes = (size_t)(o->max_mib * MIB), .max_frame_ms = o->max_frame_ms,
+        .views = (size_t)o->views, .size_divide = o->size_divide, .budget_s = o->budget_s,
+        .tune = !o->keep_options, .random = o->random, .on_step = common->quiet ? NULL : print_step,
+        .progress = &terminal->progress};
+    if (result == ORL_OK && !common->quiet)
+        printf("%-36s %8s %8s %9s %9s\n", "step", "loss dB", "all dB", "MiB", "frame ms");
+    if (result == ORL_OK)
+        result = orl_trim_run(gpu, scene, &params, &trim);
+    if (result == ORL_OK && o->explain)
+        print_parts(&trim);
+    if (result == ORL_OK)
+        print_summary(o, &trim);
+    if (result == ORL_OK && o->json)
+        result = orl_trim_write_json(log, o->json, scene, orl_gpu_caps(gpu)->renderer, &trim);
+    if (result == ORL_OK && o->plots)
+        result = orl_trim_write_plots(log, o->plots, scene, &trim);
+    orl_trim_finish(&trim);
+    orl_gpu_destroy(&gpu);
+    orl_scene_destroy(&scene);
+    return result;
+}
+
+int cmd_trim(int argc, char **argv)
+{
+    struct options o = {.tolerance_db = 0.1, .worst_db = 0.5, .views = 6, .size_divide = 1};
+    const struct arg_option table[] = {
+        {"out", ARG_STRING, &o.out, "SCENE2", "the folder to make", 0, 0},
+        {"tolerance", ARG_NUMBER, &o.tolerance_db, "DB",
+         "training photographs may lose so much on average; default 0.1", 0, 100},
+        {"worst", ARG_NUMBER, &o.worst_db, "DB", "and one of them so much; default 0.5", 0, 100},
+        {"max-bytes", ARG_NUMBER, &o.max_mib, "MIB",
+         "instead: the best picture within so much device memory for points and photographs",
+         0.001, 1 << 20},
+        {"max-frame-ms", ARG_NUMBER, &o.max_frame_ms, "MS",
+         "instead: the best picture within so long a frame; with --max-bytes, both", 0.001, 1e6},
+        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the scene's, or the first",
+         0, 0},
+        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
+        {"keep-options", ARG_FLAG, &o.keep_options, NULL, "do not tune the method's options first",
+         0, 0},
+        {"views", ARG_INT, &o.views, "N", "photographs that judge each step; default 6", 2, 64},
+        {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 1", 1,
+         16},
+        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS", "try nothing new after so long", 0, 1e6},
+        {"explain", ARG_FLAG, &o.explain, NULL, "print what each part of the model buys", 0, 0},
+        {"random", ARG_FLAG, &o.random, NULL, "also measure random removal", 0, 0},
+        {"json", ARG_STRING, &o.json, "FILE", "write figures and steps as JSON", 0, 0},
+        {"plots", ARG_STRING, &o.plots, "DIR", "write waterfall.svg and curve.svg", 0, 0},
+        {0},
+    };
+    const struct arg_command command = {
+        "trim", "SCENE --out SCENE2 [--tolerance DB]",
+        "Makes the least scene that serves as well: fewer points and photographs, smaller files,\n"
+        "and the method's cheaper options. Training photographs judge, each rendered from the\n"
+        "others; held-out ones confirm at the end.", table, 1, 1};
+    int status = command_main(&command, argc, argv, run, &o);
+    orl_names_finish(&o.settings);
+    return status;
+}

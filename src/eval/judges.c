@@ -1,0 +1,94 @@
+#include "eval/judges.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+// Photographs are from the same place when they are less than this apart.
+static const double same_distance = 0.01, same_angle = 0.05;
+
+enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
+                                size_t most, int divide, struct orl_judges *judges)
+{
+    size_t train = 0, at = 0;
+    *judges = (struct orl_judges){.scene = scene};
+    for (size_t i = 0; i < scene->photo_count; i++)
+        train += !scene->photos[i].test;
+    if (train < 3)
+        return orl_fail(log, ORL_ERR_DATA,
+                        "%s: %zu photographs that are not held out; three are needed, to render "
+                        "one from two others", scene->dir, train);
+    size_t wanted = most && most < train ? most : train;
+    judges->views = orl_array(log, wanted, sizeof *judges->views);
+    judges->skip = orl_array(log, scene->photo_count, sizeof *judges->skip);
+    enum orl_result result = judges->views && judges->skip ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (scene->photos[i].test)
+            continue;
+        if ((at + 1) * wanted / train > at * wanted / train)
+            result = orl_heldout_load(log, scene, i, divide, &judges->views[judges->count++]);
+        at++;
+    }
+    if (result != ORL_OK)
+        orl_judges_finish(judges);
+    return result;
+}
+
+void orl_judges_finish(struct orl_judges *judges)
+{
+    for (size_t i = 0; i < judges->count; i++)
+        orl_heldout_finish(&judges->views[i]);
+    free(judges->views);
+    free(judges->skip);
+    memset(judges, 0, sizeof *judges);
+}
+
+void orl_judges_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
+                      double *angle)
+{
+    const struct orl_pose *pose[] = {&scene->photos[a].view.cam_from_world,
+                                     &scene->photos[b].view.cam_from_world};
+    double centre[2][3], d2 = 0, cosine = 0;
+    for (int i = 0; i < 2; i++)
+        orl_pose_centre(pose[i], centre[i]);
+    for (int k = 0; k < 3; k++) {
+        d2 += (centre[0][k] - centre[1][k]) * (centre[0][k] - centre[1][k]);
+        cosine += pose[0]->r[2][k] * pose[1]->r[2][k];
+    }
+    *distance = sqrt(d2) / scene->photo_distance;
+    *angle = acos(fmin(fmax(cosine, -1), 1));
+}
+
+bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b)
+{
+    double distance, angle;
+    orl_judges_apart(scene, a, b, &distance, &angle);
+    return distance < same_distance && angle < same_angle;
+}
+
+// Marks what the rendering of a photograph's view does without.
+static void set_skip(const struct orl_judges *judges, size_t photo, const bool *removed)
+{
+    const struct orl_scene *scene = judges->scene;
+    size_t left = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        judges->skip[i] = (removed && removed[i]) || orl_judges_same_place(scene, i, photo);
+        left += !judges->skip[i] && !scene->photos[i].test;
+    }
+    for (size_t i = 0; left == 0 && i < scene->photo_count; i++)
+        judges->skip[i] = removed && removed[i];
+    judges->skip[photo] = true;
+}
+
+enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
+                                   const struct orl_judges *judges, size_t view,
+                                   const struct orl_render_params *render, const bool *removed,
+                                   bool psnr_alone, struct orl_metrics *metrics)
+{
+    const struct orl_heldout *target = &judges->views[view];
+    set_skip(judges, target->photo, removed);
+    return orl_heldout_compare(log, renderer, judges->scene, target, render, judges->skip,
+                               psnr_alone, metrics);
+}

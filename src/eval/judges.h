@@ -1,0 +1,39 @@
+// Training photographs that are compared with renderings from the others: how tune, trim and adapt
+// judge without looking at a held-out photograph.
+#ifndef ORL_EVAL_JUDGES_H
+#define ORL_EVAL_JUDGES_H
+
+#include "eval/heldout.h"
+#include "eval/metrics.h"
+
+struct orl_judges {
+    const struct orl_scene *scene; // not owned
+    struct orl_heldout *views;     // owned: the photographs, in ascending order
+    size_t count;
+    bool *skip; // owned: photographs that the current rendering does without
+};
+
+// Loads at most `most` training photographs, evenly chosen (0: all), at 1/divide of their size.
+// ORL_ERR_DATA: fewer than three photographs are for training.
+enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
+                                size_t most, int divide,
+                                struct orl_judges *judges) ORL_CHECK_RESULT;
+void orl_judges_finish(struct orl_judges *judges);
+// How far apart two photographs are: the distance of their centres as a share of the distance to
+// what they see, and the angle between their directions.
+void orl_judges_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
+                      double *angle);
+// True when photograph b stands where a stands and looks where a looks, as repeated shots and
+// exposure series do. Rendering the view of one from the other would tell nothing.
+bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b);
+// Renders the view of judges->views[view] without that photograph, those from the same place
+// (unless no other is left) and those that `removed` marks (NULL: none), and compares as
+// orl_heldout_compare does. The renderer's scene must have the photographs of judges->scene, in the
+// same order.
+enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
+                                   const struct orl_judges *judges, size_t view,
+                                   const struct orl_render_params *render, const bool *removed,
+                                   bool psnr_alone,
+                                   struct orl_metrics *metrics) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,57 @@
+// Where methods break: one thing at a time gets worse, and every method is measured at each
+// severity (docs/reference/stress.md).
+#ifndef ORL_EVAL_STRESS_H
+#define ORL_EVAL_STRESS_H
+
+#include "oriel/gpu.h"
+#include "oriel/names.h"
+#include "oriel/progress.h"
+
+enum {
+    ORL_STRESS_LEVELS = 6,    // severities of an axis
+    ORL_STRESS_LOSSES = 3,    // losses that are located: orl_stress_losses_db
+    ORL_STRESS_SIDE_MIN = 96, // of the longer side of a picture
+    ORL_STRESS_SIDE_MAX = 2048,
+    ORL_STRESS_PHOTOGRAPHS_MIN = 4,
+};
+extern const double orl_stress_losses_db[ORL_STRESS_LOSSES]; // 1, 3, 6
+
+struct orl_stress_params {
+    const char *scene; // folder; "synth": the synthetic monument, whose truth is known
+    const char *out;   // folder for the report; rows in it are reused
+    const struct orl_names *methods, *axes; // names; none or "all": all
+    int side;          // longer side of pictures, pixels
+    int photographs;   // of the synthetic monument; those of a scene are used all
+    size_t views;      // greatest number of held-out photographs
+    uint32_t seed;
+    bool quick;        // an overview: one view, and of each axis the first, a middle and the last
+                       // severity
+    const struct orl_progress *progress;
+};
+#define ORL_STRESS_DEFAULTS .side = 192, .photographs = 16, .views = 2, .seed = 1
+
+// A method on one axis. Texts belong to the report's JSON.
+struct orl_stress_loss {
+    const char *axis, *unit, *method;
+    double start_db, worst_db;            // PSNR at the first severity; the least of all
+    double at[ORL_STRESS_LOSSES];         // severity at which so much is lost; NAN: at none
+};
+
+struct orl_stress {
+    void *json;                     // json_t *, owned: stress.json
+    struct orl_stress_loss *losses; // owned
+    size_t loss_count;
+    size_t measured, reused, left_out; // rows; left_out: those that failed, as logged
+    size_t broken;                     // rows that break an invariant
+};
+
+// Names of all axes with their descriptions, for help. False past the end.
+bool orl_stress_axis_name(size_t index, const char **name, const char **title);
+
+// Measures the rows that OUT lacks and writes stress.json, stress.html and the SVG figures into
+// OUT. After ORL_ERR_CANCELLED OUT keeps the finished rows.
+enum orl_result orl_stress_run(struct orl_gpu *gpu, const struct orl_stress_params *params,
+                               struct orl_stress *stress) ORL_CHECK_RESULT;
+void orl_stress_finish(struct orl_stress *stress);
+
+#endif

@@ -1,0 +1,103 @@
+// Finds the least model that still serves: what of a scene can go without a loss that counts.
+// Training photographs judge, each rendered without itself; held-out ones confirm once at the end.
+#ifndef ORL_EVAL_TRIM_H
+#define ORL_EVAL_TRIM_H
+
+#include "eval/choice.h"
+#include "oriel/progress.h"
+
+// What a step makes smaller.
+enum orl_trim_part {
+    ORL_TRIM_POINTS,     // fewer points
+    ORL_TRIM_PHOTOGRAPH, // one photograph less
+    ORL_TRIM_TEXTURES,   // compressed photographs on the device
+    ORL_TRIM_DEPTH,      // smaller depth maps of photographs on the device
+    ORL_TRIM_RESOLUTION, // smaller photographs
+    ORL_TRIM_QUALITY,    // JPEG files of lower quality
+    ORL_TRIM_OPTION,     // a cheaper value of one of the method's options
+    ORL_TRIM_PART_COUNT
+};
+extern const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT];
+
+// One step that was tried.
+struct orl_trim_step {
+    enum orl_trim_part part;
+    char what[96];         // such as "points 50 %"
+    double loss_db;        // mean over the views it was judged by, against the state before it
+    double saved_bytes, saved_ms, saved_file_bytes;
+    bool first;            // the first trial of its kind: what this part of the model buys
+    bool taken;
+    // Of a step that was taken, after it:
+    double bytes, ms;      // of the model on the device; of a frame
+    double total_loss_db;  // mean, estimated from the losses of all steps
+};
+
+// What a scene takes and how good it is.
+struct orl_trim_figures {
+    size_t points, photographs;  // that are not held out
+    size_t point_bytes, photo_bytes; // on the device; the model is both
+    size_t device_bytes;         // all on the device, with the frame's own targets
+    size_t file_bytes;           // points, photographs, masks and cameras on disk
+    double frame_ms;             // as struct orl_trim_params says
+    double psnr_db, ssim;        // means over training photographs, each left out
+    double worst_loss_db;        // the most that one of them lost
+    double held_psnr_db, held_ssim; // held-out photographs; 0: there are none
+};
+
+// The scene with points and photographs removed at random, for comparison.
+struct orl_trim_random {
+    double bytes, loss_db;
+};
+
+enum { ORL_TRIM_RANDOM_ROWS = 3 };
+
+struct orl_trim_params {
+    const struct orl_choice *start; // the method and its options
+    const char *out;                // the folder to make
+    double tolerance_db;  // the most that the mean over training photographs may lose
+    double worst_db;      // the most that one of them may lose
+    size_t max_bytes;     // instead of a tolerance: least loss within these bytes of the model on
+                          // the device; 0: none
+    double max_frame_ms;  // the same for the time of a frame; 0: none
+    size_t views;         // photographs that judge what changes all views, evenly chosen
+    int size_divide;      // pictures are compared at 1/n of the photographs' size
+    double budget_s;      // no new trial starts after this time; 0: no limit
+    bool tune;            // tunes the method's options first, which may make room for other steps
+    bool random;          // also measures random removal
+    bool settings_only;   // only what scene.json can state: nothing is removed, no folder is made
+    void (*on_step)(void *priv, const struct orl_trim_step *step); // after each; may be NULL
+    void *priv;
+    const struct orl_progress *progress;
+};
+
+struct orl_trim {
+    struct orl_trim_step *steps; // owned, in the order of trial
+    size_t step_count, step_capacity;
+    struct orl_trim_figures before, after;
+    struct orl_trim_random random[ORL_TRIM_RANDOM_ROWS];
+    size_t random_count;
+    size_t undone;  // steps taken back because all training photographs together lost too much
+    bool complete;  // false: the time ran out
+    struct orl_choice choice; // the method with the options that were found
+    struct orl_scene_defaults defaults; // and the rest of what scene.json states; texts are not
+                                        // owned
+};
+
+// Times of frames are processor time on a software renderer, else wall time; the least of a few.
+// ORL_ERR_DATA: fewer than three training photographs, or a budget that cannot be kept.
+enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
+                             const struct orl_trim_params *params,
+                             struct orl_trim *trim) ORL_CHECK_RESULT;
+void orl_trim_finish(struct orl_trim *trim);
+
+// The report as JSON (docs/reference/json.md).
+enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
+                                    const struct orl_scene *scene, const char *device,
+                                    const struct orl_trim *trim) ORL_CHECK_RESULT;
+// Writes DIR/waterfall.svg (bytes on the device after each step) and DIR/curve.svg (loss against
+// bytes, beside random removal).
+enum orl_result orl_trim_write_plots(const struct orl_log *log, const char *dir,
+                                     const struct orl_scene *scene,
+                                     const struct orl_trim *trim) ORL_CHECK_RESULT;
+
+#endif

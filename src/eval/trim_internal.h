@@ -1,0 +1,75 @@
+// Private to oriel trim: the state of a trimmed scene, and the models made from states.
+#ifndef ORL_EVAL_TRIM_INTERNAL_H
+#define ORL_EVAL_TRIM_INTERNAL_H
+
+#include "eval/judges.h"
+#include "eval/trim.h"
+#include "eval/trim_points.h"
+
+// Levels of the parts, from the whole scene on.
+enum { TRIM_POINT_LEVELS = 9, TRIM_SCALE_LEVELS = 3, TRIM_QUALITY_LEVELS = 4,
+       TRIM_DEPTH_LEVELS = 5 };
+extern const double orl_trim_point_shares[TRIM_POINT_LEVELS];
+extern const double orl_trim_scales[TRIM_SCALE_LEVELS];
+extern const int orl_trim_qualities[TRIM_QUALITY_LEVELS]; // of JPEG; 0: the file as it is
+
+// What is left of a scene.
+struct trim_state {
+    size_t points, scale, quality, depth; // levels
+    enum orl_textures textures;           // AUTO: as in the scene
+    struct orl_render_params render;
+    bool *removed; // owned, per photograph
+    size_t removed_count;
+};
+
+// Everything that models are made from.
+struct trim_source {
+    struct orl_gpu *gpu;
+    const struct orl_log *log;
+    const struct orl_scene *scene;
+    struct orl_point_ranking ranking;
+    const char *work; // folder for photographs on trial
+    bool rewritable;  // photographs may be written anew: nothing else has their pixels
+};
+
+// A scene in a state, ready to render.
+struct trim_model {
+    struct orl_scene scene; // shares what does not change with the source's scene
+    struct orl_points points;
+    char *dir; // owned
+    struct orl_renderer *renderer;
+    size_t point_bytes, photo_bytes; // on the device, with all photographs
+};
+
+enum orl_result orl_trim_state_copy(const struct orl_log *log, const struct trim_state *from,
+                                    size_t photo_count,
+                                    struct trim_state *to) ORL_CHECK_RESULT;
+enum orl_result orl_trim_model_open(const struct trim_source *source,
+                                    const struct trim_state *state,
+                                    struct trim_model **out) ORL_CHECK_RESULT;
+// The same with the first `count` points of `order`, as they are.
+enum orl_result orl_trim_model_open_with(const struct trim_source *source,
+                                         const struct trim_state *state, const uint32_t *order,
+                                         size_t count, struct trim_model **out) ORL_CHECK_RESULT;
+void orl_trim_model_close(struct trim_model **model);
+// Bytes of points and photographs on the device, without those in use only while a photograph is
+// loaded.
+void orl_trim_count_bytes(const struct orl_gpu *gpu, size_t *points, size_t *photos);
+// Makes the photographs of these levels in the work folder, unless they are there.
+enum orl_result orl_trim_make_photos(const struct trim_source *source, size_t scale,
+                                     size_t quality, char **dir) ORL_CHECK_RESULT;
+// Bytes of files that the photographs (not held out, not removed) take in DIR/images.
+size_t orl_trim_photo_file_bytes(const struct trim_source *source, const char *dir,
+                                 const bool *removed);
+// Bytes of the scene's points, cameras, photographs that are not held out and their masks, on disk.
+size_t orl_trim_scene_file_bytes(const struct orl_log *log, const struct orl_scene *scene);
+// Writes the scene of this state to the folder `out`, drawn by the choice's method.
+enum orl_result orl_trim_write_scene(const struct trim_source *source,
+                                     const struct trim_state *state,
+                                     const struct orl_choice *choice,
+                                     const char *out) ORL_CHECK_RESULT;
+// How the scene is drawn in this state. Texts are static or the source scene's.
+struct orl_scene_defaults orl_trim_defaults(const struct trim_source *source,
+                                            const struct trim_state *state);
+
+#endif

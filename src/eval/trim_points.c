@@ -1,0 +1,308 @@
+#include "eval/trim_points.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "eval/judges.h"
+#include "render/contribution.h"
+#include "scene/nearest_points.h"
+#include "scene/point_radii.h"
+
+// Sides of the pictures' pixels, in pixels of full resolution.
+static const int pixel_sides[] = {1, 2, 3, 4, 6, 8, 12, 16};
+// Points that are no farther behind the nearest one, as a share of depth, are of one surface.
+static const float surface_depth = 0.01f;
+// Views are drawn at most so large.
+enum { SIDE_MAX = 1024 };
+// A thinned cloud's radii grow with its spacing, by no more than this factor times the mean growth.
+static const double growth_most = 1.5;
+
+// --- the views ---
+
+struct views {
+    struct orl_view *items; // owned
+    size_t count;
+};
+
+static struct orl_view drawn_size(const struct orl_view *view)
+{
+    struct orl_view small = *view;
+    const struct orl_camera *c = &view->camera;
+    int longer = c->width > c->height ? c->width : c->height;
+    if (longer > SIDE_MAX)
+        small.camera = orl_camera_resized(c, c->width * SIDE_MAX / longer,
+                                          c->height * SIDE_MAX / longer);
+    return small;
+}
+
+// The other training photograph that is most nearly there; photo_count: there is none.
+static size_t neighbour(const struct orl_scene *scene, size_t photo)
+{
+    double least = INFINITY, distance, angle;
+    size_t found = scene->photo_count;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        if (i == photo || scene->photos[i].test)
+            continue;
+        orl_judges_apart(scene, i, photo, &distance, &angle);
+        if (distance + angle < least) {
+            least = distance + angle;
+            found = i;
+        }
+    }
+    return found;
+}
+
+static enum orl_result choose_views(const struct orl_log *log, const struct orl_scene *scene,
+                                    size_t most, struct views *views)
+{
+    size_t train = 0, at = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        train += !scene->photos[i].test;
+    size_t wanted = train < (most + 1) / 2 ? train : (most + 1) / 2;
+    views->count = 0;
+    views->items = orl_array(log, 2 * wanted, sizeof *views->items);
+    if (!views->items)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        if (scene->photos[i].test)
+            continue;
+        bool chosen = (at + 1) * wanted / train > at * wanted / train;
+        at++;
+        if (!chosen)
+            continue;
+        struct orl_view view = drawn_size(&scene->photos[i].view);
+        size_t other = neighbour(scene, i);
+        views->items[views->count++] = view;
+        if (other < scene->photo_count)
+            views->items[views->count++] =
+                orl_view_interpolate(&view, &scene->photos[other].view, 0.5);
+    }
+    return ORL_OK;
+}
+
+// --- the ranking ---
+
+struct ranker {
+    struct orl_nearest_points *drawn; // owned, one for each view
+    uint8_t *level;                   // owned, per point: 1 + the last of pixel_sides; 0: never
+    struct orl_point_ranking *ranking;
+};
+
+static enum orl_result draw_views(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                  const struct views *views, const struct orl_progress *progress,
+                                  struct ranker *r)
+{
+    struct orl_contribution *contribution = NULL;
+    r->drawn = orl_array(orl_gpu_log(gpu), views->count, sizeof *r->drawn);
+    enum orl_result result = r->drawn ? orl_contribution_create(gpu, scene, &contribution)
+                                      : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < views->count; i++) {
+        struct orl_nearest_points *drawn = &r->drawn[i];
+        orl_progress_report(progress, "points", (double)i, (double)views->count, NULL);
+        result = orl_progress_cancelled(progress)
+                     ? ORL_ERR_CANCELLED
+                     : orl_contribution_draw(contribution, &views->items[i], drawn);
+        for (size_t k = 0;
+             result == ORL_OK && k < (size_t)drawn->width * (size_t)drawn->height; k++)
+            if (drawn->point[k] != UINT32_MAX)
+                r->ranking->pixels[drawn->point[k]]++;
+    }
+    orl_contribution_destroy(&contribution);
+    return result;
+}
+
+// Chooses a point for the pixel of side `side` whose first small pixel is at (x, y).
+static uint32_t choose(const struct ranker *r, const struct orl_nearest_points *drawn, int x, int y,
+                       int side)
+{
+    float nearest = INFINITY;
+    uint32_t chosen = UINT32_MAX;
+    int right = x + side < drawn->width ? x + side : drawn->width;
+    int bottom = y + side < drawn->height ? y + side : drawn->height;
+    for (int v = y; v < bottom; v++)
+        for (int u = x; u < right; u++)
+            nearest = fminf(nearest, drawn->depth[(size_t)v * (size_t)drawn->width + (size_t)u]);
+    for (int v = y; v < bottom; v++)
+        for (int u = x; u < right; u++) {
+            size_t at = (size_t)v * (size_t)drawn->width + (size_t)u;
+            uint32_t point = drawn->point[at];
+            if (point == UINT32_MAX || drawn->depth[at] > nearest * (1 + surface_depth))
+                continue;
+            const uint32_t *pixels = r->ranking->pixels;
+            if (chosen == UINT32_MAX || pixels[point] > pixels[chosen] ||
+                (point < chosen && pixels[point] == pixels[chosen]))
+                chosen = point;
+        }
+    return chosen;
+}
+
+static void set_levels(const struct ranker *r, const struct orl_nearest_points *drawn)
+{
+    for (size_t k = 0; k < ORL_COUNT(pixel_sides); k++)
+        for (int y = 0; y < drawn->height; y += pixel_sides[k])
+            for (int x = 0; x < drawn->width; x += pixel_sides[k]) {
+                uint32_t point = choose(r, drawn, x, y, pixel_sides[k]);
+                if (point != UINT32_MAX && r->level[point] < k + 1)
+                    r->level[point] = (uint8_t)(k + 1);
+            }
+}
+
+struct rank {
+    uint32_t level, pixels, point;
+};
+
+static int compare_ranks(const void *a, const void *b)
+{
+    const struct rank *x = a, *y = b;
+    if (x->level != y->level)
+        return x->level > y->level ? -1 : 1;
+    if (x->pixels != y->pixels)
+        return x->pixels > y->pixels ? -1 : 1;
+    return (x->point > y->point) - (x->point < y->point);
+}
+
+static enum orl_result sort(const struct orl_log *log, const struct ranker *r)
+{
+    struct orl_point_ranking *ranking = r->ranking;
+    struct rank *ranks = orl_array(log, ranking->count, sizeof *ranks);
+    if (!ranks)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < ranking->count; i++)
+        ranks[i] = (struct rank){r->level[i], ranking->pixels[i], (uint32_t)i};
+    qsort(ranks, ranking->count, sizeof *ranks, compare_ranks);
+    for (size_t i = 0; i < ranking->count; i++)
+        ranking->order[i] = ranks[i].point;
+    free(ranks);
+    return ORL_OK;
+}
+
+enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                       size_t most_views, const struct orl_progress *progress,
+                                       struct orl_point_ranking *ranking)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    struct views views = {0};
+    struct ranker r = {.ranking = ranking};
+    size_t count = scene->points.count;
+    *ranking = (struct orl_point_ranking){.count = count};
+    ranking->order = orl_array(log, count, sizeof *ranking->order);
+    ranking->pixels = orl_array(log, count, sizeof *ranking->pixels);
+    r.level = orl_array(log, count, sizeof *r.level);
+    enum orl_result result =
+        ranking->order && ranking->pixels && r.level ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = choose_views(log, scene, most_views, &views);
+    if (result == ORL_OK)
+        result = draw_views(gpu, scene, &views, progress, &r);
+    for (size_t i = 0; result == ORL_OK && i < views.count; i++)
+        set_levels(&r, &r.drawn[i]);
+    if (result == ORL_OK)
+        result = sort(log, &r);
+    for (size_t i = 0; r.drawn && i < views.count; i++)
+        orl_nearest_points_finish(&r.drawn[i]);
+    free(r.drawn);
+    free(r.level);
+    free(views.items);
+    if (result != ORL_OK)
+        orl_point_ranking_finish(ranking);
+    return result;
+}
+
+void orl_point_ranking_finish(struct orl_point_ranking *ranking)
+{
+    free(ranking->order);
+    free(ranking->pixels);
+    memset(ranking, 0, sizeof *ranking);
+}
+
+// --- the smaller cloud ---
+
+// What a point stands for: sums over the points nearest to it.
+struct sums {
+    double along, normal[3], color[3], count;
+};
+
+// Adds point i of `from` to the sums of point k of `to`, unless it is of another surface.
+static void add_point(const struct orl_points *from, size_t i, const struct orl_points *to,
+                      size_t k, struct sums *sums)
+{
+    double along = 0, cosine = 0;
+    for (int c = 0; c < 3; c++) {
+        double n = (double)to->normal[k][c];
+        along += n * ((double)from->position[i][c] - (double)to->position[k][c]);
+        cosine += n * (double)from->normal[i][c];
+    }
+    if (cosine < 0.5 || fabs(along) > (double)to->radius[k])
+        return;
+    sums->along += along;
+    for (int c = 0; c < 3; c++) {
+        sums->normal[c] += (double)from->normal[i][c];
+        sums->color[c] += from->color[i][c];
+    }
+    sums->count++;
+}
+
+static void take_mean(const struct sums *sums, struct orl_points *to, size_t k)
+{
+    double length = 0;
+    if (sums->count == 0)
+        return;
+    for (int c = 0; c < 3; c++)
+        length += sums->normal[c] * sums->normal[c];
+    length = sqrt(length);
+    for (int c = 0; c < 3; c++) {
+        to->position[k][c] += (float)(sums->along / sums->count) * to->normal[k][c];
+        to->color[k][c] = (uint8_t)(sums->color[c] / sums->count + 0.5);
+    }
+    for (int c = 0; c < 3 && length > 0; c++)
+        to->normal[k][c] = (float)(sums->normal[c] / length);
+}
+
+static enum orl_result merge_points(const struct orl_log *log, const struct orl_points *from,
+                                    struct orl_points *to)
+{
+    int *found = orl_array(log, from->count, sizeof *found);
+    float *dist2 = orl_array(log, from->count, sizeof *dist2);
+    struct sums *sums = orl_array(log, to->count, sizeof *sums);
+    enum orl_result result = found && dist2 && sums ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_points_nearest(log, to, from, found, dist2);
+    for (size_t i = 0; result == ORL_OK && i < from->count; i++) {
+        float room = to->radius[found[i]];
+        if (dist2[i] <= room * room)
+            add_point(from, i, to, (size_t)found[i], &sums[found[i]]);
+    }
+    for (size_t k = 0; result == ORL_OK && k < to->count; k++)
+        take_mean(&sums[k], to, k);
+    free(found);
+    free(dist2);
+    free(sums);
+    return result;
+}
+
+enum orl_result orl_points_thin_out(const struct orl_log *log, const struct orl_points *from,
+                                    const uint32_t *order, size_t count, bool merge,
+                                    struct orl_points *to)
+{
+    enum orl_result result = orl_points_init(log, to, count);
+    if (result != ORL_OK || !count)
+        return result;
+    for (size_t k = 0; k < count; k++)
+        orl_points_copy(from, order[k], to, k);
+    if (count == from->count)
+        return ORL_OK;
+    // Radii that are unknown are those of a cloud of this density.
+    float most = (float)(growth_most * sqrt((double)from->count / (double)count));
+    result = orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS}, NULL,
+                                  0, to);
+    for (size_t k = 0; result == ORL_OK && k < count; k++)
+        to->radius[k] = fminf(fmaxf(to->radius[k], from->radius[order[k]]),
+                              most * from->radius[order[k]]);
+    if (result == ORL_OK && merge)
+        result = merge_points(log, from, to);
+    if (result != ORL_OK)
+        orl_points_finish(to);
+    return result;
+}

@@ -1,0 +1,97 @@
+// Private to oriel trim: the search through states.
+#ifndef ORL_EVAL_TRIM_SEARCH_H
+#define ORL_EVAL_TRIM_SEARCH_H
+
+#include "eval/trim_internal.h"
+
+enum { TRIM_NEAR = 4, TRIM_BETWEEN = 3, TRIM_VIEWS_MAX = 64 };
+
+// What was measured of a step.
+struct trim_measured {
+    double loss_db, ms;
+    double between_db; // of a photograph: the greatest loss of views beside it
+    size_t view_count;
+    size_t views[TRIM_VIEWS_MAX]; // indices of targets
+    double db[TRIM_VIEWS_MAX];    // their PSNR
+};
+
+// A kind of step that can be taken next.
+struct trim_move {
+    enum orl_trim_part part;
+    size_t index;     // of a photograph, or of a row of options
+    double ratio;     // what it promises: saved shares per dB; INFINITY: not known yet
+    bool tried;
+    bool dead;    // it cannot be taken any more: it saves nothing, or has been taken
+    bool blocked; // it loses too much, unless other steps gain
+    size_t version;   // of the search's state that it was measured in
+    struct trim_measured measured;
+};
+
+// A step that was taken: the state before it, which is owned.
+struct trim_past {
+    struct trim_state state;
+    size_t step; // index of the report's step
+};
+
+struct trim_search {
+    struct trim_source source;
+    const struct orl_trim_params *params;
+    struct orl_trim *trim;
+    const char *part; // the folder that becomes params->out when it is whole
+    struct orl_judges targets; // all training photographs
+    size_t judges[TRIM_VIEWS_MAX], judge_count; // targets that judge what changes all views
+    size_t (*nearest)[TRIM_NEAR]; // owned, per target: the others that stand nearest
+    size_t near_count;
+    double *first_db, *now_db; // owned, per target: PSNR of the whole scene and in the state
+                               // reached; NAN: not known
+    double *lost_db;           // owned, per target: estimated loss so far
+    struct trim_state first_state, state;
+    struct trim_model *model;  // of `state`
+    size_t version;            // counts the steps taken
+    double bytes, file_bytes, ms, total_loss_db; // of `state`
+    double first_bytes, first_file_bytes, first_ms;
+    struct trim_move *moves; // owned
+    size_t move_count;
+    struct trim_past *history; // owned
+    size_t history_count, history_capacity;
+    double start_s;
+};
+
+// --- trim_moves.c ---
+
+// Lists the moves that the scene and the parameters allow.
+enum orl_result orl_trim_plan(struct trim_search *s) ORL_CHECK_RESULT;
+bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *move);
+// Takes the move's next step in `state`, and describes it.
+void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
+                    struct trim_state *state, char what[96]);
+
+// --- trim_trial.c ---
+
+// Figures of one target in a state, the target being left out; of trials PSNR alone.
+enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
+                                      const struct trim_state *state, size_t view,
+                                      bool psnr_alone,
+                                      struct orl_metrics *metrics) ORL_CHECK_RESULT;
+// The least of a few frames, in ms: see orl_trim_run.
+enum orl_result orl_trim_frame_time(struct trim_search *s, struct orl_renderer *renderer,
+                                    const struct trim_state *state, double *ms) ORL_CHECK_RESULT;
+double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
+                            const struct trim_state *state);
+// Measures a move, and takes it when it is allowed and no other promises more. The search must not
+// be within its budget yet.
+enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move) ORL_CHECK_RESULT;
+// Takes other options for the method if all targets together do not lose by it. Nothing may have
+// been taken before.
+enum orl_result orl_trim_take_options(struct trim_search *s,
+                                      const struct orl_render_params *render) ORL_CHECK_RESULT;
+bool orl_trim_has_budget(const struct trim_search *s);
+// The move that promises most, other than `except`; NULL: none is left.
+struct trim_move *orl_trim_best_move(const struct trim_search *s, const struct trim_move *except);
+
+// --- trim_random.c ---
+
+// Measures the scene with points and photographs removed at random.
+enum orl_result orl_trim_compare_random(struct trim_search *s) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,375 @@
+// Trials of single steps: what a step costs and saves, and whether it is taken.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/process.h"
+#include "eval/trim_search.h"
+
+enum { FRAMES_TIMED = 3 };
+// Losses below this are noise. Time and files decide between steps that save as many bytes on the
+// device: a time is measured with noise, and a pass that goes would use up the tolerance.
+static const double least_loss_db = 0.002, weight_of_time = 0.03, weight_of_files = 0.03;
+// Smaller differences of a frame's time are noise: a share of it, and milliseconds.
+static const double least_time = 0.1, least_ms = 3;
+// A frame may not take longer than this factor times the first. While it takes longer at all, time
+// weighs as much as bytes.
+static const double slower_most = 1.6;
+// A step is taken when no other promises more than its own gain divided by this.
+static const double good_enough = 0.8;
+
+// A step on trial.
+struct trial {
+    struct trim_move *move;
+    char what[96];
+    struct trim_state state;
+    struct trim_model *own; // NULL: the search's model serves
+    double bytes, file_bytes;
+};
+
+// --- figures of a state ---
+
+enum orl_result orl_trim_frame_time(struct trim_search *s, struct orl_renderer *renderer,
+                                    const struct trim_state *state, double *ms)
+{
+    struct orl_render_params render = state->render;
+    bool software = orl_gpu_caps(s->source.gpu)->software;
+    render.leave_out |= ORL_LAYER_NORMAL;
+    *ms = INFINITY;
+    for (int i = 0; i < FRAMES_TIMED; i++) {
+        double start = software ? orl_cpu_time_s() : orl_time_s();
+        enum orl_result result =
+            orl_renderer_draw(renderer, &s->targets.views[s->judges[0]].view, &render,
+                              state->removed, NULL);
+        if (result != ORL_OK)
+            return result;
+        double end = software ? orl_cpu_time_s() : orl_time_s();
+        *ms = fmin(*ms, 1e3 * (end - start));
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
+                                      const struct trim_state *state, size_t view,
+                                      bool psnr_alone, struct orl_metrics *metrics)
+{
+    memset(metrics, 0, sizeof *metrics);
+    if (orl_progress_cancelled(s->params->progress))
+        return ORL_ERR_CANCELLED;
+    return orl_judges_compare(s->source.log, renderer, &s->targets, view, &state->render,
+                              state->removed, psnr_alone, metrics);
+}
+
+double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
+                            const struct trim_state *state)
+{
+    double left = (double)(s->targets.count - state->removed_count) / (double)s->targets.count;
+    return (double)model->point_bytes + (double)model->photo_bytes * left;
+}
+
+// --- measuring a step ---
+
+static enum orl_result begin(struct trim_search *s, struct trim_move *move, struct trial *t)
+{
+    bool shares = move->part == ORL_TRIM_PHOTOGRAPH || move->part == ORL_TRIM_OPTION;
+    *t = (struct trial){.move = move};
+    enum orl_result result =
+        orl_trim_state_copy(s->source.log, &s->state, s->source.scene->photo_count, &t->state);
+    if (result == ORL_OK)
+        orl_trim_apply(s, move, &t->state, t->what);
+    if (result == ORL_OK && !shares)
+        result = orl_trim_model_open(&s->source, &t->state, &t->own);
+    if (result != ORL_OK)
+        return result;
+    const struct trim_model *model = shares ? s->model : t->own;
+    t->bytes = orl_trim_model_bytes(s, model, &t->state);
+    t->file_bytes = (double)orl_trim_photo_file_bytes(&s->source, model->scene.dir,
+                                                      t->state.removed);
+    return ORL_OK;
+}
+
+static void end(struct trial *t)
+{
+    orl_trim_model_close(&t->own);
+    free(t->state.removed);
+}
+
+static bool is_local(const struct trial *t)
+{
+    return t->move->part == ORL_TRIM_PHOTOGRAPH;
+}
+
+static enum orl_result measure_one(struct trim_search *s, const struct trial *t, size_t view,
+                                   double *db)
+{
+    struct orl_metrics now, then;
+    enum orl_result result = ORL_OK;
+    if (isnan(s->now_db[view])) {
+        result = orl_trim_measure_view(s, s->model->renderer, &s->state, view, true, &now);
+        s->now_db[view] = result == ORL_OK ? now.psnr_db : NAN;
+    }
+    if (result == ORL_OK)
+        result = orl_trim_measure_view(s, t->own ? t->own->renderer : s->model->renderer,
+                                       &t->state, view, true, &then);
+    if (result == ORL_OK)
+        *db = then.psnr_db;
+    return result;
+}
+
+static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *view,
+                                 const struct trim_state *state, const bool *removed,
+                                 struct orl_image *picture)
+{
+    struct orl_frame frame = {0};
+    struct orl_render_params render = state->render;
+    render.leave_out = ~0u;
+    enum orl_result result =
+        orl_renderer_draw(s->model->renderer, view, &render, removed, &frame);
+    if (result == ORL_OK)
+        result = orl_tone_srgb(s->source.log, &frame.color, picture);
+    orl_frame_finish(&frame);
+    return result;
+}
+
+// How far a view half way to a neighbour changes when photographs go, in dB of PSNR: their squared
+// difference adds to the squared error that a rendering there has anyway, which is taken to be that
+// of the photograph's own view.
+static enum orl_result between_loss(struct trim_search *s, const struct trial *t, size_t other,
+                                    double *loss_db)
+{
+    const struct orl_heldout *at = &s->targets.views[t->move->index];
+    const struct orl_view view =
+        orl_view_interpolate(&at->view, &s->targets.views[other].view, 0.5);
+    struct orl_image with = {0}, without = {0};
+    enum orl_result result =
+        draw_srgb(s, &view, &s->state, s->first_state.removed, &with);
+    if (result == ORL_OK)
+        result = draw_srgb(s, &view, &t->state, t->state.removed, &without);
+    if (result == ORL_OK) {
+        double change_db = orl_metrics_psnr_db(&with, &without);
+        *loss_db =
+            10 * log10(1 + pow(10, 0.1 * (s->first_db[t->move->index] - change_db)));
+    }
+    orl_image_finish(&with);
+    orl_image_finish(&without);
+    return result;
+}
+
+// No training photograph judges the place of a photograph that goes: that it is left out there is a
+// matter of course. The views beside it do, compared with renderings from all photographs.
+static enum orl_result measure_between(struct trim_search *s, const struct trial *t, double *mean)
+{
+    struct trim_measured *m = &t->move->measured;
+    size_t count = s->near_count < TRIM_BETWEEN ? s->near_count : TRIM_BETWEEN;
+    enum orl_result result = ORL_OK;
+    m->between_db = *mean = 0;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        double loss = 0;
+        result = between_loss(s, t, s->nearest[t->move->index][i], &loss);
+        m->between_db = fmax(m->between_db, loss);
+        *mean += loss / (double)count;
+    }
+    return result;
+}
+
+static enum orl_result measure(struct trim_search *s, struct trial *t)
+{
+    struct trim_measured *m = &t->move->measured;
+    enum orl_result result = ORL_OK;
+    double sum = 0;
+    if (t->move->tried && t->move->version == s->version)
+        return ORL_OK; // nothing has changed since
+    if (is_local(t))
+        result = measure_between(s, t, &sum);
+    m->view_count = is_local(t) ? s->near_count : s->judge_count;
+    if (m->between_db > s->params->worst_db && !orl_trim_has_budget(s))
+        m->view_count = 0; // it stays anyway
+    for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
+        m->views[i] = is_local(t) ? s->nearest[t->move->index][i] : s->judges[i];
+        result = measure_one(s, t, m->views[i], &m->db[i]);
+        if (result == ORL_OK)
+            sum += s->now_db[m->views[i]] - m->db[i];
+    }
+    m->loss_db = sum / (double)(is_local(t) ? s->targets.count : s->judge_count);
+    m->ms = s->ms;
+    if (result == ORL_OK && !is_local(t) && t->move->part != ORL_TRIM_QUALITY)
+        result = orl_trim_frame_time(s, t->own ? t->own->renderer : s->model->renderer,
+                                     &t->state, &m->ms);
+    t->move->version = s->version;
+    return result;
+}
+
+// --- judging it ---
+
+// Loss of a view by the step: measured, or the mean where the step changes all views.
+static double view_loss(const struct trim_search *s, const struct trial *t, size_t view,
+                        double *db)
+{
+    const struct trim_measured *m = &t->move->measured;
+    *db = is_local(t) ? s->now_db[view] : NAN;
+    for (size_t k = 0; k < m->view_count; k++)
+        if (m->views[k] == view) {
+            *db = m->db[k];
+            return s->now_db[view] - m->db[k];
+        }
+    return is_local(t) ? 0 : m->loss_db;
+}
+
+bool orl_trim_has_budget(const struct trim_search *s)
+{
+    return s->params->max_bytes || s->params->max_frame_ms > 0;
+}
+
+static bool is_allowed(const struct trim_search *s, const struct trial *t)
+{
+    const struct trim_measured *m = &t->move->measured;
+    double worst = m->between_db, db;
+    if (m->ms > fmax(slower_most * s->first_ms + least_ms, s->ms))
+        return false;
+    if (orl_trim_has_budget(s))
+        return true;
+    for (size_t i = 0; i < s->targets.count; i++)
+        worst = fmax(worst, s->lost_db[i] + view_loss(s, t, i, &db));
+    return s->total_loss_db + m->loss_db <= s->params->tolerance_db &&
+           worst <= s->params->worst_db;
+}
+
+// Shares of what is saved, weighted.
+static double gain_of(const struct trim_search *s, const struct trial *t)
+{
+    double bytes = (s->bytes - t->bytes) / s->first_bytes;
+    double files = (s->file_bytes - t->file_bytes) / s->first_file_bytes;
+    double time = (s->ms - t->move->measured.ms) / s->first_ms;
+    if (fabs(time) < least_time || fabs(time) * s->first_ms < least_ms)
+        time = 0;
+    if (s->params->max_frame_ms > 0 && !s->params->max_bytes)
+        return time;
+    double weight = s->ms > s->first_ms ? 1 : weight_of_time;
+    return bytes + weight_of_files * files + weight * time;
+}
+
+struct trim_move *orl_trim_best_move(const struct trim_search *s, const struct trim_move *except)
+{
+    struct trim_move *best = NULL;
+    for (size_t i = 0; i < s->move_count; i++) {
+        struct trim_move *m = &s->moves[i];
+        if (m != except && !m->dead && !m->blocked && (!best || m->ratio > best->ratio))
+            best = m;
+    }
+    return best;
+}
+
+// --- taking it ---
+
+static enum orl_result note_step(struct trim_search *s, const struct trial *t, bool taken)
+{
+    struct orl_trim *trim = s->trim;
+    const struct trim_measured *m = &t->move->measured;
+    enum orl_result result = orl_grow(s->source.log, (void **)&trim->steps, &trim->step_capacity,
+                                      trim->step_count + 1, sizeof *trim->steps);
+    if (result != ORL_OK)
+        return result;
+    struct orl_trim_step *step = &trim->steps[trim->step_count++];
+    *step = (struct orl_trim_step){
+        .part = t->move->part, .loss_db = m->loss_db, .saved_bytes = s->bytes - t->bytes,
+        .saved_ms = s->ms - m->ms, .saved_file_bytes = s->file_bytes - t->file_bytes,
+        .first = !t->move->tried, .taken = taken, .bytes = t->bytes, .ms = m->ms,
+        .total_loss_db = s->total_loss_db + m->loss_db};
+    memcpy(step->what, t->what, sizeof step->what);
+    if (s->params->on_step)
+        s->params->on_step(s->params->priv, step);
+    return ORL_OK;
+}
+
+static enum orl_result take(struct trim_search *s, struct trial *t)
+{
+    enum orl_result result = orl_grow(s->source.log, (void **)&s->history, &s->history_capacity,
+                                      s->history_count + 1, sizeof *s->history);
+    if (result != ORL_OK)
+        return result;
+    s->history[s->history_count++] = (struct trim_past){s->state, s->trim->step_count - 1};
+    for (size_t i = 0; i < s->targets.count; i++) {
+        double db;
+        s->lost_db[i] += view_loss(s, t, i, &db);
+        s->now_db[i] = db;
+    }
+    s->total_loss_db += t->move->measured.loss_db;
+    s->bytes = t->bytes;
+    s->file_bytes = t->file_bytes;
+    s->ms = t->move->measured.ms;
+    s->state = t->state;
+    t->state.removed = NULL;
+    if (t->own) {
+        orl_trim_model_close(&s->model);
+        s->model = t->own;
+        t->own = NULL;
+    }
+    s->version++;
+    return ORL_OK;
+}
+
+enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
+{
+    struct trial t;
+    if (!orl_trim_is_possible(s, move)) {
+        move->dead = true;
+        return ORL_OK;
+    }
+    enum orl_result result = begin(s, move, &t);
+    if (result == ORL_OK)
+        result = measure(s, &t);
+    if (result != ORL_OK) {
+        end(&t);
+        return result;
+    }
+    double gain = gain_of(s, &t);
+    bool allowed = gain > 0 && is_allowed(s, &t);
+    move->ratio = gain / fmax(move->measured.loss_db, least_loss_db);
+    const struct trim_move *other = orl_trim_best_move(s, move);
+    bool taken = allowed && (!other || good_enough * other->ratio <= move->ratio);
+    if (taken || !move->tried)
+        result = note_step(s, &t, taken);
+    move->tried = true;
+    move->dead = gain <= 0;
+    move->blocked = !allowed;
+    if (result == ORL_OK && taken) {
+        double loss_db = move->measured.loss_db;
+        result = take(s, &t);
+        for (size_t i = 0; loss_db < 0 && i < s->move_count; i++)
+            s->moves[i].blocked = false; // there is room again
+        // The next level may be worth half as much; a photograph or a pass goes only once.
+        move->ratio *= 0.5;
+        move->dead = move->part == ORL_TRIM_PHOTOGRAPH || move->part == ORL_TRIM_OPTION;
+    }
+    end(&t);
+    return result;
+}
+
+enum orl_result orl_trim_take_options(struct trim_search *s,
+                                      const struct orl_render_params *render)
+{
+    struct trim_move move = {.part = ORL_TRIM_OPTION, .tried = true};
+    struct trial t = {.move = &move, .bytes = s->bytes, .file_bytes = s->file_bytes};
+    struct trim_measured *m = &move.measured;
+    snprintf(t.what, sizeof t.what, "tuned options");
+    enum orl_result result =
+        orl_trim_state_copy(s->source.log, &s->state, s->source.scene->photo_count, &t.state);
+    t.state.render = *render;
+    m->view_count = s->targets.count < TRIM_VIEWS_MAX ? s->targets.count : TRIM_VIEWS_MAX;
+    for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
+        m->views[i] = i * s->targets.count / m->view_count;
+        result = measure_one(s, &t, m->views[i], &m->db[i]);
+        m->loss_db += (s->now_db[m->views[i]] - m->db[i]) / (double)m->view_count;
+    }
+    if (result == ORL_OK)
+        result = orl_trim_frame_time(s, s->model->renderer, &t.state, &m->ms);
+    bool taken = m->loss_db < 0 && is_allowed(s, &t);
+    if (result == ORL_OK)
+        result = note_step(s, &t, taken);
+    if (result == ORL_OK && taken)
+        result = take(s, &t);
+    end(&t);
+    return result;
+}

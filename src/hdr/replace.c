@@ -1,0 +1,170 @@
+#include "hdr/replace.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "hdr/internal.h"
+#include "io/picture.h"
+#include "scene/linear.h"
+#include "scene/subset.h"
+
+enum { JPEG_QUALITY = 97 };
+
+struct replacement {
+    const struct orl_log *log;
+    struct orl_hdr *hdr;
+    const struct orl_scene *scene;
+    const struct orl_replace_params *params;
+    const struct orl_progress *progress;
+    char *dir;      // the unfinished scene
+    bool *keep;     // per photograph
+    size_t count;   // photographs to be replaced
+    json_t *manifest;
+};
+
+static bool is_replaced(const struct replacement *r, size_t photo)
+{
+    const struct orl_photo *p = &r->scene->photos[photo];
+    return !p->test && p->series == r->params->series;
+}
+
+// --- pictures ---
+
+static bool is_jpeg(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot && (strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
+}
+
+static enum orl_result write_picture(const struct replacement *r, const char *name,
+                                     const struct orl_image *light)
+{
+    struct orl_image picture = {0};
+    char *path = orl_format(r->log, "%s/images/%s", r->dir, name);
+    enum orl_result result = path ? orl_file_make_folder(r->log, path) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_tone_apply(r->log, light, &r->params->tone, &picture);
+    if (result == ORL_OK)
+        result = is_jpeg(name) ? orl_jpeg_write(r->log, path, &picture, JPEG_QUALITY, NULL)
+                               : orl_png_write(r->log, path, &picture);
+    orl_image_finish(&picture);
+    free(path);
+    return result;
+}
+
+static enum orl_result write_light(const struct replacement *r, const char *name,
+                                   const struct orl_image *light)
+{
+    char *path = orl_format(r->log, "%s/images_linear/%s.exr", r->dir, name);
+    enum orl_result result = path ? orl_file_make_folder(r->log, path) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_linear_write(r->log, path, light);
+    free(path);
+    return result;
+}
+
+static enum orl_result replace_photo(const struct replacement *r, size_t photo)
+{
+    const struct orl_photo *p = &r->scene->photos[photo];
+    struct orl_frame frame = {0};
+    enum orl_result result = orl_hdr_draw(r->hdr, &p->view, r->params->skip, &frame);
+    if (result == ORL_OK)
+        result = write_picture(r, p->name, &frame.color);
+    if (result == ORL_OK)
+        result = write_light(r, p->name, &frame.color);
+    if (result == ORL_OK)
+        result = orl_subset_copy_masks(r->log, r->scene, photo, r->dir);
+    orl_frame_finish(&frame);
+    return result;
+}
+
+static enum orl_result write_photos(const struct replacement *r)
+{
+    enum orl_result result = ORL_OK;
+    size_t done = 0;
+    for (size_t i = 0; result == ORL_OK && i < r->scene->photo_count; i++) {
+        if (orl_progress_cancelled(r->progress))
+            return ORL_ERR_CANCELLED;
+        if (is_replaced(r, i)) {
+            result = replace_photo(r, i);
+            orl_progress_report(r->progress, "hdr", (double)++done, (double)r->count,
+                                r->scene->photos[i].name);
+        } else if (r->keep[i]) {
+            result = orl_subset_copy_photo(r->log, r->scene, i, r->dir);
+        }
+    }
+    return result;
+}
+
+// --- the manifest ---
+
+static void describe_photo(json_t *entry)
+{
+    json_object_set_new(entry, "exposure_ev", json_real(0));
+    json_object_set_new(entry, "gain", json_pack("[i, i, i]", 1, 1, 1));
+    json_object_set_new(entry, "radiance", json_true());
+    json_object_del(entry, "vignette");
+    json_object_del(entry, "response");
+}
+
+static enum orl_result write_manifest(const struct replacement *r)
+{
+    json_t *list = json_object_get(r->manifest, "photographs"), *entry;
+    size_t i;
+    json_array_foreach(list, i, entry)
+        if (is_replaced(r, (size_t)orl_scene_find_photo(r->scene, orl_json_text(entry, "name"))))
+            describe_photo(entry);
+    json_object_set_new(r->manifest, "replaced",
+                        json_pack("{s:i, s:I, s:s, s:s}", "series", r->params->series,
+                                  "photographs", (json_int_t)r->count, "merge",
+                                  orl_hdr_merge_names[r->hdr->params.merge], "method",
+                                  r->params->method));
+    char *path = orl_path_join(r->log, r->dir, "scene.json");
+    enum orl_result result = path ? orl_json_write(r->log, path, r->manifest) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static enum orl_result choose(struct replacement *r)
+{
+    r->keep = orl_array(r->log, r->scene->photo_count, sizeof *r->keep);
+    if (!r->keep)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < r->scene->photo_count; i++) {
+        r->count += is_replaced(r, i);
+        r->keep[i] = is_replaced(r, i) || r->scene->photos[i].test;
+    }
+    return r->count ? ORL_OK
+                    : orl_fail(r->log, ORL_ERR_NOT_FOUND, "%s has no series %d; see oriel info",
+                               r->scene->dir, r->params->series);
+}
+
+enum orl_result orl_hdr_replace_series(struct orl_hdr *hdr,
+                                       const struct orl_replace_params *params,
+                                       const struct orl_progress *progress)
+{
+    struct replacement r = {.log = orl_gpu_log(hdr->gpu), .hdr = hdr, .scene = hdr->scene,
+                            .params = params, .progress = progress};
+    enum orl_result result = choose(&r);
+    if (result == ORL_OK)
+        result = orl_new_dir_begin(r.log, params->out, &r.dir);
+    if (result == ORL_OK)
+        result = orl_subset_begin(r.log, r.scene, r.keep, r.dir, &r.manifest);
+    if (result == ORL_OK)
+        result = write_photos(&r);
+    if (result == ORL_OK)
+        result = write_manifest(&r);
+    if (result == ORL_OK)
+        result = orl_new_dir_finish(r.log, r.dir, params->out);
+    if (result != ORL_OK && r.dir && orl_dir_remove(r.log, r.dir) != ORL_OK)
+        orl_logf(r.log, ORL_LOG_WARNING, "%s is left over", r.dir);
+    json_decref(r.manifest);
+    free(r.keep);
+    free(r.dir);
+    return result;
+}

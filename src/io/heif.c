@@ -1,0 +1,218 @@
+// HEIC and AVIF through libheif. The turning and cropping that the file asks for belong to the
+// picture and are applied: other readers of these files see no other pixels.
+#include <stdlib.h>
+#include <string.h>
+
+#include <libheif/heif.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "io/internal.h"
+
+struct heif_file {
+    const struct orl_log *log;
+    const char *path;
+    struct heif_context *context;
+    struct heif_image_handle *picture; // the primary one
+    uint64_t width, height;
+    int bits;
+};
+
+bool orl_heif_is(const uint8_t *data, size_t size)
+{
+    static const char *const brands[] = {"heic", "heix", "heim", "heis", "mif1", "avif"};
+    if (size < 12 || memcmp(data + 4, "ftyp", 4) != 0)
+        return false;
+    for (size_t i = 0; i < ORL_COUNT(brands); i++)
+        if (memcmp(data + 8, brands[i], 4) == 0)
+            return true;
+    return false;
+}
+
+static enum orl_result check(const struct heif_file *file, struct heif_error error)
+{
+    if (error.code == heif_error_Ok)
+        return ORL_OK;
+    enum orl_result result =
+        error.code == heif_error_Memory_allocation_error ? ORL_ERR_MEMORY
+        : error.code == heif_error_Unsupported_feature ||
+                error.code == heif_error_Unsupported_filetype
+            ? ORL_ERR_UNSUPPORTED
+            : ORL_ERR_FORMAT;
+    return orl_fail(file->log, result, "%s: HEIF: %s", file->path, error.message);
+}
+
+static void close_heif(struct heif_file *file)
+{
+    heif_image_handle_release(file->picture);
+    if (file->context)
+        heif_context_free(file->context);
+}
+
+// On success and failure alike, the caller must call close_heif.
+static enum orl_result open_heif(const struct orl_log *log, const char *path,
+                                 struct heif_file *file)
+{
+    *file = (struct heif_file){.log = log, .path = path, .context = heif_context_alloc()};
+    if (!file->context)
+        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for a HEIF reader", path);
+    enum orl_result result =
+        check(file, heif_context_read_from_file(file->context, path, NULL));
+    if (result == ORL_OK)
+        result = check(file, heif_context_get_primary_image_handle(file->context, &file->picture));
+    if (result != ORL_OK)
+        return result;
+    file->width = (uint64_t)heif_image_handle_get_width(file->picture);
+    file->height = (uint64_t)heif_image_handle_get_height(file->picture);
+    file->bits = heif_image_handle_get_luma_bits_per_pixel(file->picture);
+    return orl_picture_check_size(log, path, file->width, file->height);
+}
+
+// --- EXIF ---
+
+// The block is stored behind four bytes that say how far on the TIFF data begins.
+static enum orl_result decode_exif(const struct heif_file *file, const uint8_t *block, size_t size,
+                                   struct orl_exif *exif)
+{
+    static const uint8_t head[6] = "Exif\0";
+    size_t start = size < 4 ? size
+                            : 4 + ((size_t)block[0] << 24 | (size_t)block[1] << 16 |
+                                   (size_t)block[2] << 8 | (size_t)block[3]);
+    if (start >= size)
+        return ORL_OK;
+    uint8_t *data = orl_array(file->log, sizeof head + size - start, 1);
+    if (!data)
+        return ORL_ERR_MEMORY;
+    memcpy(data, head, sizeof head);
+    memcpy(data + sizeof head, block + start, size - start);
+    enum orl_result result = orl_exif_decode(file->log, file->path, data,
+                                             sizeof head + size - start, exif);
+    exif->orientation = 1; // the pixels are turned already
+    free(data);
+    return result;
+}
+
+static enum orl_result read_exif(const struct heif_file *file, struct orl_exif *exif)
+{
+    heif_item_id id;
+    if (heif_image_handle_get_list_of_metadata_block_IDs(file->picture, "Exif", &id, 1) < 1)
+        return ORL_OK;
+    size_t size = heif_image_handle_get_metadata_size(file->picture, id);
+    uint8_t *block = orl_array(file->log, size + 1, 1);
+    if (!block)
+        return ORL_ERR_MEMORY;
+    enum orl_result result =
+        check(file, heif_image_handle_get_metadata(file->picture, id, block));
+    if (result == ORL_OK)
+        result = decode_exif(file, block, size, exif);
+    free(block);
+    return result;
+}
+
+enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
+                                 struct orl_picture_info *info, struct orl_exif *exif)
+{
+    struct heif_file file;
+    enum orl_result result = open_heif(log, path, &file);
+    if (result == ORL_OK) {
+        *info = (struct orl_picture_info){.width = (int)file.width, .height = (int)file.height,
+                                          .bits = file.bits};
+        result = read_exif(&file, exif);
+    }
+    close_heif(&file);
+    return result;
+}
+
+// --- pixels ---
+
+// ORL_ERR_UNSUPPORTED for the transfer curves of HDR video, whose white is not a picture's.
+static enum orl_result check_curve(const struct heif_file *file)
+{
+    struct heif_color_profile_nclx *profile = NULL;
+    if (heif_image_handle_get_nclx_color_profile(file->picture, &profile).code != heif_error_Ok)
+        return ORL_OK;
+    bool hdr = profile->transfer_characteristics ==
+                   heif_transfer_characteristic_ITU_R_BT_2100_0_PQ ||
+               profile->transfer_characteristics ==
+                   heif_transfer_characteristic_ITU_R_BT_2100_0_HLG;
+    heif_nclx_color_profile_free(profile);
+    return hdr ? orl_fail(file->log, ORL_ERR_UNSUPPORTED,
+                          "%s: HEIF: its samples are HDR (PQ or HLG); save it as SDR or as EXR",
+                          file->path)
+               : ORL_OK;
+}
+
+// Where there is no ICC profile, samples are taken as sRGB.
+static enum orl_result make_profile(const struct heif_file *file, struct orl_profile **profile)
+{
+    size_t size = heif_image_handle_get_raw_color_profile_size(file->picture);
+    *profile = NULL;
+    if (!size)
+        return ORL_OK;
+    void *icc = orl_array(file->log, size, 1);
+    if (!icc)
+        return ORL_ERR_MEMORY;
+    enum orl_result result =
+        check(file, heif_image_handle_get_raw_color_profile(file->picture, icc));
+    if (result == ORL_OK)
+        *profile = orl_profile_create(file->log, file->path, icc, size);
+    free(icc);
+    return result;
+}
+
+// Samples in [0, 1], as stored or in linear light.
+static enum orl_result take_pixels(const struct heif_file *file, const struct heif_image *from,
+                                   bool linear, struct orl_image *image)
+{
+    int stride, wide = file->bits > 8;
+    const uint8_t *rows = heif_image_get_plane_readonly(from, heif_channel_interleaved, &stride);
+    int bits = heif_image_get_bits_per_pixel_range(from, heif_channel_interleaved);
+    float white = (float)((1u << (wide ? bits : 8)) - 1);
+    size_t row_bytes = 3 * (size_t)image->width * (wide ? 2 : 1);
+    if (!rows || stride < 0 || (size_t)stride < row_bytes || bits < 1 || bits > 16 ||
+        heif_image_get_primary_width(from) != image->width ||
+        heif_image_get_primary_height(from) != image->height)
+        return orl_fail(file->log, ORL_ERR_FORMAT, "%s: HEIF: not the picture that its header "
+                        "promises", file->path);
+    float *to = image->f32;
+    for (int y = 0; y < image->height; y++, rows += stride)
+        for (size_t i = 0; i < 3 * (size_t)image->width; i++) {
+            float value = (float)(wide ? rows[2 * i] | rows[2 * i + 1] << 8 : rows[i]) / white;
+            *to++ = linear ? orl_srgb_decode(value) : value;
+        }
+    return ORL_OK;
+}
+
+enum orl_result orl_heif_decode_linear(const struct orl_log *log, const char *path,
+                                       struct orl_image *image)
+{
+    struct heif_file file;
+    struct heif_image *decoded = NULL;
+    struct orl_profile *profile = NULL;
+    enum orl_result result = open_heif(log, path, &file);
+    // Bytes per pixel: planes and RGB of up to 16 bits each, and three floats.
+    if (result == ORL_OK)
+        result = orl_picture_check_memory(log, path, file.width, file.height,
+                                          6 + 6 + 3 * sizeof(float));
+    if (result == ORL_OK)
+        result = check_curve(&file);
+    if (result == ORL_OK)
+        result = make_profile(&file, &profile);
+    if (result == ORL_OK)
+        result = check(&file, heif_decode_image(file.picture, &decoded, heif_colorspace_RGB,
+                                                file.bits > 8
+                                                    ? heif_chroma_interleaved_RRGGBB_LE
+                                                    : heif_chroma_interleaved_RGB, NULL));
+    if (result == ORL_OK)
+        result = orl_image_init(log, image, (int)file.width, (int)file.height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = take_pixels(&file, decoded, !profile, image);
+    if (result == ORL_OK && profile)
+        orl_profile_apply(profile, image);
+    heif_image_release(decoded);
+    orl_profile_destroy(&profile);
+    close_heif(&file);
+    if (result != ORL_OK)
+        orl_image_finish(image);
+    return result;
+}

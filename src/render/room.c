@@ -1,0 +1,125 @@
+#include "render/room.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "render/gather.h"
+#include "render/method.h"
+#include "render/photos.h"
+#include "render/select.h"
+
+bool orl_frame_shows_room(const struct frame *frame)
+{
+    return frame->params->fill == ORL_FILL_ROOM && !frame->radiance;
+}
+
+// The middle and the half sides of the room. Of a shell: the middle of what the proxy shows, and
+// the same radius thrice, opt.shell times the distance of the farthest photograph.
+static void measure(const struct frame *frame, double middle[3], double half[3])
+{
+    const struct orl_room *room = &frame->scene->room;
+    const double *low = room->known ? room->low : frame->proxy->extent.low;
+    const double *high = room->known ? room->high : frame->proxy->extent.high;
+    double farthest = 0;
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5 * (low[k] + high[k]);
+        half[k] = 0.5 * (high[k] - low[k]);
+    }
+    for (size_t i = 0; !room->known && i < frame->scene->photo_count; i++) {
+        double eye[3], squares = 0;
+        orl_pose_centre(&frame->scene->photos[i].view.cam_from_world, eye);
+        for (int k = 0; k < 3; k++)
+            squares += (eye[k] - middle[k]) * (eye[k] - middle[k]);
+        farthest = fmax(farthest, sqrt(squares));
+    }
+    for (int k = 0; !room->known && k < 3; k++)
+        half[k] = farthest > 0 ? (double)frame->params->shell * farthest : 1;
+}
+
+static void place(const struct frame *frame, struct gather_block *block)
+{
+    const struct orl_pose *pose = &frame->view->cam_from_world;
+    double middle[3], half[3], eye[3];
+    measure(frame, middle, half);
+    orl_pose_centre(pose, eye);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            block->local_from_view[i][j] = (float)(pose->r[j][i] / half[i]);
+        block->local_from_view[i][3] = (float)((eye[i] - middle[i]) / half[i]);
+    }
+}
+
+// One turn: the photographs of frame->chosen from `first` on, all resident.
+static void project(const struct frame *frame, bool backgrounds, size_t first, size_t count)
+{
+    struct gather_block block = orl_gather_prepare(frame, first, count);
+    struct gather_slots slots;
+    char defines[96];
+    place(frame, &block);
+    orl_gather_slots(frame, &slots);
+    // Behind layers the room shows through.
+    snprintf(defines, sizeof defines, "SWEEP 0\nROOM %d\n%s%s",
+             orl_painter_of(frame->params)->layers ? 2 : 1,
+             frame->scene->room.known ? "" : "SHELL 1\n",
+             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "");
+    struct orl_dispatch d = {
+        .prog = orl_gather_prog(frame, "gather/gather.comp", slots.slots, defines),
+        .params = &block, .params_size = sizeof block,
+        .textures = {backgrounds ? frame->photos->background : frame->photos->color,
+                     frame->photos->depth},
+        .images = {{frame->surface.depth, 0, GL_READ_ONLY},
+                   {frame->room, 0, GL_READ_WRITE},
+                   {frame->states[0], 0, GL_READ_WRITE},
+                   [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+    orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+}
+
+enum orl_result orl_room_paint(struct frame *frame)
+{
+    struct orl_render_params params = *frame->params;
+    struct frame room = *frame;
+    bool backgrounds = orl_photos_backgrounds(frame->photos);
+    bool recurrence = orl_render_params_equal(frame->params, "combine=recurrence");
+    room.params = &params;
+    params.border_px = 0;
+    snprintf(params.weight, sizeof params.weight, "equal");
+    snprintf(params.combine, sizeof params.combine, recurrence ? "recurrence" : "mean");
+    if (backgrounds)
+        snprintf(params.visibility, sizeof params.visibility, "none");
+    orl_tex_clear(frame->room, 0);
+    if (recurrence)
+        orl_tex_clear(frame->states[0], 0);
+    enum orl_result result = orl_select_all.choose(&room, 0);
+    size_t turn = (size_t)frame->photos->slot_count;
+    orl_pass_begin(frame->gpu, "room");
+    for (size_t first = 0; result == ORL_OK && first < room.chosen_count; first += turn) {
+        size_t left = room.chosen_count - first, count = left < turn ? left : turn;
+        for (size_t i = first; result == ORL_OK && i < first + count; i++) {
+            result = orl_photos_require(&room, room.chosen[i], !backgrounds);
+            if (result == ORL_OK && backgrounds)
+                result = orl_photos_require_background(&room, room.chosen[i]);
+        }
+        if (result == ORL_OK)
+            project(&room, backgrounds, first, count);
+    }
+    orl_pass_end(frame->gpu);
+    return result;
+}
+
+void orl_room_show(const struct frame *frame)
+{
+    struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
+                                .layers = orl_painter_of(frame->params)->layers};
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(frame->gpu, "fill/room.comp", NULL,
+                             frame->finishes ? "FINISHED" : NULL),
+        .params = &block, .params_size = sizeof block,
+        .images = {{frame->picture, 0, GL_READ_WRITE}, {frame->room, 0, GL_READ_ONLY},
+                   {frame->surface.depth, 0, GL_READ_ONLY}},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+}

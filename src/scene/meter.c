@@ -1,0 +1,53 @@
+#include "scene/meter.h"
+
+#include <math.h>
+
+#include "core/color.h"
+
+// Standard deviation of the weight, as a share of each side.
+static const double METER_SPREAD = 0.25;
+static const double METER_BLACK = 1.0 / 65536;
+
+float orl_light_aligned(float gain, float value)
+{
+    float third = fminf(gain - 1, 0.5f);
+    return gain * value / (1 + value * (gain - 1 - third + third * value * value));
+}
+
+float orl_illumination(const float vignette[3], const struct orl_camera *camera, double x,
+                       double y)
+{
+    double dx = x - camera->cx, dy = y - camera->cy;
+    double half2 = 0.25 * ((double)camera->width * camera->width +
+                           (double)camera->height * camera->height);
+    double r2 = (dx * dx + dy * dy) / half2;
+    return (float)(1 + r2 * ((double)vignette[0] +
+                             r2 * ((double)vignette[1] + r2 * (double)vignette[2])));
+}
+
+void orl_meter_add(struct orl_meter *meter, const float rgb[3], double x, double y, int width,
+                   int height)
+{
+    const float seen[3] = {fminf(rgb[0], 1), fminf(rgb[1], 1), fminf(rgb[2], 1)};
+    double dx = (x / width - 0.5) / METER_SPREAD, dy = (y / height - 0.5) / METER_SPREAD;
+    double weight = exp(-0.5 * (dx * dx + dy * dy));
+    meter->light += weight * (double)orl_luminance(seen);
+    meter->weight += weight;
+}
+
+double orl_meter_log2(const struct orl_meter *meter)
+{
+    double mean = meter->weight > 0 ? meter->light / meter->weight : 0;
+    return log2(mean > METER_BLACK ? mean : METER_BLACK);
+}
+
+double orl_picture_metered(const struct orl_image *color)
+{
+    struct orl_meter meter = {0};
+    for (int y = 0; y < color->height; y++)
+        for (int x = 0; x < color->width; x++)
+            orl_meter_add(&meter,
+                          color->f32 + 3 * ((size_t)y * (size_t)color->width + (size_t)x),
+                          x + 0.5, y + 0.5, color->width, color->height);
+    return orl_meter_log2(&meter);
+}

@@ -1,0 +1,202 @@
+#include "scene/subset.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "scene/colmap.h"
+
+// Copies a file of the scene to the same place in `dir`, if the file exists. Takes ownership of
+// `path`, which begins with the scene's folder.
+static enum orl_result copy_if_there(const struct orl_log *log, const struct orl_scene *scene,
+                                     char *path, const char *dir)
+{
+    if (!path)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    if (orl_path_is_file(path)) {
+        const char *inside = path + strlen(scene->dir);
+        char *to = orl_path_join(log, dir, inside + strspn(inside, "/"));
+        result = to ? orl_file_copy(log, path, to) : ORL_ERR_MEMORY;
+        free(to);
+    }
+    free(path);
+    return result;
+}
+
+enum orl_result orl_subset_copy_masks(const struct orl_log *log, const struct orl_scene *scene,
+                                      size_t photo, const char *dir)
+{
+    enum orl_result result =
+        copy_if_there(log, scene, orl_scene_mask_path(log, scene, photo), dir);
+    if (result == ORL_OK)
+        result = copy_if_there(log, scene, orl_scene_background_path(log, scene, photo), dir);
+    return result;
+}
+
+enum orl_result orl_subset_copy_photo(const struct orl_log *log, const struct orl_scene *scene,
+                                      size_t photo, const char *dir)
+{
+    enum orl_result result =
+        copy_if_there(log, scene, orl_scene_photo_path(log, scene, photo), dir);
+    if (result == ORL_OK)
+        result = copy_if_there(log, scene, orl_scene_linear_path(log, scene, photo), dir);
+    return result == ORL_OK ? orl_subset_copy_masks(log, scene, photo, dir) : result;
+}
+
+// --- the sparse model ---
+
+// Gives the photographs whose size changes cameras of their own.
+static enum orl_result resize_cameras(const struct orl_log *log, const struct orl_scene *scene,
+                                      const bool *keep, const struct orl_scene *sizes,
+                                      struct orl_colmap_model *model)
+{
+    uint32_t next = 0;
+    struct orl_colmap_camera *all =
+        orl_array(log, model->camera_count + model->image_count, sizeof *all);
+    if (!all)
+        return ORL_ERR_MEMORY;
+    memcpy(all, model->cameras, model->camera_count * sizeof *all);
+    for (size_t i = 0; i < model->camera_count; i++)
+        next = all[i].id >= next ? all[i].id + 1 : next;
+    for (size_t i = 0; i < model->image_count; i++) {
+        const struct orl_camera *c = &sizes->photos[i].view.camera;
+        const struct orl_camera *before = &scene->photos[i].view.camera;
+        if (!keep[i] || (c->width == before->width && c->height == before->height))
+            continue;
+        all[model->camera_count++] = (struct orl_colmap_camera){
+            .id = next, .model = 1, .pinhole = *c, .params = {c->fx, c->fy, c->cx, c->cy},
+            .param_count = 4};
+        model->images[i].camera_id = next++;
+    }
+    free(model->cameras);
+    model->cameras = all;
+    return ORL_OK;
+}
+
+// Writes the images of `all` that stay. They are listed in an array of their own, since `all` owns
+// the names of every image.
+static enum orl_result write_kept(const struct orl_log *log, const struct orl_colmap_model *all,
+                                  const bool *keep, const char *sparse)
+{
+    struct orl_colmap_model kept = *all;
+    kept.image_count = 0;
+    kept.images = orl_array(log, all->image_count, sizeof *kept.images);
+    if (!kept.images)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < all->image_count; i++)
+        if (keep[i])
+            kept.images[kept.image_count++] = all->images[i];
+    enum orl_result result = orl_colmap_write(log, sparse, &kept);
+    free(kept.images);
+    return result;
+}
+
+enum orl_result orl_subset_write_model(const struct orl_log *log, const struct orl_scene *scene,
+                                       const bool *keep, const struct orl_scene *sizes,
+                                       const char *dir)
+{
+    struct orl_colmap_model all = {0};
+    char *sparse = orl_path_join(log, dir, "sparse");
+    enum orl_result result = sparse ? orl_dir_make(log, sparse) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_scene_read_model(log, scene, &all);
+    // Photographs and the images of the model have equal indices.
+    if (result == ORL_OK && all.image_count != scene->photo_count)
+        result = orl_fail(log, ORL_ERR_DATA, "%s: its sparse model has changed", scene->dir);
+    if (result == ORL_OK && sizes)
+        result = resize_cameras(log, scene, keep, sizes, &all);
+    if (result == ORL_OK)
+        result = write_kept(log, &all, keep, sparse);
+    orl_colmap_finish(&all);
+    free(sparse);
+    return result;
+}
+
+// --- the manifest ---
+
+void orl_subset_keep_photographs(const struct orl_scene *scene, const bool *keep, json_t *root)
+{
+    json_t *list = json_object_get(root, "photographs"), *counts = json_object_get(root, "counts");
+    json_int_t test = 0;
+    for (size_t i = json_array_size(list); i-- > 0;) {
+        const char *name = orl_json_text(json_array_get(list, i), "name");
+        int photo = name ? orl_scene_find_photo(scene, name) : -1;
+        if (photo >= 0 && keep[photo])
+            test += scene->photos[photo].test;
+        else
+            json_array_remove(list, i);
+    }
+    if (!json_is_object(counts)) {
+        counts = json_object();
+        json_object_set_new(root, "counts", counts);
+    }
+    json_int_t count = (json_int_t)json_array_size(list);
+    json_object_set_new(counts, "registered", json_integer(count));
+    json_object_set_new(counts, "test", json_integer(test));
+    json_object_set_new(counts, "train", json_integer(count - test));
+}
+
+enum orl_result orl_subset_add_checksum(const struct orl_log *log, const char *dir,
+                                        const char *name, json_t *sums)
+{
+    char sum[ORL_CHECKSUM_SIZE], *path = orl_path_join(log, dir, name);
+    enum orl_result result = path ? orl_file_checksum(log, path, sum) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && json_object_set_new(sums, name, json_string(sum)) != 0)
+        result = orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its checksum", path);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_subset_add_checksums(const struct orl_log *log, const char *dir, json_t *sums)
+{
+    static const char *const files[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
+                                        "sparse/points3D.bin"};
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
+        result = orl_subset_add_checksum(log, dir, files[i], sums);
+    return result;
+}
+
+static enum orl_result read_manifest(const struct orl_log *log, const struct orl_scene *scene,
+                                     json_t **manifest)
+{
+    char *path = orl_path_join(log, scene->dir, "scene.json");
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (path && !orl_path_is_file(path))
+        result = orl_fail(log, ORL_ERR_DATA, "%s: a plain workspace; prepare or import it first",
+                          scene->dir);
+    if (result == ORL_OK)
+        result = orl_json_read(log, path, manifest);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_subset_begin(const struct orl_log *log, const struct orl_scene *scene,
+                                 const bool *keep, const char *dir, json_t **manifest)
+{
+    *manifest = NULL;
+    if (scene->frame_count)
+        return orl_fail(log, ORL_ERR_DATA, "%s: is a sequence", scene->dir);
+    enum orl_result result = read_manifest(log, scene, manifest);
+    if (result == ORL_OK)
+        result = copy_if_there(log, scene, orl_path_join(log, scene->dir, "points.ply"), dir);
+    if (result == ORL_OK)
+        result = copy_if_there(log, scene, orl_scene_mesh_path(log, scene), dir);
+    if (result == ORL_OK)
+        result = orl_subset_write_model(log, scene, keep, NULL, dir);
+    if (result == ORL_OK) {
+        orl_subset_keep_photographs(scene, keep, *manifest);
+        json_object_del(*manifest, "tuned"); // other photographs want other settings
+        json_t *sums = json_object();
+        json_object_set_new(*manifest, "checksums", sums);
+        result = orl_subset_add_checksums(log, dir, sums);
+    }
+    if (result != ORL_OK) {
+        json_decref(*manifest);
+        *manifest = NULL;
+    }
+    return result;
+}

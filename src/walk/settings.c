@@ -1,0 +1,157 @@
+#include "walk/settings.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "scene/json_views.h"
+
+enum { LINE_MOST = 500, TEXT_MOST = 4000, NOTES_MOST = 200 };
+static const char file_name[] = "walk.json";
+static const double pi = 3.14159265358979323846;
+
+// --- checks ---
+
+static bool is_text(const json_t *value, size_t most)
+{
+    return json_is_string(value) && json_string_length(value) <= most;
+}
+
+static bool is_one_of(const char *name, const char *const *names)
+{
+    for (; *names; names++)
+        if (strcmp(name, *names) == 0)
+            return true;
+    return false;
+}
+
+static bool read_view(const json_t *json, const struct orl_camera *camera, struct orl_view *view)
+{
+    double rows[3][4];
+    double fov = json_number_value(json_object_get(json, "fov_y_deg"));
+    if (!orl_json_rows(json_object_get(json, "cam_from_world"), 3, 4, &rows[0][0]) ||
+        !(fov > 1 && fov < 170))
+        return false;
+    view->camera = *camera;
+    view->camera.fx = view->camera.fy = 0.5 * camera->height / tan(0.5 * fov * pi / 180);
+    for (int i = 0; i < 3; i++) {
+        memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
+        view->cam_from_world.t[i] = rows[i][3];
+    }
+    return orl_pose_valid(&view->cam_from_world);
+}
+
+static bool is_view(const json_t *json)
+{
+    const struct orl_camera any = {.width = 2, .height = 2, .fx = 1, .fy = 1, .cx = 1, .cy = 1};
+    struct orl_view view;
+    return read_view(json, &any, &view);
+}
+
+static bool are_modes(const json_t *modes)
+{
+    static const char *const names[] = {"walk", "fly", "orbit", NULL};
+    size_t i;
+    json_t *mode;
+    json_array_foreach(modes, i, mode)
+        if (!json_is_string(mode) || !is_one_of(json_string_value(mode), names))
+            return false;
+    return json_array_size(modes) > 0;
+}
+
+static bool is_note(const json_t *note)
+{
+    double position[3];
+    const json_t *view = json_object_get(note, "view"), *text = json_object_get(note, "text");
+    return is_text(json_object_get(note, "title"), LINE_MOST) && (!text || is_text(text, TEXT_MOST)) &&
+           orl_json_read_numbers(json_object_get(note, "position"), 3, position) &&
+           (!view || is_view(view));
+}
+
+static bool are_notes(const json_t *notes)
+{
+    size_t i;
+    json_t *note;
+    json_array_foreach(notes, i, note)
+        if (!is_note(note))
+            return false;
+    return json_is_array(notes) && json_array_size(notes) <= NOTES_MOST;
+}
+
+static bool is_line(const json_t *value)
+{
+    return is_text(value, LINE_MOST);
+}
+
+enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *where,
+                                        const json_t *settings)
+{
+    static const struct {
+        const char *key, *wanted;
+        bool (*valid)(const json_t *value);
+    } rows[] = {
+        {"title", "a text of at most 500 bytes", is_line},
+        {"attribution", "a text of at most 500 bytes", is_line},
+        {"start", "a view: \"cam_from_world\" and \"fov_y_deg\"", is_view},
+        {"modes", "a list of \"walk\", \"fly\" and \"orbit\"", are_modes},
+        {"notes", "a list of at most 200 annotations, each with \"title\" and \"position\"",
+         are_notes},
+    };
+    const struct orl_json_place place = {log, where, NULL};
+    const char *key;
+    json_t *value;
+    if (!json_is_object(settings))
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: is no JSON object", where);
+    json_object_foreach((json_t *)settings, key, value) {
+        size_t i = 0;
+        while (i < sizeof rows / sizeof *rows && strcmp(rows[i].key, key) != 0)
+            i++;
+        if (i == sizeof rows / sizeof *rows)
+            return orl_fail(log, ORL_ERR_FORMAT, "%s: \"%s\" is not known", where, key);
+        if (!rows[i].valid(value))
+            return orl_json_refuse(&place, key, rows[i].wanted);
+    }
+    return ORL_OK;
+}
+
+// --- the file ---
+
+enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct orl_scene *scene,
+                                       json_t **settings)
+{
+    char *path = orl_path_join(log, scene->dir, file_name);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    *settings = NULL;
+    if (path && !orl_path_is_file(path)) {
+        *settings = json_object();
+        result = *settings ? ORL_OK : ORL_ERR_MEMORY;
+    } else if (path) {
+        result = orl_json_read(log, path, settings);
+        if (result == ORL_OK)
+            result = orl_walk_settings_check(log, path, *settings);
+    }
+    if (result != ORL_OK) {
+        json_decref(*settings);
+        *settings = NULL;
+    }
+    free(path);
+    return result;
+}
+
+enum orl_result orl_walk_settings_write(const struct orl_log *log, const struct orl_scene *scene,
+                                        const json_t *settings)
+{
+    char *path = orl_path_join(log, scene->dir, file_name);
+    enum orl_result result = path ? orl_json_write(log, path, settings) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+bool orl_walk_settings_start(const json_t *settings, const struct orl_camera *camera,
+                             struct orl_view *view)
+{
+    const json_t *start = json_object_get(settings, "start");
+    return start && read_view(start, camera, view);
+}

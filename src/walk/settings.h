@@ -1,0 +1,23 @@
+// Private to src/walk: SCENE/walk.json, what its maker says about a walk (docs/reference/files.md):
+// title, attribution, start view, allowed modes, annotations.
+#ifndef ORL_WALK_SETTINGS_H
+#define ORL_WALK_SETTINGS_H
+
+#include <jansson.h>
+
+#include "oriel/scene.h"
+
+// Checks settings that came from `where`, a file or a client. ORL_ERR_FORMAT, logged: what is wrong.
+enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *where,
+                                        const json_t *settings) ORL_CHECK_RESULT;
+// Reads the scene's settings, released with json_decref; an empty object if it has none.
+enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct orl_scene *scene,
+                                       json_t **settings) ORL_CHECK_RESULT;
+// Writes settings that have been checked, atomically.
+enum orl_result orl_walk_settings_write(const struct orl_log *log, const struct orl_scene *scene,
+                                        const json_t *settings) ORL_CHECK_RESULT;
+// The start view with this camera's size and principal point. Returns false if none is set.
+bool orl_walk_settings_start(const json_t *settings, const struct orl_camera *camera,
+                             struct orl_view *view);
+
+#endif

@@ -1,0 +1,82 @@
+#!/bin/bash
+# The jobs of oriel plan, several at once and one killed, give the scene that prepare gives from the
+# same calibration, byte for byte. With Snakemake where it is installed, else one after the other.
+. "$2/tests/e2e/prepare_lib"
+monument 384x288 7
+prepare() {
+    run "$1" prepare "$work/p" --out "$work/$2" --quality draft \
+        --max-size 192 --densifier gl --radius-overlap 1.3 --test-list 0004 "${@:3}"
+}
+
+run 2 plan "$work"
+says "nothing to plan yet"
+prepare 0 a --until undistort
+says "oriel plan says what is left"
+[ -e "$work/a/scene.json" ] && fail "a scene that is not whole has a manifest"
+run 2 info "$work/a"
+cp -r "$work/a" "$work/b"
+
+# The graph: three passes of three parts and the rest; a pass needs the one before.
+run 0 plan "$work/b" --photographs 2
+prints "of CPU  up to"
+run 0 plan "$work/b" --photographs 2 --json
+cp "$work/out" "$work/plan.json"
+grep -q '"densify-0-0001"' "$work/plan.json" || fail "a geometric pass needs nothing"
+[ "$(grep -c '"kind": "densify"' "$work/plan.json")" -ge 6 ] || fail "too few jobs"
+photos=$(realpath "$work/p")
+grep -q '"--radius-overlap"' "$work/plan.json" || fail "the last job has other radii"
+grep -qF "\"$photos\"" "$work/plan.json" || fail "the last job does not name the photographs"
+
+# A part that is not begun with these settings, and one that does not exist, change nothing.
+run 2 densify "$work/b" --part 1/3 --photos "$work/b/stereo/fusion.cfg" --sources 7
+says "not begun with these settings"
+run 2 densify "$work/b" --part 4/3
+says "not K/N"
+[ -z "$(ls "$work/b/stereo/depth_maps")" ] || fail "a part that was refused has made maps"
+
+prepare 0 a --resume
+
+if command -v snakemake >/dev/null; then
+    # Oriel under another name, one of whose jobs from the fourth on dies with SIGKILL.
+    cat >"$work/oriel" <<END
+#!/bin/sh
+mkdir "$work/count.\$\$"
+[ \$(ls -d "$work"/count.* | wc -l) -ge 4 ] && mkdir "$work/killed" 2>/dev/null &&
+    { timeout -s KILL 1 "$oriel" "\$@"; kill -9 \$\$; }
+exec "$oriel" "\$@"
+END
+    chmod +x "$work/oriel"
+    jobs() {
+        (cd "$work" && XDG_CACHE_HOME=$work/cache snakemake -s "$source/cluster/Snakefile" \
+            --cores 4 --config plan=plan.json oriel="$work/oriel" "$@") >"$work/out" 2>"$work/err"
+    }
+    jobs && fail "a job that was killed is no failure"
+    [ -e "$work/b/scene.json" ] && fail "a scene that is not whole has a manifest"
+    jobs --rerun-incomplete || fail "the jobs do not go on: $(tail -n 5 "$work/err")"
+else
+    # In the order of the plan, which is one in which they can run.
+    sed -n '/"command": \[/,/\]/p' "$work/plan.json" |
+        sed 's/^ *"command": \[//; s/^ *\],*$/END/; s/^ *"\(.*\)",*$/\1/; /^$/d' >"$work/commands"
+    while read -r word; do
+        if [ "$word" = END ]; then
+            "$oriel" "${words[@]:1}" >"$work/out" 2>"$work/err" || fail "${words[*]} fails"
+            words=()
+        else
+            words+=("$word")
+        fi
+    done <"$work/commands"
+fi
+for file in points.ply sparse/points3D.bin images/0003.jpg; do
+    cmp "$work/a/$file" "$work/b/$file" || fail "the jobs make another $file"
+done
+for scene in a b; do
+    grep -v '_s"\|_mib"' "$work/$scene/scene.json" >"$work/$scene.json"
+done
+diff "$work/a.json" "$work/b.json" >"$work/diff" || fail "another manifest: $(head -n 5 "$work/diff")"
+
+# Everything again changes nothing, and there is nothing left to plan.
+run 0 densify "$work/b" --part 1/3 --pass 0
+says "nothing left to do"
+run 0 plan "$work/b"
+prints "is whole"
+finish

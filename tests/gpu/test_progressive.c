@@ -1,0 +1,141 @@
+// Frames of a viewer, which do not wait for photographs.
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "wall_scene.h"
+
+static struct orl_gpu *gpu;
+enum { SIDE = 96, PHOTOS = 3, TRIES = 2000 };
+
+// A red wall that green photographs show.
+static void setup_green(struct fixture *f)
+{
+    setup(f, false);
+    for (int i = 0; i < PHOTOS; i++)
+        add_photo(f, look_from(0.2 * (i - 1), 0, 0, SIDE, SIDE), green);
+}
+
+static struct orl_frame draw_progressive(struct orl_renderer *renderer, struct orl_view view,
+                                         const struct orl_render_params *params,
+                                         struct orl_progressive *progress)
+{
+    struct orl_frame frame;
+    assert_int_equal(orl_renderer_draw_progressive(renderer, &view, params, progress, &frame),
+                     ORL_OK);
+    return frame;
+}
+
+// Draws until no photograph is missing.
+static struct orl_frame draw_to_the_end(struct orl_renderer *renderer, struct orl_view view,
+                                        const struct orl_render_params *params)
+{
+    struct orl_progressive progress = {.at_rest = true, .missing = 1};
+    struct orl_frame frame = {0};
+    for (int i = 0; progress.missing > 0; i++) {
+        assert_true(i < TRIES);
+        orl_frame_finish(&frame);
+        frame = draw_progressive(renderer, view, params, &progress);
+        usleep(1000);
+    }
+    return frame;
+}
+
+static void assert_same(const struct orl_image *a, const struct orl_image *b)
+{
+    assert_int_equal(a->width, b->width);
+    assert_memory_equal(a->f32, b->f32,
+                        (size_t)a->width * (size_t)a->height * (size_t)a->channels * sizeof(float));
+}
+
+// Before its photographs come, a frame shows the points' colour. In the end it has the bits of a
+// frame that waits for them.
+static void test_from_points_to_photographs(const char *method)
+{
+    struct fixture f;
+    struct orl_renderer *renderer;
+    const struct orl_render_params *params = &orl_method_find(NULL, method)->params;
+    struct orl_view view = look_from(0.1, 0, 0, SIDE, SIDE);
+    setup_green(&f);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    // Nothing has been asked for yet, so no file can have been read.
+    struct orl_progressive progress = {.seconds = 0};
+    struct orl_frame first = draw_progressive(renderer, view, params, &progress);
+    assert_int_equal(progress.missing, PHOTOS);
+    const float *color = color_at(&first, SIDE / 2, SIDE / 2);
+    assert_float_equal(color[0], 1, 0.01f);
+    assert_float_equal(color[1], 0, 0.01f);
+    struct orl_frame last = draw_to_the_end(renderer, view, params);
+    assert_float_equal(color_at(&last, SIDE / 2, SIDE / 2)[1], 1, 0.01f);
+    struct orl_frame waited = draw(gpu, &f, view, params, 0);
+    assert_same(&last.color, &waited.color);
+    assert_same(&last.coverage, &waited.coverage);
+    orl_frame_finish(&first);
+    orl_frame_finish(&last);
+    orl_frame_finish(&waited);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
+static void test_tiled(void **state)
+{
+    (void)state;
+    test_from_points_to_photographs("oriel");
+}
+
+static void test_gather(void **state)
+{
+    (void)state;
+    test_from_points_to_photographs("airieau");
+}
+
+// With room for fewer photographs than there are, the nearest are there and none is awaited.
+static void test_little_memory(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_renderer *renderer;
+    const struct orl_render_params *params = &orl_method_find(NULL, "oriel")->params;
+    setup_green(&f);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene,
+                                         &(struct orl_renderer_params){.max_vram_bytes = 1},
+                                         &renderer), ORL_OK);
+    struct orl_frame frame = draw_to_the_end(renderer, look_from(0.2, 0, 0, SIDE, SIDE), params);
+    assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[1], 1, 0.01f);
+    orl_frame_finish(&frame);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
+// A photograph that is not there is left out; the others paint.
+static void test_missing_file(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_renderer *renderer;
+    const struct orl_render_params *params = &orl_method_find(NULL, "oriel")->params;
+    setup_green(&f);
+    char *path = orl_scene_photo_path(NULL, &f.scene, 1);
+    assert_int_equal(unlink(path), 0);
+    free(path);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    struct orl_frame frame = draw_to_the_end(renderer, look_from(0, 0, 0, SIDE, SIDE), params);
+    assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[1], 1, 0.01f);
+    orl_frame_finish(&frame);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tiled),
+        cmocka_unit_test(test_gather),
+        cmocka_unit_test(test_little_memory),
+        cmocka_unit_test(test_missing_file),
+    };
+    gpu = gpu_test_device();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}

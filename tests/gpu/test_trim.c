@@ -1,0 +1,356 @@
+// What oriel trim takes away: points that no photograph shows, photographs that show nothing new.
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "eval/adapt.h"
+#include "eval/judges.h"
+#include "eval/trim.h"
+#include "eval/trim_points.h"
+#include "scene/colmap.h"
+#include "scene/manifest.h"
+#include "wall_scene.h"
+
+static struct orl_gpu *gpu;
+
+enum { SIDE = 48, WALL = 120 };
+
+static void look_along(struct fixture *f, size_t count, double step)
+{
+    for (size_t k = 0; k < count; k++)
+        add_photo(f, look_from(step * (double)k, 0, 0, SIDE, SIDE), red);
+}
+
+// Points behind the wall are hidden from all photographs, and points far beside it are in no view.
+static void hidden_points_go_first(void **state)
+{
+    (void)state;
+    enum { HIDDEN = 30, SEEN = WALL * WALL, ALL = SEEN + HIDDEN * HIDDEN };
+    struct fixture f;
+    struct orl_point_ranking ranking;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, ALL), ORL_OK);
+    set_square(&f.scene.points, 0, WALL, 3, 0, 4, red);
+    set_square(&f.scene.points, SEEN, HIDDEN, 0.5, 0, 5, blue);
+    look_along(&f, 3, 0.1);
+    assert_int_equal(orl_point_ranking_make(gpu, &f.scene, 16, NULL, &ranking), ORL_OK);
+    assert_int_equal(ranking.count, ALL);
+    static bool listed[ALL];
+    memset(listed, 0, sizeof listed);
+    for (size_t i = 0; i < ALL; i++) {
+        assert_false(listed[ranking.order[i]]); // each point once
+        listed[ranking.order[i]] = true;
+        if (i > 0 && ranking.order[i - 1] >= SEEN && ranking.pixels[ranking.order[i - 1]] == 0)
+            assert_int_equal(ranking.pixels[ranking.order[i]], 0);
+    }
+    for (size_t i = SEEN; i < ALL; i++)
+        assert_int_equal(ranking.pixels[i], 0);
+    // The first points are spread over the wall, which a square millimetre of it would not be.
+    float low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < 12; i++) {
+        assert_true(ranking.order[i] < SEEN);
+        low = fminf(low, f.scene.points.position[ranking.order[i]][0]);
+        high = fmaxf(high, f.scene.points.position[ranking.order[i]][0]);
+    }
+    assert_true(high - low > 1.2f);
+    orl_point_ranking_finish(&ranking);
+    teardown(&f);
+}
+
+// Of a flat wall with noise, the points that are left lie on its mean, wider than before.
+static void merged_points_lie_on_the_mean(void **state)
+{
+    (void)state;
+    enum { N = 40 * 40, KEPT = N / 4 };
+    struct orl_points wall, thin, plain;
+    static uint32_t order[N];
+    assert_int_equal(orl_points_init(NULL, &wall, N), ORL_OK);
+    set_square(&wall, 0, 40, 4, 0, 4, red);
+    for (size_t i = 0; i < N; i++) {
+        wall.position[i][2] += i % 2 ? 0.02f : -0.02f;
+        order[i] = (uint32_t)(i * 7 % N); // 7 and N have no common factor
+    }
+    assert_int_equal(orl_points_thin_out(NULL, &wall, order, KEPT, true, &thin), ORL_OK);
+    assert_int_equal(orl_points_thin_out(NULL, &wall, order, KEPT, false, &plain), ORL_OK);
+    double off = 0, plain_off = 0, radius = 0;
+    for (size_t k = 0; k < KEPT; k++) {
+        off += fabs((double)thin.position[k][2] - 4) / KEPT;
+        plain_off += fabs((double)plain.position[k][2] - 4) / KEPT;
+        radius += (double)thin.radius[k] / KEPT;
+        assert_float_equal(plain.position[k][0], wall.position[order[k]][0], 0);
+    }
+    assert_float_equal(plain_off, 0.02, 1e-4);
+    assert_true(off < 0.008);
+    assert_true(radius > 1.3 * (double)wall.radius[0]);
+    assert_int_equal(orl_points_thin_out(NULL, &wall, order, N, true, &thin), ORL_OK);
+    assert_int_equal(thin.count, N);
+    orl_points_finish(&wall);
+    orl_points_finish(&thin);
+    orl_points_finish(&plain);
+}
+
+static void same_places_are_left_out_together(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    look_along(&f, 2, 0.5);
+    add_photo(&f, look_from(0.001, 0, 0, SIDE, SIDE), red);
+    assert_true(orl_judges_same_place(&f.scene, 0, 2));
+    assert_false(orl_judges_same_place(&f.scene, 0, 1));
+    teardown(&f);
+}
+
+static bool is_taken(const struct orl_trim *trim, const char *what)
+{
+    for (size_t i = 0; i < trim->step_count; i++)
+        if (trim->steps[i].taken && strcmp(trim->steps[i].what, what) == 0)
+            return true;
+    return false;
+}
+
+// A striped wall, seen by photographs side by side of which the last repeats the first.
+static void setup_twins(struct fixture *f)
+{
+    enum { PHOTOS = 5 };
+    setup_empty(f, 4);
+    assert_int_equal(orl_points_init(NULL, &f->scene.points, WALL * WALL), ORL_OK);
+    set_square(&f->scene.points, 0, WALL, 8, 0, 4, red);
+    for (size_t k = 0; k < PHOTOS; k++) {
+        double x = k + 1 < PHOTOS ? 0.8 * (double)k - 1.2 : -1.2;
+        struct orl_image image;
+        add_photo(f, look_from(x, 0, 0, SIDE, SIDE), red);
+        assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            double wall_x = x + 4 * (i % SIDE + 0.5 - SIDE / 2.0) / SIDE;
+            double wall_y = 4 * (i / SIDE + 0.5 - SIDE / 2.0) / SIDE;
+            for (int c = 0; c < 3; c++)
+                image.u8[3 * i + c] =
+                    (uint8_t)(128 + 60 * sin(2 * wall_x + c) + 50 * sin(3 * wall_y - c));
+        }
+        repaint_photo(f, &image);
+    }
+}
+
+// Runs on a scene in memory, as `prepare --adapt` does, or writes a scene from one on disk.
+static void trim(const struct fixture *f, double tolerance_db, struct orl_trim *result)
+{
+    const struct orl_choice start = {.method = orl_method_find(NULL, "oriel"),
+                                     .params = orl_method_find(NULL, "oriel")->params};
+    const struct orl_trim_params params = {
+        .start = &start, .tolerance_db = tolerance_db, .worst_db = 5 * tolerance_db, .views = 8,
+        .size_divide = 1, .settings_only = true};
+    assert_int_equal(orl_trim_run(gpu, &f->scene, &params, result), ORL_OK);
+}
+
+static void a_budget_that_cannot_be_kept_is_refused(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_trim result;
+    const struct orl_choice start = {.method = orl_method_find(NULL, "points"),
+                                     .params = orl_method_find(NULL, "points")->params};
+    const struct orl_trim_params params = {.start = &start, .max_bytes = 1, .views = 2,
+                                           .size_divide = 1, .settings_only = true};
+    setup_twins(&f);
+    assert_int_equal(orl_trim_run(gpu, &f.scene, &params, &result), ORL_ERR_DATA);
+    assert_null(result.steps);
+    teardown(&f);
+}
+
+// The tolerance holds for all training photographs, and nothing but it decides.
+static void the_tolerance_is_kept(void **state)
+{
+    (void)state;
+    static const double tolerances[] = {0.02, 0.5};
+    struct fixture f;
+    setup_twins(&f);
+    for (size_t i = 0; i < ORL_COUNT(tolerances); i++) {
+        struct orl_trim result;
+        trim(&f, tolerances[i], &result);
+        const struct orl_trim_figures *a = &result.before, *b = &result.after;
+        assert_true(a->psnr_db - b->psnr_db <= tolerances[i]);
+        assert_true(b->worst_loss_db <= 5 * tolerances[i]);
+        assert_true(b->photo_bytes < a->photo_bytes);
+        assert_true(is_taken(&result, "depth 1/1, 16 bits"));
+        orl_trim_finish(&result);
+    }
+    teardown(&f);
+}
+
+// Writes what makes the fixture's folder a scene.
+static void save_scene(const struct fixture *f)
+{
+    size_t count = f->scene.photo_count;
+    struct orl_colmap_camera cameras[PHOTOS_MAX] = {0};
+    struct orl_colmap_image images[PHOTOS_MAX] = {0};
+    char *points = orl_path_join(NULL, f->dir, "points.ply");
+    char *sparse = orl_path_join(NULL, f->dir, "sparse");
+    char *manifest = orl_path_join(NULL, f->dir, "scene.json");
+    FILE *json = fopen(manifest, "w");
+    assert_non_null(json);
+    fprintf(json, "{\"version\": 1, \"ground\": null, \"photographs\": [");
+    for (size_t i = 0; i < count; i++) {
+        const struct orl_camera *c = &f->photos[i].view.camera;
+        cameras[i] = (struct orl_colmap_camera){
+            .id = (uint32_t)i + 1, .model = 1, .pinhole = *c,
+            .params = {c->fx, c->fy, c->cx, c->cy}, .param_count = 4};
+        images[i] = (struct orl_colmap_image){.id = (uint32_t)i + 1, .camera_id = (uint32_t)i + 1,
+                                              .name = f->photos[i].name,
+                                              .cam_from_world = f->photos[i].view.cam_from_world};
+        fprintf(json, "%s{\"name\": \"%s\", \"split\": \"%s\"}", i ? ", " : "",
+                f->photos[i].name, f->photos[i].test ? "test" : "train");
+    }
+    fprintf(json, "]}\n");
+    assert_int_equal(fclose(json), 0);
+    assert_int_equal(orl_dir_make(NULL, sparse), ORL_OK);
+    const struct orl_colmap_model model = {cameras, count, images, count, NULL, 0};
+    assert_int_equal(orl_colmap_write(NULL, sparse, &model), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, points, &f->scene.points, false), ORL_OK);
+    free(points);
+    free(sparse);
+    free(manifest);
+}
+
+// Moves the photographs to a folder images/side, and gives each a background.
+static void move_to_folder(struct fixture *f)
+{
+    for (size_t i = 0; i < f->scene.photo_count; i++) {
+        char *from = orl_scene_photo_path(NULL, &f->scene, i);
+        char *name = orl_format(NULL, "side/%s", f->photos[i].name);
+        free(f->photos[i].name);
+        f->photos[i].name = name;
+        char *to = orl_scene_photo_path(NULL, &f->scene, i);
+        char *background = orl_scene_background_path(NULL, &f->scene, i);
+        assert_int_equal(orl_file_copy(NULL, from, to), ORL_OK);
+        assert_int_equal(orl_file_copy(NULL, from, background), ORL_OK);
+        free(from);
+        free(to);
+        free(background);
+    }
+}
+
+// The files of photographs that are left out are left out too, and all others are there.
+static void check_files(const struct orl_scene *whole, const struct orl_scene *small)
+{
+    struct orl_scene both = *whole; // its photographs in the folder of `small`
+    size_t bad, files;
+    both.dir = small->dir;
+    for (size_t i = 0; i < whole->photo_count; i++) {
+        bool kept = orl_scene_find_photo(small, whole->photos[i].name) >= 0;
+        char *photo = orl_scene_photo_path(NULL, &both, i);
+        char *background = orl_scene_background_path(NULL, &both, i);
+        assert_true(orl_path_is_file(photo) == kept);
+        assert_true(orl_path_is_file(background) == kept);
+        free(photo);
+        free(background);
+    }
+    assert_int_equal(orl_manifest_check(NULL, small->dir, &bad, &files), ORL_OK);
+    assert_int_equal(bad, 0);
+    assert_int_equal(files, 4 + 2 * small->photo_count);
+}
+
+// Of two photographs from one place one goes, and the other photographs, which alone show parts of
+// the wall, stay. The result opens, without the photograph.
+static void a_photograph_that_repeats_another_goes(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_trim result;
+    struct orl_scene *whole, *small;
+    setup_twins(&f);
+    move_to_folder(&f);
+    save_scene(&f);
+    char *out = orl_path_join(NULL, f.dir, "../trimmed-scene");
+    assert_int_equal(orl_dir_remove(NULL, out), ORL_OK);
+    assert_int_equal(orl_scene_open(NULL, f.dir, &whole), ORL_OK);
+    const struct orl_choice start = {.method = orl_method_find(NULL, "airieau"),
+                                     .params = orl_method_find(NULL, "airieau")->params};
+    const struct orl_trim_params params = {.start = &start, .out = out, .tolerance_db = 0.1,
+                                           .worst_db = 0.5, .views = 8, .size_divide = 1};
+    assert_int_equal(orl_trim_run(gpu, whole, &params, &result), ORL_OK);
+    assert_true(is_taken(&result, "without side/0.png") != is_taken(&result, "without side/4.png"));
+    assert_int_equal(result.after.photographs, 4);
+    assert_true(result.after.file_bytes < result.before.file_bytes);
+    assert_true(result.before.psnr_db - result.after.psnr_db <= 0.1);
+    assert_int_equal(orl_scene_open(NULL, out, &small), ORL_OK);
+    assert_int_equal(small->photo_count, 4);
+    assert_int_equal(small->points.count, result.after.points);
+    assert_string_equal(small->defaults.method, "airieau");
+    check_files(whole, small);
+    orl_scene_destroy(&small);
+    orl_scene_destroy(&whole);
+    orl_trim_finish(&result);
+    assert_int_equal(orl_dir_remove(NULL, out), ORL_OK);
+    free(out);
+    teardown(&f);
+}
+
+// The scene then states the method that was best, and is drawn by it.
+static void adapting_stores_the_best_method(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_adapt adapt;
+    struct orl_scene *scene;
+    struct orl_choice choice;
+    const struct orl_names none = {0};
+    const struct orl_adapt_params params = {.views = 3, .size_divide = 1, .budget_s = 1};
+    setup_twins(&f);
+    save_scene(&f);
+    assert_int_equal(orl_scene_open(NULL, f.dir, &scene), ORL_OK);
+    assert_int_equal(orl_adapt_run(gpu, scene, &params, &adapt), ORL_OK);
+    orl_scene_destroy(&scene);
+    assert_true(adapt.row_count >= 3);
+    const struct orl_adapt_row *best = &adapt.rows[adapt.chosen];
+    for (size_t i = 0; i < adapt.row_count; i++)
+        assert_false(adapt.rows[i].psnr_db > best->psnr_db && adapt.rows[i].ssim > best->ssim);
+    assert_int_equal(orl_scene_open(NULL, f.dir, &scene), ORL_OK);
+    assert_string_equal(scene->defaults.method, best->method->name);
+    assert_int_equal(orl_choice_make(NULL, scene, ORL_SAMPLE_SRGB, NULL, &none, &choice), ORL_OK);
+    assert_ptr_equal(choice.method, best->method);
+    orl_scene_destroy(&scene);
+    teardown(&f);
+}
+
+// A photograph that is held out is not even read: there is none of its name.
+static void held_out_photographs_never_steer(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_trim with, without;
+    setup_twins(&f);
+    trim(&f, 0.1, &without);
+    struct orl_photo *held = &f.photos[f.scene.photo_count++];
+    *held = f.photos[1];
+    held->name = malloc(16);
+    snprintf(held->name, 16, "missing.png");
+    held->test = true;
+    trim(&f, 0.1, &with);
+    assert_true(with.before.psnr_db == without.before.psnr_db);
+    // Which step comes next depends on times too. The first trials, all of the whole scene, do not.
+    for (size_t i = 0; i < with.step_count && i < without.step_count && without.steps[i].first; i++)
+        if (strcmp(with.steps[i].what, without.steps[i].what) == 0)
+            assert_true(with.steps[i].loss_db == without.steps[i].loss_db);
+    orl_trim_finish(&with);
+    orl_trim_finish(&without);
+    teardown(&f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hidden_points_go_first),
+        cmocka_unit_test(merged_points_lie_on_the_mean),
+        cmocka_unit_test(same_places_are_left_out_together),
+        cmocka_unit_test(a_budget_that_cannot_be_kept_is_refused),
+        cmocka_unit_test(the_tolerance_is_kept),
+        cmocka_unit_test(a_photograph_that_repeats_another_goes),
+        cmocka_unit_test(adapting_stores_the_best_method),
+        cmocka_unit_test(held_out_photographs_never_steer),
+    };
+    gpu = gpu_test_device();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}

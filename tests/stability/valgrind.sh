@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Replays every stored input of every reader under valgrind, which sees reads of memory that nothing
+# wrote: libraries are not built with MemorySanitizer. Takes minutes.
+# usage: valgrind.sh BUILD SOURCE      BUILD: a build folder without sanitizers
+set -u
+build=$(realpath "$1") inputs=$(realpath "$2")/tests/fuzz/inputs
+command -v valgrind >/dev/null || { echo "valgrind is not installed"; exit 77; }
+failed=0
+count=0
+for folder in "$inputs"/*/; do
+    name=$(basename "$folder")
+    log=$(valgrind -q --error-exitcode=9 --track-origins=yes "$build/tests/fuzz/fuzz_replay" \
+        "$name" "$folder" 2>&1)
+    status=$?
+    if [ $status -ne 0 ]; then
+        echo "FAILED: $name (status $status)"
+        grep == <<<"$log" | head -n 25
+        failed=1
+    fi
+    count=$((count + $(find "$folder" -type f | wc -l)))
+done
+echo "valgrind: $count inputs"
+exit $failed

@@ -1,0 +1,153 @@
+// Annotations: marks on surfaces with a title and a text, and the view that shows each best. Their
+// maker places them, and says how a walk begins; visitors read them.
+import {rotate, sub} from "oriel/math.js";
+import {MODES} from "oriel/navigation.js";
+import {text} from "oriel/strings.js";
+import {button, byId, make} from "oriel/ui.js";
+import {viewFromKey, viewToKey} from "oriel/view.js";
+
+export class Notes {
+    // settings: manifest.walk; pick(x, y): a promise of the point under a CSS pixel, null: none;
+    // save(settings): a promise of whether they were saved; null: nothing can be changed
+    constructor(navigator, settings, {canvas, pick, save, wake})
+    {
+        Object.assign(this, {navigator, canvas, pick, saveAll: save, wake});
+        this.settings = {...settings, notes: [...(settings.notes || [])]};
+        this.layer = byId("marks");
+        this.card = byId("note");
+        this.card.setAttribute("aria-label", text.notes.one);
+        this.placing = false;
+        if (save)
+            this.buildMaker();
+        this.fill();
+    }
+
+    // --- marks ---
+
+    fill()
+    {
+        this.marks = this.settings.notes.map((note, i) => {
+            const mark = make("button", {type: "button", className: "mark", textContent: String(i + 1),
+                                         title: note.title});
+            mark.setAttribute("aria-label", text.notes.mark(i + 1, note.title));
+            mark.addEventListener("click", () => this.open(i));
+            return mark;
+        });
+        this.layer.replaceChildren(...this.marks);
+        if (this.list)
+            this.list.replaceChildren(...this.settings.notes.map((note, i) => this.row(note, i)));
+        this.wake();
+    }
+
+    // camera: of the window, in CSS pixels
+    update(camera)
+    {
+        this.settings.notes.forEach((note, i) => {
+            const q = rotate(camera.r, sub(note.position, camera.eye)), mark = this.marks[i];
+            const x = camera.fx * q[0] / q[2] + camera.cx, y = camera.fy * q[1] / q[2] + camera.cy;
+            mark.hidden = !(q[2] > 0 && x > 0 && y > 0 && x < camera.width && y < camera.height);
+            mark.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
+        });
+    }
+
+    open(i)
+    {
+        const note = this.settings.notes[i], close = button(text.close, () => this.close());
+        this.card.replaceChildren(make("h2", {textContent: note.title}),
+                                  ...(note.text || "").split("\n").map(line => make("p", {textContent: line})),
+                                  close);
+        this.card.hidden = false;
+        const view = note.view && viewFromKey(note.view, this.navigator.home.frame);
+        if (view)
+            this.navigator.flyTo(view);
+        this.opened = this.marks[i];
+        close.focus();
+        this.wake();
+    }
+
+    close()
+    {
+        this.card.hidden = true;
+        (this.opened && this.opened.isConnected ? this.opened : this.canvas).focus();
+    }
+
+    // --- for the maker ---
+
+    buildMaker()
+    {
+        const t = text.notes, maker = byId("maker"), s = this.settings;
+        const line = (label, key) => {
+            const input = make("input", {type: "text", maxLength: 200, value: s[key] || ""});
+            input.addEventListener("change", () => this.change({[key]: input.value}));
+            return make("label", {className: "line"}, label, input);
+        };
+        const modes = s.modes || MODES;
+        this.modeInputs = MODES.map(name => {
+            const input = make("input", {type: "checkbox", value: name, checked: modes.includes(name)});
+            input.addEventListener("change", () => this.changeModes(input));
+            return input;
+        });
+        this.list = make("ol");
+        this.title = make("input", {type: "text", maxLength: 200});
+        this.words = make("textarea", {rows: 3, maxLength: 2000});
+        this.said = make("p", {role: "status"});
+        maker.setAttribute("aria-label", t.title);
+        maker.append(
+            make("h2", {textContent: t.title}), make("label", {className: "line"}, t.name, this.title),
+            make("label", {className: "line"}, t.words, this.words),
+            make("div", {className: "row"}, button(t.placeMiddle, () => this.place(window.innerWidth / 2, window.innerHeight / 2)),
+                 button(t.place, () => this.startPlacing())), this.list,
+            make("h2", {textContent: t.walk}), line(t.siteTitle, "title"), line(t.attribution, "attribution"),
+            button(t.start, () => this.change({start: viewToKey(this.navigator.view)})),
+            make("fieldset", {}, make("legend", {textContent: t.modes}),
+                 ...this.modeInputs.map(input => make("label", {}, input, text.actions[input.value]))),
+            this.said);
+        this.canvas.addEventListener("click", event => {
+            if (this.placing)
+                this.place(event.clientX, event.clientY);
+        });
+    }
+
+    startPlacing()
+    {
+        this.placing = true;
+        this.said.textContent = text.notes.clickSurface;
+    }
+
+    async place(x, y)
+    {
+        this.placing = false;
+        const view = this.navigator.view, position = await this.pick(x, y);
+        if (!position) {
+            this.said.textContent = text.notes.noSurface;
+            return;
+        }
+        const note = {title: this.title.value || text.notes.one, text: this.words.value, position,
+                      view: viewToKey(view)};
+        this.title.value = this.words.value = "";
+        this.change({notes: [...this.settings.notes, note]});
+    }
+
+    row(note, i)
+    {
+        const remove = button("✕", () => this.change({notes: this.settings.notes.filter(n => n !== note)}));
+        remove.setAttribute("aria-label", text.notes.remove(note.title));
+        return make("li", {className: "row"}, button(note.title, () => this.open(i)), remove);
+    }
+
+    changeModes(input)
+    {
+        const modes = this.modeInputs.filter(other => other.checked).map(other => other.value);
+        if (modes.length)
+            this.change({modes});
+        else
+            input.checked = true;
+    }
+
+    async change(what)
+    {
+        Object.assign(this.settings, what);
+        this.fill();
+        this.said.textContent = await this.saveAll(this.settings) ? text.notes.saved : text.notes.notSaved;
+    }
+}
