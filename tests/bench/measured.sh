@@ -7,8 +7,8 @@
 # that are missing. Without SECTION all sections are measured, which takes hours on two cores.
 # A section writes the page of its name. Work files lie in BUILD/measured. Needs jq.
 set -euo pipefail
-sections="scenes accuracy parts steadiness frame growth memory prepare stereo radiance response
-resampling"
+sections="scenes accuracy methods parts stress steadiness frame growth memory trim prepare stereo
+radiance replaced response resampling"
 [ $# -ge 3 ] || { sed -n '2,9s/^# *//p' "$0"; echo "sections: "$sections; exit 2; }
 build=$(realpath "$1") scenes=$(realpath -m "$2") datasets=$(realpath -m "$3")
 shift 3
@@ -110,8 +110,8 @@ page_scenes() {
     while read -r name arguments; do
         [ -e "$scenes/$name/scene.json" ] && continue
         [ "$name" != monument ] || [ -e "$work/monument" ] ||
-            run "oriel synth monument --out WORK/monument --size 576x384 --count 24 --quiet"
-        run "oriel prepare $arguments --out SCENES/NAME --max-size 768 --quiet" "$name"
+            run "oriel synth monument --out WORK/monument --size 576x384 --count 24 --quiet" >&2
+        run "oriel prepare $arguments --out SCENES/NAME --max-size 768 --quiet" "$name" >&2
     done <<'END'
 fountain DATASETS/fountain-P11/images --test-list 0002.jpg,0005.jpg,0008.jpg
 herz DATASETS/Herz-Jesus-P8/images --test-list 0002.jpg,0005.jpg
@@ -178,6 +178,53 @@ vary() { # KEY=A,B,..
               $s[] | [(.[0] | name)] + [.[] | .mean | (.psnr_db | fixed(2)) + ", " + (.ssim | fixed(3))])'
 }
 
+# A row for each method on a scene, with these options: accuracy from eval, processor time and memory of
+# the device from bench, in a process of its own, since what a method asked for stays on the device.
+method_rows() {
+    local scene=$1 options=$2 method unit=
+    "$build/oriel" methods | awk '/^[a-z][a-z-]*  / {print $1}' | while read -r method; do
+        run "oriel eval $scene --method $method $options --quiet --json -" \
+            >"$work/one.json" 2>>"$work/methods.log" &&
+            run "oriel bench $scene --method $method $options $methods_bench --quiet --json -" \
+                >"$work/two.json" 2>>"$work/methods.log" || { echo "| \`$method\` | - | - | - | - |"; continue; }
+        [ -n "$unit" ] || unit=$(jq '.sizes[0].cpu_ms' "$work/two.json")
+        jq -rs --arg m "$method" --argjson u "$unit" "$tables"'
+            ["`\($m)`", (.[0].mean.psnr_db | fixed(2)), (.[0].mean.ssim | fixed(3)),
+             (.[1].sizes[0].cpu_ms / $u | fixed(2)), (.[1].sizes[0].device_bytes / 1048576 | fixed(0))]
+            | row' "$work/one.json" "$work/two.json"
+    done
+}
+
+method_table() { # SCENE OPTIONS
+    printf '\n**%s**%s\n\n' "$(basename "$1")" "${2:+, with \`$2\`}"
+    printf '| method | PSNR, dB | SSIM | time | memory, MiB |\n|---|---|---|---|---|\n'
+    method_rows "$1" "$2"
+}
+
+page_methods() {
+    local synth='oriel synth figures --out WORK/figures --cameras 8 --size 320x240 --quiet'
+    local import='oriel import WORK/figures --masks WORK/figures/masks --background WORK/figures/background --mesh hull=64,5000 --test-list cam02,cam05 --out WORK/figure --quiet'
+    local methods_bench='--quick --size 512x512 --seconds 1 --frames 8'
+    local scene
+    scene=$(scene_names fountain)
+    rm -rf "$work/figures" "$work/figure"
+    run "$synth" >&2
+    run "$import" >&2
+    run "oriel eval SCENES/NAME --method points --quiet --json -" "$scene" >"$work/methods.json"
+    head_of "All methods on two scenes" "$work/methods.json"
+    cat <<'END'
+
+Accuracy is that of held-out photographs, over whole pictures. Time is processor time of a frame of 512x512 relative
+to the first row; memory is that of the device with everything that the method asked for. A dash: the method asks
+for something that the scene lacks. The figure has silhouettes, a hull as a mesh and no points, so that `points` shows
+the background alone; there all methods paint the room behind it, as `li` does.
+END
+    command_block "$synth" "$import" 'oriel eval SCENE --method METHOD --quiet --json -' \
+        "oriel bench SCENE --method METHOD $methods_bench --quiet --json -"
+    method_table "SCENES/$scene" ""
+    method_table WORK/figure "--set fill=room"
+}
+
 page_parts() {
     local part_scenes=($(scene_names fountain herz sceaux sakharov)) option
     run "oriel eval SCENES/${part_scenes[0]} --method points --quiet --json -" >"$work/device.json"
@@ -198,6 +245,54 @@ END
     command_block "$(echo $background)"
     print_table "$work/part.json" 'table(["scene", "PSNR", "SSIM"];
         .[] | [name, (.mean.psnr_db | fixed(2)), (.mean.ssim | fixed(3))])'
+}
+
+# The matrix of a report of oriel stress: dB lost at worst, and where 3 dB are lost.
+stress_matrix() { # FILE
+    print_table "$1" '. as $r
+      | def level($axis): if . == null then "never" else "at " + (. * 100 | round / 100 | tostring) end;
+      table(["what gets worse", "from", "to"] + [.methods[] | "`" + . + "`"];
+        .axes[] | . as $a
+        | [.title, (.levels[0] | tostring),
+           (.levels[-1] | tostring) + " " + .unit] +
+          [$r.methods[] as $m
+           | [$r.losses[] | select(.axis == $a.name and .method == $m)][0]
+           | if . == null then "-" else (.lost_db | fixed(1)) + ", " + (.at[1] | level($a)) end])'
+}
+
+page_stress() {
+    local synth='oriel stress synth --out WORK/stress/synth --views 1 --quiet'
+    local real='oriel stress SCENES/NAME --out WORK/stress/NAME --axes photographs,angle --views 1 --quiet'
+    local name report=$work/stress/synth/stress.json
+    run "$synth" >&2
+    head_of "How much methods lose" "$report"
+    cat <<'END'
+
+One thing at a time gets worse, in six severities ([axes](../reference/stress.md#axes)). A cell says how many dB of PSNR
+the worst severity costs, and where 3 dB are lost. A method that has little to lose loses little: the table below
+says where each begins. [Failure modes](../how/failure-modes.md) says why.
+END
+    command_block "$synth"
+    stress_matrix "$report"
+    printf '**The unchanged scene**: PSNR in dB, SSIM, FLIP and flicker\n\n'
+    print_table "$report" '
+      [.rows[] | select(.axis == "photographs" and .severity == 0)] as $rows
+      | table(["method", "PSNR", "SSIM", "FLIP", "flicker"];
+          $rows[] | ["`" + .method + "`", (.mean.psnr_db | fixed(2)), (.mean.ssim | fixed(3)),
+                     (.mean.flip | fixed(3)), (.flicker | fixed(2))])'
+    printf '**Flicker at the worst severity**, mean difference of blocks\n\n'
+    print_table "$report" '. as $r
+      | table(["what gets worse"] + [.methods[] | "`" + . + "`"];
+          .axes[] | . as $a
+          | [.title] + [$r.methods[] as $m
+              | [$r.rows[] | select(.axis == $a.name and .method == $m)][-1]
+              | if . == null then "-" else .flicker | fixed(1) end])'
+    for name in $(scene_names fountain sakharov temple); do
+        run "$real" "$name" >&2
+        printf '**Photographs of scene `%s`**\n' "$name"
+        command_block "${real//NAME/$name}"
+        stress_matrix "$work/stress/$name/stress.json"
+    done
 }
 
 page_steadiness() {
@@ -303,6 +398,45 @@ page_memory() {
                (.mean.ssim | fixed(3)), (.sizes[0].frame_ms | fixed(0))])'
 }
 
+page_trim() {
+    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --random --quiet --json WORK/trimmed/NAME.json --plots WORK/trimmed/NAME'
+    local name
+    mkdir -p "$work/trimmed"
+    for name in $(scene_names fountain herz sakharov monument); do
+        rm -rf "$work/trimmed/$name"
+        run "${trim/--plots*/--plots WORK/trimmed/$name-plots}" "$name" >"$work/trimmed/$name.txt"
+        jq --arg scene "$name" '. + {scene: $scene}' "$work/trimmed/$name.json"
+    done | jq -s . >"$work/trim.json"
+    head_of "Trimming" "$work/trim.json"
+    cat <<'END'
+
+What `oriel trim` leaves of a scene within 0.1 dB of mean PSNR over training photographs, each rendered without itself,
+and no photograph worse by more than 0.5 dB. *Model*: points and photographs on the device. The time of a frame is
+processor time on a software renderer. Held-out photographs confirm the result and decide nothing.
+END
+    command_block "$trim"
+    print_table "$work/trim.json" '
+      def mib: . / 1048576 | fixed(2);
+      def model: .point_bytes + .photo_bytes;
+      table(["scene", "points", "photographs", "model, MiB", "times smaller", "all on the device, MiB", "files, MiB",
+             "frame, ms", "training, dB", "worst loss, dB", "held out, dB", "SSIM"];
+        .[] | . as $t | (["before", "after"][] | . as $when | $t[$when]
+          | [$t.scene + ", " + $when, (.points | tostring), (.photographs | tostring), (model | mib),
+             (($t.before | model) / model | fixed(1)), (.device_bytes | mib), (.file_bytes | mib),
+             (.frame_ms | fixed(0)), (.psnr_db | fixed(2)), (.worst_loss_db | fixed(2)),
+             (.held_psnr_db | fixed(2)), (.held_ssim | fixed(3))]))'
+    printf '**Steps that were taken**: loss of each in dB against MiB of the model after it\n\n'
+    print_table "$work/trim.json" '
+      table(["scene", "step", "loss, dB", "all, dB", "model, MiB", "frame, ms"];
+        .[] | .scene as $scene | .steps[] | select(.taken)
+          | [$scene, .what, (.loss_db | fixed(3)), (.total_loss_db | fixed(3)), (.bytes / 1048576 | fixed(2)),
+             (.ms | fixed(0))])'
+    printf '**Random removal** of points and photographs: loss in dB at these sizes of the model\n\n'
+    print_table "$work/trim.json" '
+      table(["scene", "model, MiB", "loss, dB"];
+        .[] | .scene as $scene | .random[] | [$scene, (.bytes / 1048576 | fixed(2)), (.loss_db | fixed(2))])'
+}
+
 page_prepare() {
     local name
     for name in $(scene_names); do
@@ -355,7 +489,7 @@ page_radiance() {
     local truth='bench_truth_scene WORK/series WORK/series-truth WORK/series-scene 1 5'
     local error='bench_radiance_error WORK/series-scene WORK/series-truth --bound'
     local cost='bench_merge_time WORK/series-scene'
-    [ -e "$work/series" ] || run "$synth"
+    [ -e "$work/series" ] || run "$synth" >&2
     [ -e "$work/series-scene" ] || run "$truth" >&2
     run "$error" >"$work/radiance.txt"
     run "$cost" >"$work/merge_time.txt"
@@ -385,6 +519,40 @@ END
     command_block "$again"
     print_table "$work/radiance.json" 'table(["", "PSNR, dB", "covered PSNR, dB", "SSIM"];
         .[] | [.row, (.mean.psnr_db | fixed(2)), (.mean.psnr_covered_db | fixed(2)), (.mean.ssim | fixed(3))])'
+}
+
+# Rows of the table: what is merged, its scene, its options for eval, its line of bench_merge_time.
+page_replaced() {
+    local synth='oriel synth monument --out WORK/replace --size 384x256 --count 24 --contrast 8 --exposures -3,0,3 --noise 0.005 --quiet'
+    local truth='bench_truth_scene WORK/replace WORK/replace-truth WORK/replace-scene 1 9'
+    local replace='oriel hdr WORK/replace-scene --replace-series 9 --out WORK/replaced --quiet'
+    local cost='bench_merge_time WORK/replace-scene' cost2='bench_merge_time WORK/replaced'
+    local errors=() row scene merge
+    rm -rf "$work/replaced"
+    [ -e "$work/replace" ] || run "$synth" >&2
+    [ -e "$work/replace-scene" ] || run "$truth" >&2
+    run "$replace" >&2
+    { run "$cost"; run "$cost2"; } >"$work/replaced.txt"
+    for row in 'replace-scene fused' 'replace-scene series' 'replaced fused'; do
+        read -r scene merge <<<"$row"
+        errors+=("oriel eval WORK/$scene --truth WORK/replace-truth --merge $merge --quiet --json -")
+        run "${errors[-1]}" >"$work/replaced-$scene-$merge.json"
+    done
+    head_of "A series replaced by radiance" "$work/replaced-replaced-fused.json"
+    cat <<'END'
+
+A synthetic monument in three series of eight photographs, three of 24 held out, with true cameras and points.
+`fused` and `series` merge all photographs for every frame; the last row renders from the eight photographs of the
+darkest series after `oriel hdr --replace-series` has replaced them. Errors are differences of log2 to the true
+radiance, in stops, over covered pixels. Time is processor time, memory that of the photographs on the device.
+END
+    command_block "$synth" "$truth" "$replace" "${errors[@]}" "$cost" "$cost2"
+    printf '| way | log2 RMSE, stops | PU21 PSNR, dB | time of a view | photographs |\n|---|---|---|---|---|\n'
+    paste -d'|' <(jq -r '.mean | "\(.log2_rmse * 1000 | round / 1000) | \(.pu21_psnr_db * 100 | round / 100) "' \
+                     "$work"/replaced-replace-scene-fused.json "$work"/replaced-replace-scene-series.json \
+                     "$work"/replaced-replaced-fused.json) \
+        <(sed -E 's/.* ([0-9.]+) s of .* ([0-9.]+ MiB)/ \1 s | \2 |/' "$work/replaced.txt") |
+        paste -d' ' <(printf '| `fused` |\n| `series` |\n| replaced, then `fused` |\n') -
 }
 
 page_response() {
@@ -433,6 +601,9 @@ git -C "$source" diff --quiet HEAD -- "${parts[@]}" || commit=$commit+
 for section in "$@"; do
     load=$(cut -d ' ' -f 1 /proc/loadavg)
     "page_$section" | cat -s >"$work/$section.md"
+    # What a command prints must not get into the page unasked.
+    [ "$(head -c 2 "$work/$section.md")" = '# ' ] ||
+        { echo "$work/$section.md does not begin with a title" >&2; exit 1; }
     mv "$work/$section.md" "$pages/$section.md"
     echo "wrote docs/measured/$section.md" >&2
 done

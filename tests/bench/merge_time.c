@@ -1,6 +1,6 @@
-// merge_time SCENE [ROUNDS]: processor time of both merges of a scene of several exposures, seen
-// from its held-out photographs, in turn in one process after a first draw of each. Mean of the
-// rounds.
+// merge_time SCENE [ROUNDS]: processor time and device memory of both merges of a scene of several
+// exposures, seen from its held-out photographs, in turn in one process after a first draw of each.
+// Mean of the rounds. A scene of radiance photographs has only the first merge.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -13,7 +13,7 @@ static enum orl_result time_view(struct orl_hdr *const hdr[ORL_HDR_MERGE_COUNT],
 {
     enum orl_result result = ORL_OK;
     for (int i = 0; i <= rounds; i++)
-        for (int m = 0; result == ORL_OK && m < ORL_HDR_MERGE_COUNT; m++) {
+        for (int m = 0; result == ORL_OK && m < ORL_HDR_MERGE_COUNT && hdr[m]; m++) {
             struct orl_frame frame = {0};
             double start = orl_cpu_time_s();
             result = orl_hdr_draw(hdr[m], view, NULL, &frame);
@@ -27,25 +27,30 @@ static enum orl_result run(struct orl_gpu *gpu, const struct orl_scene *scene, i
 {
     struct orl_hdr *hdr[ORL_HDR_MERGE_COUNT] = {0};
     double seconds[ORL_HDR_MERGE_COUNT] = {0};
-    int views = 0;
+    size_t bytes[ORL_HDR_MERGE_COUNT] = {0};
+    int views = 0, merges = ORL_HDR_MERGE_COUNT;
     enum orl_result result = ORL_OK;
-    for (int m = 0; result == ORL_OK && m < ORL_HDR_MERGE_COUNT; m++) {
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (scene->photos[i].radiance)
+            merges = ORL_HDR_FUSED + 1;
+    for (int m = 0; result == ORL_OK && m < merges; m++) {
+        size_t before = orl_gpu_owner_bytes(gpu, ORL_OWNER_PHOTOGRAPHS);
         struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
         params.merge = (enum orl_hdr_merge)m;
         params.render = orl_method_find(orl_gpu_log(gpu), "oriel")->params;
         result = orl_hdr_create(gpu, scene, &params, &hdr[m]);
+        bytes[m] = orl_gpu_owner_bytes(gpu, ORL_OWNER_PHOTOGRAPHS) - before;
     }
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
         if (scene->photos[i].test) {
             result = time_view(hdr, &scene->photos[i].view, rounds, seconds);
             views++;
         }
-    double fused = seconds[ORL_HDR_FUSED], series = seconds[ORL_HDR_SERIES];
     if (result == ORL_OK && !views)
         result = orl_fail(orl_gpu_log(gpu), ORL_ERR_DATA, "no photograph is held out");
-    if (result == ORL_OK)
-        printf("%d views: fused %.3f s, series %.3f s, ratio %.3f\n", views, fused / views,
-               series / views, fused / series);
+    for (int m = 0; result == ORL_OK && m < merges; m++)
+        printf("%s %.3f s of the processor a view, photographs %.1f MiB\n", orl_hdr_merge_names[m],
+               seconds[m] / views, (double)bytes[m] / (1 << 20));
     for (int m = 0; m < ORL_HDR_MERGE_COUNT; m++)
         orl_hdr_destroy(&hdr[m]);
     return result;

@@ -36,17 +36,6 @@ static bool exposure_of(const struct job *job, const char *name, double *ev)
     return false;
 }
 
-static enum orl_result copy(const struct orl_log *log, const char *from, const char *to)
-{
-    uint8_t *data = NULL;
-    size_t size;
-    enum orl_result result = orl_file_read(log, from, (size_t)1 << 32, &data, &size);
-    if (result == ORL_OK)
-        result = orl_file_write(log, to, data, size);
-    free(data);
-    return result;
-}
-
 static enum orl_result expose(const struct job *job, const char *from, const char *to, double ev,
                               uint32_t key)
 {
@@ -88,7 +77,7 @@ static enum orl_result expose_folder(const struct job *job, const char *from, co
         if (exposure_of(job, names.items[i], &ev))
             result = expose(job, source, target, ev, (uint32_t)i * 7919u + 1);
         else if (orl_path_is_file(source))
-            result = copy(&job->log, source, target);
+            result = orl_file_copy(&job->log, source, target);
         free(source);
         free(target);
     }
@@ -170,7 +159,7 @@ static enum orl_result expose_scene(struct job *job, const char *from, const cha
     char *points = orl_path_join(&job->log, from, "points.ply");
     char *copied = orl_path_join(&job->log, to, "points.ply");
     if (result == ORL_OK)
-        result = copy(&job->log, points, copied);
+        result = orl_file_copy(&job->log, points, copied);
     if (result == ORL_OK)
         result = write_manifest(job, manifest, out);
     free(points);

@@ -32,14 +32,9 @@ static enum orl_result copy_folder(const struct orl_log *log, const char *from, 
     if (result == ORL_OK)
         result = orl_dir_list(log, from, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        uint8_t *data = NULL;
-        size_t size;
         char *source = orl_path_join(log, from, names.items[i]);
         char *target = orl_path_join(log, to, names.items[i]);
-        result = orl_file_read(log, source, (size_t)1 << 31, &data, &size);
-        if (result == ORL_OK)
-            result = orl_file_write(log, target, data, size);
-        free(data);
+        result = orl_file_copy(log, source, target);
         free(source);
         free(target);
     }
@@ -132,7 +127,7 @@ static enum orl_result make(struct job *job)
     char *points = orl_path_join(&job->log, job->scene, "points.ply");
     char *manifest = orl_path_join(&job->log, job->scene, "scene.json");
     if (result == ORL_OK)
-        result = orl_points_write(&job->log, points, &job->points);
+        result = orl_points_write(&job->log, points, &job->points, false);
     json_t *root = json_pack("{s:s, s:i, s:o}", "format", "oriel scene", "version", 1,
                              "photographs", photos);
     if (result == ORL_OK && json_dump_file(root, manifest, JSON_INDENT(1)) != 0)

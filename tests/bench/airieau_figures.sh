@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# The figures and tables of Airieau 2012 that compare something, on a prepared scene with held-out
+# photographs: pictures in OUT, tables on stdout.
+#   figure 3: a plane as proxy against the points       figure 13: time by number of photographs
+#   figure 8: without and with the occlusion test       figure 15: photographs at lower resolution
+#   figure 9: points with their own colours             table 1: memory
+#   figure 14: a textured mesh (SCENE/mesh.ply)         table 2: time by pass, 512 and 1024
+# PHOTO, a held-out one, is the viewpoint of the pictures. Needs jq.
+# usage: airieau_figures.sh BUILD SCENE PHOTO OUT
+set -eu
+build=$1 scene=$2 photo=$3 out=$4
+oriel=$build/oriel
+mkdir -p "$out"
+
+# copy NAME MESH: the scene with another mesh.
+copy() {
+    rm -rf "${out:?}/$1"
+    mkdir "$out/$1"
+    cp -r "$scene/images" "$scene/sparse" "$scene/points.ply" "$scene/scene.json" "$out/$1"
+    [ -z "$2" ] || cp "$2" "$out/$1/mesh.ply"
+}
+
+# row FIGURE NAME SCENE ARGUMENTS...: a picture, and the accuracy of all held-out photographs.
+row() {
+    local figure=$1 name=$2 from=$3
+    shift 3
+    "$oriel" render "$from" --at "$photo" --out "$out/fig$figure-$name.png" --quiet "$@"
+    "$oriel" eval "$from" --quiet --json - "$@" | jq -r --arg f "$figure" --arg n "$name" \
+        '"| \($f) | \($n) | \(.mean.psnr_db * 100 | round / 100) | \(.mean.psnr_covered_db * 100 | round / 100) | \(.mean.ssim * 1000 | round / 1000) |"'
+}
+
+"$build/tests/bench_plane_mesh" "$scene" "$photo" "$out/plane.ply"
+copy plane "$out/plane.ply"
+echo "| figure | picture | PSNR, dB | covered PSNR, dB | SSIM |"
+echo "|---|---|---|---|---|"
+row 3 plane "$out/plane" --method airieau --set proxy=mesh
+row 3 points "$scene" --method airieau
+row 8 no-test "$scene" --method airieau --set visibility=none
+row 8 test "$scene" --method airieau
+row 9 splats "$scene" --method points
+row 9 photographs "$scene" --method airieau
+if [ -e "$scene/mesh.ply" ]; then
+    row 14 textured-mesh "$scene" --method orzan-surface --set proxy=mesh
+    row 14 photographs "$scene" --method airieau
+fi
+
+"$oriel" bench "$scene" --method airieau --quiet --seconds 0.3 --json "$out/bench.json"
+echo
+jq -r '"Table 1: \(.points) points, \(.photographs) photographs of \(.photo_size[0])x\(.photo_size[1]).",
+    "", "| memory of | MiB |", "|---|---|",
+    (.memory | group_by(.owner)[] | "| \(.[0].owner) | \(map(.bytes) | add / 1048576 | . * 10 | round / 10) |")' \
+    "$out/bench.json"
+echo
+jq -r '"Table 2: ratios to the frame of 512x512.", "", "| size | splats | pull, push | photographs | frame |",
+    "|---|---|---|---|---|",
+    (.sizes[0].frame_ms as $unit | .sizes[] |
+     def of(names): [.passes_ms | to_entries[] | select(.key | IN(names[])) | .value] | add // 0;
+     def r: . / $unit * 100 | round / 100;
+     "| \(.size[0])x\(.size[1]) | \(of(["splat"]) | r) | \(of(["pull-push"]) | r) | \(of(["gather"]) | r) | \(.frame_ms | r) |")' \
+    "$out/bench.json"
+echo
+jq -r '"Figure 13.", "", "| photographs | time, ratio to the fewest |", "|---|---|",
+    (.by_photographs[0].cpu_ms as $unit | .by_photographs[] |
+     "| \(.photographs) | \(.cpu_ms / $unit * 100 | round / 100) |")' "$out/bench.json"
+echo
+jq -r '"Figure 15.", "", "| photographs at | PSNR, dB | device memory, MiB |", "|---|---|---|",
+    (.by_resolution[] | "| 1/\(.photo_divide) | \(if .psnr_db then .psnr_db * 100 | round / 100 else "-" end) | \(.device_bytes / 1048576 | round) |")' \
+    "$out/bench.json"
