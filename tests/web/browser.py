@@ -71,11 +71,15 @@ class Browser:
         return [e["message"] for e in self.driver.get_log("browser")
                 if e["level"] in ("SEVERE", "WARNING") and "OpenGL, Performance" not in e["message"]]
 
-    def keys(self, code, key, seconds):
-        """Holds a key down."""
-        for kind in ("keyDown", "keyUp"):
+    def keys(self, code, key, seconds, until="return true"):
+        """Holds a key down, on a slow machine until the page has seen it."""
+        def send(kind):
             self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": key})
-            time.sleep(seconds if kind == "keyDown" else 0)
+
+        send("keyDown")
+        time.sleep(seconds)
+        self.wait(until)
+        send("keyUp")
 
     def screenshot(self, file):
         self.driver.save_screenshot(file)

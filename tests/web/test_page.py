@@ -87,7 +87,9 @@ class Page(unittest.TestCase):
             "type": "mouseReleased", "x": points[-1][0], "y": points[-1][1], "button": "left"})
 
     def hold(self, code, key):
-        self.browser.keys(code, key, 0.3)
+        before = self.browser.js("return JSON.stringify(oriel.navigator.view)")
+        self.browser.keys(code, key, 0.3,
+                          f"return JSON.stringify(oriel.navigator.view) !== {json.dumps(before)}")
         self.browser.settle()
 
     def press(self, key, code):

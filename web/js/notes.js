@@ -28,7 +28,7 @@ export class Notes {
     {
         this.marks = this.settings.notes.map((note, i) => {
             const mark = make("button", {type: "button", className: "mark", textContent: String(i + 1),
-                                         title: note.title});
+                                         title: note.title, hidden: true}); // until update() places it
             mark.setAttribute("aria-label", text.notes.mark(i + 1, note.title));
             mark.addEventListener("click", () => this.open(i));
             return mark;
