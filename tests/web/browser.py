@@ -11,6 +11,9 @@ from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 
 
+WAIT_S = 180 # a limit for a busy machine, not what anything is expected to take
+
+
 class QuietHandler(http.server.SimpleHTTPRequestHandler):
     def log_message(self, *args):
         pass
@@ -33,7 +36,8 @@ class Server:
 class Browser:
     def __init__(self, width, height, touch=False):
         options = Options()
-        self.profile = tempfile.TemporaryDirectory()
+        # The browser's last process may still write when it has answered that it ends.
+        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         for flag in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader",
                      "--enable-unsafe-swiftshader", "--hide-scrollbars", "--mute-audio",
                      "--disable-dev-shm-usage", f"--user-data-dir={self.profile.name}"):
@@ -48,15 +52,15 @@ class Browser:
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": touch})
 
-    def open(self, address, seconds=90):
+    def open(self, address, seconds=WAIT_S):
         """Waits until everything that the view wants is there, and drawn."""
         self.driver.get(address)
         self.settle(seconds)
 
-    def settle(self, seconds=90):
+    def settle(self, seconds=WAIT_S):
         self.wait("return !!window.oriel && oriel.settled", seconds)
 
-    def wait(self, condition, seconds=90):
+    def wait(self, condition, seconds=WAIT_S):
         end = time.monotonic() + seconds
         while not self.driver.execute_script(condition):
             if time.monotonic() > end:
@@ -71,15 +75,45 @@ class Browser:
         return [e["message"] for e in self.driver.get_log("browser")
                 if e["level"] in ("SEVERE", "WARNING") and "OpenGL, Performance" not in e["message"]]
 
-    def keys(self, code, key, seconds, until="return true"):
-        """Holds a key down, on a slow machine until the page has seen it."""
+    def address(self):
+        """Of the page as the page itself has it, which the driver hears of later."""
+        return self.js("return location.href")
+
+    def keys(self, code, key, until="return true"):
+        """Holds a key down until the condition holds. The page has seen both events then."""
         def send(kind):
+            self.js(COUNT_EVENTS, kind.lower())
             self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": key})
+            self.wait("return seenEvents > 0")
 
         send("keyDown")
-        time.sleep(seconds)
         self.wait(until)
         send("keyUp")
+
+    def drag(self, *points):
+        """Of the mouse, with the left button. The page has seen all of it then."""
+        def send(kind, at, **more):
+            self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+                "type": kind, "x": at[0], "y": at[1], "button": "left", **more})
+
+        self.js(COUNT_EVENTS, "pointerup")
+        for kind, at in zip(["mousePressed"] + ["mouseMoved"] * (len(points) - 1), points):
+            send(kind, at, buttons=1, clickCount=1)
+        send("mouseReleased", points[-1])
+        self.wait("return seenEvents > 0")
+
+    def touch(self, *moments):
+        """Of fingers: for each moment their places. The page has seen all of it then."""
+        def send(kind, points):
+            self.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                "type": kind, "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+
+        self.js(COUNT_EVENTS, "pointerup")
+        send("touchStart", moments[0])
+        for points in moments[1:]:
+            send("touchMove", points)
+        send("touchEnd", [])
+        self.wait(f"return seenEvents >= {len(moments[0])}")
 
     def screenshot(self, file):
         self.driver.save_screenshot(file)
@@ -96,6 +130,15 @@ class Browser:
 
 
 HINT = "return document.getElementById('hint') ? document.getElementById('hint').textContent : ''"
+
+# Counts events of one kind from now on. The window hears of them after everything in the page.
+COUNT_EVENTS = """
+window.seenEvents = 0;
+window.removeEventListener(window.seenKind, window.countEvent);
+window.seenKind = arguments[0];
+window.countEvent = window.countEvent || (() => window.seenEvents++);
+window.addEventListener(window.seenKind, window.countEvent);
+"""
 
 CAPTURE = """
 return oriel.picture.capture(arguments[0], arguments[1]).then(canvas => {

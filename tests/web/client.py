@@ -53,13 +53,20 @@ class Client:
         self.open = b" 101 " in self.answer
 
     def send(self, data, opcode=1):
+        self.socket.sendall(self.message(data, opcode))
+
+    def send_all(self, messages):
+        """At once, so that they arrive together."""
+        self.socket.sendall(b"".join(self.message(data) for data in messages))
+
+    def message(self, data, opcode=1):
         data = data if isinstance(data, bytes) else json.dumps(data).encode()
         mask = os.urandom(4)
         size = (bytes([0x80 | len(data)]) if len(data) < 126 else
                 b"\xfe" + struct.pack(">H", len(data)) if len(data) < 65536 else
                 b"\xff" + struct.pack(">Q", len(data)))
-        self.socket.sendall(bytes([0x80 | opcode]) + size + mask +
-                            bytes(x ^ mask[i % 4] for i, x in enumerate(data)))
+        return (bytes([0x80 | opcode]) + size + mask +
+                bytes(x ^ mask[i % 4] for i, x in enumerate(data)))
 
     def exactly(self, size):
         data = b""
