@@ -48,6 +48,7 @@ json_t *orl_prepare_arguments(const struct orl_log *log, const struct orl_prepar
     add(list, "--quality", json_string(orl_quality_names[p->quality]));
     add(list, "--camera-sharing", json_string(orl_camera_sharing_names[p->sharing]));
     add(list, "--matching", json_string(orl_matching_names[p->matching]));
+    add(list, "--mapper", json_string(orl_mapper_names[p->mapper]));
     add(list, "--densifier", json_string(orl_densifier_names[p->densifier]));
     add(list, "--keep", json_string(orl_keep_names[p->keep]));
     add(list, "--mesh", json_string(orl_prepare_mesh_names[p->mesh]));

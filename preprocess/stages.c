@@ -59,9 +59,11 @@ static json_t *test_names(const struct orl_job *job)
 static json_t *calibrate_settings(const struct orl_job *job)
 {
     const struct orl_prepare_params *p = job->params;
-    return json_pack("{s:s, s:s, s:s, s:i, s:o, s:o*}", "quality", orl_quality_names[p->quality],
-                     "sharing", orl_camera_sharing_names[p->sharing], "matching",
-                     orl_matching_names[p->matching], "seed", (int)p->seed, "masks",
+    // The default is not in the key, so older keys stay valid.
+    return json_pack("{s:s, s:s, s:s, s:s*, s:i, s:o, s:o*}", "quality",
+                     orl_quality_names[p->quality], "sharing", orl_camera_sharing_names[p->sharing], "matching",
+                     orl_matching_names[p->matching], "mapper",
+                     p->mapper ? orl_mapper_names[p->mapper] : NULL, "seed", (int)p->seed, "masks",
                      mask_hashes(job), "normalised",
                      orl_normalise_wanted(job) ? json_string(job->exposures_hash) : NULL);
 }
@@ -321,6 +323,8 @@ static void add_usage(const struct orl_job *job, double start_s, const struct ru
     json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
     json_object_set_new(record, "child_peak_rss_mib",
                         json_real((double)job->child_peak_bytes / (1 << 20)));
+    if (json_object_size(job->programs))
+        json_object_set(record, "programs", job->programs);
 }
 
 // Pixels of the undistorted photographs, held-out ones included.
@@ -360,6 +364,8 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
     double start = orl_time_s();
     getrusage(RUSAGE_SELF, &before);
     job->child_cpu_s = 0;
+    json_decref(job->programs);
+    job->programs = json_object();
     job->child_peak_bytes = 0;
     json_object_set_new(record, "key", json_string(job->keys[id]));
     enum orl_result result = files ? orl_job_need_disk(job, stages[id].name, disk_need(job, id))

@@ -18,6 +18,15 @@ enum orl_matching {
     ORL_MATCHING_SEQUENTIAL,
     ORL_MATCHING_RETRIEVAL,
 };
+// Which of COLMAP's programs finds the poses. auto: incremental up to 400 photographs; above, global
+// where COLMAP has it (version 4), else hierarchical. When global or hierarchical registers fewer
+// than half, incremental after all.
+enum orl_mapper {
+    ORL_MAPPER_AUTO,
+    ORL_MAPPER_INCREMENTAL,
+    ORL_MAPPER_HIERARCHICAL,
+    ORL_MAPPER_GLOBAL,
+};
 // auto: COLMAP's densifier when COLMAP was built with CUDA, else Oriel's own.
 enum orl_densifier { ORL_DENSIFIER_AUTO, ORL_DENSIFIER_GL, ORL_DENSIFIER_COLMAP };
 
@@ -45,6 +54,7 @@ enum orl_leave_out {
 extern const char *const orl_quality_names[];
 extern const char *const orl_camera_sharing_names[];
 extern const char *const orl_matching_names[];
+extern const char *const orl_mapper_names[];
 extern const char *const orl_densifier_names[];
 extern const char *const orl_keep_names[];
 extern const char *const orl_prepare_mesh_names[];
@@ -65,6 +75,7 @@ struct orl_prepare_params {
     enum orl_quality quality;
     enum orl_camera_sharing sharing;
     enum orl_matching matching;
+    enum orl_mapper mapper;
     enum orl_densifier densifier;
     enum orl_keep keep;
     enum orl_prepare_mesh mesh;

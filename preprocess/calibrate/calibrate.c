@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "preprocess/calibrate/mapper.h"
 #include "preprocess/calibrate/match.h"
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/photos/doubts.h"
@@ -35,6 +36,7 @@ struct calibration {
     struct candidate best; // so far
     enum orl_matching way; // of choosing pairs
     struct orl_match_summary pairs;
+    enum orl_mapper mapper;
     bool straight;       // distortion is taken to be none from now on
     int tries;           // mapper runs, for folder names
 };
@@ -255,48 +257,48 @@ static enum orl_result consider_all(struct calibration *c, const char *out)
     return result;
 }
 
-// COLMAP's mapper fails when no pair of photographs can start a model. That is for
-// us to judge, not an error yet.
-static enum orl_result map(struct calibration *c, bool loose, const char *from)
+// A new folder below WORK for a mapper's models.
+static enum orl_result begin_try(struct calibration *c, char **path)
 {
-    struct orl_job *job = c->job;
-    struct orl_colmap_args args = {0};
     char name[64];
     snprintf(name, sizeof name, WORK "/models-%d", c->tries++);
-    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    char *out = orl_job_path(job, "%s", name), *photos = orl_job_path(job, ".oriel/photos");
-    enum orl_result result = database && out && photos ? orl_job_fresh_dir(job, name)
-                                                       : ORL_ERR_MEMORY;
-    if (result != ORL_OK)
-        goto end;
-    orl_colmap_arg(&args, "--database_path", "%s", database);
-    orl_colmap_arg(&args, "--image_path", "%s", photos);
-    orl_colmap_arg(&args, "--output_path", "%s", out);
-    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
-    // A later, larger model must not be thrown away for being under ten photographs.
-    orl_colmap_arg(&args, "--Mapper.min_model_size", "3");
-    if (c->straight)
-        orl_colmap_arg(&args, "--Mapper.ba_refine_extra_params", "0");
-    if (from)
-        orl_colmap_arg(&args, "--input_path", "%s", from);
-    if (loose) {
-        orl_colmap_arg(&args, "--Mapper.init_min_tri_angle", "6");
-        orl_colmap_arg(&args, "--Mapper.init_min_num_inliers", "40");
-        orl_colmap_arg(&args, "--Mapper.abs_pose_min_num_inliers", "15");
-        orl_colmap_arg(&args, "--Mapper.abs_pose_min_inlier_ratio", "0.15");
+    enum orl_result result = orl_job_fresh_dir(c->job, name);
+    *path = result == ORL_OK ? orl_job_path(c->job, "%s", name) : NULL;
+    return result == ORL_OK && !*path ? ORL_ERR_MEMORY : result;
+}
+
+// The hierarchical mapper's model, adjusted as a whole, takes the place of the one that it joined.
+static enum orl_result refine(struct calibration *c)
+{
+    struct candidate joined = c->best;
+    char *out;
+    enum orl_result result = begin_try(c, &out);
+    if (result == ORL_OK)
+        result = orl_mapper_refine(c->job, joined.path, out, c->straight);
+    if (result == ORL_OK) {
+        c->best = (struct candidate){0};
+        result = consider(c, out);
+        candidate_finish(&joined);
     }
-    result = orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "mapper", .step = "mapping", .share = (double)job->source_count,
-        .total = (double)job->source_count, .tolerated = "failed to create sparse model"},
-        &args);
+    free(out);
+    return result;
+}
+
+static enum orl_result map(struct calibration *c, bool loose, const char *from)
+{
+    char *out;
+    enum orl_result result = begin_try(c, &out);
+    if (result == ORL_OK)
+        result = orl_mapper_run(c->job, &(struct orl_mapper_run){
+            .mapper = c->mapper, .from = from, .out = out, .loose = loose,
+            .straight = c->straight});
     if (result == ORL_OK)
         result = consider_all(c, out);
+    if (result == ORL_OK && c->mapper == ORL_MAPPER_HIERARCHICAL && !loose && !from && c->best.path)
+        result = refine(c);
     if (result == ORL_OK)
-        orl_progress_report(job->progress, "mapping", 1, 1, NULL);
-end:
-    free(database);
+        orl_progress_report(c->job->progress, "mapping", 1, 1, NULL);
     free(out);
-    free(photos);
     return result;
 }
 
@@ -379,6 +381,17 @@ static enum orl_result join_more(struct calibration *c)
     return go_on_mapping(c, true);
 }
 
+// The mappers for very many photographs start from all of them at once, and may fail where one that
+// adds photograph after photograph does not.
+static enum orl_result map_one_by_one(struct calibration *c)
+{
+    if (c->mapper == ORL_MAPPER_INCREMENTAL || enough(c))
+        return ORL_OK;
+    say(c, "mapping incrementally");
+    c->mapper = ORL_MAPPER_INCREMENTAL;
+    return map(c, false, NULL);
+}
+
 // What retrieval gave too few of the right partners, if there are few such photographs.
 static enum orl_result match_left_out(struct calibration *c)
 {
@@ -412,7 +425,9 @@ static enum orl_result match_all(struct calibration *c)
 
 static enum orl_result try_hard(struct calibration *c)
 {
-    enum orl_result result = match_left_out(c);
+    enum orl_result result = map_one_by_one(c);
+    if (result == ORL_OK)
+        result = match_left_out(c);
     if (result == ORL_OK)
         result = join_more(c);
     if (result == ORL_OK)
@@ -555,6 +570,8 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
         [ORL_MATCHING_RETRIEVAL] = "pairs that look alike"};
     struct calibration c = {.job = job, .way = orl_match_way(job)};
     enum orl_result result = orl_job_find_colmap(job);
+    if (result == ORL_OK)
+        result = orl_mapper_choose(job, &c.mapper);
     if (result != ORL_OK)
         return result;
     if ((result = group_photos(&c)) != ORL_OK)
@@ -571,6 +588,7 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
     json_object_set_new(record, "cameras", json_integer(c.group_count));
     json_object_set_new(record, "matching", json_string(orl_matching_names[c.way]));
+    json_object_set_new(record, "mapper", json_string(orl_mapper_names[c.mapper]));
     if (c.pairs.tried)
         json_object_set_new(record, "pairs",
                             json_pack("{s:I, s:I, s:f}", "tried", (json_int_t)c.pairs.tried,

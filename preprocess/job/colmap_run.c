@@ -106,6 +106,20 @@ static enum orl_result advise_missing(const struct orl_job *job)
                     "program in ORIEL_COLMAP");
 }
 
+static void add_usage(struct orl_job *job, const char *command,
+                      const struct orl_process_usage *usage)
+{
+    job->child_cpu_s += usage->cpu_s;
+    if (usage->peak_rss_bytes > job->child_peak_bytes)
+        job->child_peak_bytes = usage->peak_rss_bytes;
+    const json_t *before = json_object_get(job->programs, command);
+    double cpu_s = json_number_value(json_object_get(before, "cpu_s")) + usage->cpu_s;
+    json_int_t runs = json_integer_value(json_object_get(before, "runs")) + 1;
+    if (job->programs)
+        json_object_set_new(job->programs, command,
+                            json_pack("{s:f, s:I}", "cpu_s", cpu_s, "runs", runs));
+}
+
 enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run *run,
                                struct orl_colmap_args *args)
 {
@@ -134,9 +148,7 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
         result = ORL_OK;
     else if (watch.error[0])
         orl_logf(job->log, ORL_LOG_ERROR, "%s", watch.error);
-    job->child_cpu_s += usage.cpu_s;
-    if (usage.peak_rss_bytes > job->child_peak_bytes)
-        job->child_peak_bytes = usage.peak_rss_bytes;
+    add_usage(job, run->command, &usage);
     if (result == ORL_ERR_NOT_FOUND) {
         result = advise_missing(job);
     } else if (result == ORL_ERR_EXTERNAL) {
@@ -157,6 +169,8 @@ static void find_version(void *priv, const char *line)
                  (int)strcspn(line + 7, " "), line + 7);
     if (strstr(line, "with CUDA"))
         job->colmap_cuda = true;
+    if (strstr(line, "global_mapper"))
+        job->colmap_global = true;
 }
 
 static void find_options(void *priv, const char *line)

@@ -116,6 +116,7 @@ void orl_job_close(struct orl_job *job)
     forget(&job->sparse);
     json_decref(job->skipped);
     json_decref(job->stages);
+    json_decref(job->programs);
     orl_unlock(&job->lock_fd);
     free(job->dir);
 }

@@ -66,6 +66,7 @@ struct orl_job {
     const char *colmap;
     char colmap_version[64];
     bool colmap_known, colmap_cuda;
+    bool colmap_global;                 // has it global_mapper?
     bool colmap_features, colmap_seed; // has it COLMAP 4's option names for features, for seeds?
     char keys[ORL_STAGE_COUNT][20]; // hexadecimal; a hash of everything that a stage's result
                                     // depends on
@@ -74,6 +75,7 @@ struct orl_job {
     // Processor time of child processes since the stage began.
     double child_cpu_s;
     size_t child_peak_bytes;
+    json_t *programs; // owned; {COLMAP's command: {"cpu_s", "runs"}} of the stage that runs
 };
 
 // Opens the folder params->out, which is made if needed, and locks it. On success and failure

@@ -4,6 +4,7 @@ const char *const orl_quality_names[] = {"draft", "standard", "high", NULL};
 const char *const orl_camera_sharing_names[] = {"auto", "single", "each", NULL};
 const char *const orl_matching_names[] = {"auto", "exhaustive", "sequential", "retrieval",
                                            NULL};
+const char *const orl_mapper_names[] = {"auto", "incremental", "hierarchical", "global", NULL};
 const char *const orl_densifier_names[] = {"auto", "gl", "colmap", NULL};
 const char *const orl_keep_names[] = {"minimal", "all", NULL};
 const char *const orl_prepare_mesh_names[] = {"none", "poisson", "delaunay", NULL};

@@ -10,7 +10,7 @@ enum { INPUTS_MAX = 4096 };
 
 struct options {
     const char *out, *masks, *exposures;
-    struct arg_enum quality, sharing, matching, densifier, keep, mesh, leave_out, until;
+    struct arg_enum quality, sharing, matching, mapper, densifier, keep, mesh, leave_out, until;
     double fps;
     int frames;
     int test_every, max_size, seed, max_vram_mib, max_ram_mib;
@@ -32,6 +32,7 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
         .exposures = o->exposures, .quality = (enum orl_quality)o->quality.value,
         .sharing = (enum orl_camera_sharing)o->sharing.value,
         .matching = (enum orl_matching)o->matching.value,
+        .mapper = (enum orl_mapper)o->mapper.value,
         .densifier = (enum orl_densifier)o->densifier.value,
         .keep = (enum orl_keep)o->keep.value, .mesh = (enum orl_prepare_mesh)o->mesh.value,
         .leave_out = (enum orl_leave_out)o->leave_out.value, .fps = o->fps, .frames = o->frames,
@@ -84,6 +85,7 @@ int cmd_prepare(int argc, char **argv)
     struct options o = {.quality = {orl_quality_names, ORL_QUALITY_STANDARD},
                         .sharing = {orl_camera_sharing_names, ORL_SHARING_AUTO},
                         .matching = {orl_matching_names, ORL_MATCHING_AUTO},
+                        .mapper = {orl_mapper_names, ORL_MAPPER_AUTO},
                         .densifier = {orl_densifier_names, ORL_DENSIFIER_AUTO},
                         .keep = {orl_keep_names, ORL_KEEP_MINIMAL},
                         .mesh = {orl_prepare_mesh_names, ORL_MESH_NONE},
@@ -111,6 +113,8 @@ int cmd_prepare(int argc, char **argv)
          "which photographs are of one camera; auto: by size and EXIF", 0, 0},
         {"matching", ARG_ENUM, &o.matching, "HOW",
          "which pairs are matched; sequential: neighbours by name; retrieval: by look", 0, 0},
+        {"mapper", ARG_ENUM, &o.mapper, "HOW",
+         "which of COLMAP's mappers; auto: incremental up to 400 photographs", 0, 0},
         {"densifier", ARG_ENUM, &o.densifier, "NAME",
          "gl is built in, colmap needs CUDA", 0, 0},
         {"keep", ARG_ENUM, &o.keep, "WHAT",

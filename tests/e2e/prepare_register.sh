@@ -12,6 +12,27 @@ says "all show one view, as of a camera that stood still"
 # A COLMAP whose options have other names.
 DOUBLE_NEW=1 run 0 prepare "$work/p" --out "$work/new"
 
+# mapped_by COMMANDS: those of COLMAP's programs that made the last model.
+mapped_by() {
+    local by=$(grep -E "mapper|triang|adjust" "$work/trace" | tr "\n" " ")
+    [ "$by" = "$1 " ] || fail "mapped by ${by}instead of $1"
+    : >"$work/trace"
+}
+export DOUBLE_TRACE=$work/trace
+run 0 prepare "$work/p" --out "$work/parts" --mapper hierarchical
+mapped_by "hierarchical_mapper point_triangulator bundle_adjuster"
+grep -q '"mapper": "hierarchical"' "$work/parts/scene.json" || fail "the scene does not say how"
+grep -q '"bundle_adjuster"' "$work/parts/scene.json" || fail "no time of COLMAP's programs"
+DOUBLE_NEW=1 run 0 prepare "$work/p" --out "$work/global" --mapper global
+mapped_by "global_mapper"
+run 1 prepare "$work/p" --out "$work/old" --mapper global
+says "COLMAP 9.9 has no global_mapper"
+# A mapper that finds no model has the incremental one for a substitute.
+DOUBLE_NO_MODEL=hierarchical_mapper run 0 prepare "$work/p" --out "$work/substitute" \
+    --mapper hierarchical
+mapped_by "hierarchical_mapper mapper"
+unset DOUBLE_TRACE
+
 # No overlap (grey pictures, which have nothing alike): an error with advice, and what was
 # done is kept.
 mkdir "$work/grey"

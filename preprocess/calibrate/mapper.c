@@ -1,0 +1,104 @@
+#include "preprocess/calibrate/mapper.h"
+
+#include <stdlib.h>
+
+#include "preprocess/calibrate/match.h"
+#include "preprocess/job/colmap_run.h"
+
+enum {
+    INCREMENTAL_MAX = 400, // photographs up to which auto maps incrementally
+    LEAF_MAX = 200,        // photographs that the hierarchical mapper maps at a time
+};
+
+enum orl_result orl_mapper_choose(const struct orl_job *job, enum orl_mapper *mapper)
+{
+    *mapper = job->params->mapper;
+    if (*mapper == ORL_MAPPER_GLOBAL && !job->colmap_global)
+        return orl_fail(job->log, ORL_ERR_EXTERNAL,
+                        "--mapper global: COLMAP %s has no global_mapper; version 4 has",
+                        job->colmap_version);
+    if (*mapper == ORL_MAPPER_AUTO)
+        *mapper = job->source_count <= INCREMENTAL_MAX ? ORL_MAPPER_INCREMENTAL
+                  : job->colmap_global                 ? ORL_MAPPER_GLOBAL
+                                                       : ORL_MAPPER_HIERARCHICAL;
+    return ORL_OK;
+}
+
+static void incremental_settings(const struct orl_mapper_run *run, struct orl_colmap_args *args)
+{
+    // A later, larger model must not be thrown away for being under ten photographs.
+    orl_colmap_arg(args, "--Mapper.min_model_size", "3");
+    if (run->straight)
+        orl_colmap_arg(args, "--Mapper.ba_refine_extra_params", "0");
+    if (run->loose) {
+        orl_colmap_arg(args, "--Mapper.init_min_tri_angle", "6");
+        orl_colmap_arg(args, "--Mapper.init_min_num_inliers", "40");
+        orl_colmap_arg(args, "--Mapper.abs_pose_min_num_inliers", "15");
+        orl_colmap_arg(args, "--Mapper.abs_pose_min_inlier_ratio", "0.15");
+    }
+}
+
+// The database, the photographs and the seed, which all mappers take.
+static enum orl_result common_settings(const struct orl_job *job, struct orl_colmap_args *args)
+{
+    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
+    char *photos = orl_job_path(job, ".oriel/photos");
+    if (database && photos) {
+        orl_colmap_arg(args, "--database_path", "%s", database);
+        orl_colmap_arg(args, "--image_path", "%s", photos);
+        orl_colmap_arg(args, "--random_seed", "%u", job->params->seed);
+    }
+    enum orl_result result = database && photos ? ORL_OK : ORL_ERR_MEMORY;
+    free(database);
+    free(photos);
+    return result;
+}
+
+enum orl_result orl_mapper_run(struct orl_job *job, const struct orl_mapper_run *run)
+{
+    static const char *const commands[] = {
+        [ORL_MAPPER_INCREMENTAL] = "mapper", [ORL_MAPPER_HIERARCHICAL] = "hierarchical_mapper",
+        [ORL_MAPPER_GLOBAL] = "global_mapper"};
+    struct orl_colmap_args args = {0};
+    enum orl_mapper mapper = run->from || run->loose ? ORL_MAPPER_INCREMENTAL : run->mapper;
+    enum orl_result result = common_settings(job, &args);
+    if (result != ORL_OK)
+        return result;
+    orl_colmap_arg(&args, "--output_path", "%s", run->out);
+    if (mapper == ORL_MAPPER_GLOBAL && run->straight)
+        orl_colmap_arg(&args, "--GlobalMapper.ba_refine_extra_params", "0");
+    if (mapper != ORL_MAPPER_GLOBAL)
+        incremental_settings(run, &args);
+    if (mapper == ORL_MAPPER_HIERARCHICAL)
+        orl_colmap_arg(&args, "--leaf_max_num_images", "%d", LEAF_MAX);
+    if (run->from)
+        orl_colmap_arg(&args, "--input_path", "%s", run->from);
+    // COLMAP's mapper fails when no pair of photographs can start a model. That is for calibrate to
+    // judge, not an error yet. The others have a substitute, whatever they fail from.
+    return orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = commands[mapper], .step = "mapping", .share = (double)job->source_count,
+        .total = (double)job->source_count,
+        .tolerated = mapper == ORL_MAPPER_INCREMENTAL ? "failed to create sparse model" : ""},
+        &args);
+}
+
+enum orl_result orl_mapper_refine(struct orl_job *job, const char *from, const char *out,
+                                  bool straight)
+{
+    struct orl_colmap_args args = {0};
+    enum orl_result result = common_settings(job, &args);
+    if (result != ORL_OK)
+        return result;
+    orl_colmap_arg(&args, "--input_path", "%s", from);
+    orl_colmap_arg(&args, "--output_path", "%s", out);
+    result = orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "point_triangulator", .step = "mapping", .share = 1, .total = 1}, &args);
+    if (result != ORL_OK)
+        return result;
+    orl_colmap_arg(&args, "--input_path", "%s", out);
+    orl_colmap_arg(&args, "--output_path", "%s", out);
+    if (straight)
+        orl_colmap_arg(&args, "--BundleAdjustment.refine_extra_params", "0");
+    return orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "bundle_adjuster", .step = "mapping", .share = 1, .total = 1}, &args);
+}
