@@ -60,6 +60,7 @@ json_t *orl_prepare_arguments(const struct orl_log *log, const struct orl_prepar
     add_number(list, "--test-every", p->test_every);
     add_number(list, "--radius-neighbours", p->radius_neighbours);
     add_number(list, "--radius-overlap", p->radius_overlap);
+    add_number(list, "--fuse-cluster", p->fuse_cluster);
     add_number(list, "--max-vram", (double)(p->max_vram_bytes >> 20));
     add_number(list, "--max-ram", (double)(p->max_ram_bytes >> 20));
     add_path(list, "--masks", p->masks_dir);

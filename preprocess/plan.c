@@ -6,11 +6,14 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "preprocess/cloud/clusters.h"
+#include "preprocess/cloud/fuse.h"
 #include "preprocess/densify_stage.h"
 
 // Processor time and memory with llvmpipe on a core of an AMD EPYC (docs/how/scale.md has how they
 // were measured).
-static const double PASS_S_PER_MPX = 8, FINISH_S_PER_MPX = 4;
+static const double PASS_S_PER_MPX = 8, FUSE_S_PER_MPX = 1.5, FINISH_S_PER_MPX = 2.5;
+static const double FUSE_BYTES_PER_PX = 34;
 static const double PART_BASE_BYTES = 140 << 20, PART_BYTES_PER_PX = 300;
 static const double FINISH_BASE_BYTES = 100 << 20, FINISH_BYTES_PER_PX = 48;
 enum {
@@ -29,6 +32,8 @@ struct planner {
     const char *max_vram; // MiB, NULL: no limit
     bool masks;
     int parts;
+    int fuse_size;     // photographs of a cluster at most
+    struct orl_clusters clusters; // of fusion
     bool *reads;       // owned; [part * parts + other]: has part a source in the other?
     double *pixels;    // owned; of each photograph
     json_t *jobs;
@@ -112,6 +117,10 @@ static enum orl_result read_scene(struct planner *p, int photographs)
     p->reads = orl_array(p->log, (size_t)p->parts * (size_t)p->parts + 1, sizeof *p->reads);
     if (!p->pixels || !p->reads)
         return ORL_ERR_MEMORY;
+    p->fuse_size = orl_fuse_cluster_size(argument(p, "--fuse-cluster"));
+    result = orl_clusters_make(p->log, &p->model, &p->photos, (size_t)p->fuse_size, &p->clusters);
+    if (result != ORL_OK)
+        return result;
     for (size_t i = 0; i < count; i++) {
         const struct orl_colmap_image *image =
             orl_colmap_image_by_name(&p->model, p->photos.items[i]);
@@ -223,6 +232,67 @@ static void plan_part(struct planner *p, int pass, int part)
         pixels * (PASS_BYTES + (last ? CONFIDENCE_BYTES : 0))));
 }
 
+static json_t *fuse_name(int cluster)
+{
+    return json_sprintf("fuse-%06d", cluster + 1);
+}
+
+static json_t *fuse_command(const struct planner *p, int cluster)
+{
+    json_t *list = json_pack("[s, s, s]", "oriel", "fuse", p->dir);
+    const char *max_ram = argument(p, "--max-ram");
+    add_option(list, "--photographs", p->fuse_size);
+    if (p->masks)
+        add_text(list, "--masks");
+    if (max_ram) {
+        add_text(list, "--max-ram");
+        add_text(list, max_ram);
+    }
+    add_text(list, "--part");
+    json_array_append_new(list, json_sprintf("%d/%zu", cluster + 1, p->clusters.count));
+    return list;
+}
+
+// A cluster needs the parts of the last pass that hold its photographs. Sets the sum of their pixels.
+static enum orl_result fuse_needs(const struct planner *p, int cluster, json_t *needs,
+                                  double *pixels)
+{
+    struct orl_names names = {0};
+    enum orl_result result = orl_clusters_photographs(p->log, &p->clusters, cluster, &names);
+    *pixels = 0;
+    for (int part = 0; result == ORL_OK && part < p->parts; part++) {
+        bool needed = false;
+        for (size_t i = part_begin(p, part); i < part_begin(p, part + 1); i++) {
+            bool used = orl_names_contain(&names, p->photos.items[i]);
+            *pixels += used ? p->pixels[i] : 0;
+            needed = needed || used;
+        }
+        if (needed)
+            json_array_append_new(needs, job_name(p, p->densify.geometric_passes, part));
+    }
+    orl_names_finish(&names);
+    return result;
+}
+
+static enum orl_result plan_cluster(struct planner *p, int cluster)
+{
+    double pixels;
+    json_t *needs = json_array();
+    enum orl_result result = fuse_needs(p, cluster, needs, &pixels);
+    char *path = orl_fuse_cluster_path(p->log, p->dir, (size_t)p->fuse_size, cluster, ".ply");
+    if (result == ORL_OK && path)
+        json_array_append_new(p->jobs, json_pack(
+            "{s:o, s:s, s:o, s:O, s:[s+, s+, s+], s:[s], s:i, s:f, s:f, s:f, s:f}", "name",
+            fuse_name(cluster), "kind", "fuse", "command", fuse_command(p, cluster), "needs",
+            needs, "inputs", p->dir, "/stereo", p->dir, "/images", p->dir, "/sparse", "outputs",
+            path, "threads", 1, "cpu_s", pixels * 1e-6 * FUSE_S_PER_MPX, "memory_bytes",
+            FINISH_BASE_BYTES + FUSE_BYTES_PER_PX * pixels, "read_bytes",
+            pixels * 2 * PASS_BYTES, "written_bytes", pixels * CLOUD_BYTES));
+    json_decref(needs);
+    free(path);
+    return result == ORL_OK && !path ? ORL_ERR_MEMORY : result;
+}
+
 static void plan_finish(struct planner *p)
 {
     json_t *command = json_pack("[s, s]", "oriel", "prepare"), *needs = json_array();
@@ -233,14 +303,18 @@ static void plan_finish(struct planner *p)
     add_text(command, "--resume");
     for (int part = 0; part < p->parts; part++)
         json_array_append_new(needs, job_name(p, p->densify.geometric_passes, part));
+    for (int c = 0; p->clusters.count > 1 && c < (int)p->clusters.count; c++)
+        json_array_append_new(needs, fuse_name(c));
     for (size_t i = 0; i < p->photos.count; i++)
         pixels += p->pixels[i];
+    bool fuses = p->clusters.count < 2;
     json_array_append_new(p->jobs, json_pack(
         "{s:s, s:s, s:o, s:o, s:[s+], s:[s+, s+], s:i, s:f, s:f, s:f, s:f}", "name", "finish",
         "kind", "finish", "command", command, "needs", needs, "inputs", p->dir, "/stereo",
         "outputs", p->dir, "/points.ply", p->dir, "/scene.json", "threads", 1, "cpu_s",
-        pixels * 1e-6 * FINISH_S_PER_MPX, "memory_bytes",
-        FINISH_BASE_BYTES + FINISH_BYTES_PER_PX * pixels, "read_bytes",
+        pixels * 1e-6 * (FINISH_S_PER_MPX + (fuses ? FUSE_S_PER_MPX : 0)), "memory_bytes",
+        FINISH_BASE_BYTES + (fuses ? FINISH_BYTES_PER_PX : CLOUD_BYTES * 2.0) * pixels,
+        "read_bytes",
         pixels * 3 * PASS_BYTES, "written_bytes", pixels * CLOUD_BYTES));
 }
 
@@ -249,8 +323,12 @@ static enum orl_result plan_jobs(struct planner *p)
     for (int pass = 0; p->parts && pass <= p->densify.geometric_passes; pass++)
         for (int part = 0; part < p->parts; part++)
             plan_part(p, pass, part);
+    enum orl_result result = ORL_OK;
+    for (int c = 0; p->parts && result == ORL_OK && p->clusters.count > 1 &&
+                    c < (int)p->clusters.count; c++)
+        result = plan_cluster(p, c);
     plan_finish(p);
-    return ORL_OK;
+    return result;
 }
 
 static json_t *sum_jobs(const json_t *jobs)
@@ -293,6 +371,7 @@ enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photo
     json_decref(p.jobs);
     json_decref(p.arguments);
     orl_names_finish(&p.photos);
+    orl_clusters_finish(&p.clusters);
     orl_colmap_finish(&p.model);
     free(p.pixels);
     free(p.reads);

@@ -134,8 +134,8 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
     // Depth maps may be deleted once they are read, and COLMAP's differ from run to run.
     [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
                            orl_stage_densify, {0}, "tool", false, NULL},
-    [ORL_STAGE_FUSE] = {"fuse", 6, ORL_STAGE_DENSIFY, no_settings, orl_stage_fuse,
-                        {".oriel/fused.ply"}, "points", true, NULL},
+    [ORL_STAGE_FUSE] = {"fuse", ORL_FUSE_VERSION, ORL_STAGE_DENSIFY,
+                        orl_stage_fuse_settings, orl_stage_fuse, {".oriel/fused.ply"}, "points", true, NULL},
     [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
                          {"points.ply"}, "points", true, NULL},
     [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, {0},

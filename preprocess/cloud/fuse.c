@@ -1,209 +1,279 @@
 #include "preprocess/cloud/fuse.h"
 
-#include <math.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "core/file.h"
+#include "core/lock.h"
 #include "core/memory.h"
+#include "preprocess/cloud/clusters.h"
+#include "preprocess/cloud/fuse_photographs.h"
 #include "preprocess/job/colmap_run.h"
-#include "scene/point_radii.h"
-#include "scene/thin.h"
 
-// Fraction of depth by which a photograph must see past a point to call the point an outlier.
-static const float STRAY_TOLERANCE = 0.01f;
+enum { CLUSTER_SIZE = 400 }; // photographs that are fused together by default
 
-// Bytes that fusion takes of each pixel beside the maps: COLMAP's marks of fused pixels, and the
-// points with the lists of their photographs.
-enum { MAP_BYTES = 24, OTHER_BYTES = 10 };
-static const double GIB = 1 << 30, CACHE_LEAST_GIB = 1.0 / 256;
-
-static double pixels_of(const struct orl_colmap_model *model)
+static int size_of(int size)
 {
-    double pixels = 0;
-    for (size_t i = 0; i < model->image_count; i++) {
-        const struct orl_camera *camera =
-            &orl_colmap_camera_by_id(model, model->images[i].camera_id)->pinhole;
-        pixels += (double)camera->width * camera->height;
+    return size ? size : CLUSTER_SIZE;
+}
+
+int orl_fuse_cluster_size(const char *option)
+{
+    return size_of(option ? atoi(option) : 0);
+}
+
+json_t *orl_stage_fuse_settings(const struct orl_job *job)
+{
+    size_t most = 0;
+    for (size_t i = 0; i < job->source_count; i++)
+        most += !job->sources[i].test;
+    // One fusion of all has no "cluster" in the key, so older keys stay valid.
+    return json_pack("{s:o*}", "cluster",
+                     most > (size_t)size_of(job->params->fuse_cluster)
+                         ? json_integer(size_of(job->params->fuse_cluster))
+                         : NULL);
+}
+
+static enum orl_result write_cloud(struct orl_job *job, const char *path, struct orl_points *points)
+{
+    for (size_t i = 0; i < points->count; i++)
+        points->radius[i] = 0; // the next stage sets the radius
+    enum orl_result result = orl_points_write(job->log, path, points, false);
+    if (result == ORL_ERR_IO)
+        orl_job_hint_disk(job);
+    return result;
+}
+
+// --- one cluster ---
+
+// The folder's name holds what the points depend on beside the maps, which are beside it and go
+// with it.
+char *orl_fuse_cluster_path(const struct orl_log *log, const char *scene, size_t size, int cluster,
+                            const char *extension)
+{
+    return orl_format(log, "%s/stereo/fused/%d-%zu/%06d%s", scene, ORL_FUSE_VERSION, size,
+                      cluster + 1, extension);
+}
+
+static char *cluster_path(const struct orl_job *job, const struct orl_clusters *clusters,
+                          int cluster, const char *extension)
+{
+    return orl_fuse_cluster_path(job->log, job->dir, clusters->size, cluster, extension);
+}
+
+static enum orl_result link_to(const struct orl_job *job, const char *name, const char *workspace)
+{
+    char *target = orl_job_path(job, "%s", name);
+    char *path = orl_path_join(job->log, workspace, name);
+    enum orl_result result = target && path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && symlink(target, path) != 0)
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s; clusters need a drive that has symbolic "
+                          "links (see --fuse-cluster)", path, strerror(errno));
+    free(target);
+    free(path);
+    return result;
+}
+
+// A workspace for COLMAP with the scene's files, that fuses only the photographs `names`.
+static enum orl_result make_workspace(const struct orl_job *job, const char *workspace,
+                                      const struct orl_names *names)
+{
+    static const char *const links[] = {"images", "sparse", "stereo/depth_maps",
+                                        "stereo/normal_maps"};
+    char *stereo = orl_path_join(job->log, workspace, "stereo");
+    char *list = orl_path_join(job->log, workspace, "stereo/fusion.cfg");
+    enum orl_result result = stereo && list ? orl_dir_remove(job->log, workspace) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_dir_make(job->log, stereo);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(links); i++)
+        result = link_to(job, links[i], workspace);
+    if (result == ORL_OK)
+        result = orl_job_write_list(job, list, names);
+    free(stereo);
+    free(list);
+    return result;
+}
+
+// Fuses a cluster in the folder `work` and writes the points that belong to it.
+static enum orl_result fuse_in(struct orl_job *job, const struct orl_clusters *clusters,
+                               int cluster, const char *work, const char *out)
+{
+    struct orl_names names = {0};
+    struct orl_points points = {0};
+    enum orl_result result = orl_clusters_photographs(job->log, clusters, cluster, &names);
+    if (result == ORL_OK)
+        result = make_workspace(job, work, &names);
+    if (result == ORL_OK)
+        result = orl_fuse_photographs(job, clusters->model, &(struct orl_fusion){
+            .workspace = work, .temp = work, .names = &names, .done = cluster,
+            .total = (double)clusters->count}, &points);
+    if (result == ORL_OK)
+        result = orl_clusters_keep_own(job->log, clusters, cluster, &points);
+    if (result == ORL_OK)
+        result = write_cloud(job, out, &points);
+    orl_points_finish(&points);
+    orl_names_finish(&names);
+    return result;
+}
+
+static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_clusters *clusters,
+                                    int cluster)
+{
+    char *out = cluster_path(job, clusters, cluster, ".ply");
+    char *work = cluster_path(job, clusters, cluster, ".tmp");
+    char *lock = cluster_path(job, clusters, cluster, ".lock");
+    int fd = -1;
+    bool taken = false;
+    enum orl_result result = out && work && lock ? orl_file_make_folder(job->log, out)
+                                                 : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_lock(job->log, lock, &fd, &taken);
+    if (result == ORL_OK && taken)
+        result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is fusing this cluster",
+                          out);
+    if (result == ORL_OK && orl_path_is_file(out))
+        orl_logf(job->log, ORL_LOG_INFO, "fuse: cluster %d is there already", cluster + 1);
+    else if (result == ORL_OK)
+        result = fuse_in(job, clusters, cluster, work, out);
+    if (result == ORL_OK)
+        result = orl_dir_remove(job->log, work);
+    orl_unlock(&fd);
+    free(out);
+    free(work);
+    free(lock);
+    return result;
+}
+
+// --- the stage ---
+
+static enum orl_result append_cloud(const struct orl_job *job, const char *path,
+                                    struct orl_points *points)
+{
+    struct orl_points part = {0}, all = {0};
+    enum orl_result result = orl_points_read(job->log, path, &part);
+    if (result == ORL_OK)
+        result = orl_points_init(job->log, &all, points->count + part.count);
+    for (size_t i = 0; result == ORL_OK && i < all.count; i++) {
+        bool old = i < points->count;
+        orl_points_copy(old ? points : &part, old ? i : i - points->count, &all, i);
     }
-    return pixels;
-}
-
-// Memory that fusion may take, GiB.
-static double budget_gib(const struct orl_job *job)
-{
-    uint64_t available = orl_memory_available();
-    if (job->params->max_ram_bytes)
-        return (double)job->params->max_ram_bytes / GIB;
-    return available == UINT64_MAX ? 2 : 0.5 * (double)available / GIB;
-}
-
-// Size of COLMAP's cache of maps in GiB; 0 when all maps fit. With a cache the points are the same;
-// maps are read again and again.
-static double plan_cache(const struct orl_job *job, const struct orl_colmap_model *model)
-{
-    double budget = budget_gib(job), pixels = pixels_of(model);
-    double maps = MAP_BYTES * pixels / GIB, other = OTHER_BYTES * pixels / GIB;
-    if (maps + other <= budget)
-        return 0;
-    double cache = fmax(budget - other, CACHE_LEAST_GIB);
-    orl_logf(job->log, ORL_LOG_INFO,
-             "fuse: all maps take %.0f MiB and %.0f may be used; reading them through a cache of "
-             "%.0f MiB, which is slower", 1024 * (maps + other), 1024 * budget, 1024 * cache);
-    if (cache + other > budget)
-        orl_logf(job->log, ORL_LOG_WARNING, "fuse: %.0f MiB are not enough for %.1f megapixels; it "
-                 "takes about %.0f MiB", 1024 * budget, 1e-6 * pixels, 1024 * (cache + other));
-    return cache;
-}
-
-static enum orl_result fuse_args(struct orl_job *job, const char *out, int min_pixels,
-                                 double cache_gib, struct orl_colmap_args *args)
-{
-    orl_colmap_arg(args, "--workspace_path", "%s", job->dir);
-    orl_colmap_arg(args, "--output_path", "%s", out);
-    orl_colmap_arg(args, "--input_type", "geometric");
-    orl_colmap_arg(args, "--StereoFusion.min_num_pixels", "%d", min_pixels);
-    // With several threads the points depend on thread timing. Fusion is fast enough with one.
-    orl_colmap_arg(args, "--StereoFusion.num_threads", "1");
-    if (job->params->masks_dir) {
-        char *masks = orl_job_path(job, "masks");
-        if (!masks)
-            return ORL_ERR_MEMORY;
-        orl_colmap_arg(args, "--StereoFusion.mask_path", "%s", masks);
-        free(masks);
-    }
-    orl_colmap_arg(args, "--StereoFusion.use_cache", "%d", cache_gib > 0);
-    if (cache_gib > 0)
-        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.4f", cache_gib);
+    orl_points_finish(&part);
+    if (result != ORL_OK)
+        return result;
+    orl_points_finish(points);
+    *points = all;
     return ORL_OK;
 }
 
-// Reads the cloud that COLMAP fused and, for each point, how many photographs agree on it.
-static enum orl_result read_cloud(const struct orl_job *job, const char *path,
-                                  struct orl_points *points)
+static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clusters *clusters,
+                                     struct orl_points *points)
 {
-    enum orl_result result = orl_points_read(job->log, path, points);
-    char *lists = result == ORL_OK ? orl_format(job->log, "%s.vis", path) : NULL;
-    if (result == ORL_OK)
-        result = lists ? orl_colmap_visibility_read(job->log, lists, points->count,
-                                                    points->photographs)
-                       : ORL_ERR_MEMORY;
-    free(lists);
-    return result;
-}
-
-// Runs COLMAP's fusion for points that at least `min_pixels` photographs agree on. `done` is the
-// part of the stage's work that is finished already.
-static enum orl_result fuse_cloud(struct orl_job *job, int min_pixels, double cache_gib,
-                                  double done, struct orl_points *points)
-{
-    struct orl_colmap_args args = {0};
-    char *out = orl_job_path(job, ".oriel/fuse.tmp/%d.ply", min_pixels);
-    enum orl_result result =
-        out ? fuse_args(job, out, min_pixels, cache_gib, &args) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_colmap(job, &(struct orl_colmap_run){
-            .command = "stereo_fusion", .step = "fuse", .done = done, .share = 0.5, .total = 1},
-            &args);
-    if (result == ORL_OK)
-        result = read_cloud(job, out, points);
-    free(out);
-    return result;
-}
-
-// Removes outliers: points in front of the surfaces that photographs see, mostly bright sky around
-// a dark statue. Reads each depth map once.
-static enum orl_result drop_strays(const struct orl_job *job, const struct orl_colmap_model *model,
-                                   struct orl_points *points)
-{
-    uint16_t *seen_past = orl_array(job->log, points->count, sizeof *seen_past);
-    enum orl_result result = seen_past ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
-        const struct orl_colmap_image *image = &model->images[i];
-        struct orl_image depth = {0};
-        if (orl_job_find(job, image->name)->test)
-            continue;
-        char *path = orl_job_path(job, "stereo/depth_maps/%s.geometric.bin", image->name);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (orl_path_is_file(path)) // COLMAP writes no map without sources
-            result = orl_colmap_map_read(job->log, path, &depth);
-        if (depth.f32) {
-            struct orl_view view = orl_colmap_image_view(model, image);
-            orl_points_count_seen_past(points, &view, &depth, STRAY_TOLERANCE, seen_past);
-        }
-        orl_image_finish(&depth);
+    enum orl_result result = ORL_OK;
+    for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++) {
+        result = fuse_cluster(job, clusters, c);
+        char *path = result == ORL_OK ? cluster_path(job, clusters, c, ".ply") : NULL;
+        if (result == ORL_OK)
+            result = path ? append_cloud(job, path, points) : ORL_ERR_MEMORY;
         free(path);
     }
-    if (result == ORL_OK)
-        orl_points_drop_seen_past(seen_past, points);
-    free(seen_past);
     return result;
 }
 
-// Points that three photographs agree on are good. Points that only two agree on are noisier and
-// hold more outliers, but they are the only points of places that few photographs see
-// (docs/how/pipeline.md).
-static enum orl_result join_clouds(const struct orl_job *job, struct orl_points *pairs,
-                                   struct orl_points *points)
+// All photographs at once, in the scene itself.
+static enum orl_result fuse_all(struct orl_job *job, const struct orl_colmap_model *model,
+                                const struct orl_names *train, struct orl_points *points,
+                                json_t *record)
 {
-    const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
-    const struct orl_thin_params thin = {ORL_THIN_DEFAULTS};
-    if (pairs->count == 0)
-        return orl_fail(job->log, ORL_ERR_DATA,
-                        "no surface was found that two photographs agree on: take photographs "
-                        "closer together, of textured and matt surfaces, or with --quality high");
-    enum orl_result result = orl_points_set_radii(job->log, NULL, &radii, NULL, 0, pairs);
-    return result == ORL_OK ? orl_points_add_thin(job->log, &thin, pairs, points) : result;
-}
-
-static enum orl_result write_cloud(struct orl_job *job, struct orl_points *points)
-{
-    char *path = orl_job_path(job, ".oriel/fused.ply");
-    for (size_t i = 0; i < points->count; i++)
-        points->radius[i] = 0; // the next stage sets the radius
-    enum orl_result result =
-        path ? orl_points_write(job->log, path, points, false) : ORL_ERR_MEMORY;
-    if (result == ORL_ERR_IO)
-        orl_job_hint_disk(job);
-    free(path);
+    char *temp = orl_job_path(job, ".oriel/fuse.tmp");
+    struct orl_fusion fusion = {.workspace = job->dir, .temp = temp, .names = train, .total = 1};
+    enum orl_result result = temp ? orl_job_fresh_dir(job, ".oriel/fuse.tmp") : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_fuse_photographs(job, model, &fusion, points);
+    if (result == ORL_OK)
+        result = orl_job_remove(job, ".oriel/fuse.tmp");
+    json_object_set_new(record, "cache_gib", json_real(fusion.cache_gib));
+    json_object_set_new(record, "points_of_three", json_integer((json_int_t)fusion.of_three));
+    json_object_set_new(record, "strays", json_integer((json_int_t)fusion.strays));
+    free(temp);
     return result;
 }
 
 enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
 {
-    struct orl_points pairs = {0}, points = {0};
+    struct orl_points points = {0};
+    struct orl_names train = {0};
+    struct orl_clusters clusters = {0};
     const struct orl_colmap_model *model = NULL;
-    size_t three = 0;
-    enum orl_result result = orl_job_find_colmap(job);
-    if (result == ORL_OK)
-        result = orl_job_fresh_dir(job, ".oriel/fuse.tmp");
+    char *path = orl_job_path(job, ".oriel/fused.ply");
+    enum orl_result result = path ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_job_sparse(job, &model);
-    double cache_gib = result == ORL_OK ? plan_cache(job, model) : 0;
     if (result == ORL_OK)
-        result = fuse_cloud(job, 2, cache_gib, 0, &pairs);
+        result = orl_job_train_names(job, &train);
     if (result == ORL_OK)
-        result = fuse_cloud(job, 3, cache_gib, 0.5, &points);
-    three = points.count;
+        result = orl_clusters_make(job->log, model, &train,
+                                   (size_t)size_of(job->params->fuse_cluster), &clusters);
+    if (result == ORL_OK && clusters.count > 1)
+        result = fuse_clusters(job, &clusters, &points);
+    else if (result == ORL_OK)
+        result = fuse_all(job, model, &train, &points, record);
     if (result == ORL_OK)
-        result = join_clouds(job, &pairs, &points);
-    size_t joined = points.count;
+        result = write_cloud(job, path, &points);
     if (result == ORL_OK)
-        result = drop_strays(job, model, &points);
-    if (result == ORL_OK)
-        result = write_cloud(job, &points);
-    if (result == ORL_OK)
-        result = orl_job_remove(job, ".oriel/fuse.tmp");
+        result = orl_job_remove(job, "stereo/fused");
     if (result == ORL_OK) {
-        json_object_set_new(record, "cache_gib", json_real(cache_gib));
+        json_object_set_new(record, "clusters", json_integer((json_int_t)clusters.count));
         json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
-        json_object_set_new(record, "points_of_three", json_integer((json_int_t)three));
-        json_object_set_new(record, "strays", json_integer((json_int_t)(joined - points.count)));
         json_object_set_new(record, "points", json_integer((json_int_t)points.count));
         orl_progress_report(job->progress, "fuse", 1, 1, NULL);
     }
-    orl_points_finish(&pairs);
+    orl_clusters_finish(&clusters);
+    orl_names_finish(&train);
     orl_points_finish(&points);
+    free(path);
+    return result;
+}
+
+// --- a cluster as a job ---
+
+static enum orl_result fuse_one(struct orl_job *job, const struct orl_fuse_params *params)
+{
+    const struct orl_colmap_model *model = NULL;
+    struct orl_clusters clusters = {0};
+    struct orl_names train = {0};
+    enum orl_result result = orl_job_find_colmap(job);
+    if (result == ORL_OK)
+        result = orl_job_sparse(job, &model);
+    if (result == ORL_OK)
+        result = orl_job_train_names(job, &train);
+    if (result == ORL_OK)
+        result = orl_clusters_make(job->log, model, &train, (size_t)size_of(params->size),
+                                   &clusters);
+    if (result == ORL_OK && (clusters.count < 2 || clusters.count != (size_t)params->count))
+        result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: %zu photographs are fused in %zu "
+                          "cluster%s, not in %d", job->dir, train.count, clusters.count,
+                          clusters.count == 1 ? "" : "s", params->count);
+    if (result == ORL_OK)
+        result = fuse_cluster(job, &clusters, params->cluster);
+    orl_clusters_finish(&clusters);
+    orl_names_finish(&train);
+    return result;
+}
+
+enum orl_result orl_fuse_cluster(const struct orl_log *log, const char *scene,
+                                 const struct orl_fuse_params *params,
+                                 const struct orl_progress *progress)
+{
+    struct orl_job job;
+    const struct orl_prepare_params prepare = {
+        .out = scene, .masks_dir = params->masks ? "masks" : NULL,
+        .max_ram_bytes = params->max_ram_bytes};
+    enum orl_result result = orl_job_attach(&job, log, &prepare, progress);
+    if (result == ORL_OK)
+        result = fuse_one(&job, params);
+    orl_job_close(&job);
     return result;
 }

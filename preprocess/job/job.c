@@ -89,6 +89,67 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
     return result == ORL_OK ? lock_folder(job, empty) : result;
 }
 
+// Names, one a line.
+static enum orl_result read_names(const struct orl_job *job, const char *name,
+                                  struct orl_names *names)
+{
+    uint8_t *data = NULL;
+    size_t size;
+    char *rest = NULL, *path = orl_job_path(job, "%s", name);
+    enum orl_result result = path ? orl_file_read(job->log, path, (size_t)1 << 30, &data, &size)
+                                  : ORL_ERR_MEMORY;
+    for (char *line = data ? strtok_r((char *)data, "\n", &rest) : NULL;
+         result == ORL_OK && line; line = strtok_r(NULL, "\n", &rest))
+        result = orl_names_add(job->log, names, line);
+    free(data);
+    free(path);
+    return result;
+}
+
+// The model's images are sorted by name, as sources are.
+static enum orl_result name_sources(struct orl_job *job)
+{
+    struct orl_names train = {0};
+    char *path = orl_job_path(job, "sparse");
+    enum orl_result result = path ? orl_colmap_read(job->log, path, &job->sparse.model)
+                                  : ORL_ERR_MEMORY;
+    job->sparse.known = result == ORL_OK;
+    if (result == ORL_OK)
+        result = read_names(job, "stereo/fusion.cfg", &train);
+    const struct orl_colmap_model *model = &job->sparse.model;
+    if (result == ORL_OK)
+        job->sources = orl_array(job->log, model->image_count + 1, sizeof *job->sources);
+    if (result == ORL_OK && !job->sources)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+        struct orl_source *source = &job->sources[job->source_count++];
+        source->name = orl_strdup(job->log, model->images[i].name);
+        source->test = !orl_names_contain(&train, model->images[i].name);
+        result = source->name ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    orl_names_finish(&train);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_job_attach(struct orl_job *job, const struct orl_log *log,
+                               const struct orl_prepare_params *params,
+                               const struct orl_progress *progress)
+{
+    bool taken = false;
+    *job = (struct orl_job){.log = log, .params = params, .progress = progress, .lock_fd = -1,
+                            .linear_scale = 1, .dir = realpath(params->out, NULL)};
+    if (!job->dir)
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: %s", params->out, strerror(errno));
+    char *lock = orl_job_path(job, ".oriel/lock");
+    enum orl_result result = lock ? orl_lock_shared(log, lock, &job->lock_fd, &taken)
+                                  : ORL_ERR_MEMORY;
+    free(lock);
+    if (result == ORL_OK && taken)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: oriel prepare is at work here", job->dir);
+    return result == ORL_OK ? name_sources(job) : result;
+}
+
 void orl_job_leave(const struct orl_job *job)
 {
     if (job->fresh && orl_job_remove(job, ".oriel") == ORL_OK &&

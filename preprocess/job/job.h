@@ -83,6 +83,12 @@ struct orl_job {
 enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
                              const struct orl_prepare_params *params,
                              const struct orl_progress *progress) ORL_CHECK_RESULT;
+// Joins the work on the scene params->out after undistort, beside other such jobs and no prepare:
+// its sources are the names of the model's photographs, and those that are not in stereo/fusion.cfg
+// are held out. On success and failure alike, the caller must call orl_job_close.
+enum orl_result orl_job_attach(struct orl_job *job, const struct orl_log *log,
+                               const struct orl_prepare_params *params,
+                               const struct orl_progress *progress) ORL_CHECK_RESULT;
 // Removes the folder that orl_job_open made, so that wrong input leaves no folder behind that the
 // corrected command would refuse. Leaves a folder alone that held files before.
 void orl_job_leave(const struct orl_job *job);

@@ -30,15 +30,6 @@ static enum orl_result read_names(const struct orl_log *log, const char *path,
     return result;
 }
 
-// A part of a scene that is whole has nothing to do: its maps may be gone.
-static enum orl_result is_whole(const struct orl_log *log, const char *workspace, bool *whole)
-{
-    char *path = orl_path_join(log, workspace, "scene.json");
-    *whole = path && orl_path_is_file(path);
-    free(path);
-    return path ? ORL_OK : ORL_ERR_MEMORY;
-}
-
 // Lists the workspace's photographs that are not excluded.
 static enum orl_result choose_photos(const struct orl_log *log, const char *workspace,
                                      const struct orl_colmap_model *model,
@@ -102,7 +93,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     enum orl_result result = o->part ? args_part(log, o->part, &part.index, &part.count)
                                      : ORL_OK;
     if (result == ORL_OK && o->part)
-        result = is_whole(log, workspace, &whole);
+        result = command_is_whole(log, workspace, &whole);
     params.part = o->part ? &part : NULL;
     if (result != ORL_OK || !whole)
         return result == ORL_OK ? densify(terminal, o, common, workspace, &params) : result;

@@ -54,6 +54,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     else if (!json_array_size(jobs))
         printf("%s is whole: there is nothing left to do\n", scene);
     print_kind(o->json ? NULL : jobs, "densify");
+    print_kind(o->json ? NULL : jobs, "fuse");
     print_kind(o->json ? NULL : jobs, "finish");
     free(text);
     json_decref(plan);

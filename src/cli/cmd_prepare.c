@@ -16,7 +16,7 @@ struct options {
     int test_every, max_size, seed, max_vram_mib, max_ram_mib;
     struct orl_names test_list;
     double adapt_s, radius_overlap;
-    int radius_neighbours;
+    int radius_neighbours, fuse_cluster;
     bool resume, adapt;
 };
 
@@ -37,7 +37,7 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
         .keep = (enum orl_keep)o->keep.value, .mesh = (enum orl_prepare_mesh)o->mesh.value,
         .leave_out = (enum orl_leave_out)o->leave_out.value, .fps = o->fps, .frames = o->frames,
         .radius_neighbours = o->radius_neighbours, .radius_overlap = o->radius_overlap,
-        .until = (enum orl_until)o->until.value,
+        .fuse_cluster = o->fuse_cluster, .until = (enum orl_until)o->until.value,
         .resume = o->resume, .seed = (uint32_t)o->seed,
         .max_vram_bytes = (size_t)o->max_vram_mib << 20,
         .max_ram_bytes = (size_t)o->max_ram_mib << 20, .shader_dir = common->shader_dir};
@@ -134,6 +134,8 @@ int cmd_prepare(int argc, char **argv)
         {"adapt-budget", ARG_NUMBER, &o.adapt_s, "SECONDS", "of --adapt; default 120", 0, 1e6},
         {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
          "memory that fusion keeps to; default: half of what is free", 1, 1 << 24},
+        {"fuse-cluster", ARG_INT, &o.fuse_cluster, "N",
+         "photographs fused together at most; more are fused in clusters; default 400", 2, 100000},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},
         {"seed", ARG_INT, &o.seed, "N", "of random choices", 0, 2147483647},
         {0},

@@ -13,6 +13,7 @@ struct command {
 
 int cmd_prepare(int argc, char **argv);
 int cmd_densify(int argc, char **argv);
+int cmd_fuse(int argc, char **argv);
 int cmd_hdr(int argc, char **argv);
 int cmd_bench(int argc, char **argv);
 int cmd_chart(int argc, char **argv);
@@ -41,6 +42,9 @@ typedef enum orl_result command_run(const struct terminal *terminal, const void 
 // is an error when stdout could not be written.
 int command_main(const struct arg_command *command, int argc, char **argv, command_run *run,
                  const void *options);
+// Sets *whole when the folder has a scene.json: a job of a scene that is whole has nothing to do,
+// and the files that it would read may be gone.
+enum orl_result command_is_whole(const struct orl_log *log, const char *scene, bool *whole);
 // 0 for ORL_OK; 2 for argument, format, data and not-found errors; 130 when cancelled; 1 for other
 // errors.
 int command_status(enum orl_result result);

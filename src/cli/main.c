@@ -1,13 +1,16 @@
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/commands.h"
+#include "core/file.h"
 
 static const struct command commands[] = {
     {"bench", "time and memory of frames, pass by pass", cmd_bench},
     {"chart", "accuracy against time and memory, all methods", cmd_chart},
     {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},
+    {"fuse", "points of one cluster of a scene's photographs", cmd_fuse},
     {"hdr", "radiance views from photographs of several exposures", cmd_hdr},
     {"import", "make a scene from known cameras, silhouettes, sequences", cmd_import},
     {"info", "say what is in a scene", cmd_info},
@@ -23,6 +26,14 @@ static const struct command commands[] = {
     {"walk", "walk through a scene in the browser, drawn by this machine", cmd_walk},
     {0},
 };
+
+enum orl_result command_is_whole(const struct orl_log *log, const char *scene, bool *whole)
+{
+    char *path = orl_path_join(log, scene, "scene.json");
+    *whole = path && orl_path_is_file(path);
+    free(path);
+    return path ? ORL_OK : ORL_ERR_MEMORY;
+}
 
 bool command_begin(const struct arg_command *command, int argc, char **argv,
                    struct arg_common *common, struct terminal *terminal,

@@ -5,7 +5,8 @@
 monument 384x288 7
 prepare() {
     run "$1" prepare "$work/p" --out "$work/$2" --quality draft \
-        --max-size 192 --densifier gl --radius-overlap 1.3 --test-list 0004 "${@:3}"
+        --max-size 192 --densifier gl --radius-overlap 1.3 --test-list 0004 \
+        --fuse-cluster 3 "${@:3}"
 }
 
 run 2 plan "$work"
@@ -16,13 +17,14 @@ says "oriel plan says what is left"
 run 2 info "$work/a"
 cp -r "$work/a" "$work/b"
 
-# The graph: three passes of three parts and the rest; a pass needs the one before.
+# The graph: three passes of three parts, two clusters and the rest; a pass needs the one before.
 run 0 plan "$work/b" --photographs 2
 prints "of CPU  up to"
 run 0 plan "$work/b" --photographs 2 --json
 cp "$work/out" "$work/plan.json"
 grep -q '"densify-0-0001"' "$work/plan.json" || fail "a geometric pass needs nothing"
 [ "$(grep -c '"kind": "densify"' "$work/plan.json")" -ge 6 ] || fail "too few jobs"
+grep -q '"name": "fuse-000002"' "$work/plan.json" || fail "no job for the second cluster"
 photos=$(realpath "$work/p")
 grep -q '"--radius-overlap"' "$work/plan.json" || fail "the last job has other radii"
 grep -qF "\"$photos\"" "$work/plan.json" || fail "the last job does not name the photographs"
@@ -32,9 +34,12 @@ run 2 densify "$work/b" --part 1/3 --photos "$work/b/stereo/fusion.cfg" --source
 says "not begun with these settings"
 run 2 densify "$work/b" --part 4/3
 says "not K/N"
+run 2 fuse "$work/b" --part 1/3 --photographs 3
+says "6 photographs are fused in 2 clusters, not in 3"
 [ -z "$(ls "$work/b/stereo/depth_maps")" ] || fail "a part that was refused has made maps"
 
 prepare 0 a --resume
+grep -q '"clusters": 2' "$work/a/scene.json" || fail "prepare fuses no clusters"
 
 if command -v snakemake >/dev/null; then
     # Oriel under another name, one of whose jobs from the fourth on dies with SIGKILL.
@@ -76,6 +81,8 @@ diff "$work/a.json" "$work/b.json" >"$work/diff" || fail "another manifest: $(he
 
 # Everything again changes nothing, and there is nothing left to plan.
 run 0 densify "$work/b" --part 1/3 --pass 0
+says "nothing left to do"
+run 0 fuse "$work/b" --part 1/2 --photographs 3
 says "nothing left to do"
 run 0 plan "$work/b"
 prints "is whole"

@@ -1,0 +1,119 @@
+// Clusters of photographs for fusion, of ten cameras in a row before a wall.
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "preprocess/cloud/clusters.h"
+#include "test.h"
+
+enum { CAMERAS = 10, TEST = 4 };
+
+// Camera i stands at x = i, looks along z and sees the wall's points at x = i - 1, i and i + 1.
+static void make_row(struct orl_colmap_model *model, struct orl_names *train)
+{
+    *model = (struct orl_colmap_model){
+        .cameras = calloc(1, sizeof *model->cameras), .camera_count = 1,
+        .images = calloc(CAMERAS, sizeof *model->images), .image_count = CAMERAS,
+        .points = calloc(CAMERAS, sizeof *model->points), .point_count = CAMERAS};
+    *train = (struct orl_names){0};
+    model->cameras[0].id = 1;
+    model->cameras[0].pinhole = (struct orl_camera){100, 80, 90, 90, 50, 40};
+    for (int i = 0; i < CAMERAS; i++) {
+        struct orl_colmap_image *image = &model->images[i];
+        char name[16];
+        snprintf(name, sizeof name, "%d.png", i);
+        image->camera_id = 1;
+        image->name = strdup(name);
+        image->points = calloc(3, sizeof *image->points);
+        for (int k = 0; k < 3; k++)
+            image->cam_from_world.r[k][k] = 1;
+        image->cam_from_world.t[0] = -i;
+        for (int p = i - 1; p <= i + 1; p++)
+            if (p >= 0 && p < CAMERAS)
+                image->points[image->point_count++] = (uint32_t)p;
+        model->points[i].position[0] = i;
+        model->points[i].position[2] = 5;
+        if (i != TEST)
+            assert_int_equal(orl_names_add(NULL, train, name), ORL_OK);
+    }
+}
+
+static void each_photograph_and_point_has_one_cluster(void **state)
+{
+    struct orl_colmap_model model;
+    struct orl_names train;
+    struct orl_clusters clusters;
+    (void)state;
+    make_row(&model, &train);
+    // Nine photographs, at most three each: three clusters along the row.
+    assert_int_equal(orl_clusters_make(NULL, &model, &train, 3, &clusters), ORL_OK);
+    static const int members[CAMERAS] = {0, 0, 0, 1, -1, 1, 1, 2, 2, 2};
+    assert_int_equal(clusters.count, 3);
+    for (int i = 0; i < CAMERAS; i++)
+        assert_int_equal(clusters.member[i], members[i]);
+    // Point 2 is shown by 1, 2 (cluster 0) and 3; point 3 by 2 and 3 alike, and the first wins.
+    static const int owners[CAMERAS] = {0, 0, 0, 0, 1, 1, 1, 2, 2, 2};
+    for (int i = 0; i < CAMERAS; i++)
+        assert_int_equal(clusters.owner[i], owners[i]);
+    orl_clusters_finish(&clusters);
+    orl_names_finish(&train);
+    orl_colmap_finish(&model);
+}
+
+static void neighbours_help_and_held_out_photographs_do_not(void **state)
+{
+    struct orl_colmap_model model;
+    struct orl_names train, names = {0};
+    struct orl_clusters clusters;
+    (void)state;
+    make_row(&model, &train);
+    assert_int_equal(orl_clusters_make(NULL, &model, &train, 3, &clusters), ORL_OK);
+    // Two helpers of the middle: 7 shows point 6, and no other photograph of a cluster beside it
+    // shows 4, 5 or 6 but 3 (a member) and 4 (held out).
+    assert_int_equal(orl_clusters_photographs(NULL, &clusters, 1, &names), ORL_OK);
+    static const char *const expected[] = {"3.png", "5.png", "6.png", "7.png"};
+    assert_int_equal(names.count, 4);
+    for (int i = 0; i < 4; i++)
+        assert_string_equal(names.items[i], expected[i]);
+    orl_names_finish(&names);
+    orl_clusters_finish(&clusters);
+    orl_names_finish(&train);
+    orl_colmap_finish(&model);
+}
+
+static void points_are_kept_once(void **state)
+{
+    struct orl_colmap_model model;
+    struct orl_names train;
+    struct orl_clusters clusters;
+    size_t sum = 0;
+    (void)state;
+    make_row(&model, &train);
+    assert_int_equal(orl_clusters_make(NULL, &model, &train, 3, &clusters), ORL_OK);
+    for (int c = 0; c < 3; c++) {
+        struct orl_points points;
+        assert_int_equal(orl_points_init(NULL, &points, 100), ORL_OK);
+        for (int i = 0; i < 100; i++)
+            points.position[i][0] = 0.1f * (float)i, points.position[i][2] = 5.1f;
+        assert_int_equal(orl_clusters_keep_own(NULL, &clusters, c, &points), ORL_OK);
+        for (size_t i = 0; i < points.count; i++)
+            assert_true(c == 0   ? points.position[i][0] < 3.55f
+                        : c == 1 ? points.position[i][0] > 3.45f && points.position[i][0] < 6.55f
+                                 : points.position[i][0] > 6.45f);
+        sum += points.count;
+        orl_points_finish(&points);
+    }
+    assert_int_equal(sum, 100);
+    orl_clusters_finish(&clusters);
+    orl_names_finish(&train);
+    orl_colmap_finish(&model);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_photograph_and_point_has_one_cluster),
+        cmocka_unit_test(neighbours_help_and_held_out_photographs_do_not),
+        cmocka_unit_test(points_are_kept_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
