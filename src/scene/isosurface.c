@@ -19,9 +19,8 @@ static size_t sample_index(const struct orl_grid *grid, const int at[3])
            (size_t)grid->size[0] * ((size_t)at[1] + (size_t)grid->size[1] * (size_t)at[2]);
 }
 
-// Mean of the crossings of the cell's 12 edges, in cells from its first corner. False when no edge
-// is crossed.
-static bool cell_vertex(const float corner[8], double mean[3])
+// Mean of the crossings of the cell's 12 edges, of which there is one, in cells from its first corner.
+static void cell_vertex(const float corner[8], double mean[3])
 {
     int crossings = 0;
     double sum[3] = {0};
@@ -36,8 +35,21 @@ static bool cell_vertex(const float corner[8], double mean[3])
             crossings++;
         }
     for (int k = 0; k < 3; k++)
-        mean[k] = crossings ? sum[k] / crossings : 0;
-    return crossings > 0;
+        mean[k] = sum[k] / crossings;
+}
+
+// The samples at the corners of a cell. False if the surface does not pass between them, as in most
+// cells.
+static bool read_corners(const struct orl_grid *grid, const int at[3], float corner[8])
+{
+    size_t row = (size_t)grid->size[0], slice = row * (size_t)grid->size[1];
+    const float *first = grid->value + sample_index(grid, at);
+    int inside = 0;
+    for (size_t c = 0; c < 8; c++) {
+        corner[c] = first[(c & 1) + (c >> 1 & 1) * row + (c >> 2) * slice];
+        inside += corner[c] < 0;
+    }
+    return inside > 0 && inside < 8;
 }
 
 static enum orl_result add_vertex(struct nets *n, const int at[3])
@@ -46,12 +58,9 @@ static enum orl_result add_vertex(struct nets *n, const int at[3])
     struct orl_mesh *mesh = &n->builder.mesh;
     float corner[8];
     double mean[3];
-    for (int c = 0; c < 8; c++) {
-        const int sample[3] = {at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)};
-        corner[c] = grid->value[sample_index(grid, sample)];
-    }
-    if (!cell_vertex(corner, mean))
+    if (!read_corners(grid, at, corner))
         return ORL_OK;
+    cell_vertex(corner, mean);
     enum orl_result result =
         orl_grow(n->log, (void **)&mesh->position, &n->builder.vertex_capacity,
                  mesh->vertex_count + 1, sizeof *mesh->position);
