@@ -34,6 +34,7 @@ struct import_job {
     size_t view_count;
     bool sequence;      // true when the pictures are folders or clips
     size_t frame_count; // frames of the sequence that were written
+    bool said_endless;  // see orl_hull_make
 };
 
 // --- import_scene.c: the folder ---
@@ -98,7 +99,7 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
                                        const struct import_points *points) ORL_CHECK_RESULT;
 // Writes points.ply from a cloud, or without points.
 enum orl_result orl_import_write_points(const struct import_job *job, size_t *count) ORL_CHECK_RESULT;
-enum orl_result orl_import_write_mesh(const struct import_job *job, size_t *triangles) ORL_CHECK_RESULT;
+enum orl_result orl_import_write_mesh(struct import_job *job, size_t *triangles) ORL_CHECK_RESULT;
 // Writes scene.json, which must be the last file.
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
                                           size_t triangles) ORL_CHECK_RESULT;

@@ -165,7 +165,7 @@ static enum orl_result read_silhouettes(const struct import_job *job, const char
     return result;
 }
 
-static enum orl_result carve_mesh(const struct import_job *job, const char *folder,
+static enum orl_result carve_mesh(struct import_job *job, const char *folder,
                                   struct orl_mesh *mesh)
 {
     struct orl_hull hull = {0};
@@ -175,7 +175,8 @@ static enum orl_result carve_mesh(const struct import_job *job, const char *fold
     enum orl_result result =
         silhouettes ? read_silhouettes(job, folder, silhouettes, &count) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_hull_make(job->log, silhouettes, count, job->params->hull_side, 1, &hull);
+        result = orl_hull_make(job->log, silhouettes, count, job->params->hull_side, 1,
+                               &job->said_endless, &hull);
     if (result == ORL_OK)
         result = orl_hull_mesh(job->log, &hull, (size_t)job->params->hull_triangles, mesh);
     for (size_t i = 0; i < count; i++)
@@ -185,7 +186,7 @@ static enum orl_result carve_mesh(const struct import_job *job, const char *fold
     return result;
 }
 
-static enum orl_result write_mesh(const struct import_job *job, const char *folder,
+static enum orl_result write_mesh(struct import_job *job, const char *folder,
                                   size_t *triangles)
 {
     struct orl_mesh mesh = {0};
@@ -203,7 +204,7 @@ static enum orl_result write_mesh(const struct import_job *job, const char *fold
 }
 
 // A hull belongs to its moment; the mesh of a file belongs to all.
-static enum orl_result carve_moments(const struct import_job *job)
+static enum orl_result carve_moments(struct import_job *job)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < job->frame_count; i++) {
@@ -223,7 +224,7 @@ static enum orl_result carve_moments(const struct import_job *job)
     return result;
 }
 
-enum orl_result orl_import_write_mesh(const struct import_job *job, size_t *triangles)
+enum orl_result orl_import_write_mesh(struct import_job *job, size_t *triangles)
 {
     *triangles = 0;
     if (!job->params->mesh && !job->params->hull_side)

@@ -199,6 +199,27 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
     });
 }
 
+enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_image *mask,
+                                  int *largest, int *at_border)
+{
+    struct orl_image none = orl_image();
+    none.channels = 1;
+    *largest = *at_border = 0;
+    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
+    return run(log, mask, &none, [&](const cv::Mat &source, cv::Mat &) {
+        cv::Mat labels, stats, centroids;
+        int count = cv::connectedComponentsWithStats(source != 0, labels, stats, centroids, 8);
+        for (int i = 1; i < count; i++) { // piece 0 is what is outside
+            const int *piece = stats.ptr<int>(i), area = piece[cv::CC_STAT_AREA];
+            bool inside = piece[cv::CC_STAT_LEFT] > 0 && piece[cv::CC_STAT_TOP] > 0 &&
+                          piece[cv::CC_STAT_LEFT] + piece[cv::CC_STAT_WIDTH] < source.cols &&
+                          piece[cv::CC_STAT_TOP] + piece[cv::CC_STAT_HEIGHT] < source.rows;
+            *largest = std::max(*largest, area);
+            *at_border = std::max(*at_border, inside ? 0 : area);
+        }
+    });
+}
+
 enum orl_result orl_bridge_distance(const struct orl_log *log, const struct orl_image *mask,
                                     struct orl_image *distance)
 {

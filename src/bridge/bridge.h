@@ -42,6 +42,11 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
                                       const struct orl_mask_cleaning *cleaning,
                                       struct orl_image *cleaned) ORL_CHECK_RESULT;
 
+// Pixels of the largest connected piece of a mask (U8 x1, 0: outside), and of the largest one that
+// touches the picture's border; 0 if there is none.
+enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_image *mask,
+                                  int *largest, int *at_border) ORL_CHECK_RESULT;
+
 // Signed distance from each pixel's centre to the subject's outline, pixels: positive outside. A
 // picture without subject, or of it alone, has its longer side everywhere. Mask: U8 x1, 0: outside;
 // result: F32 x1.

@@ -208,7 +208,7 @@ static enum orl_result write_hull(const struct stress_case *c)
                 (struct orl_silhouette){c->scene.photos[i].view, c->masks[i]};
     // Silhouettes that are wrong enough have no place in common; that is no error of the program.
     if (result == ORL_OK)
-        result = orl_hull_make(NULL, silhouettes, count, HULL_SIDE, hull_reach, &hull);
+        result = orl_hull_make(NULL, silhouettes, count, HULL_SIDE, hull_reach, NULL, &hull);
     if (result == ORL_ERR_DATA)
         result = ORL_ERR_NOT_FOUND;
     if (result == ORL_OK)

@@ -6,13 +6,10 @@
 #include <string.h>
 #include <xxhash.h>
 
-#include "bridge/bridge.h"
 #include "core/memory.h"
-#include "io/picture.h"
 #include "render/photos.h"
-#include "shared/hull_blocks.h"
 
-static bool has_silhouette(const struct frame *frame, size_t photo)
+bool orl_voxels_has_silhouette(const struct frame *frame, size_t photo)
 {
     return frame->scene->photos[photo].masked && frame->photos->states[photo].usable &&
            !(frame->skip && frame->skip[photo]);
@@ -21,22 +18,22 @@ static bool has_silhouette(const struct frame *frame, size_t photo)
 bool orl_voxels_silhouettes(const struct frame *frame)
 {
     for (size_t i = 0; i < frame->scene->photo_count; i++)
-        if (has_silhouette(frame, i))
+        if (orl_voxels_has_silhouette(frame, i))
             return true;
     return false;
 }
 
-static int side_of(const struct frame *frame)
+int orl_voxels_side(const struct frame *frame)
 {
     return (int)(frame->params->hull_side + 0.5f);
 }
 
 uint64_t orl_voxels_key(const struct frame *frame)
 {
-    const int numbers[2] = {side_of(frame), frame->scene->frame};
+    const int numbers[2] = {orl_voxels_side(frame), frame->scene->frame};
     uint64_t key = XXH3_64bits(numbers, sizeof numbers);
     for (size_t i = 0; i < frame->scene->photo_count; i++)
-        if (has_silhouette(frame, i))
+        if (orl_voxels_has_silhouette(frame, i))
             key = XXH3_64bits_withSeed(&i, sizeof i, key);
     return key;
 }
@@ -70,8 +67,7 @@ static bool at_surface(const struct voxels *v, size_t x, size_t y, size_t z)
              stays(v, x, y + 1, z) && stays(v, x, y, z - 1) && stays(v, x, y, z + 1));
 }
 
-// Lists the voxels that stay and touch one that does not.
-static enum orl_result list_surface(const struct orl_log *log, struct voxels *v)
+enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *v)
 {
     size_t side = (size_t)v->cube.side, capacity = 0;
     for (size_t z = 0; z < side; z++)
@@ -93,98 +89,45 @@ static enum orl_result list_surface(const struct orl_log *log, struct voxels *v)
 
 // --- from silhouettes ---
 
-static bool touches_border(const struct orl_image *mask)
+enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones, int side,
+                                const struct orl_buf *field, struct voxels *voxels)
 {
-    size_t w = (size_t)mask->width, h = (size_t)mask->height;
-    for (size_t x = 0; x < w; x++)
-        if (mask->u8[x] || mask->u8[(h - 1) * w + x])
-            return true;
-    for (size_t y = 0; y < h; y++)
-        if (mask->u8[y * w] || mask->u8[y * w + w - 1])
-            return true;
-    return false;
-}
-
-// The parameters of one camera's partial hull.
-static struct carve_block carve_params(const struct orl_silhouette *silhouette,
-                                       const struct orl_hull *cube)
-{
-    const struct orl_view *view = &silhouette->view;
-    double origin[3];
-    struct carve_block block = {.size = {view->camera.width, view->camera.height},
-                                .side = cube->side, .open = touches_border(&silhouette->mask),
-                                .most = (float)(4 * cube->voxel)};
-    orl_pose_apply(&view->cam_from_world, cube->origin, origin);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            block.camera_from_voxels[i][j] =
-                (float)(view->cam_from_world.r[i][j] * cube->voxel);
-        block.camera_from_voxels[i][3] = (float)origin[i];
-    }
-    orl_set_focal(&view->camera, block.focal);
-    return block;
-}
-
-static enum orl_result carve_one(struct orl_gpu *gpu, const struct orl_silhouette *silhouette,
-                                 const struct orl_hull *cube, struct orl_buf *field)
-{
-    struct carve_block block = carve_params(silhouette, cube);
-    struct orl_image distance = {0};
-    struct orl_tex *tex = NULL;
-    const struct orl_tex_params params = {.width = silhouette->mask.width,
-                                          .height = silhouette->mask.height, .format = GL_R32F,
-                                          .linear = true, .tag = "silhouette"};
-    enum orl_result result =
-        orl_bridge_distance(orl_gpu_log(gpu), &silhouette->mask, &distance);
-    if (result == ORL_OK)
-        result = orl_tex_create(gpu, &params, &tex);
-    if (result == ORL_OK) {
-        orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, distance.data);
-        struct orl_dispatch d = {.prog = orl_prog_get(gpu, "hull/carve.comp", NULL, NULL),
-                                 .params = &block, .params_size = sizeof block,
-                                 .bufs = {{.buf = field}}, .textures = {tex},
-                                 .groups = {orl_groups(cells(cube->side), CARVE_GROUP)},
-                                 .barrier = GL_SHADER_STORAGE_BARRIER_BIT |
-                                            GL_BUFFER_UPDATE_BARRIER_BIT};
-        orl_gpu_dispatch(gpu, &d);
-    }
-    orl_tex_destroy(gpu, &tex);
-    orl_image_finish(&distance);
-    return result;
+    *voxels = (struct voxels){.carved = true, .endless = cones->bounds.endless,
+                              .cube = {.side = side, .voxel = cones->bounds.size / side}};
+    memcpy(voxels->cube.origin, cones->bounds.origin, sizeof voxels->cube.origin);
+    voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
+    if (!voxels->field)
+        return ORL_ERR_MEMORY;
+    orl_buf_read(field, 0, cells(side) * sizeof *voxels->field, voxels->field);
+    return ORL_OK;
 }
 
 enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct orl_silhouette *silhouettes,
                                  size_t count, int side, struct voxels *voxels)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    const float unlimited = -INFINITY; // no silhouette has limited a voxel yet
+    struct cones cones;
     struct orl_buf *field = NULL;
-    double size;
-    uint32_t word;
-    *voxels = (struct voxels){.carved = true, .cube.side = side};
-    enum orl_result result =
-        orl_hull_bounds(log, silhouettes, count, voxels->cube.origin, &size);
-    size_t bytes = cells(side) * sizeof *voxels->field;
+    memset(voxels, 0, sizeof *voxels);
+    enum orl_result result = orl_cones_make(log, silhouettes, count, &cones);
     if (result == ORL_OK)
-        result = orl_buf_create(gpu, ORL_OWNER_FRAME, "voxels", bytes, NULL, &field);
-    if (result != ORL_OK)
-        return result;
-    voxels->cube.voxel = size / side;
-    memcpy(&word, &unlimited, sizeof word);
-    orl_buf_fill(field, word);
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        result = carve_one(gpu, &silhouettes[i], &voxels->cube, field);
-    voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
-    if (result == ORL_OK && !voxels->field)
-        result = ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        orl_buf_read(field, 0, bytes, voxels->field);
-        result = list_surface(log, voxels);
-    }
+        result = orl_cones_carve(gpu, &cones, side, &field);
+    if (result == ORL_OK)
+        result = orl_voxels_read(log, &cones, side, field, voxels);
+    if (result == ORL_OK)
+        result = orl_voxels_list(log, voxels);
     orl_buf_destroy(gpu, &field);
+    orl_cones_finish(&cones);
     if (result != ORL_OK)
         orl_voxels_finish(voxels);
     return result;
+}
+
+void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, bool *said)
+{
+    if (voxels->endless && !*said)
+        orl_hull_warn_endless(log);
+    *said = *said || voxels->endless;
 }
 
 // --- from points ---
@@ -245,7 +188,7 @@ enum orl_result orl_voxels_fill(const struct orl_log *log, const struct orl_poin
                 (float)-voxel;
     }
     if (result == ORL_OK)
-        result = list_surface(log, voxels);
+        result = orl_voxels_list(log, voxels);
     if (result != ORL_OK)
         orl_voxels_finish(voxels);
     return result;
@@ -260,7 +203,7 @@ static enum orl_result read_silhouettes(const struct frame *frame,
     enum orl_result result = ORL_OK;
     *count = 0;
     for (size_t i = 0; result == ORL_OK && i < frame->scene->photo_count; i++) {
-        if (!has_silhouette(frame, i))
+        if (!orl_voxels_has_silhouette(frame, i))
             continue;
         struct orl_silhouette *one = &silhouettes[*count];
         one->view = frame->scene->photos[i].view;
@@ -278,7 +221,7 @@ enum orl_result orl_voxels_make(const struct frame *frame, struct voxels *voxels
     memset(voxels, 0, sizeof *voxels);
     if (!orl_voxels_silhouettes(frame)) {
         if (scene->points.count)
-            return orl_voxels_fill(log, &scene->points, side_of(frame), voxels);
+            return orl_voxels_fill(log, &scene->points, orl_voxels_side(frame), voxels);
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s has neither silhouettes nor points to make "
                         "voxels of; see oriel import", scene->dir);
     }
@@ -287,7 +230,7 @@ enum orl_result orl_voxels_make(const struct frame *frame, struct voxels *voxels
         return ORL_ERR_MEMORY;
     enum orl_result result = read_silhouettes(frame, silhouettes, &count);
     if (result == ORL_OK)
-        result = orl_voxels_carve(frame->gpu, silhouettes, count, side_of(frame), voxels);
+        result = orl_voxels_carve(frame->gpu, silhouettes, count, orl_voxels_side(frame), voxels);
     for (size_t i = 0; i < count; i++)
         orl_image_finish(&silhouettes[i].mask);
     free(silhouettes);

@@ -3,12 +3,13 @@
 #ifndef ORL_RENDER_VOXELS_H
 #define ORL_RENDER_VOXELS_H
 
+#include "render/cones.h"
 #include "render/frame.h"
-#include "scene/hull.h"
 
 struct voxels {
     struct orl_hull cube; // side, origin, voxel; inside stays NULL
     bool carved;          // from silhouettes; false: from points
+    bool endless;         // struct orl_hull_bounds
     // At each voxel's centre, x fastest, scene units: of a hull the signed distance to the nearest
     // cone of a silhouette, negative inside; of points -voxel where there are some, else voxel.
     float *field;         // side^3; owned
@@ -27,6 +28,21 @@ bool orl_voxels_silhouettes(const struct frame *frame);
 // points.
 enum orl_result orl_voxels_make(const struct frame *frame, struct voxels *voxels);
 void orl_voxels_finish(struct voxels *voxels);
+
+// True if this photograph's silhouette takes part in the hull of this frame.
+bool orl_voxels_has_silhouette(const struct frame *frame, size_t photo);
+// Side of the cube of this frame.
+int orl_voxels_side(const struct frame *frame);
+// Says once that the hull is cut off where it is; *said: it has been said.
+void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, bool *said);
+
+// --- the steps of carving, for ahead.c ---
+
+// Reads what orl_cones_carve gave for a cube of side^3. The surface is not listed yet.
+enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones, int side,
+                                const struct orl_buf *field, struct voxels *voxels) ORL_CHECK_RESULT;
+// Lists the voxels that stay and touch one that does not: work of the processor alone.
+enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *voxels) ORL_CHECK_RESULT;
 
 // As orl_voxels_make for given silhouettes (carve) or points (fill).
 enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct orl_silhouette *silhouettes,

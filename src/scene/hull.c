@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/memory.h"
 #include "scene/isosurface.h"
 
@@ -32,11 +33,20 @@ void orl_hull_finish(struct orl_hull *hull)
 
 // --- one silhouette ---
 
+enum orl_result orl_silhouette_is_open(const struct orl_log *log, const struct orl_image *mask,
+                                       bool *open)
+{
+    int largest, at_border;
+    enum orl_result result = orl_bridge_pieces(log, mask, &largest, &at_border);
+    *open = result == ORL_OK && at_border > 0 && 2 * at_border >= largest;
+    return result;
+}
+
 // Summed-area table of the mask: four entries tell whether any box touches the subject.
 struct table {
     int width, height;
     uint32_t *sum; // (width + 1) x (height + 1)
-    bool open;     // the silhouette touches the border
+    bool open;     // the subject leaves the picture
 };
 
 static enum orl_result table_init(const struct orl_log *log, const struct orl_image *mask,
@@ -52,13 +62,11 @@ static enum orl_result table_init(const struct orl_log *log, const struct orl_im
         const uint32_t *above = table->sum + (size_t)y * (size_t)(w + 1);
         uint32_t *here = table->sum + (size_t)(y + 1) * (size_t)(w + 1);
         for (int x = 0; x < w; x++) {
-            bool set = mask->u8[(size_t)y * (size_t)w + (size_t)x] != 0;
-            row += set;
+            row += mask->u8[(size_t)y * (size_t)w + (size_t)x] != 0;
             here[x + 1] = above[x + 1] + row;
-            table->open |= set && (x == 0 || y == 0 || x == w - 1 || y == h - 1);
         }
     }
-    return ORL_OK;
+    return orl_silhouette_is_open(log, mask, &table->open);
 }
 
 static double clamped(double v, int end)
@@ -257,29 +265,36 @@ static enum orl_result try_bounds(const struct orl_log *log,
 // borders of silhouettes are more likely than a large subject, and the first cube is the result.
 static enum orl_result search_bounds(const struct orl_log *log,
                                      const struct orl_silhouette *silhouettes, size_t count,
-                                     const double centre[3], double reach, double origin[3],
-                                     double *size)
+                                     const double centre[3], double reach,
+                                     struct orl_hull_bounds *bounds)
 {
     enum { ROUNDS = 4 };
     bool cut = true;
     enum orl_result result = ORL_OK;
     for (int round = 0; result == ORL_OK && cut && round < ROUNDS; round++)
-        result = try_bounds(log, silhouettes, count, centre, ldexp(reach, round), origin, size,
+        result = try_bounds(log, silhouettes, count, centre, ldexp(reach, round), bounds->origin,
+                            &bounds->size, &cut);
+    bounds->endless = cut;
+    if (result == ORL_OK && cut)
+        result = try_bounds(log, silhouettes, count, centre, reach, bounds->origin, &bounds->size,
                             &cut);
-    if (result == ORL_OK && cut) {
-        orl_logf(log, ORL_LOG_WARNING, "the silhouettes leave room without end; the hull is cut "
-                 "off %g around the middle", reach);
-        result = try_bounds(log, silhouettes, count, centre, reach, origin, size, &cut);
-    }
     return result;
 }
 
-enum orl_result orl_hull_bounds(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                                size_t count, double origin[3], double *size)
+void orl_hull_warn_endless(const struct orl_log *log)
+{
+    orl_logf(log, ORL_LOG_WARNING, "the silhouettes leave room without end; the hull is cut off "
+             "where the subject's outlines end");
+}
+
+enum orl_result orl_hull_find_bounds(const struct orl_log *log,
+                                     const struct orl_silhouette *silhouettes, size_t count,
+                                     struct orl_hull_bounds *bounds)
 {
     double centre[3];
     struct blob *blobs = orl_array(log, count, sizeof *blobs);
     enum orl_result result = blobs ? ORL_OK : ORL_ERR_MEMORY;
+    *bounds = (struct orl_hull_bounds){0};
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         if (!find_blob(&silhouettes[i].mask, &blobs[i]))
             result = orl_fail(log, ORL_ERR_DATA, "silhouette %zu of %zu is empty", i + 1, count);
@@ -289,19 +304,25 @@ enum orl_result orl_hull_bounds(const struct orl_log *log, const struct orl_silh
     if (result == ORL_OK && !(reach > 0))
         result = orl_fail(log, ORL_ERR_DATA, "no camera faces what the silhouettes have in common");
     if (result == ORL_OK)
-        result = search_bounds(log, silhouettes, count, centre, reach, origin, size);
+        result = search_bounds(log, silhouettes, count, centre, reach, bounds);
     free(blobs);
     return result;
 }
 
 enum orl_result orl_hull_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                              size_t count, int side, double reach, struct orl_hull *hull)
+                              size_t count, int side, double reach, bool *said,
+                              struct orl_hull *hull)
 {
-    double origin[3], size;
+    struct orl_hull_bounds bounds;
     memset(hull, 0, sizeof *hull);
-    enum orl_result result = orl_hull_bounds(log, silhouettes, count, origin, &size);
+    enum orl_result result = orl_hull_find_bounds(log, silhouettes, count, &bounds);
+    if (result == ORL_OK && bounds.endless && said) {
+        if (!*said)
+            orl_hull_warn_endless(log);
+        *said = true;
+    }
     if (result == ORL_OK)
-        result = orl_hull_init(log, hull, side, origin, size);
+        result = orl_hull_init(log, hull, side, bounds.origin, bounds.size);
     if (result == ORL_OK)
         result = carve_all(log, silhouettes, count, reach, hull);
     if (result != ORL_OK)

@@ -22,10 +22,23 @@ struct orl_hull {
 
 enum { ORL_HULL_SIDE_MIN = 2, ORL_HULL_SIDE_MAX = 1024 };
 
-// A cube that contains the visual hull with a small margin. ORL_ERR_DATA: a silhouette is empty,
-// or the silhouettes have no place in common.
-enum orl_result orl_hull_bounds(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                                size_t count, double origin[3], double *size) ORL_CHECK_RESULT;
+// True if the subject leaves the picture: the largest piece of the mask touches its border, or
+// another one at least half as large does. Smaller ones at the border are more likely things of the
+// background that moved.
+enum orl_result orl_silhouette_is_open(const struct orl_log *log, const struct orl_image *mask,
+                                       bool *open) ORL_CHECK_RESULT;
+
+// A cube that contains the visual hull with a small margin.
+struct orl_hull_bounds {
+    double origin[3], size; // lowest corner and edge
+    bool endless; // the silhouettes leave room without end, and the cube cuts the hull off
+};
+// ORL_ERR_DATA: a silhouette is empty, or the silhouettes have no place in common.
+enum orl_result orl_hull_find_bounds(const struct orl_log *log,
+                                     const struct orl_silhouette *silhouettes, size_t count,
+                                     struct orl_hull_bounds *bounds) ORL_CHECK_RESULT;
+// Warns about bounds that are endless.
+void orl_hull_warn_endless(const struct orl_log *log);
 // Makes a hull that fills the cube.
 enum orl_result orl_hull_init(const struct orl_log *log, struct orl_hull *hull, int side,
                               const double origin[3], double size) ORL_CHECK_RESULT;
@@ -37,9 +50,10 @@ void orl_hull_finish(struct orl_hull *hull);
 // 45 degrees of that place.
 enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silhouette *silhouette,
                                double reach, struct orl_hull *hull) ORL_CHECK_RESULT;
-// Makes the hull of all silhouettes, in the cube that orl_hull_bounds gives.
+// Makes the hull of all silhouettes, in the cube that orl_hull_find_bounds gives. *said: that the
+// bounds are endless has been said, which is said once; NULL: it is not said.
 enum orl_result orl_hull_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                              size_t count, int side, double reach,
+                              size_t count, int side, double reach, bool *said,
                               struct orl_hull *hull) ORL_CHECK_RESULT;
 double orl_hull_volume(const struct orl_hull *hull);
 // Makes the hull's surface, with normals, of at most about `triangles` (0: unlimited).

@@ -96,7 +96,7 @@ static void holds_the_sphere(void **state)
     double last = INFINITY;
     for (int side = 16; side <= 128; side *= 2) {
         struct orl_hull hull;
-        assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, side, 1, &hull), ORL_OK);
+        assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, side, 1, NULL, &hull), ORL_OK);
         for (int i = 0; i < 2000; i++) { // places all over the sphere's surface
             double z = 1 - (2 * i + 1.0) / 2000, angle = 2.39996322972865 * i;
             double r = sqrt(1 - z * z) * RADIUS;
@@ -121,7 +121,7 @@ static void centres_converge(void **state)
     int side = 32;
     for (int i = 0; i < 3; i++, side *= 2) {
         struct orl_hull hull;
-        assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, side, 0, &hull), ORL_OK);
+        assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, side, 0, NULL, &hull), ORL_OK);
         volumes[i] = orl_hull_volume(&hull);
         orl_hull_finish(&hull);
     }
@@ -157,7 +157,7 @@ static void makes_a_mesh(void **state)
     struct scene *scene = *state;
     struct orl_hull hull;
     struct orl_mesh mesh, fewer;
-    assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, 48, 1, &hull), ORL_OK);
+    assert_int_equal(orl_hull_make(NULL, scene->all, CAMERAS, 48, 1, NULL, &hull), ORL_OK);
     assert_int_equal(orl_hull_mesh(NULL, &hull, 0, &mesh), ORL_OK);
     assert_int_equal(orl_hull_mesh(NULL, &hull, 500, &fewer), ORL_OK);
     // The surface runs half way between voxels' centres: through their faces, corners cut.
@@ -195,7 +195,41 @@ static void keeps_what_borders_cut(void **state)
     assert_int_equal(orl_hull_carve(NULL, &s, 0, &hull), ORL_OK);
     assert_true(orl_hull_volume(&hull) > 0);
     orl_hull_finish(&hull);
+    // Beside a subject that is larger, the pixel at the border is something else.
+    for (int x = 5; x < 8; x++)
+        s.mask.u8[10 * 20 + x] = 255;
+    assert_int_equal(orl_hull_init(NULL, &hull, 2, origin, 2), ORL_OK);
+    assert_int_equal(orl_hull_carve(NULL, &s, 0, &hull), ORL_OK);
+    assert_float_equal(orl_hull_volume(&hull), 0, 0);
+    orl_hull_finish(&hull);
     orl_image_finish(&s.mask);
+}
+
+// A subject that leaves every picture on the same side has no end there, which is said once.
+static void says_once_that_it_does_not_end(void **state)
+{
+    (void)state;
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_silhouette pair[2];
+    struct orl_hull hull;
+    bool told = false;
+    for (int i = 0; i < 2; i++) {
+        pair[i].view = (struct orl_view){{20, 20, 20, 20, 10, 10},
+                                         {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0.5 * i, 0, 0}}};
+        assert_int_equal(orl_image_init(NULL, &pair[i].mask, 20, 20, 1, ORL_PIXEL_U8), ORL_OK);
+        for (int y = 0; y < 12; y++)
+            memset(pair[i].mask.u8 + 20 * y + 8 + i, 255, 4);
+    }
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(orl_hull_make(&log, pair, 2, 16, 1, &told, &hull), ORL_OK);
+        assert_true(told);
+        assert_int_equal(strstr(said.text, "without end") != NULL, i == 0);
+        said.text[0] = 0;
+        orl_hull_finish(&hull);
+    }
+    for (int i = 0; i < 2; i++)
+        orl_image_finish(&pair[i].mask);
 }
 
 static void refuses_what_has_no_hull(void **state)
@@ -204,7 +238,7 @@ static void refuses_what_has_no_hull(void **state)
     struct said said;
     struct orl_log log = log_to(&said);
     struct orl_hull hull;
-    assert_int_equal(orl_hull_make(&log, scene->all, 1, 16, 1, &hull), ORL_ERR_DATA);
+    assert_int_equal(orl_hull_make(&log, scene->all, 1, 16, 1, NULL, &hull), ORL_ERR_DATA);
     assert_non_null(strstr(said.text, "from two places"));
     // Two cameras that see the sphere in places that do not meet.
     struct orl_silhouette apart[3] = {scene->all[0], scene->all[10], scene->all[20]};
@@ -213,10 +247,10 @@ static void refuses_what_has_no_hull(void **state)
                          ORL_OK);
         apart[i].mask.u8[(20 + 70 * i) * SIDE + 20 + 90 * (i == 1)] = 255;
     }
-    assert_int_equal(orl_hull_make(&log, apart, 3, 16, 1, &hull), ORL_ERR_DATA);
+    assert_int_equal(orl_hull_make(&log, apart, 3, 16, 1, NULL, &hull), ORL_ERR_DATA);
     assert_non_null(strstr(said.text, "no place in common"));
     memset(apart[1].mask.u8, 0, SIDE * SIDE);
-    assert_int_equal(orl_hull_make(&log, apart, 3, 16, 1, &hull), ORL_ERR_DATA);
+    assert_int_equal(orl_hull_make(&log, apart, 3, 16, 1, NULL, &hull), ORL_ERR_DATA);
     assert_non_null(strstr(said.text, "silhouette 2 of 3 is empty"));
     assert_null(hull.inside);
     for (int i = 0; i < 3; i++)
@@ -228,7 +262,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(holds_the_sphere), cmocka_unit_test(centres_converge),
         cmocka_unit_test(is_an_and), cmocka_unit_test(makes_a_mesh),
-        cmocka_unit_test(keeps_what_borders_cut), cmocka_unit_test(refuses_what_has_no_hull),
+        cmocka_unit_test(keeps_what_borders_cut),
+        cmocka_unit_test(says_once_that_it_does_not_end), cmocka_unit_test(refuses_what_has_no_hull),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
