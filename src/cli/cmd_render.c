@@ -19,6 +19,7 @@ struct job {
     struct orl_frame_output output;
     bool *skip;     // per photograph
     bool time_runs; // the path leads through the moments of a sequence
+    size_t end;     // pictures of the path before this one are drawn
 };
 
 struct options {
@@ -32,14 +33,22 @@ struct options {
     double fps;
 };
 
+// Of the picture of a path, when time runs.
+static int moment_of(const struct job *job, size_t picture)
+{
+    return (int)(picture * job->scene->frame_count / job->path.count);
+}
+
 static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_frame *frame)
 {
     struct job *job = priv;
     size_t picture = (size_t)(view - job->path.views); // sequences draw the views of the path
     enum orl_result result = ORL_OK;
-    if (job->time_runs)
-        result = orl_scene_set_frame(
-            job->log, job->scene, (int)(picture * job->scene->frame_count / job->path.count));
+    if (job->time_runs) {
+        result = orl_scene_set_frame(job->log, job->scene, moment_of(job, picture));
+        if (picture + 1 < job->end)
+            orl_renderer_expect(job->renderer, moment_of(job, picture + 1));
+    }
     if (result != ORL_OK)
         return result;
     return orl_renderer_draw(job->renderer, view, &job->choice.params, job->skip, frame);
@@ -59,9 +68,10 @@ static enum orl_result draw_all(const struct options *options, struct job *job)
         options->part ? args_part(job->log, options->part, &index, &parts) : ORL_OK;
     if (result != ORL_OK)
         return result;
+    job->end = job->path.count * ((size_t)index + 1) / (size_t)parts;
     const struct orl_sequence sequence = {
         .views = job->path.views, .first = job->path.count * (size_t)index / (size_t)parts,
-        .count = job->path.count * ((size_t)index + 1) / (size_t)parts, .draw = draw, .priv = job,
+        .count = job->end, .draw = draw, .priv = job,
         .output = &job->output, .step = "render", .progress = job->progress};
     if (!options->views.path)
         return orl_sequence_write_view(job->log, &sequence, &job->path.views[0], out);

@@ -5,13 +5,14 @@
 #include <xxhash.h>
 
 #include "core/memory.h"
+#include "render/ahead.h"
 #include "render/mesh_proxy.h"
 #include "render/raster_target.h"
-#include "render/voxels.h"
 
 struct hull_state {
     struct mesh_state mesh; // first: see mesh_proxy.h
     uint64_t key;           // of what the mesh was made of
+    bool said_endless;
 };
 
 static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene, void **out)
@@ -24,7 +25,7 @@ static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene
 static void forget(struct orl_gpu *gpu, struct hull_state *state)
 {
     orl_mesh_state_finish(gpu, &state->mesh);
-    memset(state, 0, sizeof *state);
+    *state = (struct hull_state){.said_endless = state->said_endless};
 }
 
 static void destroy(struct orl_gpu *gpu, void **handle)
@@ -38,16 +39,21 @@ static void destroy(struct orl_gpu *gpu, void **handle)
 
 static enum orl_result make(const struct frame *frame, size_t triangles, struct hull_state *state)
 {
-    struct voxels voxels;
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    struct voxels voxels = {0};
+    enum orl_result result = ORL_OK;
     if (!orl_voxels_silhouettes(frame))
-        return orl_fail(orl_gpu_log(frame->gpu), ORL_ERR_NOT_FOUND,
+        return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: no silhouettes to make a hull of; see oriel import",
                         frame->scene->dir);
-    enum orl_result result = orl_voxels_make(frame, &voxels);
-    if (result != ORL_OK)
-        return result;
-    result = orl_hull_field_mesh(orl_gpu_log(frame->gpu), &voxels.cube, voxels.field, triangles,
-                                 &state->mesh.mesh);
+    if (!orl_ahead_take_hull(frame->gpu, frame->ahead, orl_voxels_key(frame), triangles, &voxels,
+                             &state->mesh.mesh)) {
+        result = orl_voxels_make(frame, &voxels);
+        if (result == ORL_OK)
+            result = orl_hull_field_mesh(log, &voxels.cube, voxels.field, triangles,
+                                         &state->mesh.mesh);
+    }
+    orl_voxels_warn(log, &voxels, &state->said_endless);
     orl_voxels_finish(&voxels);
     return result == ORL_OK ? orl_mesh_state_upload(frame->gpu, &state->mesh) : result;
 }

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "io/picture.h"
+#include "render/ahead.h"
 #include "render/method.h"
 #include "render/photos.h"
 #include "scene/silhouette.h"
@@ -238,6 +239,7 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
     orl_tex_destroy(gpu, &photos->loading);
     orl_tex_destroy(gpu, &photos->mask);
     orl_tex_destroy(gpu, &photos->background);
+    free(photos->background_of);
     free(photos->states);
     memset(photos, 0, sizeof *photos);
 }
@@ -254,7 +256,7 @@ static void evict(struct photo_state *state)
 {
     state->slot = -1;
     state->depth_divide = 0;
-    state->has_mask = state->has_background = false;
+    state->has_mask = false;
 }
 
 // Returns a free slot, or else evicts the least recently used photograph.
@@ -394,13 +396,16 @@ enum orl_result orl_photos_put(struct orl_gpu *gpu, struct photos *photos, size_
     return result;
 }
 
-static enum orl_result load_color(struct orl_gpu *gpu, struct photos *photos, size_t index)
+static enum orl_result load_color(const struct frame *frame, size_t index)
 {
+    struct photos *photos = frame->photos;
     struct orl_image image = {0};
-    enum orl_result result = orl_photo_read(orl_gpu_log(gpu), photos->scene, index,
-                                            photos->radiance, &image);
+    enum orl_result result = ORL_OK;
+    if (!orl_ahead_take_photo(frame->ahead, index, &image))
+        result = orl_photo_read(orl_gpu_log(frame->gpu), photos->scene, index, photos->radiance,
+                                &image);
     if (result == ORL_OK)
-        result = orl_photos_put(gpu, photos, index, &image);
+        result = orl_photos_put(frame->gpu, photos, index, &image);
     orl_image_finish(&image);
     return result;
 }
@@ -495,7 +500,7 @@ enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool
     state->last_use = ++photos->clock;
     enum orl_result result = ORL_OK;
     if (state->slot < 0)
-        result = load_color(frame->gpu, photos, photo);
+        result = load_color(frame, photo);
     if (result == ORL_OK && depth && orl_photos_depth_divide(frame, photo) != 1)
         result = orl_photos_draw_depth(frame, photo, 1);
     return result;
@@ -526,10 +531,15 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     struct orl_image whole = {0}, image = {0};
     params.format = GL_SRGB8_ALPHA8;
     params.tag = "backgrounds";
-    if (state->has_background)
+    if (photos->background_of && photos->background_of[state->slot] == photo + 1)
         return ORL_OK;
     char *path = orl_scene_background_path(log, photos->scene, photo);
     enum orl_result result = path ? orl_picture_read(log, path, 3, &whole) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !photos->background_of)
+        photos->background_of =
+            orl_array(log, (size_t)photos->slot_count, sizeof *photos->background_of);
+    if (result == ORL_OK && !photos->background_of)
+        result = ORL_ERR_MEMORY;
     if (result == ORL_OK && !photos->background)
         result = orl_tex_create(frame->gpu, &params, &photos->background);
     if (result == ORL_OK)
@@ -538,7 +548,7 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     if (result == ORL_OK) {
         write_pixels(&image, photos->background, state->slot);
         orl_tex_make_mipmaps(photos->background, state->slot);
-        state->has_background = true;
+        photos->background_of[state->slot] = photo + 1;
     }
     orl_image_finish(&whole);
     orl_image_finish(&image);
@@ -564,9 +574,11 @@ enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_
 }
 
 // The alpha of a photograph at its resident size.
-static enum orl_result make_alpha(const struct orl_log *log, const struct photos *photos,
-                                  size_t index, struct orl_image *alpha)
+static enum orl_result make_alpha(const struct frame *frame, size_t index,
+                                  struct orl_image *alpha)
 {
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    const struct photos *photos = frame->photos;
     const struct orl_camera *c = &photos->states[index].color_camera;
     struct orl_image mask = {0};
     if (!photos->scene->photos[index].masked) {
@@ -576,7 +588,9 @@ static enum orl_result make_alpha(const struct orl_log *log, const struct photos
             memset(alpha->u8, ORL_ALPHA_IN, orl_image_bytes(alpha));
         return result;
     }
-    enum orl_result result = orl_photo_mask_read(log, photos->scene, index, &mask);
+    enum orl_result result = ORL_OK;
+    if (!orl_ahead_take_mask(frame->ahead, index, &mask))
+        result = orl_photo_mask_read(log, photos->scene, index, &mask);
     if (result == ORL_OK) {
         orl_silhouette_mark_edges(&mask);
         result = orl_bridge_resize(log, &mask, c->width, c->height, alpha);
@@ -598,7 +612,7 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
     enum orl_result result =
         photos->mask ? ORL_OK : orl_tex_create(frame->gpu, &params, &photos->mask);
     if (result == ORL_OK)
-        result = make_alpha(orl_gpu_log(frame->gpu), photos, photo, &alpha);
+        result = make_alpha(frame, photo, &alpha);
     if (result == ORL_OK) {
         orl_tex_write_part(photos->mask, 0, state->slot, alpha.width, alpha.height, GL_RED,
                            GL_UNSIGNED_BYTE, alpha.data);

@@ -11,7 +11,7 @@
 struct photo_state {
     bool usable;
     int slot; // layer of the arrays; -1: not resident
-    bool has_mask, has_background;
+    bool has_mask;
     int depth_divide;   // its depth has 1/depth_divide of the size of depth_camera; 0: no depth
     uint64_t depth_key; // of the frame that its depth was drawn for
     unsigned last_use;
@@ -30,6 +30,8 @@ struct photos {
     struct orl_tex_params depth_params; // of depth
     struct orl_tex *mask;       // R8: which pixels are the subject's; NULL: not asked for yet
     struct orl_tex *background; // pictures of the place without the subject; NULL: not asked for
+    size_t *background_of;      // per slot: 1 + the photograph whose background it holds; 0: none.
+                                // It outlives a moment. NULL: none was asked for; owned
     const struct orl_progress *progress; // see struct orl_renderer_params
     size_t uploaded;            // bytes of photographs and masks that went to the device
     int slot_count, divide;     // divide: photographs are loaded at 1/divide of their size

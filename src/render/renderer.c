@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "render/ahead.h"
 #include "render/compose.h"
 #include "render/edges.h"
 #include "render/fill.h"
@@ -31,6 +32,8 @@ struct orl_renderer {
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
     struct orl_image staging; // for read_back.h
+    int expected;             // moment after the next frame's; -1: none is expected
+    struct ahead *ahead;      // what is prepared for it; NULL: nothing
 };
 
 // Device memory of everything but photographs: points, and targets of common sizes.
@@ -86,6 +89,7 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
         return ORL_ERR_MEMORY;
     r->gpu = gpu;
     r->scene = scene;
+    r->expected = -1;
     r->chosen = orl_array(log, scene->photo_count, sizeof *r->chosen);
     r->selected = orl_array(log, scene->photo_count, sizeof *r->selected);
     struct proxy *splats;
@@ -111,6 +115,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
         return;
     for (size_t i = 0; i < r->proxy_count; i++)
         orl_proxy_finish(r->gpu, &r->proxies[i]);
+    orl_ahead_destroy(r->gpu, &r->ahead);
     orl_photos_finish(r->gpu, &r->photos);
     orl_fill_finish(r->gpu, &r->fill);
     orl_soften_finish(r->gpu, &r->soften);
@@ -126,6 +131,11 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     free(r->selected);
     free(r);
     *renderer = NULL;
+}
+
+void orl_renderer_expect(struct orl_renderer *renderer, int moment)
+{
+    renderer->expected = moment;
 }
 
 size_t orl_renderer_uploaded(const struct orl_renderer *renderer)
@@ -223,6 +233,44 @@ void orl_frame_finish(struct orl_frame *frame)
     orl_image_finish(&frame->confidence);
 }
 
+// Draws and reads back the frame, whose proxy is up to date. With `next`, prepares that moment
+// meanwhile: its hull is carved before the read-back waits for the device.
+static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame, bool normals,
+                                    struct ahead *next, struct orl_frame *out)
+{
+    enum orl_result result = draw(frame, normals);
+    if (result == ORL_OK && next) {
+        orl_ahead_want(next, frame->chosen, frame->chosen_count);
+        orl_pass_begin(r->gpu, "next hull");
+        result = orl_ahead_carve(r->gpu, next);
+        orl_pass_end(r->gpu);
+    }
+    if (result == ORL_OK && out)
+        result = orl_read_back(frame, &r->staging, out);
+    if (result == ORL_OK)
+        result = orl_gpu_finish(r->gpu);
+    if (result == ORL_OK && next)
+        result = orl_ahead_collect(r->gpu, next);
+    return result;
+}
+
+// Brings everything that the frame needs besides photographs up to date.
+static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
+{
+    orl_photos_follow_moment(&r->photos);
+    if (r->ahead && orl_ahead_moment(r->ahead) == r->scene->frame)
+        frame->ahead = r->ahead;
+    enum orl_result result = orl_proxy_update(frame);
+    frame->depth_key = orl_photos_depth_key(frame);
+    if (result == ORL_OK)
+        result = resize(r, frame);
+    frame->picture = r->picture;
+    frame->trusted = r->trusted;
+    frame->room = r->room;
+    memcpy(frame->states, r->states, sizeof frame->states);
+    return result;
+}
+
 static enum orl_result render(struct orl_renderer *r, const struct orl_view *view,
                               const struct orl_render_params *params, const bool *skip,
                               struct orl_progressive *progressive, struct orl_frame *out)
@@ -237,26 +285,22 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
     if (result != ORL_OK)
         return result;
     struct proxy *proxy;
+    struct ahead *next = NULL;
     result = find_proxy(r, orl_proxy_kind_of(params), &proxy);
     if (result != ORL_OK)
         return result;
     struct frame frame = start_frame(r, proxy, view, params, skip);
     frame.progressive = progressive;
-    orl_photos_follow_moment(&r->photos);
-    result = orl_proxy_update(&frame);
-    frame.depth_key = orl_photos_depth_key(&frame);
+    result = ready_frame(r, &frame);
+    if (result == ORL_OK && r->expected >= 0 && r->expected != r->scene->frame)
+        result = orl_ahead_create(&frame, r->expected, &next);
     if (result == ORL_OK)
-        result = resize(r, &frame);
-    frame.picture = r->picture;
-    frame.trusted = r->trusted;
-    frame.room = r->room;
-    memcpy(frame.states, r->states, sizeof frame.states);
-    if (result == ORL_OK)
-        result = draw(&frame, progressive || (out && !(params->leave_out & ORL_LAYER_NORMAL)));
-    if (result == ORL_OK && out)
-        result = orl_read_back(&frame, &r->staging, out);
-    if (result == ORL_OK)
-        result = orl_gpu_finish(r->gpu);
+        result = finish_frame(r, &frame,
+                              progressive || (out && !(params->leave_out & ORL_LAYER_NORMAL)),
+                              next, out);
+    r->expected = -1;
+    orl_ahead_destroy(r->gpu, &r->ahead);
+    r->ahead = next;
     if (result != ORL_OK && out)
         orl_frame_finish(out);
     return result;

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "gpu/raster.h"
+#include "render/ahead.h"
 #include "render/photos.h"
 #include "render/raster_target.h"
 #include "shared/hull_blocks.h"
@@ -24,7 +25,7 @@ static void forget(struct orl_gpu *gpu, struct voxel_state *state)
     orl_buf_destroy(gpu, &state->centres);
     orl_voxels_finish(&state->voxels);
     free(state->seen);
-    memset(state, 0, sizeof *state);
+    *state = (struct voxel_state){.said_endless = state->said_endless};
 }
 
 static void destroy(struct orl_gpu *gpu, void **handle)
@@ -45,8 +46,11 @@ static enum orl_result update(const struct frame *frame, void *handle, bool *cha
     forget(frame->gpu, state);
     *changed = true;
     orl_pass_begin(frame->gpu, "hull");
-    enum orl_result result = orl_voxels_make(frame, &state->voxels);
+    enum orl_result result = ORL_OK;
+    if (!orl_ahead_take_hull(frame->gpu, frame->ahead, key, 0, &state->voxels, NULL))
+        result = orl_voxels_make(frame, &state->voxels);
     orl_pass_end(frame->gpu);
+    orl_voxels_warn(orl_gpu_log(frame->gpu), &state->voxels, &state->said_endless);
     const struct voxels *voxels = &state->voxels;
     if (result == ORL_OK && !voxels->count)
         result = orl_fail(orl_gpu_log(frame->gpu), ORL_ERR_DATA, "%s: no voxel is left",

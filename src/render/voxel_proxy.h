@@ -14,6 +14,7 @@ struct voxel_state {
     // until they are asked for; owned.
     uint32_t *seen;
     size_t words;
+    bool said_endless;
 };
 
 // Finds which of the frame's photographs see which voxels of its proxy, unless that is known.

@@ -1,0 +1,258 @@
+// The next moment of a sequence, prepared while one is drawn: the same pictures, and nothing is read
+// twice.
+#include <math.h>
+
+#include "figure_scene.h"
+#include "render/ahead.h"
+#include "render/photos.h"
+
+enum { W = 96, H = 72, CAMERAS = 5, MOMENTS = 3 };
+
+static struct orl_gpu *gpu;
+
+static void make_folder(const struct fixture *f, const char *name)
+{
+    char *path = orl_path_join(NULL, f->dir, name);
+    assert_int_equal(orl_dir_make(NULL, path), ORL_OK);
+    free(path);
+}
+
+// The figure, which walks on from moment to moment.
+static void setup_moments(struct fixture *f)
+{
+    const struct orl_figures_params params = {CAMERAS, 1, W, H};
+    struct orl_view views[CAMERAS];
+    struct orl_figure figure;
+    setup_empty(f, 3);
+    make_folder(f, "frames");
+    f->scene.frame_count = MOMENTS;
+    orl_figures_views(&params, views);
+    for (f->scene.frame = 0; f->scene.frame < MOMENTS; f->scene.frame++) {
+        char folder[48];
+        snprintf(folder, sizeof folder, "frames/%05d", f->scene.frame);
+        make_folder(f, folder);
+        snprintf(folder, sizeof folder, "frames/%05d/images", f->scene.frame);
+        make_folder(f, folder);
+        snprintf(folder, sizeof folder, "frames/%05d/masks", f->scene.frame);
+        make_folder(f, folder);
+        orl_figure_pose(4 * f->scene.frame, &figure);
+        for (size_t i = 0; i < CAMERAS; i++) {
+            struct orl_figures_picture picture;
+            assert_int_equal(orl_figures_draw(NULL, &figure, &views[i], &picture), ORL_OK);
+            if (f->scene.frame == 0)
+                add_photo(f, views[i], red);
+            char *photo = orl_scene_photo_path(NULL, &f->scene, i);
+            char *mask = orl_scene_mask_path(NULL, &f->scene, i);
+            assert_int_equal(orl_png_write(NULL, photo, &picture.photo), ORL_OK);
+            assert_int_equal(orl_png_write(NULL, mask, &picture.mask), ORL_OK);
+            f->photos[i].masked = true;
+            free(photo);
+            free(mask);
+            orl_figures_picture_finish(&picture);
+        }
+    }
+    f->scene.frame = 0;
+}
+
+static struct orl_render_params params_of(const char *method, const char *choice)
+{
+    struct orl_render_params params = orl_method_find(NULL, method)->params;
+    assert_int_equal(orl_render_params_set(NULL, &params, choice), ORL_OK);
+    return params;
+}
+
+// --- pictures ---
+
+// Draws the moments in this order; expected: what is said of the next one, NULL: nothing.
+static void draw_moments(struct fixture *f, const struct orl_render_params *params,
+                         const int *moments, const int *expected, struct orl_frame frames[4])
+{
+    struct orl_renderer *renderer;
+    const struct orl_view *view = &f->photos[1].view;
+    assert_int_equal(orl_renderer_create(gpu, &f->scene, NULL, &renderer), ORL_OK);
+    for (int i = 0; i < 4; i++) {
+        // The last of the views does without one photograph and its silhouette.
+        const bool skip[CAMERAS] = {[0] = i == 3};
+        assert_int_equal(orl_scene_set_frame(NULL, &f->scene, moments[i]), ORL_OK);
+        if (expected)
+            orl_renderer_expect(renderer, expected[i]);
+        assert_int_equal(orl_renderer_draw(renderer, view, params, skip, &frames[i]), ORL_OK);
+    }
+    orl_renderer_destroy(&renderer);
+}
+
+static void assert_same(const struct orl_image *a, const struct orl_image *b)
+{
+    assert_int_equal(orl_image_bytes(a), orl_image_bytes(b));
+    assert_memory_equal(a->data, b->data, orl_image_bytes(a));
+}
+
+static void pictures_are_the_same(void **state)
+{
+    (void)state;
+    static const char *const rows[][2] = {{"li", "hull_triangles=900"},
+                                          {"goldluecke", "hull_side=32"}};
+    // Moment 1 is shown twice. The second list expects what does not come.
+    static const int moments[4] = {0, 1, 1, 2}, expected[2][4] = {{1, 1, 2, -1}, {2, 0, 2, 0}};
+    struct fixture f;
+    setup_moments(&f);
+    for (size_t row = 0; row < ORL_COUNT(rows); row++) {
+        struct orl_render_params params = params_of(rows[row][0], rows[row][1]);
+        struct orl_frame plain[4], ahead[4];
+        draw_moments(&f, &params, moments, NULL, plain);
+        for (int list = 0; list < 2; list++) {
+            draw_moments(&f, &params, moments, expected[list], ahead);
+            for (int i = 0; i < 4; i++) {
+                assert_same(&plain[i].color, &ahead[i].color);
+                assert_same(&plain[i].depth, &ahead[i].depth);
+                orl_frame_finish(&ahead[i]);
+            }
+        }
+        // The moments differ, or equal pictures would say nothing.
+        assert_memory_not_equal(plain[0].color.data, plain[1].color.data,
+                                orl_image_bytes(&plain[0].color));
+        assert_memory_not_equal(plain[2].color.data, plain[3].color.data,
+                                orl_image_bytes(&plain[2].color));
+        for (int i = 0; i < 4; i++)
+            orl_frame_finish(&plain[i]);
+    }
+    teardown(&f);
+}
+
+// --- what is prepared ---
+
+struct stage {
+    struct fixture f;
+    struct orl_render_params params;
+    struct photos photos;
+    struct proxy proxy;
+    struct frame frame;
+};
+
+static void setup_stage(struct stage *s)
+{
+    const struct orl_renderer_params none = {0};
+    setup_moments(&s->f);
+    s->params = params_of("li", "hull_triangles=900");
+    assert_int_equal(orl_photos_init(gpu, &s->f.scene, &none, 0, &s->photos), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &s->f.scene, &orl_proxy_hull, &s->proxy), ORL_OK);
+    s->frame = (struct frame){.gpu = gpu, .scene = &s->f.scene, .params = &s->params,
+                              .proxy = &s->proxy, .photos = &s->photos};
+}
+
+static void finish_stage(struct stage *s)
+{
+    orl_proxy_finish(gpu, &s->proxy);
+    orl_photos_finish(gpu, &s->photos);
+    teardown(&s->f);
+}
+
+static void remove_file(char *path)
+{
+    assert_int_equal(remove(path), 0);
+    free(path);
+}
+
+// Prepares moment 1 with all its photographs, as while moment 0 is drawn.
+static struct ahead *prepare(struct stage *s)
+{
+    static const size_t all[CAMERAS] = {0, 1, 2, 3, 4};
+    struct ahead *ahead;
+    assert_int_equal(orl_ahead_create(&s->frame, 1, &ahead), ORL_OK);
+    assert_int_equal(orl_ahead_moment(ahead), 1);
+    orl_ahead_want(ahead, all, CAMERAS);
+    orl_ahead_wait(ahead);
+    assert_int_equal(orl_ahead_carve(gpu, ahead), ORL_OK);
+    assert_int_equal(orl_ahead_collect(gpu, ahead), ORL_OK);
+    orl_ahead_wait(ahead);
+    return ahead;
+}
+
+// Nothing is left to read: the files may be gone.
+static void files_are_read_once(void **state)
+{
+    (void)state;
+    struct stage s;
+    setup_stage(&s);
+    struct ahead *ahead = prepare(&s);
+    s.f.scene.frame = 1;
+    assert_int_equal(orl_proxy_update(&s.frame), ORL_OK); // as without
+    size_t count = s.proxy.vertex_count;
+    float (*plain)[3] = malloc(count * sizeof *plain);
+    memcpy(plain, s.proxy.vertices, count * sizeof *plain);
+    for (size_t i = 0; i < CAMERAS; i++) {
+        remove_file(orl_scene_photo_path(NULL, &s.f.scene, i));
+        remove_file(orl_scene_mask_path(NULL, &s.f.scene, i));
+    }
+    orl_proxy_finish(gpu, &s.proxy);
+    assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, &s.proxy), ORL_OK);
+    s.frame.ahead = ahead;
+    assert_int_equal(orl_proxy_update(&s.frame), ORL_OK);
+    assert_int_equal(s.proxy.vertex_count, count);
+    assert_memory_equal(s.proxy.vertices, plain, count * sizeof *plain);
+    for (size_t i = 0; i < CAMERAS; i++) {
+        assert_int_equal(orl_photos_require(&s.frame, i, false), ORL_OK);
+        assert_int_equal(orl_photos_require_mask(&s.frame, i), ORL_OK);
+    }
+    free(plain);
+    orl_ahead_destroy(gpu, &ahead);
+    finish_stage(&s);
+}
+
+// A hull of other triangles, voxels or silhouettes is not the one that was prepared.
+static void another_hull_is_not_taken(void **state)
+{
+    (void)state;
+    struct stage s;
+    struct voxels voxels;
+    struct orl_mesh mesh;
+    setup_stage(&s);
+    struct ahead *ahead = prepare(&s);
+    s.f.scene.frame = 1;
+    uint64_t key = orl_voxels_key(&s.frame);
+    const bool skip[CAMERAS] = {[2] = true};
+    s.frame.skip = skip;
+    assert_false(orl_ahead_take_hull(gpu, ahead, orl_voxels_key(&s.frame), 900, &voxels, &mesh));
+    assert_false(orl_ahead_take_hull(gpu, ahead, key, 901, &voxels, &mesh));
+    assert_true(orl_ahead_take_hull(gpu, ahead, key, 900, &voxels, &mesh));
+    assert_false(orl_ahead_take_hull(gpu, NULL, key, 900, &voxels, &mesh));
+    orl_voxels_finish(&voxels);
+    orl_mesh_finish(&mesh);
+    orl_ahead_destroy(gpu, &ahead);
+    finish_stage(&s);
+}
+
+// What is missing is left to the frame that shows the moment.
+static void missing_files_are_left_alone(void **state)
+{
+    (void)state;
+    struct stage s;
+    struct orl_image image;
+    struct voxels voxels;
+    struct orl_mesh mesh;
+    setup_stage(&s);
+    s.f.scene.frame = 1;
+    uint64_t key = orl_voxels_key(&s.frame);
+    remove_file(orl_scene_photo_path(NULL, &s.f.scene, 3));
+    s.f.scene.frame = 0;
+    struct ahead *ahead = prepare(&s);
+    assert_false(orl_ahead_take_photo(ahead, 0, &image));
+    assert_false(orl_ahead_take_mask(ahead, 0, &image));
+    assert_false(orl_ahead_take_hull(gpu, ahead, key, 900, &voxels, &mesh));
+    orl_ahead_destroy(gpu, &ahead);
+    finish_stage(&s);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_are_the_same),
+        cmocka_unit_test(files_are_read_once),
+        cmocka_unit_test(another_hull_is_not_taken),
+        cmocka_unit_test(missing_files_are_left_alone),
+    };
+    int failed = cmocka_run_group_tests_name("ahead", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
