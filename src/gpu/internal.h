@@ -6,7 +6,8 @@
 
 #include "oriel/gpu.h"
 
-enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256, ORL_MEMORY_ROWS_MAX = 64 };
+enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256, ORL_MEMORY_ROWS_MAX = 64,
+       ORL_SHADER_FILES_MAX = 48 };
 
 struct pass_query {
     GLuint begin, end;
@@ -25,6 +26,7 @@ struct orl_gpu {
     bool failed;      // sticky: a GL error or a high-severity message
     bool lost;        // for good: the device was reset
     bool current;     // the context could be made current
+    struct orl_check *check; // of ORIEL_GPU_CHECK, owned; NULL: off
     struct orl_prog **progs; // programs made so far, owned
     size_t prog_count, prog_capacity;
     GLuint vertex_array, framebuffer; // of raster.c; 0: not created yet
@@ -48,12 +50,17 @@ struct orl_gpu {
 struct shader_source {
     char *text;
     size_t length, capacity;
-    const char *files[48];
+    const char *files[ORL_SHADER_FILES_MAX]; // static strings
     size_t file_count;
+    bool checked; // its indexes are (check.h)
 };
 enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
                                        const struct orl_slot *slots, const char *defines,
-                                       struct shader_source *source);
+                                       bool checked, struct shader_source *source);
+// The text of one file below shaders/ as it is written, and its name as a static string. The caller
+// frees *owned.
+enum orl_result orl_shader_text(struct orl_gpu *gpu, const char *file, const char **name,
+                                const char **text, uint8_t **owned);
 void orl_shader_source_finish(struct shader_source *source);
 // With ORIEL_SHADER_DUMP=DIR in the environment, writes the expanded source to DIR. False, logged,
 // if that fails.
@@ -79,6 +86,9 @@ bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params
 void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_image_binding *images,
                   const int *image_layers);
 void orl_gpu_free_programs(struct orl_gpu *gpu);
+GLuint orl_prog_id(const struct orl_prog *prog);
+// The index-th file of a program's source, below shaders/; of a raster program's first stage.
+const char *orl_prog_file(const struct orl_prog *prog, size_t index);
 void orl_gpu_free_raster(struct orl_gpu *gpu);
 
 // Logs every pending GL error as caused by `where`. True if there was none.

@@ -1,0 +1,193 @@
+// ORIEL_GPU_CHECK: wrong indexes and values that are not finite are found and named.
+#include "gpu/check.h"
+#include "gpu_test.h"
+
+enum { SIDE = 4 };
+
+static char *dir;
+static char messages[8192];
+
+static void collect(void *priv, enum orl_log_level level, const char *message)
+{
+    (void)priv, (void)level;
+    size_t used = strlen(messages);
+    snprintf(messages + used, sizeof messages - used, "%s\n", message);
+}
+
+// A device that takes fill/fill_pull.comp from here; its includes are read there as well.
+static struct orl_gpu *open_device(const char *shader)
+{
+    static const struct orl_log log = {ORL_LOG_INFO, collect, NULL};
+    const struct orl_gpu_params params = {.shader_dir = dir, .cache_dir = ""};
+    struct orl_gpu *gpu;
+    char *path = test_path(dir, "fill/fill_pull.comp"), *index = test_path(dir, "check/index.glsl");
+    char *folders[] = {test_path(dir, "fill"), test_path(dir, "check")};
+    const char *text = NULL, *name;
+    uint8_t *owned = NULL;
+    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
+        assert_int_equal(orl_dir_make(NULL, folders[i]), ORL_OK);
+        free(folders[i]);
+    }
+    assert_int_equal(orl_file_write(NULL, path, shader, strlen(shader)), ORL_OK);
+    messages[0] = '\0';
+    assert_int_equal(orl_gpu_create(&log, NULL, &gpu), ORL_OK); // with the shaders of the program
+    assert_int_equal(orl_shader_text(gpu, "check/index.glsl", &name, &text, &owned), ORL_OK);
+    assert_int_equal(orl_file_write(NULL, index, text, strlen(text)), ORL_OK);
+    orl_gpu_destroy(&gpu);
+    messages[0] = '\0';
+    assert_int_equal(orl_gpu_create(&log, &params, &gpu), ORL_OK);
+    free(path);
+    free(index);
+    return gpu;
+}
+
+// Runs the shader once with a buffer of 8 floats and a texture of SIDE x SIDE.
+static enum orl_result run(const char *shader, uint32_t word)
+{
+    struct orl_gpu *gpu = open_device(shader);
+    struct orl_buf *buf = NULL, *other = NULL;
+    struct orl_tex *tex = NULL, *view = NULL;
+    struct orl_tex_params params = {.width = SIDE, .height = SIDE, .format = GL_RGBA16F,
+                                    .tag = "picture"};
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "list", 8 * sizeof(float), NULL, &buf),
+                     ORL_OK);
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "rows", 8 * sizeof(float), NULL, &other),
+                     ORL_OK);
+    assert_int_equal(orl_tex_view_buffer(gpu, other, GL_R32F, &view), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
+    struct { uint32_t word, rest[3]; } block = {word, {0}};
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "fill/fill_pull.comp", NULL, NULL),
+                             .params = &block, .params_size = sizeof block, .bufs = {{buf, 0, 0}},
+                             .textures = {tex},
+                             .images = {{tex, 0, GL_READ_WRITE}, {view, 0, GL_READ_ONLY}},
+                             .barrier = GL_BUFFER_UPDATE_BARRIER_BIT};
+    orl_gpu_dispatch(gpu, &d);
+    enum orl_result result = orl_gpu_finish(gpu);
+    orl_tex_destroy(gpu, &view);
+    orl_tex_destroy(gpu, &tex);
+    orl_buf_destroy(gpu, &buf);
+    orl_buf_destroy(gpu, &other);
+    orl_gpu_destroy(&gpu);
+    return result;
+}
+
+#define HEAD                                                                   \
+    "layout(local_size_x = 4) in;\n"                                           \
+    "layout(binding = 0) uniform sampler2D fetched;\n"                         \
+    "layout(rgba16f, binding = 0) uniform image2D picture;\n"                  \
+    "layout(r32f, binding = 1) readonly uniform imageBuffer rows;\n"           \
+    "layout(std140, binding = 0) uniform block { uint word; };\n"              \
+    "layout(std430, binding = 0) buffer list { float kept, values[]; };\n"     \
+    "struct pair { float a[2], b[3]; };\n"                                     \
+    "void main()\n{\n"                                                         \
+    "    int i = int(gl_LocalInvocationID.x), n = int(word);\n"                \
+    "    pair p[2] = pair[2](pair(float[](1.0, 2.0), float[](1.0, 2.0, 3.0)),\n" \
+    "                        pair(float[2](1.0, 2.0), float[](1.0, 2.0, 3.0)));\n"
+
+static void right_indexes_are_no_fault(void **state)
+{
+    (void)state;
+    assert_int_equal(run(HEAD
+                         "    values[i + 3] = 1.0;\n" // 7 elements behind `kept`
+                         "    values[uint(i)] += imageLoad(rows, 2 * i).x;\n"
+                         "    p[i & 1].b[n] += texelFetch(fetched, ivec2(i, 3), 0).x; // [9]\n"
+                         "    imageStore(picture, ivec2(i, 0), vec4(p[i & 1].b[n]));\n"
+                         "    imageStore(picture, ivec2(i, -1), vec4(1.0));\n" // defined
+                         "}\n", 2), ORL_OK);
+    assert_string_equal(messages, "checked on the device: 1 dispatches and draws, 3 targets; "
+                                  "0 faults\n");
+}
+
+// What `shader` is said of, and that it is a failure.
+static void expect(const char *shader, uint32_t word, const char *message)
+{
+    assert_int_equal(run(shader, word), ORL_ERR_GPU);
+    if (!strstr(messages, message))
+        fail_msg("not \"%s\", but:\n%s", message, messages);
+}
+
+static void wrong_indexes_are_named(void **state)
+{
+    (void)state;
+    expect(HEAD "    values[i + n] = 1.0;\n}\n", 4,
+           "shaders/fill/fill_pull.comp:13: values[i + n]: index 7, but the size is 7; 1 wrong "
+           "indexes in one dispatch of shaders/fill/fill_pull.comp\n");
+    expect(HEAD "\n    /* a\n comment [1] */ values[i - n] = 1.0;\n}\n", 1,
+           "fill_pull.comp:15: values[i - n]: index -1, but the size is 7; 1 wrong");
+    expect(HEAD "    values[word + 0xfffffff0u] = 1.0;\n}\n", 1, "index -1, but the size is 7; 4 ");
+    expect(HEAD "    p[0].b[n] = 1.0;\n    values[0] = p[0].b[0] + p[1].a[n];\n}\n", 2,
+           "fill_pull.comp:14: p[1].a[n]: index 2, but the size is 2; 4 ");
+    expect(HEAD "    values[0] = vec3(1.0)[0] + imageLoad(rows, i + n).x;\n}\n", 5,
+           "fill_pull.comp:13: imageLoad(rows, i + n): index 8, but the size is 8; 1 ");
+    expect(HEAD "    values[0] = texelFetch(fetched, ivec2(i, n), 0).x;\n}\n", 4,
+           "fill_pull.comp:13: texelFetch(fetched, ivec2(i, n), 0): index 4, but the size is 4; 4");
+    expect(HEAD "#ifdef NONE\n#endif\n    values[values[0] < 1.0 ? n : i] = 1.0;\n}\n", 9,
+           "fill_pull.comp:15: values[values[0] < 1.0 ? n : i]: index 9, but the size is 7");
+}
+
+static void values_that_are_not_finite_are_counted(void **state)
+{
+    (void)state;
+    expect(HEAD "    float bad = uintBitsToFloat(i > 1 ? word : 0u);\n"
+                "    imageStore(picture, ivec2(i, 1), vec4(bad));\n}\n", 0x7fc00000,
+           "shaders/fill/fill_pull.comp: texture \"picture\", level 0: 8 NaN and 0 "
+           "infinite values, the first at pixel (2, 1), channel 0\n");
+    expect(HEAD "    float far = uintBitsToFloat(i > 0 ? word : 0u);\n"
+                "    imageStore(picture, ivec2(i, 1), vec4(1.0, 0.0, far, 0.0));\n}\n", 0xff800000,
+           "0 NaN and 3 infinite values, the first at pixel (1, 1), channel 2\n");
+    expect(HEAD "    values[i] = uintBitsToFloat(i == 2 ? word : 0u);\n}\n", 0x7f800000,
+           "values[0] of buffer \"list\": 0 NaN and 1 infinite values, the first is number 2\n");
+}
+
+// What cannot be read as an index is left as it is, whatever it is.
+static void odd_text_keeps_its_lines(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"", "a[", "]", "[i]", "a[b[c[d]", "a.[i]", "f(x)[i]", "/*",
+                                        "// a[i]", "imageLoad(", "imageLoad(a", "texelFetch(a, b",
+                                        "a[i\n+\n1]\n", "x.y[\n]\n", ", b[i]", "1[i]", "a[i](b)"};
+    for (size_t i = 0; i < ORL_COUNT(texts); i++) {
+        size_t lines[2] = {0};
+        char *checked = orl_check_source(NULL, texts[i], 3);
+        assert_non_null(checked);
+        for (const char *p = texts[i]; *p; p++)
+            lines[0] += *p == '\n';
+        for (const char *p = checked; *p; p++)
+            lines[1] += *p == '\n';
+        assert_int_equal(lines[0], lines[1]);
+        free(checked);
+    }
+    struct orl_check_site site = {47, 9999, 4000};
+    uint32_t word = orl_check_site_pack(&site);
+    struct orl_check_site got = orl_check_site_unpack(word);
+    assert_memory_equal(&got, &site, sizeof site);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    dir = test_dir_make();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    test_dir_remove(dir);
+    return 0;
+}
+
+int main(void)
+{
+    struct orl_gpu *gpu = gpu_test_device(); // or exit 77
+    orl_gpu_destroy(&gpu);
+    unsetenv("ORIEL_SHADER_DUMP"); // wrong shaders are not for other compilers
+    setenv("ORIEL_GPU_CHECK", "1", 1);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(right_indexes_are_no_fault, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(wrong_indexes_are_named, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(values_that_are_not_finite_are_counted, set_up, tear_down),
+        cmocka_unit_test(odd_text_keeps_its_lines),
+    };
+    return cmocka_run_group_tests_name("GPU check", tests, NULL, NULL);
+}
