@@ -222,6 +222,9 @@ const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_
 struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,
                                       const struct orl_colmap_image *image)
 {
-    return (struct orl_view){orl_colmap_camera_by_id(model, image->camera_id)->pinhole,
-                             image->cam_from_world};
+    const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(model, image->camera_id);
+    struct orl_view view = {.cam_from_world = image->cam_from_world};
+    if (camera) // as in every model that was read
+        view.camera = camera->pinhole;
+    return view;
 }

@@ -77,12 +77,13 @@ struct value {
     struct text text;
 };
 
+// The text of a file of the page. All names are literals; a file that is not embedded is empty.
 static const char *web_file(const char *name)
 {
     for (const struct orl_web_file *f = orl_web_table; f->name; f++)
         if (strcmp(f->name, name) == 0)
             return f->text;
-    return NULL;
+    return "";
 }
 
 // Fills `page` with the template, each {{key}} replaced by its value.
@@ -220,7 +221,7 @@ static void add_file(const struct site *site, const char *path, struct text *tex
     if (text->result == ORL_OK)
         text->result = file ? orl_file_read(site->log, file, FILE_MOST, &data, &size)
                             : ORL_ERR_MEMORY;
-    if (text->result == ORL_OK) {
+    if (data) {
         add(text, text->size ? ",\n\"" : "\"");
         add(text, path);
         add(text, "\": \"");
