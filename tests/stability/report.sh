@@ -13,7 +13,7 @@ status=0
 mkdir -p "$source/docs/measured" "$fuzz/failures"
 [ "$seconds" = keep ] || "$source/tests/fuzz/run.sh" "$seconds" || status=1
 : >"$fuzz/injected.txt"
-for script in inject inject_prepare; do
+for script in inject inject_prepare inject_trim; do
     "$source/tests/stability/$script.sh" "$build/oriel" "$source" "$build/tests/libinject.so" $all 2>&1 |
         tee -a "$fuzz/injected.txt" || status=1
 done
@@ -66,7 +66,8 @@ END
     echo "(PNG, EXR), \`hdr\` and \`synth\`. Afterwards a final name holds what it held before or the whole"
     echo "result, the exit status tells, and only a killed program leaves a temporary file. So too in"
     echo "\`prepare\`, from the start and resumed half-way, with a stand-in for COLMAP; afterwards"
-    echo "\`--resume\` gives the bytes of a job that nothing disturbed."
+    echo "\`--resume\` gives the bytes of a job that nothing disturbed. And in \`trim\`; afterwards the scene"
+    echo "that it reads is as it was, and the one that it makes is whole or absent."
     echo
     echo "| fault | times | files cut, crashes, wrong statuses |"
     echo "|---|--:|--:|"
