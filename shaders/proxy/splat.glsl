@@ -1,6 +1,7 @@
 // Points as splats: their camera-space positions and the pixels into which they project.
 #define BLOCK_SPLAT
 #include "shared/render_blocks.h"
+#include "proxy/point.glsl"
 
 // Number of depth steps within the front layer (opt.front_layer).
 const float SPLAT_LAYER_STEPS = 64.0;
@@ -8,11 +9,17 @@ const float SPLAT_LAYER_STEPS = 64.0;
 // them. It is exact for up to 8191 points in one pixel.
 const uint SPLAT_LAYER_COUNT = 1u << 19;
 
-// Subtracts the eye first, so that the difference is exact for points near the eye.
-vec3 splat_camera_position(vec3 world)
+// Rotates a world vector into the camera frame.
+vec3 splat_camera_vector(vec3 d)
 {
-    vec3 d = world - eye.xyz;
     return vec3(dot(rotation[0].xyz, d), dot(rotation[1].xyz, d), dot(rotation[2].xyz, d));
+}
+
+// Subtracts the eye first, so that the difference is exact for points near the eye. corner: of the
+// point's block, and its step.
+vec3 splat_camera_position(uvec2 code, vec4 corner)
+{
+    return splat_camera_vector(corner.xyz - eye.xyz + corner.w * point_steps(code));
 }
 
 // Projects a camera-space position into the picture; false outside it.
@@ -25,28 +32,32 @@ bool splat_pixel(vec3 p, out vec2 pixel)
 }
 
 #ifdef SPLAT_LIST
-layout(rgba32f, binding = 0) readonly uniform imageBuffer positions; // world xyz, radius
+layout(rg32ui, binding = 0) readonly uniform uimageBuffer positions; // proxy/point.glsl
 layout(r32ui, binding = 1) readonly uniform uimageBuffer items;      // from splat_cull.comp
 layout(r32ui, binding = 2) readonly uniform uimageBuffer draw_arguments;
+layout(binding = 0) uniform samplerBuffer blocks; // ORL_BLOCK_VEC4S each
 
-// This invocation's k-th point of the list; -1: none.
-int splat_listed_point(int k)
+// This invocation's k-th point of the list and its block; -1: none.
+ivec2 splat_listed_point(int k)
 {
     uint index = (gl_WorkGroupID.x * ORL_SPLAT_POINTS + uint(k)) *
                      (ORL_POINT_GROUP / ORL_ITEM_POINTS) +
                  gl_LocalInvocationID.x / ORL_ITEM_POINTS;
-    if (index >= imageLoad(draw_arguments, 3).x)
-        return -1;
-    uint point = imageLoad(items, int(index)).x * ORL_ITEM_POINTS +
-                 gl_LocalInvocationID.x % ORL_ITEM_POINTS;
-    return int(point) < point_count ? int(point) : -1;
+    uint item = imageLoad(items, int(index)).x;
+    int block = int(item & ((1u << ORL_ITEM_BLOCK_BITS) - 1u));
+    int part = int(item >> ORL_ITEM_BLOCK_BITS);
+    int point = (part * (point_count / ORL_BLOCK_POINTS) + block) * ORL_ITEM_POINTS +
+                int(gl_LocalInvocationID.x) % ORL_ITEM_POINTS;
+    return index < imageLoad(draw_arguments, 3).x ? ivec2(point, block) : ivec2(-1);
 }
 
 // Position of that point in the camera frame; behind the eye if there is none. Without a branch,
 // the view's parameters are loaded once for all points of an invocation.
-vec3 splat_listed_position(int point)
+vec3 splat_listed_position(ivec2 listed)
 {
-    vec3 p = splat_camera_position(imageLoad(positions, max(point, 0)).xyz);
-    return point < 0 ? vec3(0.0, 0.0, -1.0) : p;
+    uvec2 code = imageLoad(positions, max(listed.x, 0)).xy;
+    vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * max(listed.y, 0) + 3);
+    vec3 p = splat_camera_position(code, corner);
+    return listed.x < 0 || !point_exists(code) ? vec3(0.0, 0.0, -1.0) : p;
 }
 #endif

@@ -4,14 +4,12 @@
 #include "proxy/splat.glsl"
 
 layout(local_size_x = ORL_POINT_GROUP) in;
-// Three texels for each block: centre of its bounds and points per unit of area; half extent of the
-// bounds and number of points; mean normal.
-layout(rgba32f, binding = 0) readonly uniform imageBuffer blocks;
+layout(rgba32f, binding = 0) readonly uniform imageBuffer blocks; // ORL_BLOCK_VEC4S each
 layout(std430, binding = 0) buffer draw_arguments {
     uint group_count, one_y, one_z, item_count;
 };
 layout(std430, binding = 1) writeonly buffer draw_items {
-    uint items[]; // first point / ORL_ITEM_POINTS
+    uint items[]; // see ORL_ITEM_BLOCK_BITS
 };
 layout(std430, binding = 2) writeonly buffer block_enlarged {
     float enlarged[]; // factor on the radii of each block that is drawn
@@ -28,10 +26,10 @@ void main()
     int block = int(gl_GlobalInvocationID.x), block_count = point_count / ORL_BLOCK_POINTS;
     if (block >= block_count)
         return;
-    vec4 middle_density = imageLoad(blocks, 3 * block);
-    vec4 extent_count = imageLoad(blocks, 3 * block + 1);
-    vec3 normal = imageLoad(blocks, 3 * block + 2).xyz;
-    vec3 middle = splat_camera_position(middle_density.xyz), extent = extent_count.xyz;
+    vec4 middle_density = imageLoad(blocks, ORL_BLOCK_VEC4S * block);
+    vec4 extent_count = imageLoad(blocks, ORL_BLOCK_VEC4S * block + 1);
+    vec3 normal = imageLoad(blocks, ORL_BLOCK_VEC4S * block + 2).xyz;
+    vec3 middle = splat_camera_vector(middle_density.xyz - eye.xyz), extent = extent_count.xyz;
     // Bounds along the camera's axes, slightly enlarged to allow for rounding.
     extent = vec3(dot(abs(rotation[0].xyz), extent), dot(abs(rotation[1].xyz), extent),
                   dot(abs(rotation[2].xyz), extent));
@@ -60,7 +58,7 @@ void main()
     enlarged[block] = sqrt(extent_count.w / drawn);
     uint first = atomicAdd(item_count, parts);
     for (uint i = 0u; i < parts; i++)
-        items[first + i] = i * uint(block_count) + uint(block);
+        items[first + i] = i << ORL_ITEM_BLOCK_BITS | uint(block);
     uint per_group = ORL_POINT_GROUP * ORL_SPLAT_POINTS / ORL_ITEM_POINTS;
     atomicMax(group_count, (first + parts + per_group - 1u) / per_group);
 }

@@ -11,7 +11,7 @@ layout(r32ui, binding = 5) uniform uimage2D splat_layer;
 
 void main()
 {
-    int point[ORL_SPLAT_POINTS];
+    ivec2 point[ORL_SPLAT_POINTS];
     vec3 p[ORL_SPLAT_POINTS];
     for (int k = 0; k < ORL_SPLAT_POINTS; k++) {
         point[k] = splat_listed_point(k);
@@ -25,7 +25,7 @@ void main()
         float front = uintBitsToFloat(front_bits);
         float behind = p[k].z - front, thickness = front * front_layer;
         if (drawn && floatBitsToUint(p[k].z) == front_bits)
-            imageAtomicMin(splat_index, at, uint(first_point + point[k]));
+            imageAtomicMin(splat_index, at, uint(first_point + point[k].x));
         if (drawn && behind < thickness) {
             uint steps = uint(behind / thickness * SPLAT_LAYER_STEPS);
             imageAtomicAdd(splat_layer, at, SPLAT_LAYER_COUNT + steps);

@@ -7,8 +7,9 @@
 #include "proxy/surfel.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(rgba32f, binding = 0) readonly uniform imageBuffer positions;
-layout(rg32ui, binding = 1) readonly uniform uimageBuffer attributes; // normal, colour
+layout(rg32ui, binding = 0) readonly uniform uimageBuffer positions; // proxy/point.glsl
+layout(r32ui, binding = 1) readonly uniform uimageBuffer attributes;
+layout(binding = 0) uniform samplerBuffer blocks; // ORL_BLOCK_VEC4S each
 layout(r32ui, binding = 2) readonly uniform uimage2D splat_index;
 layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
 #ifdef NORMALS
@@ -41,25 +42,31 @@ vec2 splat_ray(vec2 pixel)
     return (pixel - focal.zw) / focal.xy;
 }
 
+// Block of a point. It is the remainder of an integer division, computed in floats, since integers
+// divide slowly. Both operands are exact below 2^24, but a quotient may be off by 2.5 units in the
+// last place: one that is a whole number may be rounded down to the next smaller one.
+int block_of(int point)
+{
+    int item = point / ORL_ITEM_POINTS, count = point_count / ORL_BLOCK_POINTS;
+    int block = item - count * int(float(item) / float(count));
+    return block + (block < 0 ? count : block < count ? 0 : -count);
+}
+
 surfel splat(ivec2 at, int point)
 {
-    vec4 position = imageLoad(positions, point);
-    vec3 p = splat_camera_position(position.xyz);
+    int block = block_of(point);
+    uvec2 code = imageLoad(positions, point).xy;
+    vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * block + 3);
+    vec3 p = splat_camera_position(code, corner);
     vec2 pixel;
     splat_pixel(p, pixel);
     uint word = imageLoad(splat_layer, at).x;
     float count = float(word / SPLAT_LAYER_COUNT), steps = float(word % SPLAT_LAYER_COUNT);
     float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
     p *= 1.0 + behind * front_layer;
-    vec3 n = octahedron_decode(unpackSnorm2x16(imageLoad(attributes, point).x));
-    n = vec3(dot(rotation[0].xyz, n), dot(rotation[1].xyz, n), dot(rotation[2].xyz, n));
-    // The remainder of an integer division, computed in floats, since integers divide slowly. Both
-    // operands are exact below 2^24, but a quotient may be off by 2.5 units in the last place: one
-    // that is a whole number may be rounded down to the next smaller one.
-    int item = point / ORL_ITEM_POINTS, blocks = point_count / ORL_BLOCK_POINTS;
-    int block = item - blocks * int(float(item) / float(blocks));
-    block += block < 0 ? blocks : block < blocks ? 0 : -blocks;
-    float radius = position.w * splat_scale * radius_factor(block);
+    vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
+    float radius = point_radius(imageLoad(attributes, point).x, corner.w) * splat_scale *
+                   radius_factor(block);
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
 }

@@ -8,6 +8,12 @@
 // the draw list holds (ORL_ITEM_POINTS).
 #define ORL_BLOCK_POINTS 128
 #define ORL_ITEM_POINTS 8
+// An item: its block, and above that which part of the block. A chunk has fewer blocks.
+#define ORL_ITEM_BLOCK_BITS 24
+// Texels that describe a block: centre of its bounds and points per unit of area; half extent of the
+// bounds and number of points; mean normal; corner that positions are counted from and their unit
+// (src/render/point_code.h).
+#define ORL_BLOCK_VEC4S 4
 // Number of points that one invocation draws.
 #define ORL_SPLAT_POINTS 4
 

@@ -5,9 +5,10 @@
 
 #include "core/memory.h"
 #include "render/cloud.h"
+#include "render/point_code.h"
 
 enum {
-    // 256 MiB of positions, half of the 65535 work groups that one dispatch may have. More chunks
+    // 128 MiB of positions, half of the 65535 work groups that one dispatch may have. More chunks
     // would cost a resolve pass each.
     CHUNK_POINTS = 16 << 20,
     BLOCK = ORL_BLOCK_POINTS,
@@ -15,7 +16,7 @@ enum {
     SORT_RANGE = 1 << SORT_BITS,
     BOUNDS_SAMPLES = 4096,
     PARTS = BLOCK / ORL_ITEM_POINTS,
-    BLOCK_TEXELS = 3,
+        SPLITS = 16, // one in so many blocks may be split for precision
     DENSITY_SAMPLES = 16, // points of a block whose neighbours are measured
     NEIGHBOUR = 4,
 };
@@ -126,30 +127,67 @@ static void shuffle_block(struct key *keys, size_t count)
     }
 }
 
-// Finds the order in which the points are drawn, without points that are not finite. *order is
-// owned by the caller (free).
+// How many of the points at `keys` make the next block: as many as fit, unless storage in one block
+// would be imprecise because distances or radii within it are very different.
+static size_t block_size(const struct orl_points *points, const struct key *keys, size_t count)
+{
+    struct point_range range = orl_point_range_none();
+    size_t most = count < BLOCK ? count : BLOCK;
+    for (size_t i = 0; i < most; i++) {
+        uint32_t point = keys[i].point;
+        orl_point_range_add(&range, points->position[point], points->radius[point]);
+        if (i > 0 && !orl_point_range_is_precise(&range))
+            return i;
+    }
+    return most;
+}
+
+// Divides sorted points into blocks, each filled up to BLOCK entries without a point.
+static size_t make_blocks(const struct orl_points *points, const struct key *sorted, size_t count,
+                          struct key *order, size_t capacity)
+{
+    size_t to = 0, first = 0;
+    while (first < count) {
+        size_t left = count - first, needed = (left + BLOCK - 1) / BLOCK * BLOCK;
+        size_t here = left < BLOCK ? left : BLOCK;
+        if (to + needed + BLOCK <= capacity) // there is room for one more block
+            here = block_size(points, sorted + first, left);
+        memcpy(order + to, sorted + first, here * sizeof *order);
+        shuffle_block(order + to, here);
+        for (size_t i = here; i < BLOCK; i++)
+            order[to + i] = (struct key){0, UINT32_MAX};
+        to += BLOCK;
+        first += here;
+    }
+    return to;
+}
+
+// Finds the order in which the points are drawn, without points that are not finite: whole blocks,
+// whose entries without a point have UINT32_MAX. *order is owned by the caller (free).
 static enum orl_result find_order(const struct orl_log *log, const struct orl_points *points,
                                   struct key **order, size_t *count)
 {
     struct cube cube;
+    size_t blocks = points->count / BLOCK + 1, used = 0;
+    size_t capacity = (blocks + blocks / SPLITS + SPLITS) * BLOCK;
     struct key *keys = orl_array(log, points->count, sizeof *keys);
     struct key *spare = orl_array(log, points->count, sizeof *spare);
-    *order = NULL;
+    *order = orl_array(log, capacity, sizeof **order);
     *count = 0;
-    enum orl_result result = keys && spare ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = keys && spare && *order ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = find_cube(log, points, &cube);
     if (result == ORL_OK) {
         for (size_t i = 0; i < points->count; i++) {
             const float *p = points->position[i];
             if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
-                keys[(*count)++] = (struct key){morton_code(p, &cube), (uint32_t)i};
+                keys[used++] = (struct key){morton_code(p, &cube), (uint32_t)i};
         }
-        sort_keys(&keys, &spare, *count);
-        for (size_t first = 0; first < *count; first += BLOCK)
-            shuffle_block(keys + first, *count - first < BLOCK ? *count - first : BLOCK);
-        *order = keys;
-        keys = NULL;
+        sort_keys(&keys, &spare, used);
+        *count = make_blocks(points, keys, used, *order, capacity);
+    } else {
+        free(*order);
+        *order = NULL;
     }
     free(keys);
     free(spare);
@@ -161,7 +199,7 @@ static enum orl_result find_order(const struct orl_log *log, const struct orl_po
 // Points per unit of area, from the distances of a few points to their fourth neighbour in the
 // block: a disc of that radius holds four points. Distances are measured within the tangent plane
 // of the point, since depth noise does not make a surface larger. 0: unknown.
-static float density(float (*const p)[4], const struct orl_points *points,
+static float density(float (*const p)[3], const struct orl_points *points,
                      const struct key *order, size_t count)
 {
     float distances[DENSITY_SAMPLES];
@@ -190,8 +228,9 @@ static float density(float (*const p)[4], const struct orl_points *points,
 }
 
 // Writes the texels of a block, which shaders/proxy/splat_cull.comp explains.
-static void describe_block(float (*const positions)[4], const struct orl_points *points,
-                           const struct key *order, size_t count, float block[BLOCK_TEXELS][4])
+static void describe_block(float (*const positions)[3], const struct orl_points *points,
+                           const struct key *order, size_t count, const struct point_frame *frame,
+                           float block[ORL_BLOCK_VEC4S][4])
 {
     for (int k = 0; k < 3; k++) {
         float low = positions[0][k], high = low;
@@ -205,40 +244,21 @@ static void describe_block(float (*const positions)[4], const struct orl_points 
         // Measured from the rounded middle, so that no point lies outside.
         block[1][k] = fmaxf(high - block[0][k], block[0][k] - low);
         block[2][k] = (float)(normal / (double)count);
+        block[3][k] = frame->origin[k];
     }
     block[0][3] = density(positions, points, order, count);
     block[1][3] = (float)count;
+    block[3][3] = frame->step;
 }
 
 // --- upload ---
 
-static uint32_t pack_snorm(double value)
-{
-    return (uint32_t)(uint16_t)(int16_t)lrint(fmin(1, fmax(-1, value)) * 32767);
-}
-
-// Encodes as shaders/proxy/octahedron.glsl, in two 16-bit snorm values.
-static uint32_t pack_normal(const float n[3])
-{
-    double x = n[0], y = n[1], z = n[2];
-    double sum = fabs(x) + fabs(y) + fabs(z);
-    if (!(sum > 0))
-        return pack_snorm(0) | pack_snorm(0) << 16;
-    x /= sum, y /= sum;
-    if (z < 0) {
-        double wrapped = (1 - fabs(y)) * (x >= 0 ? 1 : -1);
-        y = (1 - fabs(x)) * (y >= 0 ? 1 : -1);
-        x = wrapped;
-    }
-    return pack_snorm(x) | pack_snorm(y) << 16;
-}
-
 // A chunk in host memory. Points are stored part by part: the first parts of all blocks, then the
 // second parts, and so on. When blocks are thinned, the points that are read are contiguous.
 struct host_chunk {
-    float (*positions)[4];
-    uint32_t (*attributes)[2];
-    float (*blocks)[BLOCK_TEXELS][4];
+    uint32_t (*positions)[2];
+    uint32_t *attributes;
+    float (*blocks)[ORL_BLOCK_VEC4S][4];
     size_t block_count;
 };
 
@@ -254,9 +274,9 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
         GLenum format;
         struct orl_tex **texels;
     } rows[] = {
-        {"point positions", points * 16, host->positions, &chunk->positions, GL_RGBA32F,
+        {"point positions", points * 8, host->positions, &chunk->positions, GL_RG32UI,
          &chunk->position_texels},
-        {"point attributes", points * 8, host->attributes, &chunk->attributes, GL_RG32UI,
+        {"point attributes", points * 4, host->attributes, &chunk->attributes, GL_R32UI,
          &chunk->attribute_texels},
         {"point blocks", blocks * sizeof *host->blocks, host->blocks, &chunk->blocks, GL_RGBA32F,
          &chunk->block_texels},
@@ -281,32 +301,34 @@ static size_t place_in_chunk(size_t i, size_t block, size_t block_count)
     return (i / ORL_ITEM_POINTS * block_count + block) * ORL_ITEM_POINTS + i % ORL_ITEM_POINTS;
 }
 
-static void fill_block(const struct orl_points *points, const struct key *order, size_t count,
-                       size_t block, struct host_chunk *host)
+// order: BLOCK entries; those without a point come last.
+static void fill_block(const struct orl_points *points, const struct key *order, size_t block,
+                       struct host_chunk *host)
 {
-    float positions[BLOCK][4];
-    for (size_t i = 0; i < BLOCK; i++) {
-        size_t to = place_in_chunk(i, block, host->block_count);
-        if (i >= count) { // padding: a point that projects into no pixel
-            for (int k = 0; k < 4; k++)
-                host->positions[to][k] = NAN;
-            host->attributes[to][1] = UINT32_MAX;
-            continue;
-        }
-        size_t from = order[i].point;
-        memcpy(positions[i], points->position[from], 3 * sizeof(float));
-        positions[i][3] = points->radius[from];
-        memcpy(host->positions[to], positions[i], sizeof positions[i]);
-        const uint8_t *c = points->color[from];
-        host->attributes[to][0] = pack_normal(points->normal[from]);
-        host->attributes[to][1] = (uint32_t)c[0] | (uint32_t)c[1] << 8 | (uint32_t)c[2] << 16;
+    float positions[BLOCK][3];
+    struct point_range range = orl_point_range_none();
+    size_t count = 0;
+    for (; count < BLOCK && order[count].point != UINT32_MAX; count++) {
+        size_t from = order[count].point;
+        orl_point_range_add(&range, points->position[from], points->radius[from]);
     }
-    describe_block(positions, points, order, count, host->blocks[block]);
+    const struct point_frame frame = orl_point_frame(&range);
+    for (size_t i = 0; i < BLOCK; i++) {
+        size_t to = place_in_chunk(i, block, host->block_count), from = order[i].point;
+        struct point_code code = orl_point_code_none;
+        if (i < count) {
+            code = orl_point_encode(&frame, points->position[from], points->normal[from],
+                                    points->color[from], points->radius[from]);
+            orl_point_decode_position(&frame, code.position, positions[i]);
+        }
+        memcpy(host->positions[to], code.position, sizeof code.position);
+        host->attributes[to] = code.attributes;
+    }
+    describe_block(positions, points, order, count, &frame, host->blocks[block]);
 }
 
 static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *points,
-                                    const struct key *order, size_t count,
-                                    struct point_chunk *chunk)
+                                    const struct key *order, struct point_chunk *chunk)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct host_chunk host = {.block_count = (size_t)chunk->block_count};
@@ -315,10 +337,8 @@ static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points
     host.blocks = orl_array(log, host.block_count, sizeof *host.blocks);
     enum orl_result result =
         host.positions && host.attributes && host.blocks ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t b = 0; result == ORL_OK && b < host.block_count; b++) {
-        size_t first = b * BLOCK, here = count - first < BLOCK ? count - first : BLOCK;
-        fill_block(points, order + first, here, b, &host);
-    }
+    for (size_t b = 0; result == ORL_OK && b < host.block_count; b++)
+        fill_block(points, order + b * BLOCK, b, &host);
     if (result == ORL_OK)
         result = make_buffers(gpu, chunk, &host);
     free(host.positions);
@@ -338,21 +358,19 @@ enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points
                               uint32_t **map, size_t *count)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    size_t most = chunk_points(gpu), used = 0;
+    size_t most = chunk_points(gpu);
     struct key *order = NULL;
     *map = NULL;
-    enum orl_result result = find_order(log, points, &order, &used);
-    *count = (used + BLOCK - 1) / BLOCK * BLOCK;
+    enum orl_result result = find_order(log, points, &order, count);
     if (result == ORL_OK)
         *map = orl_array(log, *count, sizeof **map);
     if (!*map) {
         free(order);
         return result == ORL_OK ? ORL_ERR_MEMORY : result;
     }
-    memset(*map, 0xff, *count * sizeof **map);
-    for (size_t i = 0; i < used; i++) {
-        size_t first = i / most * most, here = used - first < most ? used - first : most;
-        size_t block = (i - first) / BLOCK, blocks = (here + BLOCK - 1) / BLOCK;
+    for (size_t i = 0; i < *count; i++) {
+        size_t first = i / most * most, here = *count - first < most ? *count - first : most;
+        size_t block = (i - first) / BLOCK, blocks = here / BLOCK;
         (*map)[first + place_in_chunk(i % BLOCK, block, blocks)] = order[i].point;
     }
     free(order);
@@ -378,10 +396,10 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     for (size_t first = 0; result == ORL_OK && (first < count || first == 0); first += most) {
         struct point_chunk *chunk = &cloud->chunks[cloud->chunk_count++];
         size_t here = count - first < most ? count - first : most;
-        chunk->block_count = (int)orl_groups(here, BLOCK);
+        chunk->block_count = (int)(here / BLOCK);
         chunk->first = (int)first;
         chunk->count = chunk->block_count * BLOCK;
-        result = upload_chunk(gpu, points, order + first, here, chunk);
+        result = upload_chunk(gpu, points, order + first, chunk);
     }
     free(order);
     if (result != ORL_OK)

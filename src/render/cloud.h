@@ -9,9 +9,9 @@
 // blocks of ORL_BLOCK_POINTS points that are close together. Each buffer has a view as texels.
 struct point_chunk {
     struct orl_buf *positions, *attributes, *blocks, *enlarged, *items, *args;
-    struct orl_tex *position_texels;  // RGBA32F: world xyz, radius
-    struct orl_tex *attribute_texels; // RG32UI: octahedral normal, colour
-    struct orl_tex *block_texels;     // RGBA32F, three per block: shaders/proxy/splat_cull.comp
+    struct orl_tex *position_texels;  // RG32UI: struct point_code's position
+    struct orl_tex *attribute_texels; // R32UI: its attributes
+    struct orl_tex *block_texels;     // RGBA32F, ORL_BLOCK_VEC4S per block: see there
     // Results of the last cull: floats, then 32-bit words.
     struct orl_tex *enlarged_texels, *item_texels, *arg_texels;
     int first, count, block_count;    // count: includes the padding to whole blocks

@@ -181,6 +181,7 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
             block->first_point = chunk->first;
             struct orl_dispatch d = {.prog = passes[pass], .params = block,
                                      .params_size = sizeof *block,
+                                     .textures = {chunk->block_texels},
                                      .images = {{chunk->position_texels, 0, GL_READ_ONLY},
                                                 {chunk->item_texels, 0, GL_READ_ONLY},
                                                 {chunk->arg_texels, 0, GL_READ_ONLY},
@@ -207,6 +208,7 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         block->first_point = chunk->first;
         struct orl_dispatch d = {.prog = prog, .params = block, .params_size = sizeof *block,
                                  .bufs = {[2] = {.buf = chunk->enlarged}},
+                                 .textures = {chunk->block_texels},
                                  .images = {{chunk->position_texels, 0, GL_READ_ONLY},
                                             {chunk->attribute_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},

@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "render/point_code.h"
 #include "walk/internal.h"
 
 enum {
@@ -185,21 +186,6 @@ static void describe_cell(struct cell *cell, size_t count)
     w->count = (uint32_t)count;
 }
 
-static uint8_t signed_byte(float value)
-{
-    return (uint8_t)(int8_t)lrintf(fminf(1, fmaxf(-1, value)) * 127);
-}
-
-// Octahedral encoding, as in shaders/proxy/octahedron.glsl.
-static void encode_normal(const float n[3], uint8_t out[2])
-{
-    float sum = fabsf(n[0]) + fabsf(n[1]) + fabsf(n[2]) + 1e-20f, x = n[0] / sum, y = n[1] / sum;
-    float wrapped_x = (1 - fabsf(y)) * (x >= 0 ? 1 : -1);
-    float wrapped_y = (1 - fabsf(x)) * (y >= 0 ? 1 : -1);
-    out[0] = signed_byte(n[2] >= 0 ? x : wrapped_x);
-    out[1] = signed_byte(n[2] >= 0 ? y : wrapped_y);
-}
-
 // Position 3 x 16 bits, normal 2 x 8, sRGB colour 3 x 8, radius 8, and 16 bits of padding.
 static void encode_point(const struct cell *cell, size_t i, uint8_t out[POINT_BYTES])
 {
@@ -212,7 +198,9 @@ static void encode_point(const struct cell *cell, size_t i, uint8_t out[POINT_BY
         out[2 * k] = (uint8_t)value;
         out[2 * k + 1] = (uint8_t)(value >> 8);
     }
-    encode_normal(cell->points->normal[point], out + 6);
+    uint16_t normal = orl_octahedron_bytes(cell->points->normal[point]);
+    out[6] = (uint8_t)normal;
+    out[7] = (uint8_t)(normal >> 8);
     memcpy(out + 8, cell->points->color[point], 3);
     float radius = cell->points->radius[point] * cell->enlarged;
     float octaves = w->radius_octaves > 0 ? log2f(radius / w->radius_low) / w->radius_octaves : 0;

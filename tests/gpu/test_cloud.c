@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gpu_test.h"
+#include "render/point_code.h"
 #include "render/splats.h"
 
 static struct orl_gpu *gpu;
@@ -53,7 +54,7 @@ static void draw(struct scene *s, float points_per_pixel)
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
 }
 
-// Items listed by the last draw; marks them.
+// Items listed by the last draw; marks them, by their first point / ORL_ITEM_POINTS.
 static size_t read_list(const struct scene *s, bool *listed, size_t capacity)
 {
     const struct point_chunk *chunk = &cloud_of(s)->chunks[0];
@@ -66,11 +67,31 @@ static size_t read_list(const struct scene *s, bool *listed, size_t capacity)
     orl_buf_read(chunk->items, 0, args[3] * sizeof *items, items);
     memset(listed, 0, capacity);
     for (uint32_t i = 0; i < args[3]; i++) {
-        assert_true(items[i] < capacity);
-        assert_false(listed[items[i]]);
-        listed[items[i]] = true;
+        uint32_t part = items[i] >> ORL_ITEM_BLOCK_BITS;
+        uint32_t block = items[i] & ((1u << ORL_ITEM_BLOCK_BITS) - 1);
+        size_t item = (size_t)part * (size_t)chunk->block_count + block;
+        assert_true(item < capacity);
+        assert_false(listed[item]);
+        listed[item] = true;
     }
     return args[3];
+}
+
+enum { CAPACITY = COUNT + 64 * ORL_BLOCK_POINTS };
+
+// Positions as the device has them.
+static void read_positions(const struct point_chunk *chunk, float (*positions)[3], bool *exists)
+{
+    static uint32_t codes[CAPACITY][2];
+    static float blocks[CAPACITY / ORL_BLOCK_POINTS][ORL_BLOCK_VEC4S][4];
+    assert_in_range(chunk->count, 1, CAPACITY);
+    orl_buf_read(chunk->positions, 0, (size_t)chunk->count * sizeof *codes, codes);
+    orl_buf_read(chunk->blocks, 0, (size_t)chunk->block_count * sizeof *blocks, blocks);
+    for (int i = 0; i < chunk->count; i++) {
+        const float *corner = blocks[i / ORL_ITEM_POINTS % chunk->block_count][3];
+        const struct point_frame frame = {{corner[0], corner[1], corner[2]}, corner[3]};
+        exists[i] = orl_point_decode_position(&frame, codes[i], positions[i]);
+    }
 }
 
 // Points all around the viewer: all of those in the picture are listed, and far from all of
@@ -93,13 +114,14 @@ static void blocks_outside_are_skipped(void **state)
     const struct point_chunk *chunk = &cloud_of(&s)->chunks[0];
     static bool listed[COUNT];
     size_t items = read_list(&s, listed, COUNT);
-    static float positions[COUNT + ORL_BLOCK_POINTS][4];
-    orl_buf_read(chunk->positions, 0, (size_t)chunk->count * sizeof *positions, positions);
+    static float positions[CAPACITY][3];
+    static bool exists[CAPACITY];
+    read_positions(chunk, positions, exists);
     size_t seen = 0, stored = 0;
     for (int i = 0; i < chunk->count; i++) {
         const float *p = positions[i];
-        stored += !isnan(p[0]);
-        if (p[2] > 0 && fabsf(p[0]) < p[2] && fabsf(p[1]) < p[2]) {
+        stored += exists[i];
+        if (exists[i] && p[2] > 0 && fabsf(p[0]) < p[2] && fabsf(p[1]) < p[2]) {
             seen++;
             assert_true(listed[i / ORL_ITEM_POINTS]);
         }

@@ -32,13 +32,13 @@ struct drawn {
 
 static void read_order(const struct proxy *proxy, struct drawn *out)
 {
-    static uint32_t attributes[POINTS_MAX][2];
+    static uint32_t attributes[POINTS_MAX];
     const struct cloud *cloud = proxy->state;
     const struct point_chunk *chunk = &cloud->chunks[0];
     assert_true(chunk->count <= POINTS_MAX);
     orl_buf_read(chunk->attributes, 0, (size_t)chunk->count * sizeof *attributes, attributes);
     for (int i = 0; i < chunk->count; i++)
-        out->listed[i] = attributes[i][1] & 0xffffff;
+        out->listed[i] = attributes[i] & 0xffffff;
 }
 
 static void draw(const struct point *list, size_t count, const struct orl_view *view,

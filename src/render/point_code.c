@@ -1,0 +1,129 @@
+#include "render/point_code.h"
+
+#include <math.h>
+
+// A code of 65535 marks a point that is not there.
+static const float most_code = 65534;
+enum {
+    RADIUS_CODES = 255,   // of radii above 0
+    CODES_PER_OCTAVE = 16 // radii are rounded by 2.2 % at most
+};
+static const float least_steps = 8; // see orl_point_range_is_precise
+
+const struct point_code orl_point_code_none = {{UINT32_MAX, UINT32_MAX}, UINT32_MAX};
+
+// --- the frame of a block ---
+
+struct point_range orl_point_range_none(void)
+{
+    return (struct point_range){{INFINITY, INFINITY, INFINITY},
+                                {-INFINITY, -INFINITY, -INFINITY}, INFINITY, 0};
+}
+
+void orl_point_range_add(struct point_range *range, const float position[3], float radius)
+{
+    for (int k = 0; k < 3; k++) {
+        range->low[k] = fminf(range->low[k], position[k]);
+        range->high[k] = fmaxf(range->high[k], position[k]);
+    }
+    if (radius > 0) {
+        range->least_radius = fminf(range->least_radius, radius);
+        range->most_radius = fmaxf(range->most_radius, radius);
+    }
+}
+
+static float radius_steps(int code)
+{
+    return exp2f((float)code / CODES_PER_OCTAVE);
+}
+
+// The least step that reaches from one side of the block to the other.
+static float extent_step(const struct point_range *range)
+{
+    float extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmaxf(extent, range->high[k] - range->low[k]);
+    return extent / most_code;
+}
+
+bool orl_point_range_is_precise(const struct point_range *range)
+{
+    float step = fmaxf(extent_step(range), range->most_radius / radius_steps(RADIUS_CODES));
+    return least_steps * step <= range->least_radius;
+}
+
+struct point_frame orl_point_frame(const struct point_range *range)
+{
+    float least = extent_step(range);
+    struct point_frame frame = {{range->low[0], range->low[1], range->low[2]}, least};
+    if (!(range->most_radius > 0))
+        return frame;
+    // The largest radius gets a code of its own, so that equal radii are kept exactly. The step
+    // grows by 4.4 % at most for it.
+    float code = CODES_PER_OCTAVE * log2f(range->most_radius / least);
+    code = fminf(fmaxf(floorf(code), 1), RADIUS_CODES); // a step of 0 makes it infinite
+    frame.step = fmaxf(range->most_radius / radius_steps((int)code), least);
+    return frame;
+}
+
+// --- points ---
+
+static uint32_t steps_from(float origin, float value, float step)
+{
+    double code = step > 0 ? ((double)value - (double)origin) / (double)step : 0;
+    return (uint32_t)lrint(fmin(fmax(code, 0), (double)most_code));
+}
+
+static uint32_t radius_code(float radius, float step)
+{
+    if (!(radius > 0 && step > 0))
+        return 0;
+    float code = rintf(CODES_PER_OCTAVE * log2f(radius / step));
+    return (uint32_t)fminf(fmaxf(code, 1), RADIUS_CODES);
+}
+
+static uint8_t signed_byte(double value)
+{
+    return (uint8_t)(int8_t)lrint(fmin(1, fmax(-1, value)) * 127);
+}
+
+uint16_t orl_octahedron_bytes(const float normal[3])
+{
+    double x = normal[0], y = normal[1], sum = fabs(x) + fabs(y) + fabs((double)normal[2]);
+    if (!(sum > 0))
+        return 0;
+    x /= sum, y /= sum;
+    if (normal[2] < 0) {
+        double wrapped = (1 - fabs(y)) * (x >= 0 ? 1 : -1);
+        y = (1 - fabs(x)) * (y >= 0 ? 1 : -1);
+        x = wrapped;
+    }
+    return (uint16_t)(signed_byte(x) | signed_byte(y) << 8);
+}
+
+struct point_code orl_point_encode(const struct point_frame *frame, const float position[3],
+                                   const float normal[3], const uint8_t color[3], float radius)
+{
+    uint32_t q[3];
+    for (int k = 0; k < 3; k++)
+        q[k] = steps_from(frame->origin[k], position[k], frame->step);
+    return (struct point_code){
+        {q[0] | q[1] << 16, q[2] | (uint32_t)orl_octahedron_bytes(normal) << 16},
+        (uint32_t)color[0] | (uint32_t)color[1] << 8 | (uint32_t)color[2] << 16 |
+            radius_code(radius, frame->step) << 24};
+}
+
+bool orl_point_decode_position(const struct point_frame *frame, const uint32_t code[2],
+                               float position[3])
+{
+    const uint32_t q[3] = {code[0] & 0xffff, code[0] >> 16, code[1] & 0xffff};
+    for (int k = 0; k < 3; k++)
+        position[k] = frame->origin[k] + frame->step * (float)q[k];
+    return q[0] <= (uint32_t)most_code;
+}
+
+float orl_point_decode_radius(const struct point_frame *frame, uint32_t attributes)
+{
+    uint32_t code = attributes >> 24;
+    return code ? frame->step * radius_steps((int)code) : 0;
+}

@@ -1,0 +1,44 @@
+// Private: how points are stored on the device, in 12 bytes. Positions are whole numbers of steps
+// from the corner of their block. shaders/proxy/point.glsl decodes them.
+#ifndef ORL_RENDER_POINT_CODE_H
+#define ORL_RENDER_POINT_CODE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+// A block's unit of length and the position that its codes count from, in scene units.
+struct point_frame {
+    float origin[3], step;
+};
+
+// Bounds of positions and radii, to choose a frame for.
+struct point_range {
+    float low[3], high[3];           // of positions
+    float least_radius, most_radius; // of radii above 0; least INFINITY, most 0: there are none
+};
+struct point_range orl_point_range_none(void);
+void orl_point_range_add(struct point_range *range, const float position[3], float radius);
+// True if a frame for these points resolves positions to an eighth of the least radius, so that
+// storage makes no difference to a picture. False: they are better stored as several blocks.
+bool orl_point_range_is_precise(const struct point_range *range);
+struct point_frame orl_point_frame(const struct point_range *range);
+
+struct point_code {
+    uint32_t position[2]; // x, y; z and the normal (two signed bytes, octahedral), low half first
+    uint32_t attributes;  // red, green, blue, radius: a byte each, red lowest
+};
+// Decodes as a point that is never drawn.
+extern const struct point_code orl_point_code_none;
+
+// Normals of any length are taken as directions.
+struct point_code orl_point_encode(const struct point_frame *frame, const float position[3],
+                                   const float normal[3], const uint8_t color[3], float radius);
+// False: no point.
+bool orl_point_decode_position(const struct point_frame *frame, const uint32_t code[2],
+                               float position[3]);
+float orl_point_decode_radius(const struct point_frame *frame, uint32_t attributes);
+// Encodes a direction as shaders/proxy/octahedron.glsl, in two signed bytes: x in the low byte.
+uint16_t orl_octahedron_bytes(const float normal[3]);
+
+#endif
