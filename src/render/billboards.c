@@ -13,6 +13,7 @@
 #include "render/gather.h"
 #include "render/method.h"
 #include "render/photos.h"
+#include "render/progressive.h"
 #include "render/select.h"
 #include "render/voxel_proxy.h"
 
@@ -158,17 +159,50 @@ static void draw(const struct frame *frame, const struct voxel_state *state,
         orl_gpu_raster(frame->gpu, &raster);
 }
 
-// Brings the photographs nearest by angle to the device, as many as fit, and leaves only these
-// chosen. ranked: as orl_rank_by_axis, whose rows it corrects.
-static enum orl_result require(struct frame *frame, struct ranked_photo *ranked, size_t *count)
+// Leaves the first `count` of `ranked` chosen, in that order.
+static void choose(struct frame *frame, struct ranked_photo *ranked, size_t count)
 {
-    size_t most = (size_t)frame->photos->slot_count;
-    enum orl_result result = ORL_OK;
-    *count = *count < most ? *count : most;
-    frame->chosen_count = *count;
-    for (size_t i = 0; result == ORL_OK && i < *count; i++) {
+    frame->chosen_count = count;
+    for (size_t i = 0; i < count; i++) {
         ranked[i].row = i;
         frame->chosen[i] = ranked[i].photo;
+    }
+}
+
+// For a progressive frame: leaves those chosen that are on the device with their masks. A frame
+// reads one mask: the others come with later frames.
+static enum orl_result bring(struct frame *frame, struct ranked_photo *ranked)
+{
+    enum orl_result result = orl_progressive_admit(frame, false);
+    size_t kept = 0;
+    bool has_read = false;
+    if (result != ORL_OK)
+        return result;
+    orl_rank_by_axis(frame->scene, frame->view, frame->chosen, frame->chosen_count, ranked);
+    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++) {
+        bool there = frame->photos->states[ranked[i].photo].has_mask;
+        if (there || !has_read) {
+            result = orl_photos_require_mask(frame, ranked[i].photo);
+            has_read = has_read || !there;
+            ranked[kept++] = ranked[i];
+        } else {
+            frame->progressive->missing++;
+        }
+    }
+    choose(frame, ranked, kept);
+    return result;
+}
+
+// Brings the photographs nearest by angle to the device, as many as fit, and leaves only these
+// chosen. ranked: as orl_rank_by_axis, whose rows it corrects.
+static enum orl_result require(struct frame *frame, struct ranked_photo *ranked)
+{
+    size_t most = (size_t)frame->photos->slot_count;
+    choose(frame, ranked, frame->chosen_count < most ? frame->chosen_count : most);
+    if (frame->progressive)
+        return bring(frame, ranked);
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++) {
         result = orl_photos_require(frame, ranked[i].photo, false);
         if (result == ORL_OK)
             result = orl_photos_require_mask(frame, ranked[i].photo);
@@ -185,17 +219,16 @@ static enum orl_result paint(struct frame *frame)
     struct billboard *all = orl_array(log, state->voxels.count, sizeof *all);
     orl_gather_clear(frame);
     enum orl_result result = ranked && all ? orl_select_all.choose(frame, 0) : ORL_ERR_MEMORY;
-    size_t count = frame->chosen_count;
     if (result == ORL_OK) {
-        orl_rank_by_axis(frame->scene, frame->view, frame->chosen, count, ranked);
-        result = require(frame, ranked, &count);
+        orl_rank_by_axis(frame->scene, frame->view, frame->chosen, frame->chosen_count, ranked);
+        result = require(frame, ranked);
     }
     if (result == ORL_OK)
         result = orl_voxels_see(frame, state);
     if (result != ORL_OK)
         goto end;
     orl_pass_begin(frame->gpu, "billboards");
-    size_t drawn = list(frame, state, ranked, count, all);
+    size_t drawn = list(frame, state, ranked, frame->chosen_count, all);
     result = orl_buf_create(frame->gpu, ORL_OWNER_FRAME, "billboards",
                             (drawn ? drawn : 1) * sizeof *all, all, &buf);
     if (result == ORL_OK)

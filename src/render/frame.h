@@ -21,6 +21,7 @@ struct frame {
     bool radiance;             // photographs are sampled as radiance
     bool finishes;             // the painter leaves finished pixels (struct painter)
     struct orl_progressive *progressive; // NULL: the frame waits for its photographs
+    bool normals;              // the surface has normals
     const bool *skip;          // per photograph: leave it out; NULL: use all
     struct proxy *proxy;       // draws the surfaces of this view and of the photographs
     uint64_t depth_key;        // orl_photos_depth_key of this frame
@@ -41,6 +42,7 @@ struct frame {
     struct orl_tex *picture;
     struct orl_tex *trusted;   // radiance: weight * confidence, weight, blur; else NULL
     struct orl_tex *room;      // RGBA32F, room.h; NULL: not shown
+    size_t room_absent;        // photographs that a progressive frame's room lacks
     struct orl_tex *states[2]; // RGBA32F, state of a combination between sweeps, and output of
                                // a filter; else NULL
 };

@@ -522,6 +522,12 @@ bool orl_photos_backgrounds(const struct photos *photos)
     return all;
 }
 
+bool orl_photos_has_background(const struct photos *photos, size_t photo)
+{
+    return photos->background_of &&
+           photos->background_of[photos->states[photo].slot] == photo + 1;
+}
+
 enum orl_result orl_photos_require_background(const struct frame *frame, size_t photo)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
@@ -531,7 +537,7 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     struct orl_image whole = {0}, image = {0};
     params.format = GL_SRGB8_ALPHA8;
     params.tag = "backgrounds";
-    if (photos->background_of && photos->background_of[state->slot] == photo + 1)
+    if (orl_photos_has_background(photos, photo))
         return ORL_OK;
     char *path = orl_scene_background_path(log, photos->scene, photo);
     enum orl_result result = path ? orl_picture_read(log, path, 3, &whole) : ORL_ERR_MEMORY;

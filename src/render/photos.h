@@ -41,6 +41,7 @@ struct photos {
     struct orl_sensor sensor;
     float ev_darkest, ev_brightest; // of the photographs in use
     struct photo_loader *loader;    // NULL until progressive.c needs it
+    bool were_absent;               // some that the last progressive frame chose
     struct photo_costs {            // seconds that each took last, for progressive.c
         double color, coarse, depth;
     } costs;
@@ -69,6 +70,8 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
 uint64_t orl_photos_depth_key(const struct frame *frame);
 // True if all photographs in use have such a picture.
 bool orl_photos_backgrounds(const struct photos *photos);
+// True if the background of a resident photograph is on the device.
+bool orl_photos_has_background(const struct photos *photos, size_t photo);
 // Brings the picture to the device, into the slot of its photograph, which must be resident.
 enum orl_result orl_photos_require_background(const struct frame *frame, size_t photo);
 // Reads a photograph's mask, of the size of its camera.

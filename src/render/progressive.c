@@ -204,6 +204,10 @@ static enum orl_result sort(const struct frame *frame, struct turn *turn)
 static void remove_absent(struct frame *frame, const struct turn *turn)
 {
     size_t kept = 0;
+    frame->photos->were_absent = false;
+    for (size_t i = 0; i < turn->count; i++)
+        frame->photos->were_absent |= frame->photos->states[turn->order[i]].usable &&
+                                      !is_present(turn, turn->order[i]);
     for (size_t i = 0; i < frame->chosen_count; i++) {
         if (!is_present(turn, frame->chosen[i]))
             continue;
@@ -238,10 +242,17 @@ enum orl_result orl_progressive_admit(struct frame *frame, bool depth)
     return result;
 }
 
+bool orl_progressive_underpaints(const struct frame *frame)
+{
+    const struct photos *photos = frame->photos;
+    return frame->progressive && (photos->were_absent || !photos->loader);
+}
+
 void orl_progressive_underpaint(const struct frame *frame)
 {
     const struct proxy *proxy = frame->proxy;
-    if (!frame->progressive || frame->progressive->missing == 0 || !proxy->kind->color)
+    if (!frame->progressive || !frame->photos->were_absent || !proxy->kind->color ||
+        !frame->normals)
         return;
     orl_pass_begin(frame->gpu, "gather");
     const struct paint_into into = {frame->picture,

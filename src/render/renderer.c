@@ -10,6 +10,7 @@
 #include "render/gather.h"
 #include "render/method.h"
 #include "render/photos.h"
+#include "render/progressive.h"
 #include "render/proxy.h"
 #include "render/read_back.h"
 #include "render/room.h"
@@ -189,9 +190,10 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
 static enum orl_result draw(struct frame *frame, bool normals)
 {
     const struct painter *painter = orl_painter_of(frame->params);
+    frame->normals = normals || orl_progressive_underpaints(frame) ||
+                     (painter->reads_normals && painter->reads_normals(frame));
     enum orl_result result =
-        orl_proxy_draw(frame->gpu, frame->proxy, frame->view, frame->params,
-                       normals || (painter->reads_normals && painter->reads_normals(frame)),
+        orl_proxy_draw(frame->gpu, frame->proxy, frame->view, frame->params, frame->normals,
                        &frame->proxy->view_target, &frame->surface);
     if (result != ORL_OK)
         return result;
@@ -201,6 +203,8 @@ static enum orl_result draw(struct frame *frame, bool normals)
         result = orl_room_paint(frame);
     if (result == ORL_OK)
         result = painter->paint(frame);
+    if (frame->progressive) // those that came with this frame are in the next one's room
+        frame->progressive->missing += frame->room_absent;
     for (const struct post_pass *pass = orl_post_passes; result == ORL_OK && pass->name; pass++) {
         if (!pass->applies(frame))
             continue;
@@ -295,9 +299,7 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
     if (result == ORL_OK && r->expected >= 0 && r->expected != r->scene->frame)
         result = orl_ahead_create(&frame, r->expected, &next);
     if (result == ORL_OK)
-        result = finish_frame(r, &frame,
-                              progressive || (out && !(params->leave_out & ORL_LAYER_NORMAL)),
-                              next, out);
+        result = finish_frame(r, &frame, out && !(params->leave_out & ORL_LAYER_NORMAL), next, out);
     r->expected = -1;
     orl_ahead_destroy(r->gpu, &r->ahead);
     r->ahead = next;

@@ -77,6 +77,43 @@ static void project(const struct frame *frame, bool backgrounds, size_t first, s
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
+// Makes `count` photographs ready to be projected.
+static enum orl_result require(const struct frame *room, bool backgrounds, const size_t *photos,
+                               size_t count)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        result = orl_photos_require(room, photos[i], !backgrounds);
+        if (result == ORL_OK && backgrounds)
+            result = orl_photos_require_background(room, photos[i]);
+    }
+    return result;
+}
+
+// For a progressive frame: keeps the photographs that are on the device, to which the painter
+// brings them, and counts the others as absent. A frame reads one background.
+static enum orl_result keep_present(struct frame *room, bool backgrounds, size_t *absent)
+{
+    size_t kept = 0;
+    bool has_read = false;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < room->chosen_count; i++) {
+        size_t photo = room->chosen[i];
+        bool there = room->photos->states[photo].slot >= 0;
+        if (there && backgrounds && !orl_photos_has_background(room->photos, photo)) {
+            there = !has_read;
+            has_read = true;
+            result = there ? orl_photos_require_background(room, photo) : ORL_OK;
+        }
+        int divide = there && !backgrounds ? orl_photos_depth_divide(room, photo) : 1;
+        if (there && divide > 0)
+            room->chosen[kept++] = photo;
+        *absent += !there || divide != 1;
+    }
+    room->chosen_count = kept;
+    return result;
+}
+
 enum orl_result orl_room_paint(struct frame *frame)
 {
     struct orl_render_params params = *frame->params;
@@ -93,15 +130,14 @@ enum orl_result orl_room_paint(struct frame *frame)
     if (recurrence)
         orl_tex_clear(frame->states[0], 0);
     enum orl_result result = orl_select_all.choose(&room, 0);
+    if (result == ORL_OK && frame->progressive)
+        result = keep_present(&room, backgrounds, &frame->room_absent);
     size_t turn = (size_t)frame->photos->slot_count;
     orl_pass_begin(frame->gpu, "room");
     for (size_t first = 0; result == ORL_OK && first < room.chosen_count; first += turn) {
         size_t left = room.chosen_count - first, count = left < turn ? left : turn;
-        for (size_t i = first; result == ORL_OK && i < first + count; i++) {
-            result = orl_photos_require(&room, room.chosen[i], !backgrounds);
-            if (result == ORL_OK && backgrounds)
-                result = orl_photos_require_background(&room, room.chosen[i]);
-        }
+        if (!frame->progressive)
+            result = require(&room, backgrounds, room.chosen + first, count);
         if (result == ORL_OK)
             project(&room, backgrounds, first, count);
     }

@@ -1,8 +1,9 @@
 // Frames of a viewer, which do not wait for photographs.
+#include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "wall_scene.h"
+#include "figure_scene.h"
 
 static struct orl_gpu *gpu;
 enum { SIDE = 96, PHOTOS = 3, TRIES = 2000 };
@@ -88,6 +89,44 @@ static void test_gather(void **state)
     test_from_points_to_photographs("airieau");
 }
 
+// Methods of silhouettes: nothing waits, and in the end there is the frame that waited.
+static void test_silhouettes(const char *method)
+{
+    struct fixture f;
+    struct orl_renderer *renderer;
+    struct orl_render_params params = orl_method_find(NULL, method)->params;
+    params.hull_side = 24;
+    setup_figure(&f, PHOTOS, 64, 48);
+    struct orl_view view = f.photos[0].view;
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    struct orl_progressive progress = {.seconds = 0};
+    struct orl_frame first = draw_progressive(renderer, view, &params, &progress);
+    assert_true(progress.missing >= PHOTOS);
+    struct orl_frame last = draw_to_the_end(renderer, view, &params);
+    struct orl_frame waited = draw(gpu, &f, view, &params, 0);
+    assert_same(&last.color, &waited.color);
+    assert_same(&last.coverage, &waited.coverage);
+    size_t bytes = (size_t)view.camera.width * (size_t)view.camera.height * 3 * sizeof(float);
+    assert_memory_not_equal(first.color.f32, last.color.f32, bytes);
+    orl_frame_finish(&first);
+    orl_frame_finish(&last);
+    orl_frame_finish(&waited);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
+static void test_goldluecke(void **state)
+{
+    (void)state;
+    test_silhouettes("goldluecke");
+}
+
+static void test_li(void **state)
+{
+    (void)state;
+    test_silhouettes("li");
+}
+
 // With room for fewer photographs than there are, the nearest are there and none is awaited.
 static void test_little_memory(void **state)
 {
@@ -130,6 +169,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tiled),
         cmocka_unit_test(test_gather),
+        cmocka_unit_test(test_goldluecke),
+        cmocka_unit_test(test_li),
         cmocka_unit_test(test_little_memory),
         cmocka_unit_test(test_missing_file),
     };
