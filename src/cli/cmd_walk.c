@@ -39,7 +39,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_walk_params params = {
         .host = o->host, .port = o->port, .title = o->title, .edits = o->edits,
-        .render = &choice.params, .progress = &terminal->progress, .ready = print_address};
+        .choice = &choice, .progress = &terminal->progress, .ready = print_address};
     if (result == ORL_OK)
         result = orl_walk_serve(gpu, renderer, scene, &params);
     orl_renderer_destroy(&renderer);

@@ -7,9 +7,11 @@
 #include "bridge/bridge.h"
 #include "io/picture.h"
 #include "core/memory.h"
+#include "walk/choices.h"
 #include "walk/internal.h"
 #include "walk/web_table.h"
 
+enum { MAP_POINTS = 16000 };
 enum { PICTURE_SIDE = 1600, PICTURE_QUALITY = 88, THUMB_SIDE = 160, THUMB_QUALITY = 70 };
 
 // --- manifest, page and scene ---
@@ -23,6 +25,15 @@ static json_t *photo_json(const struct orl_photo *photo, size_t number)
     json_object_set_new(json, "picture", json_pack("{s:s}", "file", picture));
     json_object_set_new(json, "thumb", json_pack("{s:s}", "file", thumb));
     return json;
+}
+
+static json_t *tones_json(void)
+{
+    json_t *tones = json_array();
+    for (int i = 0; i < ORL_TONE_COUNT; i++)
+        json_array_append_new(tones, json_pack("{s:s, s:s}", "name", orl_tones[i].name,
+                                               "description", orl_tones[i].description));
+    return tones;
 }
 
 // The texts that the settings change: page and manifest.
@@ -42,6 +53,9 @@ static enum orl_result make_texts(struct content *content)
     json_object_set_new(root, "photos", photos);
     json_object_set_new(root, "live", json_true());
     json_object_set_new(root, "edits", json_boolean(content->edits));
+    json_object_set_new(root, "tones", tones_json());
+    if (content->edits)
+        json_object_set_new(root, "methods", orl_walk_methods_json(content->choice));
     char *manifest = json_dumps(root, JSON_INDENT(1));
     json_decref(root);
     free(title);
@@ -58,9 +72,11 @@ static enum orl_result make_texts(struct content *content)
 }
 
 enum orl_result orl_content_init(const struct orl_log *log, const struct orl_scene *scene,
-                                 const char *title, bool edits, struct content *content)
+                                 const char *title, bool edits, const struct orl_choice *choice,
+                                 struct content *content)
 {
-    *content = (struct content){.log = log, .scene = scene, .title = title, .edits = edits};
+    *content = (struct content){.log = log, .scene = scene, .title = title, .edits = edits,
+                                .choice = choice};
     content->photos = orl_array(log, scene->photo_count, sizeof *content->photos);
     enum orl_result result = content->photos ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
@@ -140,6 +156,27 @@ static enum orl_result make_picture(const struct content *content, size_t number
     return result;
 }
 
+// Points for the map: x y z as floats, then colour in four bytes; evenly chosen.
+static enum orl_result make_map(const struct content *content, struct content_file *file)
+{
+    struct map_point {
+        float position[3];
+        uint8_t color[4];
+    };
+    _Static_assert(sizeof(struct map_point) == 16, "as web/js/live.js reads it");
+    const struct orl_points *points = &content->scene->points;
+    size_t step = points->count / MAP_POINTS + 1, count = points->count / step;
+    struct map_point *map = orl_array(content->log, count ? count : 1, sizeof *map);
+    for (size_t i = 0; map && i < count; i++) {
+        memcpy(map[i].position, points->position[i * step], sizeof map[i].position);
+        memcpy(map[i].color, points->color[i * step], sizeof points->color[0]);
+    }
+    *file = (struct content_file){.type = "application/octet-stream", .data = (const uint8_t *)map,
+                                  .size = count * sizeof *map, .owned = (uint8_t *)map,
+                                  .is_private = true};
+    return map ? ORL_OK : ORL_ERR_MEMORY;
+}
+
 // Reads the number in a photograph's path "FOLDER/NNNNN.jpg". Returns false for other paths.
 static bool photo_number(const struct content *content, const char *path, const char *folder,
                          size_t *number)
@@ -172,6 +209,8 @@ enum orl_result orl_content_find(const struct content *content, const char *path
         file->is_private = true;
         return result;
     }
+    if (strcmp(path, "/map.bin") == 0)
+        return make_map(content, file);
     if (photo_number(content, path, "/thumbs/", &number))
         return make_picture(content, number, THUMB_SIDE, THUMB_QUALITY, file);
     if (photo_number(content, path, "/photos/", &number))

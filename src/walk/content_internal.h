@@ -4,14 +4,14 @@
 
 #include <jansson.h>
 
-#include "oriel/log.h"
-#include "oriel/scene.h"
+#include "eval/choice.h"
 
 struct content {
     const struct orl_log *log;
     const struct orl_scene *scene;
     const char *title;      // that was asked for; NULL: none
     bool edits;             // clients may change the settings
+    const struct orl_choice *choice; // method and options of a client that has chosen none
     json_t *settings;       // owned: settings.h
     char *index, *manifest; // owned
     size_t *photos;         // owned: index in the scene for each of the page's photographs
@@ -26,9 +26,10 @@ struct content_file {
     bool is_private;       // belongs to the scene, not to the page alone
 };
 
-// title: NULL to take that of the settings. edits: clients may change the settings.
+// title: NULL to take that of the settings. edits: clients may change the settings and choose
+// methods. choice: must outlive the content.
 enum orl_result orl_content_init(const struct orl_log *log, const struct orl_scene *scene,
-                                 const char *title, bool edits,
+                                 const char *title, bool edits, const struct orl_choice *choice,
                                  struct content *content) ORL_CHECK_RESULT;
 // Saves settings from a client with the scene, and shows them from now on. ORL_ERR_FORMAT: they are
 // not valid, and nothing has changed.

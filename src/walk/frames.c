@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/process.h"
 #include "io/picture.h"
+#include "walk/choices.h"
 #include "walk/internal.h"
 
 enum { SIDE_LEAST = 16, SIDE_MOST = 4096, PIXELS_MOST = 4000000 };
@@ -47,35 +48,47 @@ static bool read_view(const json_t *root, struct orl_view *view)
     return orl_camera_valid(c);
 }
 
-// "ev": stops, within what a scene of several exposures spans.
-static bool read_exposure(const json_t *root, struct walk_request *request)
+// "ev": stops, within what a scene of several exposures spans. "tone": the name of a tone curve.
+static bool read_tone(const json_t *root, struct orl_tone_params *tone)
 {
-    const json_t *ev = json_object_get(root, "ev");
-    request->ev = json_number_value(ev);
-    return !ev || (json_is_number(ev) && fabs(request->ev) <= 16);
+    const json_t *ev = json_object_get(root, "ev"), *curve = json_object_get(root, "tone");
+    *tone = (struct orl_tone_params){ORL_TONE_DEFAULTS};
+    tone->exposure_ev = json_number_value(ev);
+    int index = 0;
+    while (curve && index < ORL_TONE_COUNT &&
+           (!json_is_string(curve) || strcmp(orl_tones[index].name, json_string_value(curve)) != 0))
+        index++;
+    if (index == ORL_TONE_COUNT)
+        return false;
+    tone->curve = (enum orl_tone_curve)index;
+    return !ev || (json_is_number(ev) && fabs(tone->exposure_ev) <= 16);
 }
 
-// "pick": a pixel of the frame.
-static bool read_pick(const json_t *root, struct walk_request *request)
+// "picks": pixels of the frame.
+static bool read_picks(const json_t *root, struct walk_request *request)
 {
-    const json_t *pick = json_object_get(root, "pick");
-    double at[2];
-    if (!pick)
-        return true;
+    const json_t *picks = json_object_get(root, "picks"), *pick;
     const struct orl_camera *c = &request->view.camera;
-    if (!orl_json_read_numbers(pick, 2, at) || !(at[0] >= 0 && at[0] < c->width) ||
-        !(at[1] >= 0 && at[1] < c->height))
+    size_t i;
+    double at[2];
+    if (picks && (!json_is_array(picks) || json_array_size(picks) > WALK_PICKS_MOST))
         return false;
-    request->picks = true;
-    request->pick_x = (int)at[0];
-    request->pick_y = (int)at[1];
+    json_array_foreach(picks, i, pick) {
+        if (!orl_json_read_numbers(pick, 2, at) || !(at[0] >= 0 && at[0] < c->width) ||
+            !(at[1] >= 0 && at[1] < c->height))
+            return false;
+        request->picks[i][0] = (int)at[0];
+        request->picks[i][1] = (int)at[1];
+    }
+    request->pick_count = json_array_size(picks);
     return true;
 }
 
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request)
 {
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
-    const json_t *number = json_object_get(root, "number"), *quality = json_object_get(root, "quality");
+    const json_t *number = json_object_get(root, "number");
+    const json_t *quality = json_object_get(root, "quality");
     const char *layer = json_string_value(json_object_get(root, "layer"));
     int index = 0;
     while (layer && index < WALK_LAYERS && strcmp(layer_names[index], layer) != 0)
@@ -83,12 +96,13 @@ bool orl_walk_request_read(const char *text, size_t size, struct walk_request *r
     *request = (struct walk_request){.number = (uint32_t)json_integer_value(number),
                                      .layer = (enum walk_layer)index,
                                      .quality = (int)json_integer_value(quality),
-                                     .at_rest = json_is_true(json_object_get(root, "rest"))};
+                                     .at_rest = json_is_true(json_object_get(root, "rest")),
+                                     .measures = json_is_true(json_object_get(root, "measure"))};
     bool valid = layer && index < WALK_LAYERS && json_is_integer(number) &&
                  json_integer_value(number) >= 0 && json_integer_value(number) <= UINT32_MAX &&
                  json_is_integer(quality) && json_integer_value(quality) >= 1 &&
                  json_integer_value(quality) <= 100 && read_view(root, &request->view) &&
-                 read_pick(root, request) && read_exposure(root, request);
+                 read_picks(root, request) && read_tone(root, &request->tone);
     json_decref(root);
     return valid;
 }
@@ -118,18 +132,10 @@ static double loading_seconds(const struct walk_renderer *walk, bool at_rest)
     return at_rest ? rest_s : share * walk->draw_s;
 }
 
-static void expose(struct orl_image *linear, double ev)
-{
-    size_t count = 3 * (size_t)linear->width * (size_t)linear->height;
-    float factor = (float)exp2(ev);
-    for (size_t i = 0; ev != 0 && i < count; i++)
-        linear->f32[i] *= factor;
-}
-
 // What a frame says beside its picture.
 struct outcome {
     size_t missing; // photographs that are not complete yet
-    float picked;   // depth under the picked pixel; 0: none
+    float picked[WALK_PICKS_MOST]; // depth under each picked pixel; 0: none
 };
 
 static enum orl_result draw_timed(struct walk_renderer *walk, const struct walk_request *request,
@@ -142,19 +148,21 @@ static enum orl_result draw_timed(struct walk_renderer *walk, const struct walk_
     enum orl_result result = orl_renderer_draw_progressive(walk->renderer, &request->view, params,
                                                            &progress, frame);
     double took = orl_time_s() - start - progress.spent;
-    walk->draw_s += (walk->draw_s > 0 ? 0.2 : 1) * (took - walk->draw_s);
+    if (!request->at_rest)
+        walk->draw_s += (walk->draw_s > 0 ? 0.2 : 1) * (took - walk->draw_s);
     *missing = progress.missing;
     return result;
 }
 
 static enum orl_result draw(struct walk_renderer *walk, const struct walk_request *request,
-                            struct orl_image *picture, struct outcome *outcome)
+                            const struct orl_render_params *at_rest, struct orl_image *picture,
+                            struct outcome *outcome)
 {
     static const unsigned needed[WALK_LAYERS] = {[WALK_DEPTH] = ORL_LAYER_DEPTH,
                                                  [WALK_NORMAL] = ORL_LAYER_NORMAL,
                                                  [WALK_COVERAGE] = ORL_LAYER_COVERAGE};
-    unsigned layers = needed[request->layer] | (request->picks ? ORL_LAYER_DEPTH : 0);
-    struct orl_render_params params = *walk->render;
+    unsigned layers = needed[request->layer] | (request->pick_count ? ORL_LAYER_DEPTH : 0);
+    struct orl_render_params params = request->at_rest ? *at_rest : orl_walk_moving_params(at_rest);
     if (request->layer == WALK_POINTS)
         params = orl_method_find(walk->log, "points")->params;
     params.leave_out = (ORL_LAYER_DEPTH | ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE |
@@ -163,53 +171,116 @@ static enum orl_result draw(struct walk_renderer *walk, const struct walk_reques
     enum orl_result result = draw_timed(walk, request, &params, &outcome->missing, &frame);
     if (result != ORL_OK)
         return result;
-    expose(&frame.color, request->ev);
-    result = orl_tone_srgb(walk->log, &frame.color, picture);
+    result = orl_tone_apply(walk->log, &frame.color, &request->tone, picture);
     size_t width = (size_t)frame.color.width, count = width * (size_t)frame.color.height;
     for (size_t i = 0; result == ORL_OK && needed[request->layer] && i < count; i++)
         show_pixel(&frame, request->layer, walk->typical, i, picture->u8 + 3 * i);
-    if (request->picks)
-        outcome->picked = fabsf(
-            frame.depth.f32[(size_t)request->pick_y * width + (size_t)request->pick_x]);
+    for (size_t i = 0; i < request->pick_count; i++)
+        outcome->picked[i] = fabsf(
+            frame.depth.f32[(size_t)request->picks[i][1] * width + (size_t)request->picks[i][0]]);
     orl_frame_finish(&frame);
     return result;
 }
 
+// --- what a frame took ---
+
+enum { PASSES_MOST = 32 };
+
+static json_t *passes_json(struct orl_gpu *gpu)
+{
+    struct orl_pass_time times[PASSES_MOST];
+    size_t count = orl_gpu_take_times(gpu, times, PASSES_MOST);
+    json_t *passes = json_array();
+    for (size_t i = 0; i < count && i < PASSES_MOST; i++)
+        json_array_append_new(passes, json_pack("[s,f]", times[i].name, times[i].ms));
+    return passes;
+}
+
+static json_t *memory_json(const struct orl_gpu *gpu)
+{
+    json_t *memory = json_object();
+    for (int i = 0; i < ORL_OWNER_COUNT; i++)
+        json_object_set_new(memory, orl_owner_names[i],
+                            json_integer((json_int_t)orl_gpu_owner_bytes(gpu, (enum orl_owner)i)));
+    return memory;
+}
+
+static void start_measuring(const struct walk_renderer *walk)
+{
+    (void)orl_gpu_take_times(walk->gpu, NULL, 0); // forgets what was measured before
+    orl_gpu_time_passes(walk->gpu, true);
+}
+
+static json_t *finish_measuring(const struct walk_renderer *walk, double draw_s, double encode_s)
+{
+    json_t *passes = passes_json(walk->gpu);
+    orl_gpu_time_passes(walk->gpu, false);
+    return json_pack("{s:f, s:f, s:o, s:o}", "draw_ms", 1e3 * draw_s, "encode_ms", 1e3 * encode_s,
+                     "passes", passes, "memory", memory_json(walk->gpu));
+}
+
+// --- frames ---
+
+struct jpeg {
+    uint8_t *data; // owned
+    size_t size;
+};
+
+// Puts room, header, depths and JPEG together.
+static enum orl_result assemble(const struct orl_log *log, const uint32_t header[WALK_FRAME_WORDS],
+                                const float *depths, size_t before, const struct jpeg *jpeg,
+                                struct walk_frame *frame)
+{
+    size_t head = WALK_FRAME_WORDS * sizeof *header;
+    size_t more = header[WALK_FRAME_WORDS - 1] * sizeof *depths;
+    frame->data = orl_array(log, before + head + more + jpeg->size, 1);
+    if (!frame->data)
+        return ORL_ERR_MEMORY;
+    memcpy(frame->data + before, header, head);
+    memcpy(frame->data + before + head, depths, more);
+    memcpy(frame->data + before + head + more, jpeg->data, jpeg->size);
+    frame->size = head + more + jpeg->size;
+    return ORL_OK;
+}
+
 enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_request *request,
-                               size_t before, uint8_t **data, size_t *size)
+                               const struct orl_render_params *params, size_t before,
+                               struct walk_frame *frame)
 {
     struct orl_image picture = {0};
     struct outcome outcome = {0};
-    uint8_t *jpeg = NULL;
-    size_t jpeg_size = 0;
+    struct jpeg jpeg = {0};
+    *frame = (struct walk_frame){0};
+    if (request->measures)
+        start_measuring(walk);
     double start = orl_time_s();
-    enum orl_result result = draw(walk, request, &picture, &outcome);
+    enum orl_result result = draw(walk, request, params, &picture, &outcome);
+    double drawn = orl_time_s();
     if (result == ORL_OK)
-        result = orl_jpeg_encode(walk->log, &picture, request->quality, &jpeg, &jpeg_size);
-    uint32_t header[6] = {request->number, (uint32_t)(1e6 * (orl_time_s() - start)),
-                          (uint32_t)picture.width, (uint32_t)picture.height,
-                          (uint32_t)outcome.missing};
-    _Static_assert(sizeof header == WALK_FRAME_HEADER, "the header of a frame");
-    memcpy(&header[5], &outcome.picked, sizeof outcome.picked);
-    if (result == ORL_OK) {
-        *data = orl_array(walk->log, before + sizeof header + jpeg_size, 1);
-        result = *data ? ORL_OK : ORL_ERR_MEMORY;
+        result = orl_jpeg_encode(walk->log, &picture, request->quality, &jpeg.data, &jpeg.size);
+    double end = orl_time_s();
+    if (request->measures)
+        frame->figures = finish_measuring(walk, drawn - start, end - drawn);
+    const uint32_t header[WALK_FRAME_WORDS] = {
+        request->number, (uint32_t)(1e6 * (end - start)), (uint32_t)picture.width,
+        (uint32_t)picture.height, (uint32_t)outcome.missing, (uint32_t)request->pick_count};
+    if (result == ORL_OK)
+        result = assemble(walk->log, header, outcome.picked, before, &jpeg, frame);
+    if (result != ORL_OK) {
+        json_decref(frame->figures);
+        *frame = (struct walk_frame){0};
     }
-    if (result == ORL_OK) {
-        memcpy(*data + before, header, sizeof header);
-        memcpy(*data + before + sizeof header, jpeg, jpeg_size);
-        *size = sizeof header + jpeg_size;
-    }
-    free(jpeg);
+    free(jpeg.data);
     orl_image_finish(&picture);
     return result;
 }
 
-enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene)
+enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene,
+                                 const struct orl_render_params *params)
 {
     enum { WIDTH = 640 };
     static const double most_s = 2;
-    struct walk_request request = {.at_rest = true, .quality = 75};
+    struct walk_request request = {.quality = 75, .tone = {ORL_TONE_DEFAULTS}};
     size_t start_photo;
     enum orl_result result = orl_walk_start(walk->log, scene, &start_photo);
     if (result != ORL_OK)
@@ -222,9 +293,10 @@ enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_sc
     double start = 0;
     for (int i = 0; result == ORL_OK && outcome.missing > 0; i++) {
         struct orl_image picture = {0};
-        result = draw(walk, &request, &picture, &outcome);
+        request.at_rest = i % 2 == 0; // both kinds of frames compile their programs
+        result = draw(walk, &request, params, &picture, &outcome);
         orl_image_finish(&picture);
-        if (i < 2) { // the second one compiles those that photographs need
+        if (i < 4) { // the later ones compile those that photographs need
             start = orl_time_s();
             walk->draw_s = 0;
         } else if (orl_time_s() - start > most_s) {

@@ -4,6 +4,8 @@
 
 #include <jansson.h>
 
+#include "oriel/gpu.h"
+#include "render/tone.h"
 #include "walk/publish.h"
 #include "walk/settings.h"
 
@@ -70,37 +72,51 @@ enum orl_result orl_site_pack(struct site *site, const char *file);
 
 enum walk_layer { WALK_COLOR, WALK_DEPTH, WALK_NORMAL, WALK_COVERAGE, WALK_POINTS, WALK_LAYERS };
 
+enum { WALK_PICKS_MOST = 256 };
+
 // A client's request for a frame.
 struct walk_request {
     uint32_t number; // the client's number for the request, returned with the frame
     struct orl_view view;
     enum walk_layer layer;
     int quality;     // quality of the JPEG
-    double ev;       // stops by which the picture is brightened
+    struct orl_tone_params tone;
     bool at_rest;    // the client's view does not move
-    bool picks;      // asks for the depth under a pixel
-    int pick_x, pick_y;
+    bool measures;   // asks for what the frame took
+    size_t pick_count;
+    int picks[WALK_PICKS_MOST][2]; // pixels whose depth it asks for
 };
 // Reads a request from a message. Returns false for a message that the server does not answer.
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request);
 
-// Six 32-bit words: number, microseconds, width, height, photographs that are not complete yet, and
-// as a float the depth under the pixel that the request picks (0: none).
-enum { WALK_FRAME_HEADER = 24 };
+// Words of 32 bits before the picture: number, microseconds, width, height, photographs that are
+// not complete yet, and the count of picked pixels, whose depths follow as floats (0: none).
+enum { WALK_FRAME_WORDS = 6 };
 
 struct walk_renderer {
     const struct orl_log *log;
+    struct orl_gpu *gpu;
     struct orl_renderer *renderer;
-    const struct orl_render_params *render;
     float typical; // typical depth of the scene
-    double draw_s; // seconds that a frame takes without loading photographs, smoothed
+    double draw_s; // seconds that a moving frame takes without loading photographs, smoothed
 };
-// Draws and encodes a frame, with `before` bytes of room in front of its header. The caller
-// releases it with free().
+// A frame that is drawn and encoded.
+struct walk_frame {
+    uint8_t *data; // owned: room, header, depths, JPEG
+    size_t size;   // without the room
+    // Owned, if the request measures: {"draw_ms", "encode_ms", "passes": [[NAME, MS]], "memory":
+    // {OWNER: BYTES}}. Passes are timed one by one, which slows the frame down on a software
+    // renderer.
+    json_t *figures;
+};
+// Draws and encodes a frame, with `before` bytes of room in front of its header. `params`: of a
+// view at rest.
 enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_request *request,
-                               size_t before, uint8_t **data, size_t *size);
+                               const struct orl_render_params *params, size_t before,
+                               struct walk_frame *frame);
 // Draws the start view until its first photographs are there, for a second or two: the first frame
 // of a client finds programs compiled and something to paint from.
-enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene);
+enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene,
+                                 const struct orl_render_params *params);
 
 #endif

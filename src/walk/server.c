@@ -14,6 +14,7 @@
 #include <libwebsockets.h>
 
 #include "core/memory.h"
+#include "walk/choices.h"
 #include "walk/content_internal.h"
 #include "walk/internal.h"
 #include "walk/rendering.h"
@@ -34,14 +35,14 @@ struct session {
     bool walks;
     // A client that walks: its newest request, and the frame that is being sent.
     struct walk_request request;
+    struct orl_choice choice; // its method and options
     bool wants, sending;
     unsigned waits_since;
     uint8_t *frame; // owned, with LWS_PRE bytes of room before it; NULL: no frame to send
     size_t frame_size;
     char *message;      // owned: the part that has arrived
     size_t message_size, message_room;
-    unsigned char *reply; // owned, with LWS_PRE bytes of room before it: JSON to send; NULL: none
-    size_t reply_size;
+    json_t *reply;      // owned: an object to send; NULL: none
     // A request for a file.
     struct content_file file;
     size_t written;
@@ -58,6 +59,7 @@ struct server {
     unsigned clock;
     char token[2 * TOKEN_BYTES + 1]; // "": no token is needed
     json_t *to_render;         // owned: what a client wants rendered; NULL: nothing
+    struct orl_choice render_choice; // that client's method and options
     struct session *renders_for; // that client; NULL: it has gone
     bool rendering;            // it is under way
     enum orl_result result;    // the first failure while it was
@@ -180,7 +182,7 @@ static void remove_session(struct server *server, struct session *session)
         server->renders_for = NULL;
     free(session->frame);
     free(session->message);
-    free(session->reply);
+    json_decref(session->reply);
     *session = (struct session){0};
 }
 
@@ -190,44 +192,53 @@ static int close_for(struct lws *wsi, enum lws_close_status status)
     return -1;
 }
 
-// Sends a JSON object, which is released, as soon as the client takes it. It replaces a reply that
-// has not been sent: a newer one says more.
-static enum orl_result reply(const struct server *server, struct session *session, json_t *object)
+// Sends a JSON object, which is released, as soon as the client takes it. Entries that have not
+// been sent are replaced by newer ones of the same key, which say more.
+static enum orl_result reply(struct session *session, json_t *object)
 {
-    char *text = object ? json_dumps(object, JSON_COMPACT) : NULL;
-    size_t size = text ? strlen(text) : 0;
-    unsigned char *data = text ? orl_array(server->log, LWS_PRE + size, 1) : NULL;
+    session->reply = session->reply ? session->reply : json_object();
+    bool added = object && session->reply && json_object_update(session->reply, object) == 0;
     json_decref(object);
-    if (data) {
-        memcpy(data + LWS_PRE, text, size);
-        free(session->reply);
-        session->reply = data;
-        session->reply_size = size;
+    if (added)
         lws_callback_on_writable(session->wsi);
-    }
-    free(text);
-    return data ? ORL_OK : ORL_ERR_MEMORY;
+    return added ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-static enum orl_result refuse_rendering(const struct server *server, struct session *session,
-                                        const char *problem)
+static enum orl_result refuse_rendering(struct session *session, const char *problem)
 {
-    return reply(server, session, json_pack("{s:{s:i, s:i, s:s}}", "rendering", "done", 0, "total", 0,
-                                            "problem", problem));
+    return reply(session, json_pack("{s:{s:i, s:i, s:s}}", "rendering", "done", 0, "total", 0,
+                                    "problem", problem));
 }
 
 // One rendering at a time; serve() begins it.
 static bool take_rendering(struct server *server, struct session *session, json_t *message)
 {
     if (server->to_render || server->rendering)
-        return refuse_rendering(server, session, "another one is under way") == ORL_OK;
+        return refuse_rendering(session, "another one is under way") == ORL_OK;
     server->to_render = json_incref(message);
+    server->render_choice = session->choice;
     server->renders_for = session;
     return true;
 }
 
-// A message about something else than a frame: {"save": settings} or {"render": path}. Returns false
-// for a message that is none of these.
+// What the session's frames are drawn by from now on. problem: why that is not what was asked for;
+// "": it is.
+static enum orl_result tell_choice(struct session *session, const char *problem)
+{
+    return reply(session, json_pack("{s:o, s:s}", "choice", orl_walk_choice_json(&session->choice),
+                                    "problem", problem));
+}
+
+static bool take_choice(const struct server *server, struct session *session, const json_t *message)
+{
+    char problem[WALK_PROBLEM_BYTES];
+    enum orl_result result = orl_walk_choice_read(server->content.scene, message, &session->choice,
+                                                  problem);
+    return tell_choice(session, result == ORL_OK ? "" : problem) == ORL_OK;
+}
+
+// A message about something else than a frame: {"save": settings}, {"render": path} or {"method":
+// name, "set": options}. Returns false for a message that is none of these.
 static bool take_command(struct server *server, struct session *session)
 {
     json_t *root = json_loadb(session->message, session->message_size, JSON_REJECT_DUPLICATES, NULL);
@@ -235,9 +246,11 @@ static bool take_command(struct server *server, struct session *session)
     bool known = settings && server->content.edits;
     if (server->content.edits && orl_walk_rendering_asked(root)) {
         known = take_rendering(server, session, root);
+    } else if (server->content.edits && orl_walk_choice_asked(root)) {
+        known = take_choice(server, session, root);
     } else if (known) {
         enum orl_result result = orl_content_change(&server->content, settings);
-        known = reply(server, session,
+        known = reply(session,
                       json_pack("{s:b, s:s}", "saved", result == ORL_OK, "reason",
                                 result == ORL_OK ? "" : orl_result_message(result))) == ORL_OK;
     }
@@ -283,20 +296,29 @@ static int take_message(struct server *server, struct lws *wsi, struct session *
     return 0;
 }
 
-static int write_reply(struct lws *wsi, struct session *session)
+static int write_reply(struct server *server, struct lws *wsi, struct session *session)
 {
-    int written = lws_write(wsi, session->reply + LWS_PRE, session->reply_size, LWS_WRITE_TEXT);
-    free(session->reply);
+    char *text = json_dumps(session->reply, JSON_COMPACT);
+    size_t size = text ? strlen(text) : 0;
+    unsigned char *data = text ? orl_array(server->log, LWS_PRE + size, 1) : NULL;
+    json_decref(session->reply);
     session->reply = NULL;
+    int written = -1;
+    if (data) {
+        memcpy(data + LWS_PRE, text, size);
+        written = lws_write(wsi, data + LWS_PRE, size, LWS_WRITE_TEXT);
+    }
+    free(text);
+    free(data);
     lws_callback_on_writable(wsi);
     return written < 0 ? -1 : 0;
 }
 
 // Sends the frame. The next one is drawn only after this one has been handed to the network.
-static int write_frame(struct lws *wsi, struct session *session)
+static int write_frame(struct server *server, struct lws *wsi, struct session *session)
 {
     if (session->reply)
-        return write_reply(wsi, session);
+        return write_reply(server, wsi, session);
     if (!session->frame) {
         session->sending = false;
         return 0;
@@ -317,14 +339,31 @@ static struct session *longest_waiting(const struct server *server)
     return longest;
 }
 
+// A method that a client has chosen may fail in this scene without ending the server: the client
+// goes back to the first choice.
+static enum orl_result give_up_choice(const struct server *server, struct session *session,
+                                      enum orl_result failure)
+{
+    const struct orl_choice *first = server->params->choice;
+    if (memcmp(&session->choice.params, &first->params, sizeof first->params) == 0)
+        return failure;
+    session->choice = *first;
+    return tell_choice(session, orl_result_message(failure));
+}
+
 static enum orl_result answer(struct server *server, struct session *session)
 {
-    enum orl_result result = orl_walk_frame(&server->walk, &session->request, LWS_PRE,
-                                            &session->frame, &session->frame_size);
+    struct walk_frame frame;
+    enum orl_result result = orl_walk_frame(&server->walk, &session->request,
+                                            &session->choice.params, LWS_PRE, &frame);
     if (result != ORL_OK)
-        return result;
+        return give_up_choice(server, session, result); // drawn once more, as first chosen
+    session->frame = frame.data;
+    session->frame_size = frame.size;
     session->wants = false;
     session->sending = true;
+    if (frame.figures)
+        return reply(session, json_pack("{s:o}", "figures", frame.figures));
     lws_callback_on_writable(session->wsi);
     return ORL_OK;
 }
@@ -352,13 +391,13 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
                    ? 0
                    : -1;
     case LWS_CALLBACK_ESTABLISHED:
-        *session = (struct session){0};
+        *session = (struct session){.choice = *server->params->choice};
         add_session(server, wsi, session);
         return 0;
     case LWS_CALLBACK_RECEIVE:
         return take_message(server, wsi, session, data, size);
     case LWS_CALLBACK_SERVER_WRITEABLE:
-        return write_frame(wsi, session);
+        return write_frame(server, wsi, session);
     case LWS_CALLBACK_CLOSED:
         remove_session(server, session);
         return 0;
@@ -443,7 +482,7 @@ static void report_rendering(void *priv, size_t done, size_t total, const char *
     struct server *server = priv;
     enum orl_result result = server->result;
     if (result == ORL_OK && server->renders_for)
-        result = reply(server, server->renders_for,
+        result = reply(server->renders_for,
                        json_pack("{s:{s:I, s:I, s:s}}", "rendering", "done", (json_int_t)done,
                                  "total", (json_int_t)total, "file", file));
     if (result == ORL_OK)
@@ -456,14 +495,14 @@ static void render_path(struct server *server)
 {
     const struct walk_rendering rendering = {
         .log = server->log, .scene = server->content.scene, .renderer = server->walk.renderer,
-        .render = server->walk.render, .progress = server->params->progress,
+        .render = &server->render_choice.params, .progress = server->params->progress,
         .report = report_rendering, .priv = server};
     json_t *message = server->to_render;
     server->to_render = NULL;
     server->rendering = true;
     enum orl_result result = orl_walk_rendering_run(&rendering, message);
     if (result != ORL_OK && server->renders_for && server->result == ORL_OK)
-        server->result = refuse_rendering(server, server->renders_for, orl_result_message(result));
+        server->result = refuse_rendering(server->renders_for, orl_result_message(result));
     server->rendering = false;
     server->renders_for = NULL;
     json_decref(message);
@@ -486,16 +525,17 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
     const struct orl_log *log = orl_gpu_log(gpu);
     struct server server = {.log = log, .params = params};
     server.walk = (struct walk_renderer){
-        .log = log, .renderer = renderer, .render = params->render,
+        .log = log, .gpu = gpu, .renderer = renderer,
         .typical = scene->photo_distance > 0 ? (float)scene->photo_distance : 1};
     bool edits = is_local(params->host) || params->edits;
-    enum orl_result result = orl_content_init(log, scene, params->title, edits, &server.content);
+    enum orl_result result = orl_content_init(log, scene, params->title, edits, params->choice,
+                                              &server.content);
     if (result == ORL_OK)
         result = check_address(log, params->host);
     if (result == ORL_OK)
         result = make_token(&server);
     if (result == ORL_OK)
-        result = orl_walk_warm_up(&server.walk, scene);
+        result = orl_walk_warm_up(&server.walk, scene, &params->choice->params);
     if (result == ORL_OK)
         result = listen_there(&server);
     if (result == ORL_OK)

@@ -2,15 +2,15 @@
 #ifndef ORL_WALK_SERVER_H
 #define ORL_WALK_SERVER_H
 
+#include "eval/choice.h"
 #include "oriel/progress.h"
-#include "oriel/render.h"
 
 struct orl_walk_params {
     const char *host;  // address to listen on; any other than 127.0.0.1 requires a token
     int port;          // 0: any free port
     const char *title; // title of the page; NULL: as the scene's settings say
     bool edits;        // clients may change the settings; on 127.0.0.1 they always may
-    const struct orl_render_params *render;
+    const struct orl_choice *choice; // method and options of a client that has chosen none
     const struct orl_progress *progress; // the server stops when this is cancelled
     // Called with the address of the page once the server listens.
     void (*ready)(void *priv, const char *address);

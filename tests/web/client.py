@@ -103,4 +103,5 @@ class Client:
         self.send(request)
         opcode, data = self.receive()
         assert opcode == 2, data
-        return struct.unpack("<5If", data[:24]), data[24:]
+        header = struct.unpack("<6I", data[:24])
+        return header, data[24 + 4 * header[5]:]

@@ -255,9 +255,9 @@ class Page(unittest.TestCase):
     def test_exposure(self):
         dark, bright = self.file("dark.png"), self.file("bright.png")
         self.browser.capture(dark, self.cameras[0])
-        self.browser.js("oriel.setExposure(1)")
+        self.browser.js("oriel.change(() => oriel.picture.setExposure(1))")
         self.browser.capture(bright, self.cameras[0])
-        self.browser.js("oriel.setExposure(0)")
+        self.browser.js("oriel.change(() => oriel.picture.setExposure(0))")
         self.assertLess(psnr(dark, bright), 25)
 
     # --- what its maker says ---

@@ -53,9 +53,22 @@ class Server(unittest.TestCase):
     def frame(self, client):
         opcode, data = client.receive()
         self.assertEqual(opcode, 2)
-        number, _, width, height = struct.unpack("<4I", data[:16])
-        self.assertEqual(data[24:26], b"\xff\xd8")
+        number, _, width, height, _, picks = struct.unpack("<6I", data[:24])
+        self.assertEqual(data[24 + 4 * picks:][:2], b"\xff\xd8")
         return number, width, height
+
+    def complete(self, client, **changes):
+        """Header, depths and JPEG of a frame for which all photographs are there."""
+        while True:
+            header, data = client.frame(self.request(1, rest=True, **changes))
+            if header[4] == 0:
+                return header, data
+
+    def told(self, client, message):
+        client.send(message)
+        opcode, data = client.receive()
+        self.assertEqual(opcode, 1)
+        return json.loads(data)
 
     def works(self):
         client = Client(self.walk)
@@ -110,7 +123,10 @@ class Server(unittest.TestCase):
                self.request(1, size=[4000, 4000]), self.request(1, size=["a", 3]),
                self.request(1, focal=[0, 0, 0, 0]), self.request(1, focal=[1e308, 1, 1, 1e300]),
                self.request(1, r=[1] * 9), self.request(1, eye=[1, 2]), self.request(1, layer="x"),
-               self.request(1, quality=0), self.request(1, quality=1e99)]
+               self.request(1, quality=0), self.request(1, quality=1e99),
+               self.request(1, tone="x"), self.request(1, tone=1), self.request(1, ev=99),
+               self.request(1, picks=[[0, 9999]]), self.request(1, picks=[[0, 0]] * 257),
+               {"method": "oriel"}, {"method": "oriel", "set": [1]}, {"method": "oriel", "set": ["a=b"] * 65}]
         for message in bad:
             client = Client(self.walk)
             client.send(message)
@@ -120,6 +136,57 @@ class Server(unittest.TestCase):
         client.send(b"\x00" * 50, opcode=2)
         self.assertEqual(client.closed_for(), 1003)
         self.works()
+
+    def test_methods_and_options_are_chosen(self):
+        methods = json.loads(self.walk.get("/manifest.json")[1])["methods"]
+        self.assertIn("airieau", [m["name"] for m in methods["list"]])
+        tolerance = next(o for o in methods["options"] if o["key"] == "depth_tolerance")
+        self.assertEqual((tolerance["least"], tolerance["most"]), (1e-5, 0.5))
+        client, other = Client(self.walk), Client(self.walk)
+        first, before = methods["chosen"], self.complete(client)
+        told = self.told(client, {"method": "airieau", "set": ["depth_tolerance=0.02"]})
+        self.assertEqual((told["choice"]["name"], told["problem"]), ("airieau", ""))
+        self.assertEqual(told["choice"]["values"]["depth_tolerance"], "0.02")
+        self.assertNotEqual(self.complete(client)[1], before[1])
+        self.assertEqual(self.complete(other)[1], before[1]) # the choice is that of one client
+        # As the command line says it, and nothing has changed.
+        for settings, problem in ((["depth_tolerance=7"], "from 1e-05 to 0.5"), (["x=1"], "option x is not known"),
+                                  (["candidates=2"], "does not read it"), (["weight"], "must be KEY=VALUE")):
+            wrong = self.told(client, {"method": "airieau", "set": settings})
+            self.assertIn(problem, wrong["problem"])
+            self.assertEqual(wrong["choice"], told["choice"])
+        self.assertIn("not known", self.told(client, {"method": "none", "set": []})["problem"])
+        self.assertEqual(self.told(client, {"method": first["name"], "set": []})["choice"], first)
+        self.assertEqual(self.complete(client)[1], before[1])
+        # What cannot be drawn in this scene, which has no mesh, ends neither client nor server.
+        self.told(client, {"method": "airieau", "set": ["proxy=mesh"]})
+        client.send(self.request(5))
+        told = json.loads(client.receive()[1])
+        self.assertTrue(told["problem"])
+        self.assertEqual(told["choice"], first)
+        self.assertEqual(self.frame(client)[0], 5)
+        client.close()
+        other.close()
+
+    def test_frames_tell_what_is_asked(self):
+        client = Client(self.walk)
+        size = self.camera["width"], self.camera["height"]
+        client.send(self.request(2, measure=True, picks=[[0, 0], [size[0] // 2, size[1] // 2]]))
+        figures = json.loads(client.receive()[1])["figures"]
+        names = [name for name, _ in figures["passes"]]
+        self.assertIn("gather", names)
+        self.assertTrue(all(ms >= 0 for _, ms in figures["passes"]))
+        self.assertGreater(figures["memory"]["photographs"], 0)
+        header = client.receive()[1]
+        self.assertEqual(struct.unpack("<I", header[20:24])[0], 2)
+        self.assertGreater(struct.unpack("<2f", header[24:32])[1], 0)
+        plain, drago = self.complete(client)[1], self.complete(client, tone="drago")[1]
+        self.assertNotEqual(plain, drago)
+        self.assertNotEqual(plain, self.complete(client, ev=1.5)[1])
+        client.close()
+        points = self.walk.get("/map.bin")[1]
+        self.assertGreater(len(points), 16 * 1000)
+        self.assertEqual(len(points) % 16, 0)
 
     def test_settings_are_saved_with_the_scene(self):
         settings = {"title": "Arch", "notes": [{"title": "a", "position": [1, 2, 3]}] * 150}

@@ -1,19 +1,22 @@
 // The picture as a server draws it: one request for a frame at a time over a WebSocket.
 import {add, rotateBack, scale} from "oriel/math.js";
 import {text} from "oriel/strings.js";
+import {isBehind, project} from "oriel/view.js";
 
-const HEADER_BYTES = 24;
+const HEADER_WORDS = 6;
 const LAYERS = ["color", "depth", "normal", "coverage", "points"];
 const QUALITY_MOVING = 75, QUALITY_STILL = 90;
 const PIXELS_MOST = 2.0e6; // the server refuses more than 4 million
 const RETRY_MS = 1500;
 const LOADING_MOST = 48; // photographs of a frame
+const MAP_POINT_BYTES = 16;
 
 export class LivePicture {
     static async open(canvas, files, manifest, photos, onChange)
     {
         const picture = new LivePicture(canvas, photos, onChange);
-        await picture.connect(files);
+        const [points] = await Promise.all([files.get("map.bin"), picture.connect(files)]);
+        picture.mapPoints = points;
         return picture;
     }
 
@@ -26,14 +29,21 @@ export class LivePicture {
         this.layers = LAYERS;
         this.pixelsMost = PIXELS_MOST;
         this.number = 0;       // of the last request
-        this.asked = null;     // {number, at} of the one that is under way
+        this.asked = null;     // {number, at, marks} of the one that is under way
         this.next = null;      // to ask for once it has come
         this.shown = null;     // number, milliseconds, size of the frame that shows
         this.waiting = [];     // for a picture of its own: {request, done}
         this.bytes = 0;
         this.ev = 0;
+        this.tone = "srgb";
+        this.points = [];      // in the world, whose visibility frames tell
+        this.marks = [];       // of the latest request: {point, at}, of those in its picture
+        this.seen = new Map(); // of the points: false where a surface is before the point
+        this.measures = false; // frames at rest tell what they took
+        this.measured = null;  // the last of what they told
+        this.method = null;    // {name, settings} that was chosen
         this.saving = [];      // resolve() of each settings that were sent
-        this.onRendering = () => {};
+        this.onRendering = this.onMethod = () => {};
     }
 
     connect(files)
@@ -45,6 +55,8 @@ export class LivePicture {
             this.socket.binaryType = "arraybuffer";
             this.socket.onopen = () => {
                 this.lost = false;
+                if (this.method)
+                    this.choose(this.method.name, this.method.settings);
                 resolve();
                 this.onChange();
             };
@@ -65,6 +77,9 @@ export class LivePicture {
     {
         const rests = camera === full;
         this.next = this.describe(camera, layer, rests ? QUALITY_STILL : QUALITY_MOVING, rests);
+        const marks = this.points.map(point => ({point, at: project(camera, point)})).filter(m => m.at);
+        this.next.picks = marks.map(m => [Math.floor(m.at[0]), Math.floor(m.at[1])]);
+        this.marks = marks;
         this.latest = this.next;
         this.ask();
     }
@@ -74,10 +89,12 @@ export class LivePicture {
     {
         const {width, height, fx, fy, cx, cy, r, eye} = camera;
         return {number: ++this.number, size: [width, height], focal: [fx, fy, cx, cy], r, eye,
-                layer: LAYERS[layer], quality, rest, ev: this.ev};
+                layer: LAYERS[layer], quality, rest, ev: this.ev, tone: this.tone,
+                measure: rest && this.measures};
     }
 
     setExposure(ev) { this.ev = ev; }
+    setTone(name) { this.tone = name; }
 
     ask()
     {
@@ -86,27 +103,28 @@ export class LivePicture {
         const request = this.waiting.length ? this.waiting[0].request : this.next;
         if (request === this.next)
             this.next = null;
-        this.asked = {number: request.number, at: performance.now()};
+        this.asked = {number: request.number, at: performance.now(), marks: this.marks};
         this.socket.send(JSON.stringify(request));
     }
 
     async receive(data)
     {
-        const [number, microseconds, width, height, missing] = new Uint32Array(data, 0, 5);
-        const [picked] = new Float32Array(data, 20, 1);
-        const image = await createImageBitmap(new Blob([data.slice(HEADER_BYTES)], {type: "image/jpeg"}));
-        const took = performance.now() - this.asked.at;
+        const [number, microseconds, width, height, missing, picks] = new Uint32Array(data, 0, HEADER_WORDS);
+        const depths = new Float32Array(data, 4 * HEADER_WORDS, picks);
+        const image = await createImageBitmap(new Blob([data.slice(4 * (HEADER_WORDS + picks))], {type: "image/jpeg"}));
+        const {asked} = this, took = performance.now() - asked.at;
         this.bytes += data.byteLength;
         this.asked = null;
         const own = this.waiting.length && this.waiting[0].request.number === number ? this.waiting[0] : null;
         if (own && missing) {
             image.close(); // asked for again until its photographs are there
         } else if (own) {
-            this.waiting.shift().done({image, picked});
+            this.waiting.shift().done({image, depths});
         } else {
             Object.assign(this.canvas, {width, height});
             this.context.drawImage(image, 0, 0);
             image.close();
+            this.seen = new Map(asked.marks.map(({point, at}, i) => [point, !isBehind(at[2], depths[i])]));
             this.shown = {number, took, server: microseconds / 1000, width, height, missing};
         }
         // A picture at rest gets better while its photographs come.
@@ -142,7 +160,7 @@ export class LivePicture {
     async pick(camera, x, y)
     {
         const at = [Math.floor(x), Math.floor(y)];
-        const {image, picked} = await this.own(camera, 0, {pick: at});
+        const {image, depths: [picked]} = await this.own(camera, 0, {picks: [at]});
         image.close();
         const ray = [(at[0] + 0.5 - camera.cx) / camera.fx, (at[1] + 0.5 - camera.cy) / camera.fy, 1];
         return picked > 0 ? add(camera.eye, rotateBack(camera.r, scale(ray, picked))) : null;
@@ -156,6 +174,17 @@ export class LivePicture {
             this.saving.shift()(message.saved);
         if (message.rendering)
             this.onRendering(message.rendering);
+        if (message.figures)
+            this.measured = message.figures;
+        if (message.choice)
+            this.onMethod(message.choice, message.problem);
+    }
+
+    // The server answers by onMethod(choice, problem).
+    choose(name, settings)
+    {
+        this.method = {name, settings};
+        this.socket.send(JSON.stringify({method: name, set: settings}));
     }
 
     // True once the settings of the walk are with the scene.
@@ -170,13 +199,30 @@ export class LivePicture {
     render(path, format) { this.socket.send(JSON.stringify({render: path, format})); }
 
     middle() { return null; }
-    forEachPoint() {}
+
+    forEachPoint(visit)
+    {
+        const view = new DataView(this.mapPoints);
+        for (let at = 0; at < view.byteLength; at += MAP_POINT_BYTES)
+            visit([0, 4, 8].map(k => view.getFloat32(at + k, true)), [12, 13, 14].map(k => view.getUint8(at + k)));
+    }
 
     figures()
     {
-        const s = this.shown;
+        const s = this.shown, m = this.measured;
         return {size: s ? text.size(s.width, s.height) : "–", points: "–", photos: text.photos(this.all.length),
-                loaded: text.memory(this.bytes), memory: "–",
-                device: s ? text.byServer(s.server, s.took) : text.noServer};
+                loaded: text.memory(this.bytes),
+                memory: text.memory(m ? Object.values(m.memory).reduce((a, b) => a + b) : 0), device: s ? text.byServer(s.server, s.took) : text.noServer};
+    }
+
+    // Of the last frame at rest, as the server measured it: groups of rows of label and value.
+    get details()
+    {
+        const m = this.measured;
+        if (!m)
+            return [];
+        const times = [...m.passes, [text.drawing, m.draw_ms], [text.encoding, m.encode_ms]];
+        return [[text.passes, times.map(([name, ms]) => [name, text.milliseconds(ms)])],
+                [text.memoryBy, Object.entries(m.memory).map(([owner, bytes]) => [text.owners[owner], text.memory(bytes)])]];
     }
 }

@@ -5,8 +5,10 @@ import {rankPhotos} from "oriel/photos.js";
 import {Cloud} from "oriel/points.js";
 import {LAYERS, loadShaders, Renderer} from "oriel/renderer.js";
 import {text} from "oriel/strings.js";
+import {isBehind, project} from "oriel/view.js";
 
 const RANK_EVERY = 250; // milliseconds, while moving
+const LOOK_EVERY = 200;
 const handheld = matchMedia("(pointer: coarse)").matches;
 
 // Bytes for photographs on the graphics chip: what phones stand, more where there is more.
@@ -44,7 +46,10 @@ export class LocalPicture {
         this.cloud = new Cloud(this.device, coarse);
         this.renderer = new Renderer(this.device, sources, manifest, photos, this.cloud, photoBudget());
         this.allBytes = totalBytes(manifest);
+        this.lookedAt = 0;
         this.rank = [];
+        this.points = [];      // in the world, whose visibility frames tell
+        this.seen = new Map(); // of those: false where a surface is before the point
         this.eye = photos[manifest.start].eye;
         canvas.addEventListener("webglcontextlost", event => {
             event.preventDefault();
@@ -132,6 +137,17 @@ export class LocalPicture {
         this.rankFor(full, camera === full);
         this.renderer.draw(camera, layer);
         this.renderer.show(layer);
+        if (camera === full || performance.now() - this.lookedAt > LOOK_EVERY)
+            this.look(camera);
+    }
+
+    // Reading depth waits for the graphics chip, so not every frame does.
+    look(camera)
+    {
+        this.lookedAt = performance.now();
+        const places = this.points.map(point => [point, project(camera, point)]).filter(([, at]) => at);
+        this.seen = new Map(places.map(([point, at]) =>
+            [point, !isBehind(at[2], this.renderer.depthAt(at[0], at[1]))]));
     }
 
     async capture(camera, layer)
@@ -159,6 +175,8 @@ export class LocalPicture {
     }
 
     forEachPoint(visit) { this.cloud.forEachCoarse(visit); }
+
+    get details() { return []; }
 
     figures()
     {

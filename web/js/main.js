@@ -6,6 +6,7 @@ import {LivePicture} from "oriel/live.js";
 import {LocalPicture} from "oriel/local.js";
 import {Map2d} from "oriel/map.js";
 import {clamp} from "oriel/math.js";
+import {MethodPanel} from "oriel/methods.js";
 import {Navigator} from "oriel/navigation.js";
 import {Notes} from "oriel/notes.js";
 import {PathEditor} from "oriel/path.js";
@@ -16,8 +17,9 @@ import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "oriel/
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
 const FRAME_LONG = 38, FRAME_SHORT = 14;  // milliseconds: fewer pixels, more pixels
-const LIVE_LONG = 90, LIVE_SHORT = 45;    // the same of frames that come over the network
+const LIVE_LONG = 75, LIVE_SHORT = 40;    // the same of frames that come over the network
 const REFINE_AFTER = 140;                 // milliseconds of rest
+const SIDE = ["path", "maker", "method"]; // panels that share a place
 const POSTER_SHARE = 0.625;               // height to width: POSTER_* of site_photos.c
 
 class Walk {
@@ -75,6 +77,8 @@ class Walk {
         const nav = this.navigator, help = buildHelp();
         const toggle = id => () => {
             byId(id).hidden = !byId(id).hidden;
+            for (const other of SIDE.includes(id) ? SIDE : [])
+                byId(other).hidden ||= other !== id;
             this.wake();
         };
         const shown = id => () => !byId(id).hidden;
@@ -94,22 +98,35 @@ class Walk {
                 this.thumbs.open();
             }},
             map: {key: "m", run: toggle("map"), pressed: shown("map")},
-            panel: {key: "i", run: toggle("panel"), pressed: shown("panel")},
+            panel: {key: "i", pressed: shown("panel"), run: () => {
+                this.picture.measures = byId("panel").hidden;
+                this.refined = false;
+                toggle("panel")();
+            }},
             path: {key: "k", run: toggle("path"), pressed: shown("path")},
-            record: {key: "r", run: () => this.act(() => this.path.add())},
+            record: {key: "r", run: () => this.act(() => {
+                this.path.add();
+                if (byId("path").hidden)
+                    toggle("path")();
+            })},
             ...(edits ? {maker: {key: "n", run: toggle("maker"), pressed: shown("maker")}} : {}),
+            ...(this.manifest.methods ? {method: {key: "o", run: toggle("method"), pressed: shown("method")}} : {}),
             screenshot: {key: "x", run: () => this.saveScreenshot()},
             full: {key: "f", run: () => this.toggleFull(), pressed: () => document.fullscreenElement !== null},
             help: {key: "?", run: () => help.showModal()},
         };
         this.tools = new Tools(actions);
         this.compare = new Compare(this.files);
-        this.panel = new Panel({layers: this.picture.layers, layer: this.layer,
+        this.panel = new Panel({layers: this.picture.layers, layer: this.layer, tones: this.manifest.tones || [],
                                 onLayer: layer => this.setLayer(layer),
-                                onExposure: ev => this.setExposure(ev), onBenchmark: () => this.measure()});
+                                onExposure: ev => this.change(() => this.picture.setExposure(ev)),
+                                onTone: name => this.change(() => this.picture.setTone(name)),
+                                onBenchmark: () => this.measure()});
+        if (this.manifest.methods)
+            this.makeMethods();
         this.makePath(edits);
         this.notes = new Notes(nav, this.manifest.walk, {
-            canvas: this.canvas, wake: () => this.wake(),
+            canvas: this.canvas, wake: () => this.wake(), seen: point => this.picture.seen.get(point),
             pick: (x, y) => this.pick(x, y), save: edits ? settings => this.picture.save(settings) : null,
         });
         byId("attribution").textContent = this.manifest.walk.attribution || "";
@@ -138,9 +155,16 @@ class Walk {
         return this.picture.pick(camera, x * s, y * s);
     }
 
-    setExposure(ev)
+    makeMethods()
     {
-        this.picture.setExposure(ev);
+        this.methods = new MethodPanel(this.manifest.methods, (name, settings) => this.picture.choose(name, settings));
+        this.picture.onMethod = (choice, problem) => this.change(() => this.methods.told(choice, problem));
+    }
+
+    // Something that makes the picture another one.
+    change(what)
+    {
+        what();
         this.refined = false;
         this.wake();
     }
@@ -162,9 +186,7 @@ class Walk {
     setLayer(layer)
     {
         this.layer = layer;
-        this.panel.setLayer(layer);
-        this.refined = false;
-        this.wake();
+        this.change(() => this.panel.setLayer(layer));
     }
 
     toggleCompare()
@@ -273,6 +295,7 @@ class Walk {
     {
         const full = this.windowCamera(1), started = performance.now();
         const camera = scale ? this.windowCamera(SCALES[scale]) : full;
+        this.picture.points = this.notes.points;
         this.picture.draw(full, camera, this.layer);
         this.refined = scale === 0;
         if (!this.manifest.live) { // else frames tell when they come
@@ -329,7 +352,7 @@ class Walk {
         if (byId("panel").hidden)
             return;
         this.panel.show({frame: this.frameMs ? text.milliseconds(this.frameMs) : "–",
-                         ...this.picture.figures()});
+                         ...this.picture.figures()}, this.picture.details);
     }
 
     // The poster is the start view: it stays until the picture is as good, or the viewer moves on.

@@ -1,17 +1,16 @@
 // Annotations: marks on surfaces with a title and a text, and the view that shows each best. Their
 // maker places them, and says how a walk begins; visitors read them.
-import {rotate, sub} from "oriel/math.js";
 import {MODES} from "oriel/navigation.js";
 import {text} from "oriel/strings.js";
 import {button, byId, make} from "oriel/ui.js";
-import {viewFromKey, viewToKey} from "oriel/view.js";
+import {project, viewFromKey, viewToKey} from "oriel/view.js";
 
 export class Notes {
-    // settings: manifest.walk; pick(x, y): a promise of the point under a CSS pixel, null: none;
+    // seen(point): false where a surface is before it; settings: manifest.walk; pick(x, y): a promise of the point under a CSS pixel, null: none;
     // save(settings): a promise of whether they were saved; null: nothing can be changed
-    constructor(navigator, settings, {canvas, pick, save, wake})
+    constructor(navigator, settings, {canvas, seen, pick, save, wake})
     {
-        Object.assign(this, {navigator, canvas, pick, saveAll: save, wake});
+        Object.assign(this, {navigator, canvas, seen, pick, saveAll: save, wake});
         this.settings = {...settings, notes: [...(settings.notes || [])]};
         this.layer = byId("marks");
         this.card = byId("note");
@@ -30,6 +29,7 @@ export class Notes {
             const mark = make("button", {type: "button", className: "mark", textContent: String(i + 1),
                                          title: note.title, hidden: true}); // until update() places it
             mark.setAttribute("aria-label", text.notes.mark(i + 1, note.title));
+            mark.wasBehind = false;
             mark.addEventListener("click", () => this.open(i));
             return mark;
         });
@@ -43,12 +43,19 @@ export class Notes {
     update(camera)
     {
         this.settings.notes.forEach((note, i) => {
-            const q = rotate(camera.r, sub(note.position, camera.eye)), mark = this.marks[i];
-            const x = camera.fx * q[0] / q[2] + camera.cx, y = camera.fy * q[1] / q[2] + camera.cy;
-            mark.hidden = !(q[2] > 0 && x > 0 && y > 0 && x < camera.width && y < camera.height);
-            mark.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
+            const at = project(camera, note.position), mark = this.marks[i];
+            mark.hidden = !at;
+            if (!at)
+                return;
+            mark.style.transform = `translate(${at[0]}px, ${at[1]}px) translate(-50%, -50%)`;
+            const behind = this.seen(note.position) === false;
+            if (mark.classList.toggle("behind", behind) !== mark.wasBehind)
+                mark.setAttribute("aria-label", (behind ? text.notes.behind : text.notes.mark)(i + 1, note.title));
+            mark.wasBehind = behind;
         });
     }
+
+    get points() { return this.settings.notes.map(note => note.position); }
 
     open(i)
     {

@@ -106,7 +106,6 @@ export class PathEditor {
     {
         this.keys.push(this.navigator.view);
         this.fill();
-        this.element.hidden = false;
     }
 
     change(what)

@@ -68,7 +68,8 @@ export class Tools {
 // --- panel ---
 
 export class Panel {
-    constructor({layers, layer, onLayer, onExposure, onBenchmark})
+    // tones: {name, description} of curves; none: there is no choice
+    constructor({layers, layer, tones, onLayer, onExposure, onTone, onBenchmark})
     {
         this.element = byId("panel");
         this.choices = layers.map((id, i) => {
@@ -89,20 +90,29 @@ export class Panel {
             stops.textContent = text.stops(Number(exposure.value));
             onExposure(Number(exposure.value));
         });
+        const curve = make("select", {}, ...tones.map(t => make("option", {textContent: t.name, title: t.description})));
+        curve.addEventListener("change", () => onTone(curve.value));
+        this.details = make("div");
         this.element.setAttribute("aria-label", text.actions.panel);
         this.element.append(make("fieldset", {}, make("legend", {textContent: text.layerLegend}), ...labels),
                             make("label", {className: "line"}, text.exposure, stops, exposure),
-                            make("h2", {textContent: text.figures}), list,
+                            ...(tones.length ? [make("label", {className: "line"}, text.tone, curve)] : []),
+                            make("h2", {textContent: text.figures}), list, this.details,
                             this.bench = button(text.benchmark, onBenchmark),
                             make("p", {textContent: text.madeBy}));
     }
 
     setLayer(layer) { this.choices[layer].checked = true; }
 
-    show(figures)
+    // details: groups [title, rows of label and value]
+    show(figures, details)
     {
         for (const [id, value] of Object.entries(figures))
             this.figures[id].textContent = value;
+        this.details.replaceChildren(...details.flatMap(([title, rows]) => [
+            make("h2", {textContent: title}),
+            make("dl", {}, ...rows.flatMap(([label, value]) => [make("dt", {textContent: label}),
+                                                                make("dd", {textContent: value})]))]));
     }
 }
 

@@ -1,8 +1,8 @@
 // Views: where the viewer is, where they look, and what part of it the window frames.
 // A frame is a picture of height 1: focal lengths and the principal point's offset from the
 // middle in that unit, so that a photograph's own framing survives any window.
-import {dot, mix, mix3, normalize, quatFromRotation, rotateBack, rotationFromQuat, row, scale, slerp}
-    from "oriel/math.js";
+import {dot, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
+        sub} from "oriel/math.js";
 
 export function photoView(photo)
 {
@@ -40,6 +40,19 @@ export function mixViews(a, b, t)
     return {eye: mix3(a.eye, b.eye, t), frame,
             r: rotationFromQuat(slerp(quatFromRotation(a.r), quatFromRotation(b.r), t))};
 }
+
+// Where a camera sees a point: pixels, and its depth; null: outside its picture.
+export function project(camera, point)
+{
+    const [x, y, z] = rotate(camera.r, sub(point, camera.eye));
+    const at = [camera.fx * x / z + camera.cx, camera.fy * y / z + camera.cy, z];
+    return z > 0 && at[0] > 0 && at[1] > 0 && at[0] < camera.width && at[1] < camera.height ? at : null;
+}
+
+const BEHIND = 1.04; // depths that differ by less may be of one surface
+
+// Is a point behind the surface that its pixel shows? 0: no surface.
+export const isBehind = (depth, surface) => surface > 0 && depth > BEHIND * surface;
 
 // What a pixel (of the camera) looks along, in the world, unit length.
 export function rayOf(camera, x, y)
