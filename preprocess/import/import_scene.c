@@ -13,6 +13,7 @@
 #include "scene/hull.h"
 #include "scene/manifest.h"
 #include "oriel/points.h"
+#include "scene/free_space.h"
 #include "scene/point_radii.h"
 
 char *orl_import_path(const struct import_job *job, const char *format, ...)
@@ -112,6 +113,8 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
         orl_pose_centre(&views[count].cam_from_world, eyes[count]);
         count++;
     }
+    if (result == ORL_OK)
+        result = orl_points_drop_in_free_space(job->log, views, count, points);
     if (result == ORL_OK)
         result = orl_points_set_radii(job->log, job->progress, &radii, (const double (*)[3])eyes,
                                       count, points);

@@ -9,6 +9,7 @@
 #include "core/vec3.h"
 #include "eval/stress_internal.h"
 #include "io/picture.h"
+#include "scene/free_space.h"
 #include "scene/hull.h"
 #include "scene/point_radii.h"
 
@@ -152,6 +153,8 @@ enum orl_result orl_stress_set_radii(struct stress_case *c)
         orl_pose_centre(&views[count].cam_from_world, eyes[count]);
         count++;
     }
+    if (result == ORL_OK)
+        result = orl_points_drop_in_free_space(log, views, count, &c->scene.points);
     if (result == ORL_OK && c->scene.points.count)
         result = orl_points_set_radii(log, NULL, &radii, (const double(*)[3])eyes, count,
                                       &c->scene.points);

@@ -78,6 +78,7 @@ enum orl_result orl_stress_outliers(struct stress_case *c, double level, uint64_
             continue;
         size_t color = (size_t)(orl_stress_uniform(seed, i, 1) * (double)count);
         memcpy(all.color[i], points->color[color], 3);
+        all.photographs[i] = 0; // no stereo has found it
         move_along_ray(all.position[i], &c->scene.photos[photo].view,
                        nearest + (farthest - nearest) * orl_stress_uniform(seed, i, 2));
     }

@@ -10,6 +10,7 @@
 #include "scene/colmap.h"
 #include "scene/ground_plane.h"
 #include "scene/manifest.h"
+#include "scene/free_space.h"
 #include "scene/point_radii.h"
 
 // A still scene has no frames. Its `frame` may be 0 when the struct was only zeroed.
@@ -248,6 +249,8 @@ static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene
         views[count] = scene->photos[i].view;
         orl_pose_centre(&scene->photos[i].view.cam_from_world, viewers[count++]);
     }
+    if (result == ORL_OK)
+        result = orl_points_drop_in_free_space(log, views, count, &scene->points);
     if (result == ORL_OK)
         result = orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
                                       (const double (*)[3])viewers, count, &scene->points);

@@ -1,0 +1,181 @@
+#include "scene/free_space.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+enum {
+    VIEWS_MAX = 24,     // that vote; more hardly change the result
+    PER_CELL = 4,       // points of a cell on average, which sets its size
+    SIDES = 4,          // quadrants around a point in the picture
+    FAR_MIN = 2,        // points behind in each of them, without which nothing is looked through
+    THROUGH_MIN = 2,    // photographs that must look through a point to drop it
+    CONFIRM_SHARE = 3,  // ... and so many times as many as those that confirm it
+};
+static const double cell_min_px = 2;
+static const double same_depth = 0.02;  // fraction of depth, at least
+static const double same_cells = 4;     // sizes of a cell: surfaces at up to some 70 degrees
+static const double through_share = 0.1, confirm_share = 0.3; // nearby points, of those behind
+
+// The points that one photograph sees, sorted into cells of its picture.
+struct cells {
+    int columns, rows;
+    double side_px;
+    uint32_t *start; // of each cell in `point`, and the end of the last one
+    uint32_t *point; // indices
+    int32_t *cell;   // of each point; -1: outside of the picture
+    float (*at)[3];  // pixel and depth of each point
+    float (*sorted)[3]; // the same in the order of `point`
+};
+
+static enum orl_result cells_init(const struct orl_log *log, size_t points, size_t cells,
+                                  struct cells *c)
+{
+    c->start = orl_array(log, cells + 2, sizeof *c->start);
+    c->point = orl_array(log, points, sizeof *c->point);
+    c->cell = orl_array(log, points, sizeof *c->cell);
+    c->at = orl_array(log, points, sizeof *c->at);
+    c->sorted = orl_array(log, points, sizeof *c->sorted);
+    return c->start && c->point && c->cell && c->at && c->sorted ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+static void cells_finish(struct cells *c)
+{
+    free(c->start);
+    free(c->point);
+    free(c->cell);
+    free(c->at);
+    free(c->sorted);
+}
+
+// Finds the cell of every point. The cells are as large as the density of the points asks for.
+static void project(const struct orl_points *points, const struct orl_view *view, struct cells *c)
+{
+    const struct orl_camera *camera = &view->camera;
+    size_t seen = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        const double world[3] = {(double)points->position[i][0], (double)points->position[i][1],
+                                 (double)points->position[i][2]};
+        double pixel[2] = {0, 0}, z = 0;
+        bool inside = orl_view_project(view, world, pixel, &z) && pixel[0] >= 0 &&
+                      pixel[1] >= 0 && pixel[0] < camera->width && pixel[1] < camera->height;
+        c->cell[i] = inside ? 0 : -1; // until the size of a cell is known
+        c->at[i][0] = (float)pixel[0];
+        c->at[i][1] = (float)pixel[1];
+        c->at[i][2] = (float)z;
+        seen += inside;
+    }
+    double pixels = (double)camera->width * camera->height;
+    c->side_px = fmax(cell_min_px, sqrt(PER_CELL * pixels / (double)(seen ? seen : 1)));
+    c->columns = (int)(camera->width / c->side_px) + 1;
+    c->rows = (int)(camera->height / c->side_px) + 1;
+    for (size_t i = 0; i < points->count; i++)
+        if (c->cell[i] >= 0)
+            c->cell[i] = (int)((double)c->at[i][1] / c->side_px) * c->columns +
+                         (int)((double)c->at[i][0] / c->side_px);
+}
+
+// Sorts the points by cell (counting sort).
+static void sort(size_t points, struct cells *c)
+{
+    size_t count = (size_t)c->columns * (size_t)c->rows;
+    memset(c->start, 0, (count + 2) * sizeof *c->start);
+    for (size_t i = 0; i < points; i++)
+        if (c->cell[i] >= 0)
+            c->start[c->cell[i] + 2]++;
+    for (size_t k = 2; k < count + 2; k++)
+        c->start[k] += c->start[k - 1];
+    for (size_t i = 0; i < points; i++) {
+        if (c->cell[i] < 0)
+            continue;
+        uint32_t at = c->start[c->cell[i] + 1]++;
+        c->point[at] = (uint32_t)i;
+        memcpy(c->sorted[at], c->at[i], sizeof *c->sorted);
+    }
+}
+
+// Counts the points around point i in the picture that are as near as it is, without itself, and
+// those behind it on each side.
+static void count_around(const struct cells *c, size_t i, double tolerance, size_t *near,
+                         size_t far[SIDES])
+{
+    int column = c->cell[i] % c->columns, row = c->cell[i] / c->columns;
+    const float *at = c->at[i];
+    float low = at[2] * (float)(1 - tolerance), high = at[2] * (float)(1 + tolerance);
+    *near = 0;
+    memset(far, 0, SIDES * sizeof *far);
+    for (int y = row > 0 ? row - 1 : 0; y <= row + 1 && y < c->rows; y++) {
+        int first = column > 0 ? column - 1 : 0;
+        int last = column + 1 < c->columns ? column + 1 : c->columns - 1;
+        // The cells of a row follow one another.
+        for (uint32_t k = c->start[y * c->columns + first];
+             k < c->start[y * c->columns + last + 1]; k++) {
+            const float *other = c->sorted[k];
+            far[2 * (other[1] > at[1]) + (other[0] > at[0])] += other[2] > high;
+            *near += other[2] >= low && other[2] <= high && c->point[k] != i;
+        }
+    }
+}
+
+static void vote(const struct cells *c, size_t points, double focal_px, uint8_t *through,
+                 uint8_t *confirm)
+{
+    double tolerance = fmax(same_depth, same_cells * c->side_px / focal_px);
+    for (size_t i = 0; i < points; i++) {
+        size_t near, far[SIDES], all = 0;
+        bool around = true;
+        if (c->cell[i] < 0)
+            continue;
+        count_around(c, i, tolerance, &near, far);
+        for (int k = 0; k < SIDES; k++) {
+            all += far[k];
+            around = around && far[k] >= FAR_MIN;
+        }
+        through[i] += around && (double)near <= through_share * (double)all;
+        confirm[i] += near > 0 && (double)near >= confirm_share * (double)all;
+    }
+}
+
+enum orl_result orl_points_drop_in_free_space(const struct orl_log *log,
+                                              const struct orl_view *views, size_t view_count,
+                                              struct orl_points *points)
+{
+    size_t voters = view_count < VIEWS_MAX ? view_count : VIEWS_MAX, cells = 0, kept = 0;
+    if (!points->count || voters < THROUGH_MIN)
+        return ORL_OK;
+    if (points->count > UINT32_MAX)
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
+    for (size_t v = 0; v < view_count; v++) {
+        size_t most = ((size_t)(views[v].camera.width / cell_min_px) + 1) *
+                      ((size_t)(views[v].camera.height / cell_min_px) + 1);
+        cells = most > cells ? most : cells;
+    }
+    struct cells c = {0};
+    uint8_t *through = orl_array(log, points->count, 1);
+    uint8_t *confirm = orl_array(log, points->count, 1);
+    enum orl_result result = cells_init(log, points->count, cells, &c);
+    if (!through || !confirm)
+        result = ORL_ERR_MEMORY;
+    for (size_t v = 0; result == ORL_OK && v < voters; v++) {
+        const struct orl_view *view = &views[v * view_count / voters];
+        project(points, view, &c);
+        sort(points->count, &c);
+        vote(&c, points->count, view->camera.fx, through, confirm);
+    }
+    for (size_t i = 0; result == ORL_OK && i < points->count; i++)
+        if (through[i] < THROUGH_MIN || through[i] < CONFIRM_SHARE * confirm[i] ||
+            points->photographs[i])
+            orl_points_copy(points, i, points, kept++);
+    if (result == ORL_OK && kept < points->count)
+        orl_logf(log, ORL_LOG_INFO, "%zu of %zu points are in mid-air: dropped",
+                 points->count - kept, points->count);
+    if (result == ORL_OK)
+        points->count = kept;
+    cells_finish(&c);
+    free(through);
+    free(confirm);
+    return result;
+}
