@@ -75,6 +75,9 @@ static enum orl_result adapt(const struct terminal *terminal, const struct optio
     for (size_t i = 0; result == ORL_OK && i < adapt.row_count; i++)
         printf("%-14s %7.2f dB %7.4f%s\n", adapt.rows[i].method->name, adapt.rows[i].psnr_db,
                adapt.rows[i].ssim, i == adapt.chosen ? "  chosen" : "");
+    if (result == ORL_OK)
+        printf("%-14s %7.2f dB %7.4f%s\n", "adapted", adapt.tuned_db, adapt.tuned_ssim,
+               adapt.complete ? "" : "  (the time ran out: --adapt-budget)");
     orl_gpu_destroy(&gpu);
     orl_scene_destroy(&scene);
     return result;

@@ -1,16 +1,17 @@
 #include "eval/adapt.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "core/process.h"
-#include "eval/judges.h"
 #include "eval/trim.h"
 #include "eval/tune.h"
+#include "eval/verdict.h"
 #include "scene/tuned_settings.h"
 
 // Of the time that is left after the methods are compared, tuning may take this share.
 static const double tune_share = 0.7;
-// Settings may lose so much, which no one sees; tune.h's least gain is half of it.
+// Settings may lose so much, which no one sees; a gain must be at least half of it.
 static const double tolerance_db = 0.02, gain_db = 0.01;
 
 static size_t ranks_above(const struct orl_adapt_row *rows, size_t count, size_t row)
@@ -34,67 +35,150 @@ size_t orl_adapt_choose(const struct orl_adapt_row *rows, size_t count)
     return best;
 }
 
-// Measures one method. A method that cannot draw the scene, as one that needs a mesh, has no row.
-static enum orl_result add_method(const struct orl_log *log, struct orl_renderer *renderer,
-                                  const struct orl_judges *targets,
-                                  const struct orl_method *method, struct orl_adapt *adapt)
+// --- the methods ---
+
+struct job {
+    struct orl_gpu *gpu;
+    const struct orl_log *log;
+    const struct orl_scene *scene;
+    const struct orl_adapt_params *params;
+    struct orl_adapt *adapt;
+    struct orl_renderer *renderer;
+    struct orl_judges judges;
+    struct orl_choice choice;   // the best so far
+    struct orl_verdict verdict; // of it
+    double start_s;
+};
+
+// The time that is left for all but the comparison of methods.
+static double left_s(const struct job *job)
 {
-    struct orl_adapt_row row = {.method = method};
-    struct orl_render_params render;
-    enum orl_result result =
-        orl_render_params_tuned(log, method, targets->scene, &render);
-    for (size_t i = 0; result == ORL_OK && i < targets->count; i++) {
-        struct orl_metrics m;
-        result = orl_judges_compare(log, renderer, targets, i, &render, NULL, false, &m);
-        row.psnr_db += m.psnr_db / (double)targets->count;
-        row.ssim += m.ssim / (double)targets->count;
-    }
-    if (result == ORL_OK)
-        adapt->rows[adapt->row_count++] = row;
-    return result == ORL_ERR_MEMORY || result == ORL_ERR_GPU ? result : ORL_OK;
+    return job->params->budget_s - (orl_time_s() - job->start_s);
 }
 
-static enum orl_result compare_methods(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                       struct orl_renderer *renderer,
-                                       const struct orl_adapt_params *params,
-                                       struct orl_adapt *adapt)
+// Measures one method. A method that cannot draw the scene, as one that needs a mesh, has no row.
+static enum orl_result add_method(struct job *job, const struct orl_method *method)
 {
-    const struct orl_log *log = orl_gpu_log(gpu);
-    struct orl_judges targets;
-    size_t count = 0, done = 0;
+    struct orl_adapt *adapt = job->adapt;
+    struct orl_render_params render;
+    struct orl_verdict verdict = {0};
+    enum orl_result result = orl_render_params_tuned(job->log, method, job->scene, &render);
+    if (result == ORL_OK)
+        result = orl_verdict_measure(job->log, job->renderer, &job->judges, &render,
+                                     job->params->progress, &verdict);
+    if (result == ORL_OK)
+        adapt->rows[adapt->row_count++] =
+            (struct orl_adapt_row){method, verdict.psnr_db, verdict.ssim};
+    orl_verdict_finish(&verdict);
+    bool fatal = result == ORL_ERR_MEMORY || result == ORL_ERR_GPU || result == ORL_ERR_CANCELLED;
+    return fatal ? result : ORL_OK;
+}
+
+static enum orl_result compare_methods(struct job *job)
+{
+    struct orl_adapt *adapt = job->adapt;
+    size_t count = 0;
+    enum orl_result result = ORL_OK;
     while (count < ORL_ADAPT_METHODS_MAX && orl_methods[count].name)
         count++;
-    enum orl_result result =
-        orl_judges_load(log, scene, params->views, params->size_divide, &targets);
-    for (; result == ORL_OK && done < count; done++) {
-        orl_progress_report(params->progress, "methods", (double)done, (double)count,
-                            orl_methods[done].name);
-        result = orl_progress_cancelled(params->progress)
-                     ? ORL_ERR_CANCELLED
-                     : add_method(log, renderer, &targets, &orl_methods[done], adapt);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        orl_progress_report(job->params->progress, "methods", (double)i, (double)count,
+                            orl_methods[i].name);
+        result = add_method(job, &orl_methods[i]);
     }
-    orl_judges_finish(&targets);
     if (result == ORL_OK && !adapt->row_count)
-        result = orl_fail(log, ORL_ERR_DATA, "%s: no method can draw this scene", scene->dir);
+        result = orl_fail(job->log, ORL_ERR_DATA, "%s: no method can draw this scene",
+                          job->scene->dir);
     adapt->chosen = orl_adapt_choose(adapt->rows, adapt->row_count);
+    job->choice.method = adapt->rows[adapt->chosen].method;
+    if (result == ORL_OK)
+        result = orl_render_params_tuned(job->log, job->choice.method, job->scene,
+                                         &job->choice.params);
+    if (result == ORL_OK)
+        result = orl_verdict_measure(job->log, job->renderer, &job->judges, &job->choice.params,
+                                     job->params->progress, &job->verdict);
     return result;
 }
 
-static enum orl_result tune(struct orl_gpu *gpu, const struct orl_scene *scene,
-                            struct orl_renderer *renderer, const struct orl_adapt_params *params,
-                            double budget_s, struct orl_choice *choice, struct orl_adapt *adapt)
+// --- what other methods do ---
+
+// Tries an option's value; keeps it if it is better. Values that do not go with the other choices
+// change nothing.
+static enum orl_result try_value(struct job *job, const struct orl_render_option *option,
+                                 const char *value)
+{
+    char assignment[2 * ORL_OPTION_NAME_BYTES + 2], own[ORL_OPTION_NAME_BYTES];
+    struct orl_render_params render = job->choice.params;
+    struct orl_verdict verdict = {0};
+    orl_render_option_print(option, &render, own, sizeof own);
+    snprintf(assignment, sizeof assignment, "%s=%s", option->key, value);
+    if (strcmp(own, value) == 0 || orl_render_params_set(NULL, &render, assignment) != ORL_OK)
+        return ORL_OK;
+    enum orl_result result = orl_verdict_measure(job->log, job->renderer, &job->judges, &render,
+                                                 job->params->progress, &verdict);
+    if (result == ORL_OK && orl_verdict_better(&verdict, &job->verdict, gain_db)) {
+        orl_logf(job->log, ORL_LOG_INFO, "%s: %.2f dB, SSIM %.4f", assignment, verdict.psnr_db,
+                 verdict.ssim);
+        orl_verdict_finish(&job->verdict);
+        job->verdict = verdict;
+        job->choice.params = render;
+        return ORL_OK;
+    }
+    orl_verdict_finish(&verdict);
+    return result == ORL_ERR_ARGUMENT || result == ORL_ERR_NOT_FOUND ? ORL_OK : result;
+}
+
+// Tries the values that other methods have for an option, each of them once.
+static enum orl_result borrow_option(struct job *job, const struct orl_render_option *option)
+{
+    char value[ORL_OPTION_NAME_BYTES], before[ORL_OPTION_NAME_BYTES];
+    enum orl_result result = ORL_OK;
+    for (const struct orl_method *m = orl_methods; result == ORL_OK && m->name; m++) {
+        bool known = false;
+        orl_render_option_print(option, &m->params, value, sizeof value);
+        for (const struct orl_method *other = orl_methods; other < m; other++) {
+            orl_render_option_print(option, &other->params, before, sizeof before);
+            known = known || strcmp(value, before) == 0;
+        }
+        if (!known && left_s(job) > 0)
+            result = try_value(job, option, value);
+    }
+    return result;
+}
+
+static enum orl_result borrow(struct job *job)
+{
+    enum orl_result result = ORL_OK;
+    size_t count = 0, done = 0;
+    while (orl_render_options[count].key)
+        count++;
+    for (; result == ORL_OK && done < count; done++) {
+        const struct orl_render_option *option = &orl_render_options[done];
+        orl_progress_report(job->params->progress, "options", (double)done, (double)count,
+                            option->key);
+        // Another proxy or painter would be another method.
+        if (strcmp(option->key, "proxy") != 0 && strcmp(option->key, "paint") != 0)
+            result = borrow_option(job, option);
+    }
+    return result;
+}
+
+// --- numbers, and what can be saved ---
+
+static enum orl_result tune(struct job *job)
 {
     struct orl_tune tune;
     const struct orl_tune_params tuning = {
-        .method = choice->method->name, .start = &choice->params,
-        .size_divide = params->size_divide, .views = params->views, .gain_db = gain_db,
-        .budget_s = budget_s, .progress = params->progress};
-    enum orl_result result = orl_tune_run(gpu, renderer, scene, &tuning, &tune);
+        .method = job->choice.method->name, .start = &job->choice.params,
+        .size_divide = job->params->size_divide, .views = job->params->views, .gain_db = gain_db,
+        .budget_s = tune_share * left_s(job), .progress = job->params->progress};
+    enum orl_result result = orl_tune_run(job->gpu, job->renderer, job->scene, &tuning, &tune);
     if (result != ORL_OK)
         return result;
-    choice->params = tune.best;
-    adapt->tuned_db = tune.best_db;
-    adapt->complete = tune.complete;
+    job->choice.params = tune.best;
+    job->adapt->tuned_db = tune.best_db;
+    job->adapt->tuned_ssim = tune.best_ssim;
+    job->adapt->complete = tune.complete;
     orl_tune_finish(&tune);
     return ORL_OK;
 }
@@ -110,20 +194,18 @@ static enum orl_result store(const struct orl_log *log, const struct orl_scene *
     return result == ORL_OK ? orl_defaults_write(log, scene->dir, &defaults) : result;
 }
 
-static enum orl_result trim(struct orl_gpu *gpu, const struct orl_scene *scene,
-                            const struct orl_adapt_params *params, double budget_s,
-                            const struct orl_choice *choice, struct orl_adapt *adapt)
+static enum orl_result trim(struct job *job)
 {
     struct orl_trim trim;
     const struct orl_trim_params trimming = {
-        .start = choice, .tolerance_db = tolerance_db, .worst_db = 5 * tolerance_db,
-        .views = params->views, .size_divide = params->size_divide, .budget_s = budget_s,
-        .settings_only = true, .progress = params->progress};
-    enum orl_result result = orl_trim_run(gpu, scene, &trimming, &trim);
+        .start = &job->choice, .tolerance_db = tolerance_db, .worst_db = 5 * tolerance_db,
+        .views = job->params->views, .size_divide = job->params->size_divide,
+        .budget_s = left_s(job), .settings_only = true, .progress = job->params->progress};
+    enum orl_result result = orl_trim_run(job->gpu, job->scene, &trimming, &trim);
     if (result != ORL_OK)
         return result;
-    adapt->complete = adapt->complete && trim.complete;
-    result = store(orl_gpu_log(gpu), scene, &trim.choice, trim.defaults);
+    job->adapt->complete = job->adapt->complete && trim.complete;
+    result = store(job->log, job->scene, &trim.choice, trim.defaults);
     orl_trim_finish(&trim);
     return result;
 }
@@ -131,25 +213,26 @@ static enum orl_result trim(struct orl_gpu *gpu, const struct orl_scene *scene,
 enum orl_result orl_adapt_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_adapt_params *params, struct orl_adapt *adapt)
 {
-    const struct orl_log *log = orl_gpu_log(gpu);
-    struct orl_renderer *renderer = NULL;
-    struct orl_choice choice = {0};
-    double start = orl_time_s();
+    struct job job = {.gpu = gpu, .log = orl_gpu_log(gpu), .scene = scene, .params = params,
+                      .adapt = adapt, .start_s = orl_time_s()};
     memset(adapt, 0, sizeof *adapt);
-    enum orl_result result = orl_renderer_create(gpu, scene, NULL, &renderer);
+    enum orl_result result = orl_renderer_create(gpu, scene, NULL, &job.renderer);
     if (result == ORL_OK)
-        result = compare_methods(gpu, scene, renderer, params, adapt);
-    choice.method = adapt->rows[adapt->chosen].method;
+        result = orl_judges_load(job.log, scene, params->views, params->size_divide, &job.judges);
     if (result == ORL_OK)
-        result = orl_render_params_tuned(log, choice.method, scene, &choice.params);
-    double left = params->budget_s - (orl_time_s() - start);
-    if (result == ORL_OK && left > 0)
-        result = tune(gpu, scene, renderer, params, tune_share * left, &choice, adapt);
-    orl_renderer_destroy(&renderer);
+        result = compare_methods(&job);
+    if (result == ORL_OK && left_s(&job) > 0)
+        result = borrow(&job);
+    adapt->tuned_db = job.verdict.psnr_db;
+    adapt->tuned_ssim = job.verdict.ssim;
+    if (result == ORL_OK && left_s(&job) > 0)
+        result = tune(&job);
+    orl_renderer_destroy(&job.renderer);
+    orl_judges_finish(&job.judges);
+    orl_verdict_finish(&job.verdict);
     if (result == ORL_OK) // kept even if there is no time for more
-        result = store(log, scene, &choice, scene->defaults);
-    left = params->budget_s - (orl_time_s() - start);
-    if (result == ORL_OK && left > 0)
-        result = trim(gpu, scene, params, left, &choice, adapt);
+        result = store(job.log, scene, &job.choice, scene->defaults);
+    if (result == ORL_OK && left_s(&job) > 0)
+        result = trim(&job);
     return result;
 }

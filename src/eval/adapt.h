@@ -23,7 +23,7 @@ struct orl_adapt_params {
 struct orl_adapt {
     struct orl_adapt_row rows[ORL_ADAPT_METHODS_MAX]; // methods that can draw the scene
     size_t row_count, chosen; // chosen: index of the row
-    double tuned_db;          // PSNR of the method after tuning
+    double tuned_db, tuned_ssim; // means of the chosen method with the options that were found
     bool complete;            // false: the time ran out
 };
 
@@ -31,8 +31,9 @@ struct orl_adapt {
 // disagree, the one of the least sum of ranks; of those, that of the greatest PSNR.
 size_t orl_adapt_choose(const struct orl_adapt_row *rows, size_t count);
 
-// Compares all methods, tunes the best one (tune.h), finds which of the renderer's settings save
-// memory or time without a loss that counts (trim.h), and stores all three in scene.json, where
+// Compares all methods. Of the best one, tries for each option the values that other methods have,
+// keeps what is better (verdict.h), then tunes its numbers (tune.h), finds which of the renderer's settings save
+// memory or time without a loss that counts (trim.h), and stores all of this in scene.json, where
 // every command finds them. ORL_ERR_DATA: fewer than three training photographs.
 enum orl_result orl_adapt_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_adapt_params *params,

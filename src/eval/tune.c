@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/process.h"
-#include "eval/judges.h"
+#include "eval/verdict.h"
 
 enum { ROUNDS_MAX = 8 };
 
@@ -18,6 +18,7 @@ struct job {
     const struct orl_tune_params *params;
     struct orl_tune *tune;
     struct orl_judges targets;
+    struct orl_verdict best; // of tune->best
     double start_s;
     double done, total; // number of renderings, for the progress report
 };
@@ -25,25 +26,25 @@ struct job {
 // --- one trial ---
 
 static enum orl_result run_trial(struct job *job, const struct orl_render_params *render,
-                                 struct orl_tune_trial *trial)
+                                 struct orl_tune_trial *trial, struct orl_verdict *verdict)
 {
-    enum orl_result result = ORL_OK;
-    const struct orl_judges *targets = &job->targets;
-    for (size_t i = 0; result == ORL_OK && i < targets->count; i++) {
-        struct orl_metrics metrics;
-        if (orl_progress_cancelled(job->params->progress))
-            return ORL_ERR_CANCELLED;
-        orl_progress_report(job->params->progress, "tune", job->done, job->total,
-                            job->scene->photos[targets->views[i].photo].name);
-        result = orl_judges_compare(job->log, job->renderer, targets, i, render, NULL, false,
-                                    &metrics);
-        if (result != ORL_OK)
-            break;
-        job->done++;
-        trial->psnr_db += metrics.psnr_db / (double)targets->count;
-        trial->ssim += metrics.ssim / (double)targets->count;
-    }
+    orl_progress_report(job->params->progress, "tune", job->done, job->total, trial->key);
+    enum orl_result result = orl_verdict_measure(job->log, job->renderer, &job->targets, render,
+                                                 job->params->progress, verdict);
+    job->done += (double)job->targets.count;
+    trial->psnr_db = verdict->psnr_db;
+    trial->ssim = verdict->ssim;
     return result;
+}
+
+// Takes the verdict over as that of the best values.
+static void take(struct job *job, struct orl_verdict *verdict)
+{
+    orl_verdict_finish(&job->best);
+    job->best = *verdict;
+    memset(verdict, 0, sizeof *verdict);
+    job->tune->best_db = job->best.psnr_db;
+    job->tune->best_ssim = job->best.ssim;
 }
 
 static enum orl_result note_trial(struct job *job, const struct orl_tune_trial *trial)
@@ -79,15 +80,17 @@ static enum orl_result try_value(struct job *job, const struct orl_render_option
     struct orl_render_params render = tune->best;
     struct orl_tune_trial trial = {.key = option->key, .value = value};
     *field(&render, option) = (float)value;
-    enum orl_result result = run_trial(job, &render, &trial);
+    struct orl_verdict verdict = {0};
+    enum orl_result result = run_trial(job, &render, &trial, &verdict);
     if (result != ORL_OK)
         return result;
-    *kept = trial.kept = trial.psnr_db >= tune->best_db + job->params->gain_db;
-    *same = trial.psnr_db == tune->best_db;
+    *kept = trial.kept = orl_verdict_better(&verdict, &job->best, job->params->gain_db);
+    *same = trial.psnr_db == tune->best_db && trial.ssim == tune->best_ssim;
     if (trial.kept) {
         tune->best = render;
-        tune->best_db = trial.psnr_db;
+        take(job, &verdict);
     }
+    orl_verdict_finish(&verdict);
     return note_trial(job, &trial);
 }
 
@@ -151,10 +154,13 @@ static enum orl_result search(struct job *job)
 {
     struct orl_tune *tune = job->tune;
     struct orl_tune_trial start = {.kept = true};
-    enum orl_result result = run_trial(job, &tune->best, &start);
-    tune->start_db = tune->best_db = start.psnr_db;
-    if (result == ORL_OK)
+    struct orl_verdict verdict = {0};
+    enum orl_result result = run_trial(job, &tune->best, &start, &verdict);
+    if (result == ORL_OK) {
+        take(job, &verdict);
+        tune->start_db = tune->best_db;
         result = note_trial(job, &start);
+    }
     bool better = true;
     for (int round = 0; result == ORL_OK && better && round < ROUNDS_MAX && !out_of_time(job);
          round++) {
@@ -189,6 +195,7 @@ enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     if (result == ORL_OK)
         orl_progress_report(params->progress, "tune", 1, 1, NULL);
     orl_judges_finish(&job.targets);
+    orl_verdict_finish(&job.best);
     if (result != ORL_OK)
         orl_tune_finish(tune);
     return result;
