@@ -20,7 +20,7 @@
     SLOT(paint, "gather", "", \
         "Who paints the picture: `gather` asks the photographs pixel by pixel, `tiled` asks " \
         "the best few photographs of each tile of the screen, and `points` takes the colours " \
-        "of the splats.") \
+        "of the splats, or of the mesh's vertices.") \
     SLOT(select, "all", "paint=gather paint=tiled", \
         "The photographs that a frame may use: all of them, the `nearest` by their direction " \
         "from the scene's centre, the 48 that can paint the view best (`preselect`), or the " \

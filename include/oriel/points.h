@@ -26,7 +26,9 @@ bool orl_point_usable(const float position[3]);
 void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *points);
 
 // Reads PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue, radius,
-// photographs, in any order and scalar type. Other properties and elements are skipped. Points that
+// photographs, in any order and scalar type. Other properties and elements are skipped. Files of 3D
+// Gaussian splatting (f_dc_0 .. 2, opacity, scale_0 .. 2) become opaque discs, those without that are
+// more transparent than opaque. Points that
 // are not finite or beyond ORL_WORLD_MAX are dropped, and negative radii are set to 0; a warning
 // counts both.
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,

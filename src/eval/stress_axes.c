@@ -87,7 +87,9 @@ static void set(struct orl_render_params *render, const char *assignment)
 
 void orl_stress_axis_options(const struct stress_axis *axis, struct orl_render_params *render)
 {
-    if (axis->flags & STRESS_ON_HULL && strcmp(render->proxy, "splats") == 0)
+    // The hull has no colours for a method that shows the proxy's own.
+    if (axis->flags & STRESS_ON_HULL && strcmp(render->proxy, "splats") == 0 &&
+        strcmp(render->paint, "points") != 0)
         set(render, "proxy=mesh");
     for (size_t i = 0; axis->settings[i]; i++)
         set(render, axis->settings[i]);

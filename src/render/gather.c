@@ -345,7 +345,7 @@ static enum orl_result paint_points(struct frame *frame)
     return ORL_OK;
 }
 
-// Shows the splats' own colours where the splats are in front, as the normal's w tells.
+// Splats show where they are in front, as the normal's w tells.
 static bool always(const struct frame *frame)
 {
     (void)frame;
@@ -353,4 +353,4 @@ static bool always(const struct frame *frame)
 }
 
 const struct painter orl_paint_points = {
-    .name = "points", .needs = "proxy=splats", .reads_normals = always, .paint = paint_points};
+    .name = "points", .needs = "", .reads_normals = always, .paint = paint_points};

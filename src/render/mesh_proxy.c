@@ -20,6 +20,24 @@ void orl_mesh_vertices(const void *handle, const struct orl_scene *scene,
     *count = state->mesh.vertex_count;
 }
 
+// Colours of three bytes as vertex inputs of four.
+static enum orl_result upload_colors(struct orl_gpu *gpu, struct mesh_state *state)
+{
+    const struct orl_mesh *mesh = &state->mesh;
+    if (!mesh->color)
+        return ORL_OK;
+    uint8_t (*padded)[4] = orl_array(orl_gpu_log(gpu), mesh->vertex_count, sizeof *padded);
+    if (!padded)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        memcpy(padded[i], mesh->color[i], sizeof *mesh->color);
+    enum orl_result result =
+        orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh colours",
+                       mesh->vertex_count * sizeof *padded, padded, &state->colors);
+    free(padded);
+    return result;
+}
+
 enum orl_result orl_mesh_state_upload(struct orl_gpu *gpu, struct mesh_state *state)
 {
     const struct orl_mesh *mesh = &state->mesh;
@@ -37,13 +55,14 @@ enum orl_result orl_mesh_state_upload(struct orl_gpu *gpu, struct mesh_state *st
         result = orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh triangles",
                                 mesh->triangle_count * sizeof *mesh->triangle, mesh->triangle,
                                 &state->indices);
-    return result;
+    return result == ORL_OK ? upload_colors(gpu, state) : result;
 }
 
 void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state)
 {
     orl_buf_destroy(gpu, &state->vertices);
     orl_buf_destroy(gpu, &state->indices);
+    orl_buf_destroy(gpu, &state->colors);
     orl_mesh_finish(&state->mesh);
 }
 
@@ -111,17 +130,24 @@ void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view,
     *near = (float)fmax(0.999 * low, 1e-4 * (double)*far);
 }
 
+static struct mesh_block block_of(const struct mesh_state *state, const struct orl_view *view,
+                                  const struct raster_target *target)
+{
+    struct mesh_block block = {.view_size = {target->width, target->height}};
+    orl_mesh_range(state, view, &block.depth_near, &block.depth_far);
+    orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
+    orl_set_focal(&view->camera, block.focal);
+    return block;
+}
+
 void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
                    const struct orl_render_params *params, bool normals, void *memory,
                    struct surface *surface)
 {
     const struct mesh_state *state = handle;
     struct raster_target *target = memory;
-    struct mesh_block block = {.view_size = {target->width, target->height}};
-    orl_mesh_range(state, view, &block.depth_near, &block.depth_far);
+    const struct mesh_block block = block_of(state, view, target);
     (void)params, (void)normals; // nothing to choose, and normals come along
-    orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
-    orl_set_focal(&view->camera, block.focal);
     const struct orl_raster raster = {
         .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", "proxy/mesh.frag", NULL),
         .params = &block, .params_size = sizeof block,
@@ -138,9 +164,33 @@ void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_vie
                                 .depth = target->depth, .normal = target->normal};
 }
 
+// Draws the mesh again, with the colours of its vertices. Without colours it paints nothing.
+static void color(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
+                  const void *memory, const struct paint_into *into)
+{
+    const struct mesh_state *state = handle;
+    const struct raster_target *target = memory;
+    const struct mesh_block block = block_of(state, view, target);
+    // The pipeline clears the picture, so samples of photographs could not be kept.
+    if (!state->colors || into->only_unpainted)
+        return;
+    const struct orl_raster raster = {
+        .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", "proxy/mesh_color.frag", "COLORS"),
+        .params = &block, .params_size = sizeof block,
+        .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
+                    .type = GL_FLOAT},
+                   {.buf = state->colors, .stride = 4, .components = 4,
+                    .type = GL_UNSIGNED_BYTE}},
+        .indices = state->indices, .primitive = GL_TRIANGLES, .count = 3 * state->mesh.triangle_count,
+        .targets = {into->picture}, .depth = target->test,
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
+    };
+    orl_gpu_raster(gpu, &raster);
+}
+
 const struct proxy_kind orl_proxy_mesh = {
     .name = "mesh", .create = create, .update = update, .vertices = orl_mesh_vertices,
     .destroy = destroy, .resize = orl_raster_target_resize,
     .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,
-    .draw = orl_mesh_draw,
+    .draw = orl_mesh_draw, .color = color,
 };

@@ -9,6 +9,7 @@
 struct mesh_state {
     struct orl_mesh mesh; // owned
     struct orl_buf *vertices, *indices;
+    struct orl_buf *colors; // sRGB and a spare byte of each vertex; NULL: it has none
     float low[3], high[3]; // bounding box, world
     int moment;            // of the scene, whose mesh was read
 };

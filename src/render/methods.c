@@ -178,6 +178,9 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
                             needed);
         list += length;
     }
+    if (painter == &orl_paint_points && !orl_proxy_kind_of(params)->color)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "paint=points: proxy=%s has no colours",
+                        params->proxy);
     if (painter == &orl_paint_gather && orl_combine_of(params)->sweeps == 0)
         return orl_fail(log, ORL_ERR_ARGUMENT, "combine=%s goes with paint=tiled alone",
                         params->combine);

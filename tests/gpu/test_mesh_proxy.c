@@ -12,8 +12,9 @@ enum { W = 40, H = 30 };
 static struct orl_gpu *gpu;
 
 // A slanted square through (0, 0, 4) whose depth grows by half a unit per unit of x, and a small
-// triangle at z = 2 before its middle, listed first and last so that order does not matter.
-static void write_mesh(const char *dir)
+// triangle at z = 2 before its middle, listed first and last so that order does not matter. All
+// is green; with `colored` the square is red on the left and blue on the right.
+static void write_mesh(const char *dir, bool colored)
 {
     static const float square[4][3] = {{-3, -3, 2.5f}, {3, -3, 5.5f}, {3, 3, 5.5f}, {-3, 3, 2.5f}};
     static const float small[3][3] = {{-0.2f, -0.2f, 2}, {0.2f, -0.2f, 2}, {0, 0.2f, 2}};
@@ -23,6 +24,10 @@ static void write_mesh(const char *dir)
     memcpy(mesh.position, square, sizeof square);
     memcpy(mesh.position + 4, small, sizeof small);
     memcpy(mesh.triangle, faces, sizeof faces);
+    mesh.color = calloc(mesh.vertex_count, sizeof *mesh.color);
+    assert_non_null(mesh.color);
+    for (size_t i = 0; i < mesh.vertex_count; i++)
+        mesh.color[i][!colored || i >= 4 ? 1 : i % 4 == 0 || i == 3 ? 0 : 2] = 255;
     char *path = orl_path_join(NULL, dir, "mesh.ply");
     assert_int_equal(orl_mesh_write(NULL, path, &mesh), ORL_OK);
     free(path);
@@ -42,7 +47,7 @@ static void triangles_have_their_depth_and_normal(void **state)
     (void)state;
     struct fixture f;
     setup_empty(&f, 4);
-    write_mesh(f.dir);
+    write_mesh(f.dir, false);
     struct orl_view view = view_of();
     struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
     struct proxy proxy;
@@ -79,7 +84,7 @@ static void nothing_is_where_no_triangle_is(void **state)
     (void)state;
     struct fixture f;
     setup_empty(&f, 4);
-    write_mesh(f.dir);
+    write_mesh(f.dir, false);
     struct orl_view view = view_of();
     view.cam_from_world = (struct orl_pose){.r = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
     struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
@@ -102,7 +107,7 @@ static void every_method_paints_a_mesh(void **state)
     (void)state;
     struct fixture f;
     setup_empty(&f, 4);
-    write_mesh(f.dir);
+    write_mesh(f.dir, false);
     add_photo(&f, look_from(0.3, 0, 0, W, 20), green);
     add_photo(&f, look_from(-0.3, 0, 0, W, 20), green);
     for (const struct orl_method *m = orl_methods; m->name; m++) {
@@ -116,6 +121,30 @@ static void every_method_paints_a_mesh(void **state)
         assert_float_equal(frame.depth.f32[H / 2 * W + W / 2], 2, 1e-3);
         orl_frame_finish(&frame);
     }
+    teardown(&f);
+}
+
+// Light is interpolated over the square, in perspective, and the triangle hides it.
+static void points_shows_the_colours_of_vertices(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    write_mesh(f.dir, true);
+    struct orl_render_params params = orl_method_find(NULL, "points")->params;
+    assert_int_equal(orl_render_params_set(NULL, &params, "proxy=mesh"), ORL_OK);
+    struct orl_frame frame = draw(gpu, &f, view_of(), &params, 0);
+    for (int x = 8; x < W - 8; x++) {
+        double u = (x + 0.5 - W / 2) / 20, z = 4 / (1 - u / 2), share = (u * z + 3) / 6;
+        const float *c = color_at(&frame, x, 4);
+        if (fabs(u * z) > 2.9)
+            continue;
+        assert_float_equal(c[0], 1 - share, 0.01);
+        assert_float_equal(c[1], 0, 0.01);
+        assert_float_equal(c[2], share, 0.01);
+    }
+    assert_float_equal(color_at(&frame, W / 2, H / 2)[1], 1, 0.01);
+    orl_frame_finish(&frame);
     teardown(&f);
 }
 
@@ -143,6 +172,7 @@ int main(void)
         cmocka_unit_test(triangles_have_their_depth_and_normal),
         cmocka_unit_test(nothing_is_where_no_triangle_is),
         cmocka_unit_test(every_method_paints_a_mesh),
+        cmocka_unit_test(points_shows_the_colours_of_vertices),
         cmocka_unit_test(a_scene_without_mesh_says_so),
     };
     int failed = cmocka_run_group_tests_name("mesh proxy", tests, NULL, NULL);

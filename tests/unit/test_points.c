@@ -175,6 +175,35 @@ static void drops_what_is_not_finite(void **state)
 }
 
 // A full disk, played by a limit on the size of files.
+// What 3D Gaussian splatting writes: one opaque Gaussian, one transparent. Spherical harmonics,
+// scales and opacity are encoded.
+static void reads_gaussians_as_discs(void **state)
+{
+    (void)state;
+    char *dir = test_dir_make(), path[4096];
+    snprintf(path, sizeof path, "%s/points.ply", dir);
+    static const char text[] =
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+        "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\n"
+        "property float f_rest_0\nproperty float opacity\nproperty float scale_0\n"
+        "property float scale_1\nproperty float scale_2\nproperty float rot_0\n"
+        "property float rot_1\nproperty float rot_2\nproperty float rot_3\nend_header\n"
+        "1 2 3 0 0 0 1.7724539 0 -9 0.5 2 -1 -5 -3 1 0 0 0\n"
+        "4 5 6 0 0 0 0 0 0 0.5 -2 -1 -5 -3 1 0 0 0\n";
+    save(path, text, sizeof text - 1);
+    struct orl_points points;
+    assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
+    assert_int_equal(points.count, 1);
+    assert_float_equal(points.position[0][2], 3, 0);
+    assert_int_equal(points.color[0][0], 255); // 0.5 + 0.2821 * 1.7725
+    assert_int_equal(points.color[0][1], 128);
+    assert_int_equal(points.color[0][2], 0);
+    assert_float_equal(points.radius[0], exp(-2), 1e-6); // of exp(-1) and exp(-3)
+    orl_points_finish(&points);
+    test_dir_remove(dir);
+}
+
 static void leaves_nothing_when_the_disk_is_full(void **state)
 {
     (void)state;
@@ -211,6 +240,7 @@ int main(void)
         cmocka_unit_test(refuses_bad_headers),
         cmocka_unit_test(refuses_truncated),
         cmocka_unit_test(drops_what_is_not_finite),
+        cmocka_unit_test(reads_gaussians_as_discs),
         cmocka_unit_test(leaves_nothing_when_the_disk_is_full),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
