@@ -103,7 +103,8 @@ void orl_chart_sentence(const struct orl_chart_point *points, size_t count, size
         add(text, ": %.2f dB, in a time that is not known.", p->db);
         return;
     }
-    add(text, ": %.2f dB at %.3g ms a frame.", p->db, p->ms);
+    add(text, p->ms < 1000 ? ": %.2f dB at %.3g ms a frame." : ": %.2f dB at %.0f ms a frame.", p->db,
+        p->ms);
     if (p->on_front) {
         add_neighbours(text, points, count, p);
         return;
