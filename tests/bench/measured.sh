@@ -7,7 +7,7 @@
 # that are missing. Without SECTION all sections are measured, which takes hours on two cores.
 # A section writes the page of its name. Work files lie in BUILD/measured. Needs jq.
 set -euo pipefail
-sections="scenes accuracy methods parts stress steadiness frame growth memory trim prepare stereo
+sections="scenes accuracy adapt charts methods parts stress steadiness frame growth memory trim prepare stereo
 radiance replaced response resampling"
 [ $# -ge 3 ] || { sed -n '2,9s/^# *//p' "$0"; echo "sections: "$sections; exit 2; }
 build=$(realpath "$1") scenes=$(realpath -m "$2") datasets=$(realpath -m "$3")
@@ -105,14 +105,9 @@ processor() {
     sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1
 }
 
-page_scenes() {
-    local name arguments
-    while read -r name arguments; do
-        [ -e "$scenes/$name/scene.json" ] && continue
-        [ "$name" != monument ] || [ -e "$work/monument" ] ||
-            run "oriel synth monument --out WORK/monument --size 576x384 --count 24 --quiet" >&2
-        run "oriel prepare $arguments --out SCENES/NAME --max-size 768 --quiet" "$name" >&2
-    done <<'END'
+# Name and arguments of oriel prepare of each scene.
+scene_list() {
+    cat <<'END'
 fountain DATASETS/fountain-P11/images --test-list 0002.jpg,0005.jpg,0008.jpg
 herz DATASETS/Herz-Jesus-P8/images --test-list 0002.jpg,0005.jpg
 sceaux DATASETS/sceaux-castle/images --test-list 100_7103.JPG,100_7107.JPG
@@ -123,6 +118,16 @@ dino DATASETS/dino-sparse-ring/images --test-every 8
 temple DATASETS/temple-sparse-ring/images --test-every 8
 monument WORK/monument --quality draft --test-list 0005.jpg,0012.jpg,0020.jpg
 END
+}
+
+page_scenes() {
+    local name arguments
+    while read -r name arguments; do
+        [ -e "$scenes/$name/scene.json" ] && continue
+        [ "$name" != monument ] || [ -e "$work/monument" ] ||
+            run "oriel synth monument --out WORK/monument --size 576x384 --count 24 --quiet" >&2
+        run "oriel prepare $arguments --out SCENES/NAME --max-size 768 --quiet" "$name" >&2
+    done < <(scene_list)
     for name in $(scene_names); do
         jq --arg scene "$name" '. + {scene: $scene}' "$scenes/$name/scene.json"
     done | jq -s . >"$work/scenes.json"
@@ -130,7 +135,7 @@ END
     cat <<'END'
 
 Every figure of these pages is of one of these scenes. `measured.sh` prepares those that are missing; its function
-`page_scenes` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others are
+`scene_list` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others are
 photographs. *Held out* photographs take part in calibration alone. *Spread* is the robust standard deviation of what
 photographs show of one point, in stops, before and after their exposures are brought together. The commit above is of
 the program that wrote this page, the column *prepared by* names the one that made the scene.
@@ -168,6 +173,62 @@ END
     print_table "$work/accuracy.json" 'by_method(.mean.psnr_cc_db; 2)'
 }
 
+# What --adapt makes of a copy of a scene, and all methods on the scene itself. A scene that an older
+# program prepared is prepared anew as far as stages have changed since.
+adapted_scene() { # NAME
+    local arguments start end
+    arguments=$(scene_list | sed -n "s/^$1 //p")
+    rm -rf "$work/adapted/$1"
+    mkdir -p "$work/adapted"
+    cp -r "$scenes/$1" "$work/adapted/$1"
+    start=$EPOCHREALTIME
+    run "${adapt/ARGUMENTS/$arguments}" "$1" >"$work/adapted.txt"
+    end=$EPOCHREALTIME
+    run "$eval" "$1" >"$work/adapted.json"
+    run "$all" "$1" >"$work/all.json"
+    jq -n --arg scene "$1" --argjson from "$start" --argjson to "$end" \
+        --slurpfile manifest "$work/adapted/$1/scene.json" \
+        --slurpfile adapted "$work/adapted.json" --slurpfile all "$work/all.json" \
+        --rawfile training "$work/adapted.txt" '
+        def list: if type == "array" then . else [.] end;
+        {scene: $scene, adapt_s: ($to - $from), device: ($all[0] | list[0].device),
+         prepare_s: ([$manifest[0].stages[].wall_s] | add), method: $manifest[0].render.method,
+         settings: $manifest[0].tuned[$manifest[0].render.method].settings,
+         adapted: ($adapted[0] | list[0].mean), all: ($all[0] | list | map({method} + .mean)),
+         training: [$training | split("\n")[] | [splits(" +")] | select(.[2] == "dB")
+                    | {method: .[0], psnr_db: (.[1] | tonumber), ssim: (.[3] | tonumber)}]}'
+}
+
+page_adapt() {
+    local adapt='oriel prepare ARGUMENTS --out WORK/adapted/NAME --max-size 768 --resume --adapt --adapt-budget 600 --quiet'
+    local eval='oriel eval WORK/adapted/NAME --quiet --json -'
+    local all='oriel eval SCENES/NAME --method all --quiet --json -'
+    local name
+    for name in $(scene_names); do
+        adapted_scene "$name"
+    done | jq -s . >"$work/adapt.json"
+    head_of "Adapted scenes" "$work/adapt.json"
+    cat <<'END'
+
+What `oriel prepare --adapt` chooses by training photographs, each rendered without itself, and what that gives on
+held-out photographs, which it never reads. The best of the methods as they are, for each figure, stands beside it.
+END
+    command_block "$adapt" "$eval" "$all"
+    print_table "$work/adapt.json" '
+      table(["scene", "adapted", "PSNR, dB", "best other", "SSIM", "best other", "adapt, s", "prepare, s"];
+        .[] | (.all | max_by(.psnr_db)) as $p | (.all | max_by(.ssim)) as $s
+          | [.scene, "`" + .method + "`" + ([.settings // {} | to_entries[] | " `\(.key)=\(.value)`"] | add // ""),
+             (.adapted.psnr_db | fixed(2)), ($p.psnr_db | fixed(2)) + " `" + $p.method + "`",
+             (.adapted.ssim | fixed(3)), ($s.ssim | fixed(3)) + " `" + $s.method + "`",
+             (.adapt_s | fixed(0)), (.prepare_s | fixed(0))])'
+    printf '**Training photographs, each left out**, PSNR in dB and SSIM at half their size\n\n'
+    print_table "$work/adapt.json" '
+      [.[].training[].method] as $all | ($all | reduce .[] as $m ([]; if index([$m]) then . else . + [$m] end)) as $methods
+      | table(["scene"] + $methods;
+          .[] | . as $of | [.scene] + [$methods[] as $m | [$of.training[] | select(.method == $m)][0]
+            | if . == null then "-" else (.psnr_db | fixed(2)) + ", " + (.ssim | fixed(3)) end])'
+}
+
 # One option of the default method: a row for each scene, a column for each value.
 vary() { # KEY=A,B,..
     local command="oriel eval SCENES/NAME --vary $1 --quiet --json -"
@@ -176,6 +237,47 @@ vary() { # KEY=A,B,..
     print_table "$work/part.json" 'group_by(.scene) as $s
       | table(["scene"] + [$s[0][].setting | "`" + . + "`"];
               $s[] | [(.[0] | name)] + [.[] | .mean | (.psnr_db | fixed(2)) + ", " + (.ssim | fixed(3))])'
+}
+
+page_charts() {
+    local name chart='oriel chart'
+    for name in $(scene_names fountain herz sakharov temple monument); do
+        chart+=" SCENES/$name"
+    done
+    chart+=' --out WORK/chart --quick --quiet'
+    run "$chart" >&2
+    cp "$work/chart/chart.svg" "$pages/charts.svg"
+    head_of "All methods over several scenes" "$work/chart/chart.json"
+    cat <<'END'
+
+All methods as they are, one report: two held-out photographs of each scene at half their size. `cpu ms` is the processor
+time of a frame, the geometric mean over the scenes; the figure has the wall time, which other work on the machine
+lengthens. *Front*: no method is both faster, by wall time, and better.
+[Columns](../reference/chart.md), [all settings on one scene](chart.md).
+END
+    command_block "$chart"
+    printf '![PSNR against the time of a frame, means over the scenes](charts.svg)\n\n'
+    print_table "$work/chart/chart.json" '
+      def row_of: [(.mean.psnr_db | fixed(2)), (.mean.ssim | fixed(4)), (.mean.flip | fixed(4)),
+                   (.flicker | fixed(2)), (.cpu_ms | fixed(0)), (.device_bytes / 1048576 | fixed(0)),
+                   (if .on_front then "front" else "" end)];
+      table(["method", "PSNR, dB", "sd", "SSIM", "FLIP", "flicker", "cpu ms", "device, MiB", ""];
+        .overall[] | row_of as $r | ["`" + .method + "`", $r[0], (.sd.psnr_db | fixed(2))] + $r[1:])'
+    printf '**PSNR in dB and SSIM of each scene**\n\n'
+    print_table "$work/chart/chart.json" '
+      [.scenes[].name] as $names | .rows as $rows
+      | table(["method"] + $names;
+          .overall[].method as $m | ["`" + $m + "`"] + [$names[] as $n
+            | [$rows[] | select(.scene == $n and .method == $m)][0].mean
+            | (.psnr_db | fixed(2)) + ", " + (.ssim | fixed(3))])'
+    printf '**Processor time of a frame of each scene**, ms\n\n'
+    print_table "$work/chart/chart.json" '
+      [.scenes[].name] as $names | .rows as $rows
+      | table(["method"] + $names;
+          .overall[].method as $m | ["`" + $m + "`"] + [$names[] as $n
+            | [$rows[] | select(.scene == $n and .method == $m)][0].cpu_ms | fixed(0)])'
+    printf '**What each method buys**, over all scenes\n\n'
+    jq -r '.overall[] | "- " + .sentence' "$work/chart/chart.json"
 }
 
 # A row for each method on a scene, with these options: accuracy from eval, processor time and memory of
