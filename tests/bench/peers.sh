@@ -19,6 +19,8 @@ colmap=${ORIEL_COLMAP:-colmap}
 export QT_QPA_PLATFORM=offscreen LC_ALL=C
 name=$(basename "$scene")
 peers=()
+divide=1 # of the pictures that the chart times
+[[ " $* " != *" --quick "* ]] || divide=2
 mkdir -p "$out/logs"
 
 held_out() {
@@ -48,7 +50,7 @@ draw() {
         "$oriel" render "$ws" --at "$photo" --method points "$@" --quiet \
             --out "$out/pictures/$peer/$name/${photo%.*}.png" </dev/null
     done
-    size=$("$oriel" info "$ws" --json | jq -r '.photographs[0].size | join("x")')
+    size=$("$oriel" info "$ws" --json | jq -r ".photographs[0].size | map(. / $divide | floor) | join(\"x\")")
     cost=$("$oriel" bench "$ws" --method points "$@" --size "$size" --quick --seconds 1 --quiet \
         --json - | jq -r '.sizes[0] | "ms=\(.frame_ms),MIB=\(.device_bytes / 1048576)"')
     peers+=(--peer "$peer=$out/pictures/$peer,$cost")
