@@ -1,11 +1,13 @@
 #include "preprocess/plan.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "preprocess/calibrate/parts.h"
 #include "preprocess/cloud/clusters.h"
 #include "preprocess/cloud/fuse.h"
 #include "preprocess/densify_stage.h"
@@ -16,7 +18,12 @@ static const double PASS_S_PER_MPX = 8, FUSE_S_PER_MPX = 1.5, FINISH_S_PER_MPX =
 static const double FUSE_BYTES_PER_PX = 34;
 static const double PART_BASE_BYTES = 140 << 20, PART_BYTES_PER_PX = 300;
 static const double FINISH_BASE_BYTES = 100 << 20, FINISH_BYTES_PER_PX = 48;
+// Of calibrate: of a photograph of --quality standard, and of a pair.
+static const double FEATURES_S = 2, PAIR_S = 0.2, MAP_S = 1, FEATURES_BYTES = 1 << 20;
+static const double CALIBRATE_BYTES = 512 << 20;
 enum {
+    PARTNERS = 14,         // pairs that are matched, a photograph, at most about
+    PART_PAIRS = 512,      // pairs of a job
     PASS_BYTES = 16,       // of a pixel in depth and normal maps
     CONFIDENCE_BYTES = 4,  // and in the last pass
     CLOUD_BYTES = 4,       // of points.ply, a pixel of the photographs
@@ -26,6 +33,8 @@ struct planner {
     const struct orl_log *log;
     char *dir;         // owned; the scene, absolute
     json_t *arguments; // of oriel prepare
+    bool undistorted;  // else the calibration is planned,
+    size_t given;      // of so many photographs
     struct orl_names photos;
     struct orl_colmap_model model;
     struct orl_densify_params densify;
@@ -59,21 +68,36 @@ static enum orl_quality quality_of(const struct planner *p)
     return (enum orl_quality)quality;
 }
 
+// The photographs of a calibration that has begun; *begun stays NULL where none has.
+static enum orl_result read_begun(const struct planner *p, json_t **begun)
+{
+    char *path = orl_path_join(p->log, p->dir, ORL_PARTS_STATE);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(path))
+        result = orl_json_read(p->log, path, begun);
+    free(path);
+    return result;
+}
+
 static enum orl_result read_arguments(struct planner *p)
 {
-    json_t *stages = NULL;
+    json_t *stages = NULL, *begun = NULL;
     char *path = orl_path_join(p->log, p->dir, ".oriel/stages.json");
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_path_is_file(path))
         result = orl_json_read(p->log, path, &stages);
-    const json_t *undistorted = json_object_get(json_object_get(stages, "done"), "undistort");
+    p->undistorted = json_object_get(json_object_get(stages, "done"), "undistort") != NULL;
+    if (result == ORL_OK && !p->undistorted)
+        result = read_begun(p, &begun);
+    p->given = json_array_size(json_object_get(begun, "photographs"));
+    json_decref(begun);
     json_t *arguments = json_object_get(stages, "arguments");
     bool texts = json_array_size(arguments) > 0;
     for (size_t i = 0; i < json_array_size(arguments); i++)
         texts = texts && json_is_string(json_array_get(arguments, i));
-    if (result == ORL_OK && (!undistorted || !texts))
+    if (result == ORL_OK && ((!p->undistorted && !p->given) || !texts))
         result = orl_fail(p->log, ORL_ERR_DATA, "%s: nothing to plan yet: run oriel prepare PHOTOS "
-                          "--out %s --until undistort first", p->dir, p->dir);
+                          "--out %s --until undistort (or collect) first", p->dir, p->dir);
     if (result == ORL_OK)
         p->arguments = json_incref(arguments);
     json_decref(stages);
@@ -253,7 +277,7 @@ static json_t *fuse_command(const struct planner *p, int cluster)
     return list;
 }
 
-// A cluster needs the parts of the last pass that hold its photographs. Sets the sum of their pixels.
+// A cluster needs the parts of the last pass that hold its photographs. *pixels: their sum.
 static enum orl_result fuse_needs(const struct planner *p, int cluster, json_t *needs,
                                   double *pixels)
 {
@@ -293,14 +317,24 @@ static enum orl_result plan_cluster(struct planner *p, int cluster)
     return result == ORL_OK && !path ? ORL_ERR_MEMORY : result;
 }
 
-static void plan_finish(struct planner *p)
+static json_t *prepare_command(const struct planner *p, const char *until)
 {
-    json_t *command = json_pack("[s, s]", "oriel", "prepare"), *needs = json_array();
-    double pixels = 0;
+    json_t *command = json_pack("[s, s]", "oriel", "prepare");
     json_array_extend(command, p->arguments);
     add_text(command, "--out");
     add_text(command, p->dir);
     add_text(command, "--resume");
+    if (until) {
+        add_text(command, "--until");
+        add_text(command, until);
+    }
+    return command;
+}
+
+static void plan_finish(struct planner *p)
+{
+    json_t *needs = json_array();
+    double pixels = 0;
     for (int part = 0; part < p->parts; part++)
         json_array_append_new(needs, job_name(p, p->densify.geometric_passes, part));
     for (int c = 0; p->clusters.count > 1 && c < (int)p->clusters.count; c++)
@@ -310,7 +344,7 @@ static void plan_finish(struct planner *p)
     bool fuses = p->clusters.count < 2;
     json_array_append_new(p->jobs, json_pack(
         "{s:s, s:s, s:o, s:o, s:[s+], s:[s+, s+], s:i, s:f, s:f, s:f, s:f}", "name", "finish",
-        "kind", "finish", "command", command, "needs", needs, "inputs", p->dir, "/stereo",
+        "kind", "finish", "command", prepare_command(p, NULL), "needs", needs, "inputs", p->dir, "/stereo",
         "outputs", p->dir, "/points.ply", p->dir, "/scene.json", "threads", 1, "cpu_s",
         pixels * 1e-6 * (FINISH_S_PER_MPX + (fuses ? FUSE_S_PER_MPX : 0)), "memory_bytes",
         FINISH_BASE_BYTES + (fuses ? FINISH_BYTES_PER_PX : CLOUD_BYTES * 2.0) * pixels,
@@ -329,6 +363,70 @@ static enum orl_result plan_jobs(struct planner *p)
         result = plan_cluster(p, c);
     plan_finish(p);
     return result;
+}
+
+// --- calibration ---
+
+static json_t *part_name(const char *step, int part)
+{
+    return json_sprintf("%s-%06d", step, part + 1);
+}
+
+// A job of the calibration: its inputs and outputs are below the scene.
+static void plan_step(struct planner *p, enum orl_part_step step, int part, int parts,
+                      json_t *needs, double cpu_s, double bytes)
+{
+    const char *name = orl_part_step_names[step];
+    json_t *command = json_pack("[s, s, s, s, s]", "oriel", "calibrate", p->dir, "--step", name);
+    if (step != ORL_PART_PAIRS) {
+        add_text(command, "--part");
+        json_array_append_new(command, json_sprintf("%d/%d", part + 1, parts));
+    }
+    json_t *output = json_sprintf("%s/" ORL_CALIBRATE_WORK "/%s-%06d-of-%06d.db", p->dir, name,
+                                  part + 1, parts);
+    json_array_append_new(p->jobs, json_pack(
+        "{s:o, s:s, s:o, s:o, s:[s+, s+], s:[o], s:i, s:f, s:f, s:f, s:f}", "name",
+        part_name(name, part), "kind", name, "command", command, "needs", needs, "inputs", p->dir,
+        "/.oriel/photos", p->dir, "/" ORL_PARTS_STATE, "outputs", output, "threads", 2, "cpu_s",
+        cpu_s, "memory_bytes", CALIBRATE_BYTES, "read_bytes", bytes, "written_bytes", bytes));
+}
+
+// Features and matches in parts where pairs are chosen by retrieval; a few photographs, and those
+// whose pairs COLMAP chooses, are one job.
+static void plan_calibration(struct planner *p, int photographs)
+{
+    json_t *features = json_array(), *chosen = json_array(), *matches = json_array();
+    double count = (double)p->given, pairs = count * PARTNERS;
+    int parts = (int)((p->given + (size_t)photographs - 1) / (size_t)photographs);
+    int chunks = (int)(pairs / PART_PAIRS) + 1;
+    const char *matching = argument(p, "--matching");
+    bool retrieves = orl_match_retrieves(matching, p->given);
+    for (int k = 0; retrieves && k < parts; k++) {
+        double share = count / parts;
+        plan_step(p, ORL_PART_FEATURES, k, parts, json_array(), share * FEATURES_S,
+                  share * FEATURES_BYTES);
+        json_array_append_new(features, part_name("features", k));
+    }
+    if (retrieves) {
+        plan_step(p, ORL_PART_PAIRS, 0, 1, json_incref(features), count * 0.1,
+                  count * FEATURES_BYTES);
+        json_array_append_new(chosen, part_name("pairs", 0));
+    }
+    for (int k = 0; retrieves && k < chunks; k++) {
+        plan_step(p, ORL_PART_MATCHES, k, chunks, json_incref(chosen), pairs / chunks * PAIR_S,
+                  fmin(count, 2 * pairs / chunks) * FEATURES_BYTES);
+        json_array_append_new(matches, part_name("matches", k));
+    }
+    json_array_append_new(p->jobs, json_pack(
+        "{s:s, s:s, s:o, s:O, s:[s+], s:[s+, s+], s:i, s:f, s:f, s:f, s:f}", "name", "calibrate",
+        "kind", "calibrate", "command", prepare_command(p, "undistort"), "needs", matches, "inputs",
+        p->dir, "/" ORL_CALIBRATE_WORK, "outputs", p->dir, "/sparse", p->dir, "/images", "threads",
+        2, "cpu_s", count * MAP_S + (retrieves ? 0 : count * FEATURES_S + pairs * PAIR_S),
+        "memory_bytes", CALIBRATE_BYTES + count * FEATURES_BYTES, "read_bytes",
+        count * FEATURES_BYTES, "written_bytes", count * FEATURES_BYTES));
+    json_decref(features);
+    json_decref(chosen);
+    json_decref(matches);
 }
 
 static json_t *sum_jobs(const json_t *jobs)
@@ -357,14 +455,16 @@ enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photo
         result = ORL_ERR_MEMORY;
     if (result == ORL_OK && !orl_path_is_file(manifest)) {
         result = read_arguments(&p);
-        if (result == ORL_OK)
+        if (result == ORL_OK && !p.undistorted)
+            plan_calibration(&p, photographs);
+        else if (result == ORL_OK)
             result = read_scene(&p, photographs);
-        if (result == ORL_OK)
+        if (result == ORL_OK && p.undistorted)
             result = plan_jobs(&p);
     }
     if (result == ORL_OK)
         *plan = json_pack("{s:i, s:s, s:I, s:O, s:o}", "version", 1, "scene", p.dir,
-                          "photographs", (json_int_t)p.photos.count, "jobs", p.jobs, "sum",
+                          "photographs", (json_int_t)(p.undistorted ? p.photos.count : p.given), "jobs", p.jobs, "sum",
                           sum_jobs(p.jobs));
     if (result == ORL_OK && !*plan)
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: a name is not UTF-8", scene);

@@ -62,8 +62,8 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
     if (result == ORL_OK && whole)
         result = orl_scene_json_write(&job);
     if (result == ORL_OK && !whole)
-        orl_logf(log, ORL_LOG_INFO, "%s: calibrated and undistorted; oriel plan says what is left",
-                 job.dir);
+        orl_logf(log, ORL_LOG_INFO, "%s: %s; oriel plan says what is left", job.dir,
+                 params->until == ORL_UNTIL_COLLECT ? "collected" : "calibrated and undistorted");
     // Only fuse and ground read the depth maps, so the maps can go once the scene is complete.
     if (result == ORL_OK && whole && params->keep == ORL_KEEP_MINIMAL)
         result = orl_job_remove(&job, "stereo");

@@ -323,8 +323,7 @@ static void add_usage(const struct orl_job *job, double start_s, const struct ru
     json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
     json_object_set_new(record, "child_peak_rss_mib",
                         json_real((double)job->child_peak_bytes / (1 << 20)));
-    if (json_object_size(job->programs))
-        json_object_set(record, "programs", job->programs);
+    json_object_update(record, job->programs);
 }
 
 // Pixels of the undistorted photographs, held-out ones included.
@@ -430,7 +429,10 @@ enum orl_result orl_stages_run(struct orl_job *job)
     enum orl_result result = before ? find_current(job, current) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = invalidate(job, current);
-    int end = job->params->until == ORL_UNTIL_UNDISTORT ? ORL_STAGE_DENSIFY : ORL_STAGE_COUNT;
+    static const int ends[] = {[ORL_UNTIL_END] = ORL_STAGE_COUNT,
+                               [ORL_UNTIL_COLLECT] = ORL_STAGE_CALIBRATE,
+                               [ORL_UNTIL_UNDISTORT] = ORL_STAGE_DENSIFY};
+    int end = ends[job->params->until];
     for (int i = 1; result == ORL_OK && i < end; i++) {
         if (orl_progress_cancelled(job->progress))
             result = ORL_ERR_CANCELLED;
@@ -443,6 +445,8 @@ enum orl_result orl_stages_run(struct orl_job *job)
     }
     if (result == ORL_OK && end == ORL_STAGE_DENSIFY && !current[ORL_STAGE_DENSIFY])
         result = orl_stage_densify_begin(job);
+    if (result == ORL_OK && end == ORL_STAGE_CALIBRATE && !current[ORL_STAGE_CALIBRATE])
+        result = orl_calibrate_begin(job);
     json_decref(before);
     return result;
 }

@@ -34,8 +34,9 @@ enum orl_densifier { ORL_DENSIFIER_AUTO, ORL_DENSIFIER_GL, ORL_DENSIFIER_COLMAP 
 // (stereo/).
 enum orl_keep { ORL_KEEP_MINIMAL, ORL_KEEP_ALL };
 
-// undistort: stops before the stereo, which oriel plan divides into jobs for several machines.
-enum orl_until { ORL_UNTIL_END, ORL_UNTIL_UNDISTORT };
+// collect and undistort: stops before the features or the stereo, which oriel plan divides into jobs
+// for several machines.
+enum orl_until { ORL_UNTIL_END, ORL_UNTIL_COLLECT, ORL_UNTIL_UNDISTORT };
 
 // The triangle mesh that is made for methods that draw one; none: no mesh. poisson: from the points.
 // delaunay: from the sparse points and what sees them; needs a COLMAP built with CGAL.

@@ -7,14 +7,16 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "preprocess/calibrate/features.h"
 #include "preprocess/calibrate/mapper.h"
 #include "preprocess/calibrate/match.h"
+#include "preprocess/calibrate/parts.h"
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/photos/doubts.h"
 #include "preprocess/photos/normalise.h"
 
 #define WORK ORL_CALIBRATE_WORK
-#define NORMALISED WORK "/normalised" // what features are taken from
+#define NORMALISED ORL_CALIBRATE_NORMALISED
 #define DONE ".oriel/calibrate"
 
 enum {
@@ -31,8 +33,7 @@ struct candidate {
 
 struct calibration {
     struct orl_job *job;
-    int *group;          // per photograph: its camera
-    int group_count;
+    struct orl_camera_groups groups;
     struct candidate best; // so far
     enum orl_matching way; // of choosing pairs
     struct orl_match_summary pairs;
@@ -40,167 +41,6 @@ struct calibration {
     bool straight;       // distortion is taken to be none from now on
     int tries;           // mapper runs, for folder names
 };
-
-// --- which photographs share a camera ---
-
-static bool has_exif(const struct orl_source *s)
-{
-    return s->exif.make[0] || s->exif.model[0] || s->exif.focal_mm > 0 || s->exif.focal_35mm > 0;
-}
-
-static bool same_camera(const struct orl_source *a, const struct orl_source *b, bool one_size)
-{
-    if (a->width != b->width || a->height != b->height || has_exif(a) != has_exif(b) ||
-        a->clip != b->clip)
-        return false;
-    if (a->clip)
-        return true;
-    if (!has_exif(a))
-        return one_size;
-    return strcmp(a->exif.make, b->exif.make) == 0 && strcmp(a->exif.model, b->exif.model) == 0 &&
-           a->exif.focal_mm == b->exif.focal_mm && a->exif.focal_35mm == b->exif.focal_35mm;
-}
-
-static enum orl_result group_photos(struct calibration *c)
-{
-    const struct orl_job *job = c->job;
-    enum orl_camera_sharing sharing = job->params->sharing;
-    c->group = orl_array(job->log, job->source_count, sizeof *c->group);
-    if (!c->group)
-        return ORL_ERR_MEMORY;
-    bool one_size = true;
-    for (size_t i = 1; i < job->source_count; i++)
-        one_size = one_size && job->sources[i].width == job->sources[0].width &&
-                   job->sources[i].height == job->sources[0].height;
-    if (sharing == ORL_SHARING_SINGLE && !one_size)
-        return orl_fail(job->log, ORL_ERR_ARGUMENT,
-                        "--camera-sharing single: the photographs have different sizes");
-    for (size_t i = 0; i < job->source_count; i++) {
-        int group = -1;
-        for (size_t k = 0; k < i && group < 0 && sharing != ORL_SHARING_EACH; k++)
-            if (sharing == ORL_SHARING_SINGLE ||
-                same_camera(&job->sources[k], &job->sources[i], one_size))
-                group = c->group[k];
-        c->group[i] = group >= 0 ? group : c->group_count++;
-    }
-    return ORL_OK;
-}
-
-// --- features ---
-
-static enum orl_result link_masks(const struct calibration *c, char **masks)
-{
-    const struct orl_job *job = c->job;
-    *masks = NULL;
-    enum orl_result result = ORL_OK;
-    if (!job->params->masks_dir)
-        return ORL_OK;
-    result = orl_job_fresh_dir(job, WORK "/masks");
-    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
-        const struct orl_source *source = &job->sources[i];
-        if (!source->mask)
-            continue;
-        char *path = orl_job_path(job, WORK "/masks/%s.png", source->name);
-        result = path ? orl_job_link(job, source->mask, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    if (result == ORL_OK && !(*masks = orl_job_path(job, WORK "/masks")))
-        result = ORL_ERR_MEMORY;
-    return result;
-}
-
-static void feature_settings(const struct orl_job *job, bool costly, struct orl_colmap_args *args)
-{
-    static const int sizes[] = {[ORL_QUALITY_DRAFT] = 1600, [ORL_QUALITY_STANDARD] = 3200,
-                                [ORL_QUALITY_HIGH] = 3200};
-    static const int counts[] = {[ORL_QUALITY_DRAFT] = 4096, [ORL_QUALITY_STANDARD] = 8192,
-                                 [ORL_QUALITY_HIGH] = 16384};
-    enum orl_quality quality = job->params->quality;
-    orl_colmap_arg(args, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda && !costly);
-    orl_colmap_arg(args, "--SiftExtraction.max_image_size", "%d", sizes[quality]);
-    orl_colmap_arg(args, "--SiftExtraction.max_num_features", "%d",
-                   counts[quality] * (costly ? 2 : 1));
-    if (costly) {
-        orl_colmap_arg(args, "--SiftExtraction.estimate_affine_shape", "1");
-        orl_colmap_arg(args, "--SiftExtraction.domain_size_pooling", "1");
-        orl_colmap_arg(args, "--SiftExtraction.peak_threshold", "0.004");
-    }
-}
-
-// Features of the photographs in `names`, which share one camera or have one each.
-static enum orl_result extract(const struct calibration *c, const struct orl_names *names,
-                               bool shared, bool costly, double done)
-{
-    struct orl_job *job = c->job;
-    struct orl_colmap_args args = {0};
-    char *list = orl_job_path(job, WORK "/list.txt"), *masks = NULL;
-    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    char *photos = orl_job_path(job, orl_job_has(job, NORMALISED) ? NORMALISED : ".oriel/photos");
-    enum orl_result result = list && database && photos ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_write_list(job, list, names);
-    if (result == ORL_OK)
-        result = link_masks(c, &masks);
-    if (result != ORL_OK)
-        goto end;
-    // More parameters need more photographs to determine them.
-    bool rich = shared && names->count >= 8 && job->params->quality == ORL_QUALITY_HIGH;
-    orl_colmap_arg(&args, "--database_path", "%s", database);
-    orl_colmap_arg(&args, "--image_path", "%s", photos);
-    orl_colmap_arg(&args, "--image_list_path", "%s", list);
-    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
-    orl_colmap_arg(&args, shared ? "--ImageReader.single_camera"
-                                 : "--ImageReader.single_camera_per_image", "1");
-    orl_colmap_arg(&args, "--ImageReader.camera_model", "%s", rich ? "OPENCV" : "SIMPLE_RADIAL");
-    if (masks)
-        orl_colmap_arg(&args, "--ImageReader.mask_path", "%s", masks);
-    feature_settings(job, costly, &args);
-    result = orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "feature_extractor", .step = "features", .done = done,
-        .share = (double)names->count, .total = (double)job->source_count}, &args);
-end:
-    free(list);
-    free(masks);
-    free(database);
-    free(photos);
-    return result;
-}
-
-static enum orl_result collect_group(const struct calibration *c, int group, bool alone,
-                                     const int *sizes, struct orl_names *names)
-{
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < c->job->source_count; i++)
-        if (alone ? sizes[c->group[i]] == 1 : c->group[i] == group && sizes[group] > 1)
-            result = orl_names_add(c->job->log, names, c->job->sources[i].name);
-    return result;
-}
-
-static enum orl_result extract_all(const struct calibration *c, bool costly)
-{
-    const struct orl_job *job = c->job;
-    int *sizes = orl_array(job->log, (size_t)c->group_count, sizeof *sizes);
-    if (!sizes)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < job->source_count; i++)
-        sizes[c->group[i]]++;
-    enum orl_result result = ORL_OK;
-    double done = 0;
-    // One run a shared camera; the last one takes all that have a camera of their own.
-    for (int g = 0; result == ORL_OK && g <= c->group_count; g++) {
-        struct orl_names names = {0};
-        bool alone = g == c->group_count;
-        result = collect_group(c, alone ? 0 : g, alone, sizes, &names);
-        if (result == ORL_OK && names.count)
-            result = extract(c, &names, !alone, costly, done);
-        done += (double)names.count;
-        orl_names_finish(&names);
-    }
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "features", 1, 1, NULL);
-    free(sizes);
-    return result;
-}
 
 // --- the mapper ---
 
@@ -350,6 +190,15 @@ static enum orl_result restart_database(const struct calibration *c)
     return result;
 }
 
+static enum orl_result extract_all(const struct calibration *c, bool costly)
+{
+    enum orl_result result = orl_features_link_masks(c->job);
+    return result == ORL_OK
+               ? orl_features_extract(c->job, &c->groups, &(struct orl_features_run){
+                     .database = ORL_CALIBRATE_STEM, .parts = 1, .costly = costly})
+               : result;
+}
+
 // More features that bear wider baselines, for sets that hardly overlap.
 static enum orl_result try_costly(struct calibration *c)
 {
@@ -488,14 +337,21 @@ static enum orl_result normalise(const struct calibration *c)
     return result;
 }
 
-// Features and matches survive an interruption of the mapper.
+// Features and matches survive an interruption of the mapper. Those that jobs have made are used.
 static enum orl_result begin_database(struct calibration *c)
 {
-    enum orl_result result;
+    enum orl_result result = ORL_OK;
+    bool joined = false;
     if (is_marked(c)) {
         orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: features and matches are there already");
         return ORL_OK;
     }
+    if (orl_parts_begun(c->job))
+        result = orl_parts_join(c->job, &c->pairs, &joined);
+    if (result == ORL_OK && joined)
+        orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: using the features and matches of jobs");
+    if (result != ORL_OK || joined)
+        return result == ORL_OK ? set_mark(c, true) : result;
     if ((result = orl_job_fresh_dir(c->job, WORK)) != ORL_OK ||
         (result = normalise(c)) != ORL_OK || (result = extract_all(c, false)) != ORL_OK ||
         (result = orl_match(c->job, c->way, false, &c->pairs)) != ORL_OK)
@@ -536,6 +392,8 @@ static enum orl_result finish(struct calibration *c)
     enum orl_result result = orl_dir_remove(job->log, model);
     if (result == ORL_OK)
         result = orl_job_remove(job, NORMALISED);
+    if (result == ORL_OK)
+        result = orl_parts_remove(job);
     if (result == ORL_OK && rename(c->best.path, model) != 0)
         result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", model, strerror(errno));
     free(model);
@@ -574,10 +432,10 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
         result = orl_mapper_choose(job, &c.mapper);
     if (result != ORL_OK)
         return result;
-    if ((result = group_photos(&c)) != ORL_OK)
+    if ((result = orl_camera_groups_find(job, &c.groups)) != ORL_OK)
         goto end;
     orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu photographs, %d camera%s, %s matching (%s)",
-             job->source_count, c.group_count, c.group_count == 1 ? "" : "s",
+             job->source_count, c.groups.count, c.groups.count == 1 ? "" : "s",
              orl_matching_names[c.way], ways[c.way]);
     if ((result = begin_database(&c)) != ORL_OK ||
         (result = map(&c, false, NULL)) != ORL_OK ||
@@ -586,7 +444,7 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
         (result = finish(&c)) != ORL_OK)
         goto end;
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
-    json_object_set_new(record, "cameras", json_integer(c.group_count));
+    json_object_set_new(record, "cameras", json_integer(c.groups.count));
     json_object_set_new(record, "matching", json_string(orl_matching_names[c.way]));
     json_object_set_new(record, "mapper", json_string(orl_mapper_names[c.mapper]));
     if (c.pairs.tried)
@@ -597,7 +455,23 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
     name_left_out(&c, record);
     orl_job_set_calibrated(job, &c.best.model);
 end:
-    free(c.group);
+    orl_camera_groups_finish(&c.groups);
     candidate_finish(&c.best);
+    return result;
+}
+
+enum orl_result orl_calibrate_begin(struct orl_job *job)
+{
+    struct calibration c = {.job = job};
+    if (orl_parts_begun(job))
+        return ORL_OK;
+    enum orl_result result = orl_camera_groups_find(job, &c.groups);
+    if (result == ORL_OK)
+        result = orl_job_fresh_dir(job, WORK);
+    if (result == ORL_OK)
+        result = normalise(&c);
+    if (result == ORL_OK)
+        result = orl_parts_begin(job, &c.groups);
+    orl_camera_groups_finish(&c.groups);
     return result;
 }

@@ -248,3 +248,154 @@ enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide)
     return run_sql(db, hide ? "UPDATE images SET name = replace(name, ' ', '/')"
                             : "UPDATE images SET name = replace(name, '/', ' ')");
 }
+
+// --- databases of parts ---
+
+static enum orl_result run_with_text(struct orl_database *db, const char *sql, const char *first,
+                                     const char *second)
+{
+    sqlite3_stmt *statement = NULL;
+    bool done = sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK &&
+                sqlite3_bind_text(statement, 1, first, -1, SQLITE_STATIC) == SQLITE_OK &&
+                (!second ||
+                 sqlite3_bind_text(statement, 2, second, -1, SQLITE_STATIC) == SQLITE_OK) &&
+                sqlite3_step(statement) == SQLITE_DONE;
+    enum orl_result result = done ? ORL_OK : fail(db);
+    sqlite3_finalize(statement);
+    return result;
+}
+
+static enum orl_result attach(struct orl_database *db, const char *path)
+{
+    return run_with_text(db, "ATTACH ? AS part", path, NULL);
+}
+
+enum orl_result orl_database_detach(struct orl_database *db)
+{
+    return run_sql(db, "DETACH part");
+}
+
+// Rigs and frames of COLMAP 3.12 refer to cameras and photographs; they are not renumbered here.
+static enum orl_result refuse_rigs(struct orl_database *db)
+{
+    sqlite3_stmt *statement = NULL;
+    int step = SQLITE_ERROR;
+    if (sqlite3_prepare_v2(db->handle, "SELECT 1 FROM sqlite_master WHERE name = 'frames'", -1,
+                           &statement, NULL) == SQLITE_OK)
+        step = sqlite3_step(statement);
+    sqlite3_finalize(statement);
+    return step == SQLITE_ROW
+               ? orl_fail(db->log, ORL_ERR_UNSUPPORTED, "%s: jobs cannot share features of a COLMAP "
+                          "that has rigs (3.12 and later); run oriel prepare without them",
+                          db->path)
+               : step == SQLITE_DONE ? ORL_OK : fail(db);
+}
+
+// Runs `sql` on the attached database, at once or not at all.
+static enum orl_result add_part(struct orl_database *db, const char *path, const char *sql)
+{
+    enum orl_result result = attach(db, path);
+    if (result != ORL_OK)
+        return result;
+    result = run_sql(db, "BEGIN");
+    if (result == ORL_OK)
+        result = run_sql(db, sql);
+    if (result == ORL_OK)
+        result = run_sql(db, "COMMIT");
+    else
+        sqlite3_exec(db->handle, "ROLLBACK", NULL, NULL, NULL);
+    enum orl_result detached = orl_database_detach(db);
+    return result == ORL_OK ? detached : result;
+}
+
+// All columns are copied, whatever a version of COLMAP calls them; only ids are moved.
+#define MOVED(table, moves) \
+    "CREATE TEMP TABLE moved AS SELECT * FROM part." table "; UPDATE moved SET " moves ";" \
+    "INSERT INTO main." table " SELECT * FROM moved; DROP TABLE moved;"
+#define PAST(id, table) id " = " id " + (SELECT past FROM " table ")"
+
+enum orl_result orl_database_add_photographs(struct orl_database *db, const char *path)
+{
+    enum orl_result result = refuse_rigs(db);
+    return result == ORL_OK
+               ? add_part(db, path,
+                     "CREATE TEMP TABLE cameras_past AS"
+                     " SELECT coalesce(max(camera_id), 0) AS past FROM main.cameras;"
+                     "CREATE TEMP TABLE images_past AS"
+                     " SELECT coalesce(max(image_id), 0) AS past FROM main.images;"
+                     MOVED("cameras", PAST("camera_id", "cameras_past"))
+                     MOVED("images", PAST("image_id", "images_past") ", "
+                                     PAST("camera_id", "cameras_past"))
+                     MOVED("keypoints", PAST("image_id", "images_past"))
+                     MOVED("descriptors", PAST("image_id", "images_past"))
+                     "DROP TABLE cameras_past; DROP TABLE images_past;")
+               : result;
+}
+
+enum orl_result orl_database_share_camera(struct orl_database *db, const char *first,
+                                          const char *name)
+{
+    enum orl_result result = run_with_text(
+        db, "UPDATE images SET camera_id = (SELECT camera_id FROM images WHERE name = ?) "
+            "WHERE name = ?", first, name);
+    return result == ORL_OK ? run_sql(db, "DELETE FROM cameras WHERE camera_id NOT IN "
+                                          "(SELECT camera_id FROM images)")
+                            : result;
+}
+
+enum orl_result orl_database_add_matches(struct orl_database *db, const char *path)
+{
+    return add_part(db, path,
+                    "INSERT OR REPLACE INTO main.matches SELECT * FROM part.matches;"
+                    "INSERT OR REPLACE INTO main.two_view_geometries"
+                    " SELECT * FROM part.two_view_geometries;");
+}
+
+// Makes the tables of the attached database, its cameras and its photographs.
+static int copy_tables(sqlite3 *handle)
+{
+    sqlite3_stmt *statement = NULL;
+    int code = sqlite3_prepare_v2(handle, "SELECT sql FROM part.sqlite_master WHERE sql IS NOT NULL "
+                                          "AND name NOT LIKE 'sqlite_%'", -1, &statement, NULL);
+    int step = SQLITE_DONE;
+    while (code == SQLITE_OK && (step = sqlite3_step(statement)) == SQLITE_ROW)
+        code = sqlite3_exec(handle, (const char *)sqlite3_column_text(statement, 0), NULL, NULL,
+                            NULL);
+    sqlite3_finalize(statement);
+    if (code == SQLITE_OK && step != SQLITE_DONE)
+        code = SQLITE_ERROR;
+    return code == SQLITE_OK
+               ? sqlite3_exec(handle, "INSERT INTO main.cameras SELECT * FROM part.cameras;"
+                                      "INSERT INTO main.images SELECT * FROM part.images;",
+                              NULL, NULL, NULL)
+               : code;
+}
+
+enum orl_result orl_database_create_like(const struct orl_log *log, const char *path,
+                                         const char *other, struct orl_database **db)
+{
+    struct orl_database made = {.log = log, .path = (char *)(uintptr_t)path};
+    int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    enum orl_result result =
+        sqlite3_open_v2(path, &made.handle, flags, NULL) == SQLITE_OK ? attach(&made, other)
+                                                                      : fail(&made);
+    *db = NULL;
+    if (result == ORL_OK && copy_tables(made.handle) != SQLITE_OK)
+        result = fail(&made);
+    sqlite3_close(made.handle);
+    if (result == ORL_OK)
+        result = orl_database_open(log, path, db);
+    return result == ORL_OK ? attach(*db, other) : result;
+}
+
+enum orl_result orl_database_take_features(struct orl_database *db, const char *name)
+{
+    enum orl_result result = run_with_text(
+        db, "INSERT INTO main.keypoints SELECT * FROM part.keypoints WHERE image_id = "
+            "(SELECT image_id FROM main.images WHERE name = ?)", name, NULL);
+    return result == ORL_OK
+               ? run_with_text(db, "INSERT INTO main.descriptors SELECT * FROM part.descriptors "
+                                   "WHERE image_id = (SELECT image_id FROM main.images WHERE "
+                                   "name = ?)", name, NULL)
+               : result;
+}

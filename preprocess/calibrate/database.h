@@ -34,4 +34,24 @@ enum orl_result orl_database_commit(struct orl_database *db) ORL_CHECK_RESULT;
 // have '/' in place of ' ', which no name of a photograph holds otherwise.
 enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide) ORL_CHECK_RESULT;
 
+// --- databases of parts (parts.h) ---
+
+// Adds the photographs of another database with their cameras and features, under new ids.
+// ORL_ERR_UNSUPPORTED: the database has rigs.
+enum orl_result orl_database_add_photographs(struct orl_database *db,
+                                             const char *path) ORL_CHECK_RESULT;
+// Gives the photograph `name` the camera of `first`. Cameras that no photograph has are removed.
+enum orl_result orl_database_share_camera(struct orl_database *db, const char *first,
+                                          const char *name) ORL_CHECK_RESULT;
+// Adds the matches of another database that has the same photographs under the same ids.
+enum orl_result orl_database_add_matches(struct orl_database *db, const char *path) ORL_CHECK_RESULT;
+// Makes a database with the cameras and photographs of `other` and without features. `other` is
+// attached until orl_database_detach, and features of photographs are taken from it.
+enum orl_result orl_database_create_like(const struct orl_log *log, const char *path,
+                                         const char *other,
+                                         struct orl_database **db) ORL_CHECK_RESULT;
+enum orl_result orl_database_take_features(struct orl_database *db,
+                                           const char *name) ORL_CHECK_RESULT;
+enum orl_result orl_database_detach(struct orl_database *db) ORL_CHECK_RESULT;
+
 #endif

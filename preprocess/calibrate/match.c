@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/process.h"
@@ -22,6 +23,13 @@ enum orl_matching orl_match_way(const struct orl_job *job)
     if (job->params->matching != ORL_MATCHING_AUTO)
         return job->params->matching;
     return job->source_count <= EXHAUSTIVE_MAX ? ORL_MATCHING_EXHAUSTIVE : ORL_MATCHING_RETRIEVAL;
+}
+
+bool orl_match_retrieves(const char *matching, size_t photographs)
+{
+    bool any = !matching || strcmp(matching, orl_matching_names[ORL_MATCHING_AUTO]) == 0;
+    return any ? photographs > EXHAUSTIVE_MAX
+               : strcmp(matching, orl_matching_names[ORL_MATCHING_RETRIEVAL]) == 0;
 }
 
 static void matcher_settings(const struct orl_job *job, const char *database, bool guided,
@@ -83,31 +91,32 @@ static enum orl_result name_pairs(const struct orl_job *job, const struct orl_pa
     return result;
 }
 
-static enum orl_result open_database(const struct orl_job *job, struct orl_database **db)
+static enum orl_result open_database(const struct orl_job *job, const char *name,
+                                     struct orl_database **db)
 {
     *db = NULL;
-    char *path = orl_job_path(job, ORL_CALIBRATE_DATABASE);
+    char *path = orl_job_path(job, "%s", name);
     enum orl_result result = path ? orl_database_open(job->log, path, db) : ORL_ERR_MEMORY;
     free(path);
     return result;
 }
 
-static enum orl_result hide_spaces(const struct orl_job *job, bool hide)
+static enum orl_result hide_spaces(const struct orl_job *job, const char *database, bool hide)
 {
     struct orl_database *db;
-    enum orl_result result = open_database(job, &db);
+    enum orl_result result = open_database(job, database, &db);
     if (result == ORL_OK)
         result = orl_database_hide_spaces(db, hide);
     orl_database_close(&db);
     return result;
 }
 
-static enum orl_result match_features(const struct orl_job *job, const struct orl_pair_list *list,
-                                      size_t first, size_t count)
+static enum orl_result match_features(const struct orl_job *job, const char *database,
+                                      const struct orl_pair_list *list, size_t first, size_t count)
 {
     struct orl_database *db = NULL;
     const char **names = orl_array(job->log, job->source_count, sizeof *names);
-    enum orl_result result = names ? open_database(job, &db) : ORL_ERR_MEMORY;
+    enum orl_result result = names ? open_database(job, database, &db) : ORL_ERR_MEMORY;
     for (size_t i = 0; names && i < job->source_count; i++)
         names[i] = job->sources[i].name;
     if (result == ORL_OK)
@@ -121,21 +130,21 @@ static enum orl_result match_features(const struct orl_job *job, const struct or
 }
 
 // COLMAP verifies the matches of pairs first to first + count - 1, and finds those that are missing.
-static enum orl_result verify(struct orl_job *job, const struct orl_pair_list *list, size_t first,
-                              size_t count)
+static enum orl_result verify(struct orl_job *job, const char *name,
+                              const struct orl_pair_list *list, size_t first, size_t count)
 {
     struct orl_colmap_args args = {0};
     struct orl_names lines = {0};
     double share = job->colmap_cuda ? 1 : VERIFYING;
-    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    char *path = orl_job_path(job, ORL_CALIBRATE_WORK "/pairs.txt");
+    char *database = orl_job_path(job, "%s", name);
+    char *path = orl_job_path(job, "%s.pairs.txt", name);
     enum orl_result result = database && path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = name_pairs(job, list->items + first, count, &lines);
     if (result == ORL_OK)
         result = orl_job_write_list(job, path, &lines);
     if (result == ORL_OK)
-        result = hide_spaces(job, true);
+        result = hide_spaces(job, name, true);
     if (result == ORL_OK) {
         matcher_settings(job, database, false, &args);
         orl_colmap_arg(&args, "--match_list_path", "%s", path);
@@ -146,31 +155,33 @@ static enum orl_result verify(struct orl_job *job, const struct orl_pair_list *l
             .total = (double)list->count}, &args);
     }
     if (result == ORL_OK)
-        result = hide_spaces(job, false);
+        result = hide_spaces(job, name, false);
     orl_names_finish(&lines);
     free(database);
     free(path);
     return result;
 }
 
-static enum orl_result match_list(struct orl_job *job, const struct orl_pair_list *list)
+enum orl_result orl_match_list(struct orl_job *job, const char *database,
+                               const struct orl_pair_list *list)
 {
     enum orl_result result = ORL_OK;
     for (size_t first = 0; result == ORL_OK && first < list->count; first += RUN_PAIRS) {
         size_t count = list->count - first < RUN_PAIRS ? list->count - first : RUN_PAIRS;
         // A CUDA build of COLMAP matches faster on its GPU.
         if (!job->colmap_cuda)
-            result = match_features(job, list, first, count);
+            result = match_features(job, database, list, first, count);
         if (result == ORL_OK)
-            result = verify(job, list, first, count);
+            result = verify(job, database, list, first, count);
     }
     return result;
 }
 
-static enum orl_result read_photos(const struct orl_job *job, struct orl_pair_photo *photos)
+static enum orl_result read_photos(const struct orl_job *job, const char *database,
+                                   struct orl_pair_photo *photos)
 {
     struct orl_database *db;
-    enum orl_result result = open_database(job, &db);
+    enum orl_result result = open_database(job, database, &db);
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
         const struct orl_exif *exif = &job->sources[i].exif;
         uint8_t *data;
@@ -185,28 +196,37 @@ static enum orl_result read_photos(const struct orl_job *job, struct orl_pair_ph
     return result;
 }
 
-static enum orl_result match_retrieved(struct orl_job *job, struct orl_match_summary *summary)
+enum orl_result orl_match_choose(struct orl_job *job, const char *database,
+                                 struct orl_pair_list *list, struct orl_match_summary *summary)
 {
-    struct orl_pair_list list = {0};
     struct orl_pair_photo *photos = orl_array(job->log, job->source_count, sizeof *photos);
+    *list = (struct orl_pair_list){0};
     if (!photos)
         return ORL_ERR_MEMORY;
     double start = orl_time_s();
     orl_progress_report(job->progress, "pairs", 0, 1, NULL);
-    enum orl_result result = read_photos(job, photos);
+    enum orl_result result = read_photos(job, database, photos);
     if (result == ORL_OK)
         result = orl_pairs_choose(job->log, job->progress, photos, job->source_count,
-                                  job->params->seed, &list);
+                                  job->params->seed, list);
     for (size_t i = 0; i < job->source_count; i++)
         free((void *)photos[i].descriptors.data);
     free(photos);
     if (result == ORL_OK) {
         orl_progress_report(job->progress, "pairs", 1, 1, NULL);
         orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu of %zu pairs are worth matching",
-                 list.count, job->source_count * (job->source_count - 1) / 2);
-        *summary = (struct orl_match_summary){list.tried, list.count, orl_time_s() - start};
-        result = match_list(job, &list);
+                 list->count, job->source_count * (job->source_count - 1) / 2);
+        *summary = (struct orl_match_summary){list->tried, list->count, orl_time_s() - start};
     }
+    return result;
+}
+
+static enum orl_result match_retrieved(struct orl_job *job, struct orl_match_summary *summary)
+{
+    struct orl_pair_list list;
+    enum orl_result result = orl_match_choose(job, ORL_CALIBRATE_DATABASE, &list, summary);
+    if (result == ORL_OK)
+        result = orl_match_list(job, ORL_CALIBRATE_DATABASE, &list);
     orl_pairs_finish(&list);
     return result;
 }
@@ -234,7 +254,7 @@ enum orl_result orl_match_marked(struct orl_job *job, const bool *marked)
             if (marked[a] || marked[b])
                 list.items[count++] = (struct orl_pair){(uint32_t)a, (uint32_t)b};
     list.count = count;
-    enum orl_result result = match_list(job, &list);
+    enum orl_result result = orl_match_list(job, ORL_CALIBRATE_DATABASE, &list);
     if (result == ORL_OK)
         orl_progress_report(job->progress, "matching", 1, 1, NULL);
     orl_pairs_finish(&list);

@@ -2,13 +2,18 @@
 #ifndef ORL_PREPROCESS_MATCH_H
 #define ORL_PREPROCESS_MATCH_H
 
+#include "preprocess/calibrate/pairs.h"
 #include "preprocess/job/job.h"
 
 #define ORL_CALIBRATE_WORK ".oriel/calibrate.tmp" // where calibrate works, inside the scene
-#define ORL_CALIBRATE_DATABASE ORL_CALIBRATE_WORK "/database.db"
+#define ORL_CALIBRATE_NORMALISED ORL_CALIBRATE_WORK "/normalised" // what features are taken from
+#define ORL_CALIBRATE_STEM ORL_CALIBRATE_WORK "/database" // without its extension
+#define ORL_CALIBRATE_DATABASE ORL_CALIBRATE_STEM ".db"
 
 // The way that these parameters and this many photographs ask for; never auto.
 enum orl_matching orl_match_way(const struct orl_job *job);
+// Does the option --matching (NULL: auto) mean retrieval for so many photographs?
+bool orl_match_retrieves(const char *matching, size_t photographs);
 // What retrieval did. Zeroes for the other ways, whose pairs COLMAP chooses.
 struct orl_match_summary {
     size_t tried, chosen; // pairs
@@ -16,6 +21,14 @@ struct orl_match_summary {
 };
 enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
                           struct orl_match_summary *summary) ORL_CHECK_RESULT;
+// Chooses pairs by retrieval from the features in `database`, a name below the scene. *list is
+// released with orl_pairs_finish.
+enum orl_result orl_match_choose(struct orl_job *job, const char *database,
+                                 struct orl_pair_list *list,
+                                 struct orl_match_summary *summary) ORL_CHECK_RESULT;
+// Matches these pairs and has COLMAP verify the matches, in `database`, a name below the scene.
+enum orl_result orl_match_list(struct orl_job *job, const char *database,
+                               const struct orl_pair_list *list) ORL_CHECK_RESULT;
 // Matches the marked photographs with all others. Pairs that have matches keep them.
 enum orl_result orl_match_marked(struct orl_job *job, const bool *marked) ORL_CHECK_RESULT;
 

@@ -273,6 +273,8 @@ enum orl_result orl_fuse_cluster(const struct orl_log *log, const char *scene,
         .max_ram_bytes = params->max_ram_bytes};
     enum orl_result result = orl_job_attach(&job, log, &prepare, progress);
     if (result == ORL_OK)
+        result = orl_job_take_sources(&job);
+    if (result == ORL_OK)
         result = fuse_one(&job, params);
     orl_job_close(&job);
     return result;

@@ -112,12 +112,11 @@ static void add_usage(struct orl_job *job, const char *command,
     job->child_cpu_s += usage->cpu_s;
     if (usage->peak_rss_bytes > job->child_peak_bytes)
         job->child_peak_bytes = usage->peak_rss_bytes;
-    const json_t *before = json_object_get(job->programs, command);
-    double cpu_s = json_number_value(json_object_get(before, "cpu_s")) + usage->cpu_s;
-    json_int_t runs = json_integer_value(json_object_get(before, "runs")) + 1;
+    char key[64];
+    snprintf(key, sizeof key, "%s_s", command);
+    double before = json_number_value(json_object_get(job->programs, key));
     if (job->programs)
-        json_object_set_new(job->programs, command,
-                            json_pack("{s:f, s:I}", "cpu_s", cpu_s, "runs", runs));
+        json_object_set_new(job->programs, key, json_real(before + usage->cpu_s));
 }
 
 enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run *run,

@@ -107,7 +107,7 @@ static enum orl_result read_names(const struct orl_job *job, const char *name,
 }
 
 // The model's images are sorted by name, as sources are.
-static enum orl_result name_sources(struct orl_job *job)
+enum orl_result orl_job_take_sources(struct orl_job *job)
 {
     struct orl_names train = {0};
     char *path = orl_job_path(job, "sparse");
@@ -141,13 +141,15 @@ enum orl_result orl_job_attach(struct orl_job *job, const struct orl_log *log,
                             .linear_scale = 1, .dir = realpath(params->out, NULL)};
     if (!job->dir)
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: %s", params->out, strerror(errno));
+    if (!orl_job_has(job, ".oriel"))
+        return orl_fail(log, ORL_ERR_DATA, "%s: not made by oriel prepare", job->dir);
     char *lock = orl_job_path(job, ".oriel/lock");
     enum orl_result result = lock ? orl_lock_shared(log, lock, &job->lock_fd, &taken)
                                   : ORL_ERR_MEMORY;
     free(lock);
     if (result == ORL_OK && taken)
         result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: oriel prepare is at work here", job->dir);
-    return result == ORL_OK ? name_sources(job) : result;
+    return result;
 }
 
 void orl_job_leave(const struct orl_job *job)

@@ -75,7 +75,7 @@ struct orl_job {
     // Processor time of child processes since the stage began.
     double child_cpu_s;
     size_t child_peak_bytes;
-    json_t *programs; // owned; {COLMAP's command: {"cpu_s", "runs"}} of the stage that runs
+    json_t *programs; // owned; {"COMMAND_s": its processor time} of the stage that runs
 };
 
 // Opens the folder params->out, which is made if needed, and locks it. On success and failure
@@ -83,12 +83,14 @@ struct orl_job {
 enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
                              const struct orl_prepare_params *params,
                              const struct orl_progress *progress) ORL_CHECK_RESULT;
-// Joins the work on the scene params->out after undistort, beside other such jobs and no prepare:
-// its sources are the names of the model's photographs, and those that are not in stereo/fusion.cfg
-// are held out. On success and failure alike, the caller must call orl_job_close.
+// Joins the work on the scene params->out beside other such jobs and no prepare. The job has no
+// sources. On success and failure alike, the caller must call orl_job_close.
 enum orl_result orl_job_attach(struct orl_job *job, const struct orl_log *log,
                                const struct orl_prepare_params *params,
                                const struct orl_progress *progress) ORL_CHECK_RESULT;
+// Makes the photographs of SCENE/sparse the sources of such a job, with their names alone. Those that
+// are not in stereo/fusion.cfg are held out.
+enum orl_result orl_job_take_sources(struct orl_job *job) ORL_CHECK_RESULT;
 // Removes the folder that orl_job_open made, so that wrong input leaves no folder behind that the
 // corrected command would refuse. Leaves a folder alone that held files before.
 void orl_job_leave(const struct orl_job *job);

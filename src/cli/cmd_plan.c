@@ -39,6 +39,8 @@ static void print_kind(const json_t *jobs, const char *kind)
 static enum orl_result run(const struct terminal *terminal, const void *options,
                            const struct arg_common *common, const char *scene)
 {
+    static const char *const kinds[] = {"features", "pairs", "matches", "calibrate",
+                                        "densify",  "fuse",  "finish"};
     const struct options *o = options;
     json_t *plan;
     (void)common;
@@ -53,9 +55,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         printf("%s\n", text);
     else if (!json_array_size(jobs))
         printf("%s is whole: there is nothing left to do\n", scene);
-    print_kind(o->json ? NULL : jobs, "densify");
-    print_kind(o->json ? NULL : jobs, "fuse");
-    print_kind(o->json ? NULL : jobs, "finish");
+    for (size_t i = 0; !o->json && i < ORL_COUNT(kinds); i++)
+        print_kind(jobs, kinds[i]);
     free(text);
     json_decref(plan);
     return result;
@@ -72,8 +73,8 @@ int cmd_plan(int argc, char **argv)
     };
     const struct arg_command command = {
         "plan", "SCENE [options]",
-        "Says what is left to do for a scene that oriel prepare --until undistort has begun, as\n"
-        "jobs that may run on several machines. cluster/Snakefile runs them.",
+        "Says what is left to do for a scene that oriel prepare --until collect or undistort has\n"
+        "begun, as jobs that may run on several machines. cluster/Snakefile runs them.",
         table, 1, 1};
     return command_main(&command, argc, argv, run, &o);
 }

@@ -131,7 +131,7 @@ int cmd_prepare(int argc, char **argv)
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
          1 << 20},
         {"until", ARG_ENUM, &o.until, "STAGE",
-         "stop before the stereo, which oriel plan divides into jobs", 0, 0},
+         "stop before features or stereo, which oriel plan divides into jobs", 0, 0},
         {"adapt", ARG_FLAG, &o.adapt, NULL,
          "find the method and the options that suit the scene, as its defaults", 0, 0},
         {"adapt-budget", ARG_NUMBER, &o.adapt_s, "SECONDS", "of --adapt; default 120", 0, 1e6},

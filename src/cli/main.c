@@ -7,6 +7,7 @@
 
 static const struct command commands[] = {
     {"bench", "time and memory of frames, pass by pass", cmd_bench},
+    {"calibrate", "features or matches of a part of the photographs", cmd_calibrate},
     {"chart", "accuracy against time and memory, all methods", cmd_chart},
     {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},

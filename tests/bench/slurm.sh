@@ -51,7 +51,7 @@ sinfo
 
 # --- the scene, by prepare and by jobs ---
 "$oriel" synth monument --out "$work/p" --size 192x144 --count 7 --quiet
-options="--quality draft --densifier gl"
+options="--quality draft --densifier gl --fuse-cluster 4"
 "$oriel" prepare "$work/p" --out "$work/a" $options --until undistort --quiet
 cp -r "$work/a" "$work/b"
 "$oriel" prepare "$work/p" --out "$work/a" $options --resume --quiet

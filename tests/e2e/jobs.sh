@@ -5,14 +5,48 @@
 monument 384x288 7
 prepare() {
     run "$1" prepare "$work/p" --out "$work/$2" --quality draft \
-        --max-size 192 --densifier gl --radius-overlap 1.3 --test-list 0004 \
+        --max-size 192 --matching retrieval --densifier gl --radius-overlap 1.3 --test-list 0004 \
         --fuse-cluster 3 "${@:3}"
 }
 
+# jobs_in_order PLAN: runs its jobs one after the other, in an order in which they can run.
+jobs_in_order() {
+    sed -n '/"command": \[/,/\]/p' "$1" |
+        sed 's/^ *"command": \[//; s/^ *\],*$/END/; s/^ *"\(.*\)",*$/\1/; /^$/d' >"$work/commands"
+    local word words=()
+    while read -r word; do
+        if [ "$word" = END ]; then
+            "$oriel" "${words[@]:1}" >"$work/out" 2>"$work/err" || fail "${words[*]} fails"
+            words=()
+        else
+            words+=("$word")
+        fi
+    done <"$work/commands"
+}
+
+# Calibration: features in three parts, one of which is killed and goes on; pairs; matches.
 run 2 plan "$work"
 says "nothing to plan yet"
-prepare 0 a --until undistort
+run 2 calibrate "$work" --step features --part 1/3
+prepare 0 a --until collect
+says "collected; oriel plan says what is left"
+run 2 calibrate "$work/a" --step pairs
+says "features of some part are missing"
+run 0 plan "$work/a" --photographs 3 --json
+cp "$work/out" "$work/first.json"
+grep -q '"name": "matches-000001"' "$work/first.json" || fail "no job matches pairs"
+timeout -s KILL 0.3 "$oriel" calibrate "$work/a" --step features --part 1/3 >/dev/null 2>&1
+jobs_in_order "$work/first.json"
+says "using the features and matches of jobs"
 says "oriel plan says what is left"
+ls "$work/a/.oriel/calibrate" | grep -q "features\|matches-\|work" && fail "the parts are left over"
+if command -v sqlite3 >/dev/null; then
+    database=$work/a/.oriel/calibrate/database.db
+    [ "$(sqlite3 "$database" "SELECT COUNT(*), COUNT(DISTINCT camera_id) FROM images")" = "7|1" ] ||
+        fail "the photographs of the parts do not share their camera"
+fi
+run 0 calibrate "$work/a" --step pairs
+says "nothing left to do"
 [ -e "$work/a/scene.json" ] && fail "a scene that is not whole has a manifest"
 run 2 info "$work/a"
 cp -r "$work/a" "$work/b"
@@ -59,17 +93,7 @@ END
     [ -e "$work/b/scene.json" ] && fail "a scene that is not whole has a manifest"
     jobs --rerun-incomplete || fail "the jobs do not go on: $(tail -n 5 "$work/err")"
 else
-    # In the order of the plan, which is one in which they can run.
-    sed -n '/"command": \[/,/\]/p' "$work/plan.json" |
-        sed 's/^ *"command": \[//; s/^ *\],*$/END/; s/^ *"\(.*\)",*$/\1/; /^$/d' >"$work/commands"
-    while read -r word; do
-        if [ "$word" = END ]; then
-            "$oriel" "${words[@]:1}" >"$work/out" 2>"$work/err" || fail "${words[*]} fails"
-            words=()
-        else
-            words+=("$word")
-        fi
-    done <"$work/commands"
+    jobs_in_order "$work/plan.json"
 fi
 for file in points.ply sparse/points3D.bin images/0003.jpg; do
     cmp "$work/a/$file" "$work/b/$file" || fail "the jobs make another $file"

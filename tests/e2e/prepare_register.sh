@@ -22,7 +22,7 @@ export DOUBLE_TRACE=$work/trace
 run 0 prepare "$work/p" --out "$work/parts" --mapper hierarchical
 mapped_by "hierarchical_mapper point_triangulator bundle_adjuster"
 grep -q '"mapper": "hierarchical"' "$work/parts/scene.json" || fail "the scene does not say how"
-grep -q '"bundle_adjuster"' "$work/parts/scene.json" || fail "no time of COLMAP's programs"
+grep -q '"bundle_adjuster_s"' "$work/parts/scene.json" || fail "no time of COLMAP's programs"
 DOUBLE_NEW=1 run 0 prepare "$work/p" --out "$work/global" --mapper global
 mapped_by "global_mapper"
 run 1 prepare "$work/p" --out "$work/old" --mapper global

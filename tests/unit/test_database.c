@@ -40,6 +40,29 @@ static void make_tables(void)
             "cols INTEGER NOT NULL, data BLOB);");
 }
 
+// Tables that databases of parts have, too.
+static void make_more_tables(void)
+{
+    make_tables();
+    run_sql("CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY, model INTEGER);"
+            "CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY, rows INTEGER);"
+            "INSERT INTO cameras VALUES (1, 2);");
+}
+
+// The one number that a query of the file gives.
+static int64_t number(const char *path, const char *sql)
+{
+    sqlite3 *db;
+    sqlite3_stmt *statement;
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &statement, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+    int64_t value = sqlite3_column_int64(statement, 0);
+    sqlite3_finalize(statement);
+    sqlite3_close(db);
+    return value;
+}
+
 static void insert_blob(const char *table, int id, int rows, int columns, const void *data,
                         size_t size)
 {
@@ -339,6 +362,65 @@ static void spaces_are_hidden_and_come_back(void **state)
     orl_database_close(&db);
 }
 
+static void parts_are_joined(void **state)
+{
+    (void)state;
+    const float scales[] = {3, 1, 2};
+    char other[4096];
+    struct orl_database *db;
+    snprintf(other, sizeof other, "%s/other.db", dir);
+    // Two parts with a photograph each, which has id 1 and camera 1 in both.
+    make_more_tables();
+    insert_photo(1, "b.png", 4, scales, 2);
+    assert_int_equal(rename(file, other), 0);
+    make_more_tables();
+    insert_photo(1, "a.png", 4, scales, 3);
+    assert_int_equal(orl_database_open(NULL, file, &db), ORL_OK);
+    assert_int_equal(orl_database_add_photographs(db, other), ORL_OK);
+    assert_int_equal(number(file, "SELECT image_id FROM images WHERE name = 'b.png'"), 2);
+    assert_int_equal(number(file, "SELECT camera_id FROM images WHERE name = 'b.png'"), 2);
+    assert_int_equal(number(file, "SELECT rows FROM keypoints WHERE image_id = 2"), 2);
+    assert_int_equal(number(file, "SELECT rows FROM descriptors WHERE image_id = 1"), 3);
+    assert_int_equal(orl_database_share_camera(db, "a.png", "b.png"), ORL_OK);
+    assert_int_equal(number(file, "SELECT count(*) FROM cameras"), 1);
+    assert_int_equal(number(file, "SELECT max(camera_id) FROM images"), 1);
+    orl_database_close(&db);
+    // Rigs are refused, and nothing changes.
+    run_sql("CREATE TABLE frames (frame_id INTEGER)");
+    assert_int_equal(orl_database_open(NULL, file, &db), ORL_OK);
+    assert_int_equal(orl_database_add_photographs(db, other), ORL_ERR_UNSUPPORTED);
+    assert_int_equal(number(file, "SELECT count(*) FROM images"), 2);
+    orl_database_close(&db);
+}
+
+static void a_part_has_the_features_of_its_pairs(void **state)
+{
+    (void)state;
+    const float scales[] = {3, 1, 2};
+    char part[4096];
+    struct orl_database *db;
+    snprintf(part, sizeof part, "%s/part.db", dir);
+    make_more_tables();
+    insert_photo(1, "a.png", 4, scales, 3);
+    insert_photo(7, "b.png", 4, scales, 2);
+    assert_int_equal(orl_database_create_like(NULL, part, file, &db), ORL_OK);
+    assert_int_equal(orl_database_take_features(db, "b.png"), ORL_OK);
+    assert_int_equal(orl_database_detach(db), ORL_OK);
+    uint32_t matches[][2] = {{0, 1}};
+    assert_int_equal(orl_database_write_matches(db, 1, 7, matches, 1), ORL_OK);
+    orl_database_close(&db);
+    assert_int_equal(number(part, "SELECT count(*) FROM images"), 2);
+    assert_int_equal(number(part, "SELECT sum(image_id) FROM keypoints"), 7);
+    assert_int_equal(number(part, "SELECT sum(image_id) FROM descriptors"), 7);
+    // And its matches come back, once.
+    assert_int_equal(orl_database_open(NULL, file, &db), ORL_OK);
+    assert_int_equal(orl_database_add_matches(db, part), ORL_OK);
+    assert_int_equal(orl_database_add_matches(db, part), ORL_OK);
+    assert_int_equal(number(file, "SELECT count(*) FROM matches"), 1);
+    assert_int_equal(number(file, "SELECT pair_id FROM matches"), (int64_t)INT32_MAX + 7);
+    orl_database_close(&db);
+}
+
 #define FILE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -347,6 +429,7 @@ int main(void)
         FILE_TEST(largest_scales_come_first), FILE_TEST(no_features_is_no_error),
         FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
+        FILE_TEST(parts_are_joined), FILE_TEST(a_part_has_the_features_of_its_pairs),
         FILE_TEST(matches_are_written_for_colmap), FILE_TEST(matching_can_be_interrupted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

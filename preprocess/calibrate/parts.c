@@ -1,0 +1,432 @@
+#include "preprocess/calibrate/parts.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/lock.h"
+#include "core/memory.h"
+#include "preprocess/calibrate/database.h"
+#include "preprocess/job/colmap_run.h"
+
+#define WORK ORL_CALIBRATE_WORK
+#define STATE ORL_PARTS_STATE
+#define PAIRS WORK "/chosen.json"
+
+const char *const orl_part_step_names[] = {"features", "pairs", "matches", NULL};
+
+// --- what the jobs need of the collected photographs ---
+
+static json_t *photo_state(const struct orl_source *source, int group)
+{
+    return json_pack("{s:s, s:i, s:f, s:b, s:f, s:f}", "name", source->name, "camera", group,
+                     "taken_s", source->exif.taken_s, "placed", source->exif.placed, "latitude",
+                     source->exif.latitude, "longitude", source->exif.longitude);
+}
+
+bool orl_parts_begun(const struct orl_job *job)
+{
+    json_t *state = NULL;
+    char *path = orl_job_path(job, STATE);
+    bool begun = path && orl_path_is_file(path) && orl_json_read(NULL, path, &state) == ORL_OK;
+    const char *key = begun ? orl_json_text(state, "key") : NULL;
+    begun = key && strcmp(key, job->keys[ORL_STAGE_CALIBRATE]) == 0;
+    json_decref(state);
+    free(path);
+    return begun;
+}
+
+enum orl_result orl_parts_begin(struct orl_job *job, const struct orl_camera_groups *groups)
+{
+    const struct orl_prepare_params *p = job->params;
+    json_t *photos = json_array();
+    for (size_t i = 0; i < job->source_count; i++)
+        json_array_append_new(photos, photo_state(&job->sources[i], groups->of[i]));
+    json_t *state = json_pack("{s:s, s:s, s:i, s:b, s:o}", "key", job->keys[ORL_STAGE_CALIBRATE],
+                              "quality", orl_quality_names[p->quality], "seed", (int)p->seed,
+                              "masks", p->masks_dir != NULL, "photographs", photos);
+    char *path = orl_job_path(job, STATE);
+    enum orl_result result = path && state ? orl_features_link_masks(job) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_json_write(job->log, path, state);
+    json_decref(state);
+    free(path);
+    return result;
+}
+
+static enum orl_quality quality_named(const char *name)
+{
+    int quality = ORL_QUALITY_STANDARD;
+    for (int i = 0; name && orl_quality_names[i]; i++)
+        if (strcmp(name, orl_quality_names[i]) == 0)
+            quality = i;
+    return (enum orl_quality)quality;
+}
+
+static enum orl_result read_photo(struct orl_job *job, const json_t *state,
+                                  struct orl_camera_groups *groups)
+{
+    const char *name = orl_json_text(state, "name");
+    size_t i = job->source_count;
+    json_int_t camera = json_integer_value(json_object_get(state, "camera"));
+    if (!name || camera < 0 || (size_t)camera > i)
+        return orl_fail(job->log, ORL_ERR_FORMAT, "%s/" STATE ": damaged", job->dir);
+    struct orl_source *source = &job->sources[i];
+    source->name = orl_strdup(job->log, name);
+    if (!source->name)
+        return ORL_ERR_MEMORY;
+    job->source_count++;
+    source->exif.taken_s = json_number_value(json_object_get(state, "taken_s"));
+    source->exif.placed = json_is_true(json_object_get(state, "placed"));
+    source->exif.latitude = json_number_value(json_object_get(state, "latitude"));
+    source->exif.longitude = json_number_value(json_object_get(state, "longitude"));
+    groups->of[i] = (int)camera;
+    groups->size[camera]++;
+    if (camera >= groups->count)
+        groups->count = (int)camera + 1;
+    return ORL_OK;
+}
+
+// Fills the job's sources, and `params` with the settings that the jobs read.
+static enum orl_result read_state(struct orl_job *job, struct orl_prepare_params *params,
+                                  struct orl_camera_groups *groups)
+{
+    json_t *state = NULL;
+    char *path = orl_job_path(job, STATE);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !orl_path_is_file(path))
+        result = orl_fail(job->log, ORL_ERR_DATA, "%s: no calibration has begun: run oriel prepare "
+                          "PHOTOS --out %s --until collect first", job->dir, job->dir);
+    if (result == ORL_OK)
+        result = orl_json_read(job->log, path, &state);
+    const json_t *photos = json_object_get(state, "photographs");
+    size_t count = json_array_size(photos);
+    params->quality = quality_named(orl_json_text(state, "quality"));
+    params->seed = (uint32_t)json_integer_value(json_object_get(state, "seed"));
+    params->masks_dir = json_is_true(json_object_get(state, "masks")) ? "masks" : NULL;
+    if (result == ORL_OK) {
+        job->sources = orl_array(job->log, count + 1, sizeof *job->sources);
+        groups->of = orl_array(job->log, count + 1, sizeof *groups->of);
+        groups->size = orl_array(job->log, count + 1, sizeof *groups->size);
+        result = job->sources && groups->of && groups->size ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        result = read_photo(job, json_array_get(photos, i), groups);
+    json_decref(state);
+    free(path);
+    return result;
+}
+
+// --- the files of parts ---
+
+// WORK/features-0002-of-0007, or with `extension` .tmp while it is being made.
+static char *part_name(const struct orl_log *log, enum orl_part_step step, int part, int parts,
+                       const char *extension)
+{
+    return orl_format(log, WORK "/%s-%06d-of-%06d%s", orl_part_step_names[step], part + 1, parts,
+                      extension);
+}
+
+// The number of parts of which all are there; 0: none.
+static enum orl_result find_parts(const struct orl_job *job, enum orl_part_step step, int *parts)
+{
+    struct orl_names names = {0};
+    char *dir = orl_job_path(job, WORK), form[64];
+    enum orl_result result = dir ? orl_dir_list(job->log, dir, &names) : ORL_ERR_MEMORY;
+    *parts = 0;
+    snprintf(form, sizeof form, "%s-%%d-of-%%d.db", orl_part_step_names[step]);
+    for (size_t i = 0; result == ORL_OK && i < names.count && !*parts; i++) {
+        int part, of, there = 0;
+        if (sscanf(names.items[i], form, &part, &of) != 2 || part != 1 || of < 1)
+            continue;
+        for (int k = 0; k < of; k++) {
+            char *name = part_name(job->log, step, k, of, ".db");
+            there += name && orl_job_has(job, name);
+            free(name);
+        }
+        *parts = there == of ? of : 0;
+    }
+    orl_names_finish(&names);
+    free(dir);
+    return result;
+}
+
+static enum orl_result rename_in(const struct orl_job *job, const char *from, const char *to)
+{
+    char *source = orl_job_path(job, "%s", from), *target = orl_job_path(job, "%s", to);
+    enum orl_result result = source && target ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && rename(source, target) != 0)
+        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", target, strerror(errno));
+    free(source);
+    free(target);
+    return result;
+}
+
+static enum orl_result open_in(const struct orl_job *job, const char *name,
+                               struct orl_database **db)
+{
+    char *path = orl_job_path(job, "%s", name);
+    *db = NULL;
+    enum orl_result result = path ? orl_database_open(job->log, path, db) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+// --- the jobs ---
+
+struct part {
+    struct orl_job *job;
+    const struct orl_camera_groups *groups;
+    enum orl_part_step step;
+    int index, count;
+    char *stem, *temp, *temp_db, *final_db; // owned
+};
+
+static enum orl_result run_features(const struct part *part)
+{
+    // Photographs that a killed run has finished are in the database; COLMAP skips them.
+    return orl_features_extract(part->job, part->groups, &(struct orl_features_run){
+        .database = part->temp, .part = part->index, .parts = part->count});
+}
+
+// One database of all features, with a camera a group.
+static enum orl_result join_features(const struct part *part)
+{
+    struct orl_job *job = part->job;
+    struct orl_database *db = NULL;
+    int parts;
+    enum orl_result result = find_parts(job, ORL_PART_FEATURES, &parts);
+    if (result == ORL_OK && !parts)
+        return orl_fail(job->log, ORL_ERR_DATA, "%s: features of some part are missing", job->dir);
+    for (int k = 0; result == ORL_OK && k < parts; k++) {
+        char *name = part_name(job->log, ORL_PART_FEATURES, k, parts, ".db");
+        char *from = name ? orl_job_path(job, "%s", name) : NULL;
+        char *to = orl_job_path(job, "%s", part->temp_db);
+        result = from && to ? ORL_OK : ORL_ERR_MEMORY;
+        if (result == ORL_OK && k == 0)
+            result = orl_file_copy(job->log, from, to);
+        if (result == ORL_OK && k == 0)
+            result = open_in(job, part->temp_db, &db);
+        else if (result == ORL_OK)
+            result = orl_database_add_photographs(db, from);
+        free(name);
+        free(from);
+        free(to);
+    }
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
+        size_t first = 0;
+        while (part->groups->of[first] != part->groups->of[i])
+            first++;
+        result = orl_database_share_camera(db, job->sources[first].name, job->sources[i].name);
+    }
+    orl_database_close(&db);
+    return result;
+}
+
+static enum orl_result write_pairs(const struct orl_job *job, const struct orl_pair_list *list,
+                                   const struct orl_match_summary *summary)
+{
+    json_t *pairs = json_array();
+    for (size_t i = 0; i < list->count; i++)
+        json_array_append_new(pairs, json_pack("[I, I]", (json_int_t)list->items[i].a,
+                                               (json_int_t)list->items[i].b));
+    json_t *root = json_pack("{s:I, s:f, s:o}", "tried", (json_int_t)summary->tried, "choosing_s",
+                             summary->choosing_s, "pairs", pairs);
+    char *path = orl_job_path(job, PAIRS);
+    enum orl_result result = path && root ? orl_json_write(job->log, path, root) : ORL_ERR_MEMORY;
+    json_decref(root);
+    free(path);
+    return result;
+}
+
+static enum orl_result read_pairs(const struct orl_job *job, struct orl_pair_list *list,
+                                  struct orl_match_summary *summary)
+{
+    json_t *root = NULL;
+    char *path = orl_job_path(job, PAIRS);
+    enum orl_result result = path ? orl_json_read(job->log, path, &root) : ORL_ERR_MEMORY;
+    const json_t *pairs = json_object_get(root, "pairs");
+    size_t count = json_array_size(pairs);
+    *list = (struct orl_pair_list){.items = orl_array(job->log, count + 1, sizeof *list->items)};
+    if (result == ORL_OK && !list->items)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        const json_t *pair = json_array_get(pairs, i);
+        json_int_t a = json_integer_value(json_array_get(pair, 0));
+        json_int_t b = json_integer_value(json_array_get(pair, 1));
+        if (a < 0 || b <= a || (size_t)b >= job->source_count)
+            result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: damaged", path);
+        list->items[list->count++] = (struct orl_pair){(uint32_t)a, (uint32_t)b};
+    }
+    *summary = (struct orl_match_summary){
+        .tried = (size_t)json_integer_value(json_object_get(root, "tried")), .chosen = list->count,
+        .choosing_s = json_number_value(json_object_get(root, "choosing_s"))};
+    json_decref(root);
+    free(path);
+    return result;
+}
+
+static enum orl_result run_pairs(const struct part *part)
+{
+    struct orl_pair_list list = {0};
+    struct orl_match_summary summary;
+    enum orl_result result = join_features(part);
+    if (result == ORL_OK)
+        result = orl_match_choose(part->job, part->temp_db, &list, &summary);
+    if (result == ORL_OK)
+        result = write_pairs(part->job, &list, &summary);
+    orl_pairs_finish(&list);
+    return result;
+}
+
+static enum orl_result run_matches(const struct part *part)
+{
+    struct orl_job *job = part->job;
+    struct orl_pair_list list = {0};
+    struct orl_match_summary summary;
+    struct orl_database *db = NULL;
+    char *all = part_name(job->log, ORL_PART_PAIRS, 0, 1, ".db");
+    char *from = all ? orl_job_path(job, "%s", all) : NULL;
+    char *to = orl_job_path(job, "%s", part->temp_db);
+    bool *used = orl_array(job->log, job->source_count + 1, sizeof *used);
+    enum orl_result result = from && to && used ? read_pairs(job, &list, &summary) : ORL_ERR_MEMORY;
+    size_t begin = list.count * (size_t)part->index / (size_t)part->count;
+    size_t end = list.count * ((size_t)part->index + 1) / (size_t)part->count;
+    struct orl_pair_list own = {.items = list.items + begin, .count = end - begin};
+    for (size_t i = begin; result == ORL_OK && i < end; i++)
+        used[list.items[i].a] = used[list.items[i].b] = true;
+    if (result == ORL_OK)
+        result = orl_job_remove(job, part->temp_db);
+    if (result == ORL_OK)
+        result = orl_database_create_like(job->log, to, from, &db);
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
+        if (used[i])
+            result = orl_database_take_features(db, job->sources[i].name);
+    if (result == ORL_OK)
+        result = orl_database_detach(db);
+    orl_database_close(&db);
+    if (result == ORL_OK)
+        result = orl_match_list(job, part->temp_db, &own);
+    orl_pairs_finish(&list);
+    free(used);
+    free(all);
+    free(from);
+    free(to);
+    return result;
+}
+
+static enum orl_result run_locked(const struct part *part)
+{
+    static enum orl_result (*const steps[])(const struct part *) = {
+        [ORL_PART_FEATURES] = run_features, [ORL_PART_PAIRS] = run_pairs,
+        [ORL_PART_MATCHES] = run_matches};
+    struct orl_job *job = part->job;
+    if (orl_job_has(job, part->final_db)) {
+        orl_logf(job->log, ORL_LOG_INFO, "%s/%s: done already", job->dir, part->final_db);
+        return ORL_OK;
+    }
+    enum orl_result result = orl_job_find_colmap(job);
+    if (result == ORL_OK)
+        result = steps[part->step](part);
+    return result == ORL_OK ? rename_in(job, part->temp_db, part->final_db) : result;
+}
+
+static enum orl_result run_part(struct orl_job *job, const struct orl_camera_groups *groups,
+                                enum orl_part_step step, int index, int count)
+{
+    struct part part = {.job = job, .groups = groups, .step = step, .index = index, .count = count,
+                        .stem = part_name(job->log, step, index, count, ""),
+                        .temp = part_name(job->log, step, index, count, ".tmp"),
+                        .temp_db = part_name(job->log, step, index, count, ".tmp.db"),
+                        .final_db = part_name(job->log, step, index, count, ".db")};
+    bool named = part.stem && part.temp && part.temp_db && part.final_db, taken = false;
+    char *lock = named ? orl_job_path(job, "%s.lock", part.stem) : NULL;
+    int fd = -1;
+    enum orl_result result = lock ? orl_lock(job->log, lock, &fd, &taken) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && taken)
+        result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is at work on it",
+                          part.stem);
+    if (result == ORL_OK)
+        result = run_locked(&part);
+    orl_unlock(&fd);
+    free(lock);
+    free(part.stem);
+    free(part.temp);
+    free(part.temp_db);
+    free(part.final_db);
+    return result;
+}
+
+enum orl_result orl_part_run(const struct orl_log *log, const char *scene, enum orl_part_step step,
+                             int part, int parts, const struct orl_progress *progress)
+{
+    struct orl_job job;
+    struct orl_camera_groups groups = {0};
+    struct orl_prepare_params params = {.out = scene};
+    enum orl_result result = orl_job_attach(&job, log, &params, progress);
+    if (result == ORL_OK && !orl_job_has(&job, STATE) && orl_job_has(&job, "sparse"))
+        orl_logf(log, ORL_LOG_INFO, "%s: calibrated, so there is nothing left to do", job.dir);
+    else if (result == ORL_OK && (result = read_state(&job, &params, &groups)) == ORL_OK)
+        result = run_part(&job, &groups, step, part, parts);
+    orl_camera_groups_finish(&groups);
+    orl_job_close(&job);
+    return result;
+}
+
+// --- joining ---
+
+enum orl_result orl_parts_join(struct orl_job *job, struct orl_match_summary *summary, bool *joined)
+{
+    struct orl_pair_list list = {0};
+    struct orl_database *db = NULL;
+    int parts;
+    enum orl_result result = find_parts(job, ORL_PART_MATCHES, &parts);
+    *joined = false;
+    if (result != ORL_OK || !parts)
+        return result;
+    char *name = part_name(job->log, ORL_PART_PAIRS, 0, 1, ".db");
+    char *from = name ? orl_job_path(job, "%s", name) : NULL;
+    char *to = orl_job_path(job, ORL_CALIBRATE_DATABASE);
+    result = from && to ? orl_file_copy(job->log, from, to) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = read_pairs(job, &list, summary);
+    if (result == ORL_OK)
+        result = open_in(job, ORL_CALIBRATE_DATABASE, &db);
+    for (int k = 0; result == ORL_OK && k < parts; k++) {
+        char *part = part_name(job->log, ORL_PART_MATCHES, k, parts, ".db");
+        char *path = part ? orl_job_path(job, "%s", part) : NULL;
+        result = path ? orl_database_add_matches(db, path) : ORL_ERR_MEMORY;
+        free(part);
+        free(path);
+    }
+    *joined = result == ORL_OK;
+    orl_database_close(&db);
+    orl_pairs_finish(&list);
+    free(name);
+    free(from);
+    free(to);
+    return result;
+}
+
+enum orl_result orl_parts_remove(const struct orl_job *job)
+{
+    static const char *const kinds[] = {"features-", "pairs-", "matches-", "work.", "chosen."};
+    struct orl_names names = {0};
+    char *dir = orl_job_path(job, WORK);
+    enum orl_result result = dir ? orl_dir_list(job->log, dir, &names) : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++)
+        for (size_t k = 0; result == ORL_OK && k < ORL_COUNT(kinds); k++) {
+            if (strncmp(names.items[i], kinds[k], strlen(kinds[k])) != 0)
+                continue;
+            char *path = orl_path_join(job->log, dir, names.items[i]);
+            result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
+            free(path);
+        }
+    orl_names_finish(&names);
+    free(dir);
+    return result;
+}
