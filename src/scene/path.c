@@ -13,6 +13,7 @@
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
 
+static const double SECONDS_LEAST = 0.01, SECONDS_MOST = 3600; // from a keyframe to the next
 static const double pi = 3.14159265358979323846;
 
 struct orl_camera orl_camera_reframed(const struct orl_camera *camera, int width, int height)
@@ -50,36 +51,65 @@ void orl_path_finish(struct orl_path *path)
 
 // --- interpolation ---
 
-static void spline_centre(const struct orl_path *keys, size_t segment, double t, double out[3])
+// Keyframes, and the seconds from each to the next one; NULL: all alike.
+struct keys {
+    const struct orl_path *path;
+    const double *seconds;
+};
+
+static double seconds_from(const struct keys *keys, size_t key)
 {
-    double c[4][3];
-    for (int k = 0; k < 4; k++) {
-        size_t last = keys->count - 1;
-        size_t i = segment + (size_t)k;
-        i = i == 0 ? 0 : i - 1;
-        orl_pose_centre(&keys->views[i > last ? last : i].cam_from_world, c[k]);
-    }
-    for (int i = 0; i < 3; i++)
-        out[i] = 0.5 * (2 * c[1][i] + (c[2][i] - c[0][i]) * t +
-                        (2 * c[0][i] - 5 * c[1][i] + 4 * c[2][i] - c[3][i]) * t * t +
-                        (3 * c[1][i] - c[0][i] - 3 * c[2][i] + c[3][i]) * t * t * t);
+    return keys->seconds ? keys->seconds[key] : 1;
 }
 
-static enum orl_result spread_frames(const struct orl_log *log, const struct orl_path *keys,
+// A cubic Hermite spline through the centres, whose tangent at a keyframe is that of the chord
+// between its neighbours: Catmull-Rom's where all keyframes are as far apart in time. t: of the
+// segment, from 0 to 1.
+static void spline_centre(const struct keys *keys, size_t segment, double t, double out[3])
+{
+    double c[4][3], own = seconds_from(keys, segment);
+    size_t last = keys->path->count - 1;
+    double before = segment > 0 ? seconds_from(keys, segment - 1) : own;
+    double after = segment + 1 < last ? seconds_from(keys, segment + 1) : own;
+    for (int k = 0; k < 4; k++) {
+        size_t i = segment + (size_t)k;
+        i = i == 0 ? 0 : i - 1;
+        orl_pose_centre(&keys->path->views[i > last ? last : i].cam_from_world, c[k]);
+    }
+    for (int i = 0; i < 3; i++) {
+        double leave = (c[2][i] - c[0][i]) * own / (before + own);
+        double arrive = (c[3][i] - c[1][i]) * own / (own + after), way = c[2][i] - c[1][i];
+        out[i] = c[1][i] + t * (leave + t * (3 * way - 2 * leave - arrive +
+                                             t * (leave + arrive - 2 * way)));
+    }
+}
+
+// The segment that a share of the whole time lies in; *t: the place in it, from 0 to 1.
+static size_t segment_at(const struct keys *keys, double share, double *t)
+{
+    size_t segment = 0, last = keys->path->count - 2;
+    double all = 0;
+    for (size_t i = 0; i <= last; i++)
+        all += seconds_from(keys, i);
+    double left = share * all;
+    while (segment < last && left >= seconds_from(keys, segment))
+        left -= seconds_from(keys, segment++);
+    *t = fmin(left / seconds_from(keys, segment), 1);
+    return segment;
+}
+
+static enum orl_result spread_frames(const struct orl_log *log, const struct keys *keys,
                                      size_t frames, struct orl_path *path)
 {
     enum orl_result result = allocate(log, frames, path);
+    const struct orl_view *first = keys->path->views;
     for (size_t i = 0; result == ORL_OK && i < frames; i++) {
-        double at = frames > 1 ? (double)i / (double)(frames - 1) * (double)(keys->count - 1) : 0;
-        size_t segment = (size_t)at;
-        if (segment + 1 >= keys->count)
-            segment = keys->count - 2;
-        const struct orl_view *a = &keys->views[segment];
+        double centre[3], t;
+        size_t segment = segment_at(keys, frames > 1 ? (double)i / (double)(frames - 1) : 0, &t);
         struct orl_view *view = &path->views[i];
-        double centre[3], t = at - (double)segment;
-        *view = orl_view_interpolate(a, a + 1, t);
-        view->camera = orl_camera_reframed(&view->camera, keys->views[0].camera.width,
-                                           keys->views[0].camera.height);
+        *view = orl_view_interpolate(&first[segment], &first[segment + 1], t);
+        view->camera = orl_camera_reframed(&view->camera, first->camera.width,
+                                           first->camera.height);
         spline_centre(keys, segment, t, centre);
         struct orl_pose *pose = &view->cam_from_world;
         for (int row = 0; row < 3; row++)
@@ -101,7 +131,7 @@ enum orl_result orl_path_through_photos(const struct orl_log *log, const struct 
         return result;
     for (size_t i = 0; i < scene->photo_count; i++)
         keys.views[i] = scene->photos[i].view;
-    result = spread_frames(log, &keys, frames, path);
+    result = spread_frames(log, &(struct keys){&keys, NULL}, frames, path);
     orl_path_finish(&keys);
     return result;
 }
@@ -118,8 +148,10 @@ static enum orl_result check_view(const struct orl_log *log, const char *file, c
 
 // --- Oriel keyframes ---
 
-static bool read_key(const struct orl_scene *scene, const json_t *key, struct orl_view *view)
+static bool read_key(const struct orl_scene *scene, const json_t *key, struct orl_view *view,
+                     double *seconds)
 {
+    const json_t *time = json_object_get(key, "seconds");
     double rows[3][4], eye[3], target[3], up[3] = {0, -1, 0};
     const json_t *fov = json_object_get(key, "fov_y_deg");
     const char *photo = json_string_value(json_object_get(key, "photo"));
@@ -150,7 +182,8 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             return false;
         set_fov_y(&view->camera, degrees * pi / 180);
     }
-    return true;
+    *seconds = time ? json_number_value(time) : 1;
+    return *seconds >= SECONDS_LEAST && *seconds <= SECONDS_MOST;
 }
 
 static enum orl_result read_keyframes(const struct orl_log *log, const struct orl_scene *scene,
@@ -160,9 +193,12 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
     const json_t *frames = json_object_get(root, "frames");
     struct orl_path read = {0};
     enum orl_result result = allocate(log, json_array_size(keys), &read);
+    double *seconds = orl_array(log, read.count ? read.count : 1, sizeof *seconds);
+    if (result == ORL_OK && !seconds)
+        result = ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < read.count; i++) {
         read.views[i].camera = scene->photos[0].view.camera;
-        bool ok = read_key(scene, json_array_get(keys, i), &read.views[i]);
+        bool ok = read_key(scene, json_array_get(keys, i), &read.views[i], &seconds[i]);
         result = check_view(log, file, "keyframe", i, ok, &read.views[i]);
     }
     if (result == ORL_OK && frames) {
@@ -172,13 +208,14 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
                               "%s: \"frames\" must be from 2 to %d, between two keyframes", file,
                               PATH_VIEWS_MAX);
         else
-            result = spread_frames(log, &read, (size_t)count, path);
+            result = spread_frames(log, &(struct keys){&read, seconds}, (size_t)count, path);
         for (size_t i = 0; result == ORL_OK && i < path->count; i++) // a spline may overshoot
             result = check_view(log, file, "frame", i, true, &path->views[i]);
     } else if (result == ORL_OK) {
         *path = read;
         read = (struct orl_path){0};
     }
+    free(seconds);
     orl_path_finish(&read);
     return result;
 }

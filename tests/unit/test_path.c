@@ -99,6 +99,30 @@ static void frames_move_smoothly_from_end_to_end(void **state)
     orl_path_finish(&path);
 }
 
+static void keyframes_have_their_own_seconds(void **state)
+{
+    (void)state;
+    // From -1 to 3 in one second, then back in three: at an eighth of the time halfway there, and
+    // where the two meet the camera is at rest for a moment, without a jump.
+    struct orl_path path;
+    assert_int_equal(read_text("timed.json", "{\"keyframes\": [{\"photo\": \"a\", \"seconds\": 1},"
+                                             " {\"photo\": \"b\", \"seconds\": 3},"
+                                             " {\"photo\": \"a\"}], \"frames\": 9}", &path),
+                     ORL_OK);
+    const double centres[9] = {-1, 1.25, 3};
+    for (int i = 0; i < 3; i++)
+        assert_centre(&path.views[i], centres[i], 0, 0);
+    assert_centre(&path.views[8], -1, 0, 0);
+    orl_path_finish(&path);
+    static const char *const wrong[] = {"0", "-1", "1e9", "\"1\""};
+    for (size_t i = 0; i < ORL_COUNT(wrong); i++) {
+        char text[160];
+        snprintf(text, sizeof text, "{\"keyframes\": [{\"photo\": \"a\", \"seconds\": %s},"
+                 " {\"photo\": \"b\"}], \"frames\": 5}", wrong[i]);
+        assert_int_equal(read_text("wrong.json", text, &path), ORL_ERR_FORMAT);
+    }
+}
+
 static void nerfstudio_axes_are_turned(void **state)
 {
     (void)state;
@@ -244,6 +268,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(keyframes_stand_where_they_say, set_up, tear_down),
         cmocka_unit_test_setup_teardown(frames_move_smoothly_from_end_to_end, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(keyframes_have_their_own_seconds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(nerfstudio_axes_are_turned, set_up, tear_down),
         cmocka_unit_test_setup_teardown(inria_rotation_is_world_from_camera, set_up, tear_down),
         cmocka_unit_test_setup_teardown(colmap_text_takes_the_cameras_beside_it, set_up,

@@ -226,6 +226,18 @@ class Page(unittest.TestCase):
         many = self.browser.js("""
             return import("oriel/path.js").then(m => m.orielPath(oriel.path.keys, 2));""")
         self.assertEqual((many["frames"], len(many["keyframes"])), (49, 2))
+        # The time between keyframes, by the field in their row, as the program has it.
+        both = self.browser.js("""
+            oriel.path.add();
+            const seconds = document.querySelectorAll("#path .seconds");
+            seconds[0].value = 1;
+            seconds[0].dispatchEvent(new Event("change"));
+            return import("oriel/path.js").then(m => [
+                m.orielPath(oriel.path.keys, oriel.path.duration), m.viewAt(oriel.path.keys, 0.125).eye]);""")
+        self.assertEqual([key["seconds"] for key in both[0]["keyframes"]], [1, 3, 3])
+        self.assertEqual(both[0]["frames"], 4 * 24 + 1)
+        self.assertEqual(len(both[1]), 3)
+        self.browser.js("document.querySelector('#path li:last-child button:last-child').click()")
         self.browser.js("""
             const slider = document.querySelector("#path input[type=range]");
             slider.value = 1;
@@ -336,8 +348,10 @@ class Page(unittest.TestCase):
             self.assertAlmostEqual(a, b, places=4)
 
     def test_bad_addresses_start_at_home(self):
-        for hash_ in ("#v=1,2,3", "#v=a,b,c,d,e,f,g,h", "#p=999", "#v=0,0,0,0,0,0,0,1", "#mode=x"):
-            self.reopen(self.address + hash_)
+        self.reopen(self.address + "#v=a,b,c,d,e,f,g,h")
+        self.assertEqual(self.browser.js("return oriel.navigator.at.number"), self.manifest["start"])
+        for hash_ in ("#v=1,2,3", "#p=999", "#v=0,0,0,0,0,0,0,1", "#mode=x"):
+            self.browser.js("history.replaceState(null, '', arguments[0]); oriel.readAddress()", hash_)
             self.assertEqual(self.browser.js("return oriel.navigator.at.number"), self.manifest["start"])
 
     def test_keyboard_reaches_every_tool(self):

@@ -5,25 +5,42 @@ import {byId, button, make, save} from "oriel/ui.js";
 import {viewFromKey, viewToKey} from "oriel/view.js";
 
 const FPS = 24;
-const SECONDS_A_KEY = 3; // of a path whose duration nobody has set
+const SECONDS_A_KEY = 3; // from a keyframe to the next, until somebody sets another time
 const SIZE = [1280, 720]; // of a video
 
-// Catmull-Rom through four values, as src/scene/path.c has it.
-function spline(a, b, c, d, t)
+const secondsFrom = key => key.seconds || SECONDS_A_KEY;
+
+// Of the whole path: the last keyframe's own seconds lead nowhere.
+export const durationOf = keys => keys.slice(0, -1).reduce((sum, key) => sum + secondsFrom(key), 0);
+
+// The segment that a share of the time lies in, and the place in it from 0 to 1.
+function segmentAt(keys, share)
 {
-    return 0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t * t +
-                  (3 * b - a - 3 * c + d) * t * t * t);
+    let left = share * durationOf(keys), i = 0;
+    while (i < keys.length - 2 && left >= secondsFrom(keys[i]))
+        left -= secondsFrom(keys[i++]);
+    return [i, Math.min(left / secondsFrom(keys[i]), 1)];
 }
 
-// The view at a share of the way along the keyframes.
+// Between b and c with neighbours a and d, as src/scene/path.c has it; seconds of the three segments.
+function spline(a, b, c, d, [before, own, after], t)
+{
+    const leave = (c - a) * own / (before + own), arrive = (d - b) * own / (own + after), way = c - b;
+    return b + t * (leave + t * (3 * way - 2 * leave - arrive + t * (leave + arrive - 2 * way)));
+}
+
+// The view at a share of the time along the keyframes.
 export function viewAt(keys, share)
 {
-    const at = share * (keys.length - 1), i = Math.min(Math.floor(at), keys.length - 2), t = at - i;
+    const [i, t] = segmentAt(keys, share), own = secondsFrom(keys[i]);
+    const times = [i > 0 ? secondsFrom(keys[i - 1]) : own, own, i < keys.length - 2 ? secondsFrom(keys[i + 1]) : own];
     const key = n => keys[Math.min(Math.max(n, 0), keys.length - 1)], a = key(i), b = key(i + 1);
-    const eye = [0, 1, 2].map(k => spline(key(i - 1).eye[k], a.eye[k], b.eye[k], key(i + 2).eye[k], t));
+    const eye = [0, 1, 2].map(k => spline(key(i - 1).eye[k], a.eye[k], b.eye[k], key(i + 2).eye[k], times, t));
     const frame = {};
     for (const name of Object.keys(a.frame))
         frame[name] = mix(a.frame[name], b.frame[name], t);
+    for (const name of ["fx", "fy"]) // as orl_view_interpolate
+        frame[name] = a.frame[name] ** (1 - t) * b.frame[name] ** t;
     return {eye, frame, r: rotationFromQuat(slerp(quatFromRotation(a.r), quatFromRotation(b.r), t))};
 }
 
@@ -31,7 +48,8 @@ export function viewAt(keys, share)
 export function orielPath(keys, seconds)
 {
     const frames = Math.max(Math.round(seconds * FPS) + 1, 2);
-    return {...(keys.length > 1 ? {frames} : {}), keyframes: keys.map(viewToKey)};
+    return {...(keys.length > 1 ? {frames} : {}),
+            keyframes: keys.map(key => ({...viewToKey(key), seconds: secondsFrom(key)}))};
 }
 
 // nerfstudio's camera_path.json: every frame, axes as in OpenGL, row by row.
@@ -55,19 +73,19 @@ export class PathEditor {
         this.navigator = navigator;
         this.wake = wake;
         this.name = name;
-        this.keys = [];
-        this.timed = false; // the duration was set by hand
+        this.keys = [];         // views, some with seconds to the next one
         this.element = byId("path");
         this.element.setAttribute("aria-label", text.path.title);
         this.list = make("ol");
         this.seconds = make("input", {type: "number", min: 0.5, max: 3600, step: 0.5, value: 0});
-        this.seconds.addEventListener("change", () => this.timed = true);
+        this.seconds.addEventListener("change", () => this.setDuration(Number(this.seconds.value)));
         this.scrubber = make("input", {type: "range", min: 0, max: 1, step: 0.001, value: 0});
         this.scrubber.setAttribute("aria-label", text.path.scrub);
         this.scrubber.addEventListener("input", () => this.show(Number(this.scrubber.value)));
         this.playing = button(text.path.play, () => this.play());
         this.element.append(
             make("h2", {textContent: text.path.title}), button(text.path.add, () => this.add()), this.list,
+            make("p", {className: "small", textContent: text.path.columns}),
             make("label", {}, text.path.seconds, this.seconds), this.scrubber, this.playing,
             button(text.path.saveOriel, () => save(`${name()}.path.json`, orielPath(this.keys, this.duration))),
             button(text.path.saveNerfstudio,
@@ -77,7 +95,16 @@ export class PathEditor {
         this.fill();
     }
 
-    get duration() { return Math.max(Number(this.seconds.value) || 0, 0.5); }
+    get duration() { return Math.max(durationOf(this.keys), 0.5); }
+
+    // Each part takes the share of it that it took before.
+    setDuration(seconds)
+    {
+        const factor = seconds / durationOf(this.keys);
+        if (factor > 0)
+            this.keys = this.keys.map(key => ({...key, seconds: secondsFrom(key) * factor}));
+        this.fill();
+    }
 
     addRendering(render)
     {
@@ -119,8 +146,7 @@ export class PathEditor {
     {
         const many = this.keys.length > 1;
         this.list.replaceChildren(...this.keys.map((key, i) => this.row(key, i)));
-        if (!this.timed)
-            this.seconds.value = SECONDS_A_KEY * Math.max(this.keys.length - 1, 1);
+        this.seconds.value = Number(durationOf(this.keys).toFixed(2));
         for (const element of this.element.querySelectorAll(":scope > button:not(:first-of-type), :scope > .row button"))
             element.disabled = this.keys.length === 0;
         this.playing.disabled = this.scrubber.disabled = this.seconds.disabled = !many;
@@ -133,7 +159,15 @@ export class PathEditor {
         fov.setAttribute("aria-label", t.fov(i + 1));
         fov.title = t.fov(i + 1);
         fov.addEventListener("change", () => this.change(keys => {
-            keys[i] = viewFromKey({...viewToKey(key), fov_y_deg: Number(fov.value)}, key.frame) || key;
+            keys[i] = {...(viewFromKey({...viewToKey(key), fov_y_deg: Number(fov.value)}, key.frame) || key),
+                       seconds: key.seconds};
+        }));
+        const seconds = make("input", {type: "number", min: 0.1, max: 3600, step: 0.1, title: t.speed(i + 1),
+                                       value: Number(secondsFrom(key).toFixed(2)), className: "seconds"});
+        seconds.setAttribute("aria-label", t.speed(i + 1));
+        seconds.disabled = i === this.keys.length - 1;
+        seconds.addEventListener("change", () => this.change(keys => {
+            keys[i] = {...key, seconds: Math.min(Math.max(Number(seconds.value) || 0, 0.1), 3600)};
         }));
         const small = (sign, label, run, off = false) => {
             const b = button(sign, run);
@@ -147,8 +181,10 @@ export class PathEditor {
                     button(t.key(i + 1), () => {
                         this.navigator.flyTo(this.keys[i]);
                         this.wake();
-                    }), fov,
-                    small("⟲", t.replace(i + 1), () => this.change(keys => keys[i] = this.navigator.view)),
+                    }), fov, seconds,
+                    small("⟲", t.replace(i + 1), () => this.change(keys => {
+                        keys[i] = {...this.navigator.view, seconds: key.seconds};
+                    })),
                     small("↑", t.up(i + 1), swap(-1), i === 0),
                     small("↓", t.down(i + 1), swap(1), i === this.keys.length - 1),
                     small("✕", t.remove(i + 1), () => this.change(keys => keys.splice(i, 1))));
