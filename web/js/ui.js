@@ -208,7 +208,8 @@ export function buildHelp()
     const close = make("button", {type: "button", textContent: text.close});
     close.addEventListener("click", () => dialog.close());
     dialog.setAttribute("aria-label", text.helpTitle);
-    dialog.append(make("h2", {textContent: text.helpTitle}), list,
+    // The heading takes the focus: the button would scroll the dialog to its end.
+    dialog.append(make("h2", {textContent: text.helpTitle, tabIndex: -1, autofocus: true}), list,
                   make("p", {textContent: text.helpShare}), close);
     return dialog;
 }
