@@ -45,8 +45,15 @@ void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **handle)
 
 void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data)
 {
+    // A driver may give a buffer that is written as a whole new memory instead of waiting for the
+    // device. Zink of Mesa 22.3 then goes on to show the old memory in textures of the buffer. So the
+    // first bytes are written on their own.
+    size_t first = size == buf->size && size > 4 ? 4 : 0;
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    glNamedBufferSubData(buf->id, (GLintptr)offset, (GLsizeiptr)size, data);
+    if (first)
+        glNamedBufferSubData(buf->id, (GLintptr)offset, (GLsizeiptr)first, data);
+    glNamedBufferSubData(buf->id, (GLintptr)(offset + first), (GLsizeiptr)(size - first),
+                         (const char *)data + first);
 }
 
 void orl_buf_read(const struct orl_buf *buf, size_t offset, size_t size, void *data)

@@ -1,0 +1,100 @@
+// Buffers that are also read as textures.
+#include "gpu_test.h"
+
+enum { ROUNDS = 32 };
+
+static char *dir;
+
+// Counts in a buffer (mode 0), or notes what a texture shows of it (mode 1). It stands for
+// fill/fill_pull.comp.
+static const char shader[] =
+    "layout(local_size_x = 1) in;\n"
+    "layout(r32ui, binding = 0) readonly uniform uimageBuffer shown;\n"
+    "layout(std430, binding = 0) buffer words { uint count, rest[3]; };\n"
+    "layout(std430, binding = 1) buffer notes { uint seen[]; };\n"
+    "layout(std140, binding = 0) uniform block { int mode, place; };\n"
+    "void main()\n"
+    "{\n"
+    "    if (mode == 0)\n"
+    "        atomicAdd(count, 1u);\n"
+    "    else\n"
+    "        seen[place] = imageLoad(shown, 0).r;\n"
+    "}\n";
+
+static struct orl_gpu *open_device(void)
+{
+    static struct orl_log log;
+    log = orl_log_stderr(ORL_LOG_WARNING);
+    const struct orl_gpu_params params = {.shader_dir = dir, .cache_dir = ""};
+    struct orl_gpu *gpu;
+    char *folder = test_path(dir, "fill"), *path = test_path(dir, "fill/fill_pull.comp");
+    assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
+    assert_int_equal(orl_file_write(NULL, path, shader, strlen(shader)), ORL_OK);
+    assert_int_equal(orl_gpu_create(&log, &params, &gpu), ORL_OK);
+    free(folder);
+    free(path);
+    return gpu;
+}
+
+// Whole buffers are written in every frame while the device may still read what they held.
+static void a_texture_shows_what_was_written_last(void **state)
+{
+    (void)state;
+    struct orl_gpu *gpu = open_device();
+    struct orl_buf *words = NULL, *notes = NULL;
+    struct orl_tex *shown = NULL;
+    uint32_t seen[ROUNDS];
+    struct { int32_t mode, place, unused[2]; } block = {0};
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "words", 16, NULL, &words), ORL_OK);
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "notes", sizeof seen, NULL, &notes),
+                     ORL_OK);
+    assert_int_equal(orl_tex_view_buffer(gpu, words, GL_R32UI, &shown), ORL_OK);
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "fill/fill_pull.comp", NULL, NULL),
+                             .params = &block, .params_size = sizeof block,
+                             .bufs = {{words, 0, 0}, {notes, 0, 0}},
+                             .images = {{shown, 0, GL_READ_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_SHADER_STORAGE_BARRIER_BIT};
+    for (uint32_t i = 0; i < ROUNDS; i++) {
+        const uint32_t data[4] = {1000 * i};
+        orl_buf_write(words, 0, sizeof data, data);
+        block.place = (int32_t)i;
+        for (block.mode = 0; block.mode < 2; block.mode++) {
+            assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+            orl_gpu_dispatch(gpu, &d);
+        }
+    }
+    orl_buf_read(notes, 0, sizeof seen, seen);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+    for (uint32_t i = 0; i < ROUNDS; i++)
+        assert_int_equal(seen[i], 1000 * i + 1);
+    orl_tex_destroy(gpu, &shown);
+    orl_buf_destroy(gpu, &words);
+    orl_buf_destroy(gpu, &notes);
+    orl_gpu_destroy(&gpu);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    dir = test_dir_make();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    test_dir_remove(dir);
+    return 0;
+}
+
+int main(void)
+{
+    struct orl_gpu *gpu = gpu_test_device(); // or exit 77
+    orl_gpu_destroy(&gpu);
+    unsetenv("ORIEL_SHADER_DUMP"); // the check of all shaders knows those of the program
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_texture_shows_what_was_written_last, set_up, tear_down),
+    };
+    return cmocka_run_group_tests_name("buffers", tests, NULL, NULL);
+}
