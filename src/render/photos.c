@@ -259,20 +259,23 @@ static void evict(struct photo_state *state)
     state->has_mask = false;
 }
 
-// Returns a free slot, or else evicts the least recently used photograph.
+// Returns a free slot, or else evicts the least recently used photograph. There is at least one slot.
 static int take_slot(struct photos *photos)
 {
     struct photo_state *oldest = NULL;
+    int taken = 0;
     for (int slot = 0; slot < photos->slot_count; slot++) {
         struct photo_state *state = state_in_slot(photos, slot);
         if (!state)
             return slot;
-        if (!oldest || state->last_use < oldest->last_use)
+        if (!oldest || state->last_use < oldest->last_use) {
             oldest = state;
+            taken = slot;
+        }
     }
-    int slot = oldest->slot;
-    evict(oldest);
-    return slot;
+    if (oldest)
+        evict(oldest);
+    return taken;
 }
 
 void orl_photos_follow_moment(struct photos *photos)

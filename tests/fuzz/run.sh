@@ -26,7 +26,7 @@ readers=(
     "ply src/scene/points_ply.c src/scene/points.c src/scene/point_radii.c src/scene/thin.c"
     "manifest src/scene/manifest.c src/scene/tuned_settings.c src/core/json.c"
     "stages src/scene/manifest.c"
-    "path_json src/scene/path.c src/scene/camera.c"
+    "path_json src/scene/path.c src/core/camera.c"
     "path_text src/scene/path.c src/scene/colmap_text.c"
     "exposures preprocess/job/exposure_list.c"
     "exif src/io/exif.c"
@@ -37,7 +37,7 @@ readers=(
     "exr src/io/exr_read.c"
     "raw src/io/raw.c"
     "options src/render/options.c"
-    "shader src/gpu/shader_source.c"
+    "shader src/gpu/shader_source.c src/gpu/check_source.c"
 )
 wanted=" ${*:-} "
 
