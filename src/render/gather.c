@@ -192,6 +192,13 @@ void orl_gather_slots(const struct frame *frame, struct gather_slots *out)
     }
 }
 
+void orl_gather_set_slot(struct gather_slots *slots, const char *slot, const char *file)
+{
+    for (size_t i = 0; i < GATHER_SLOTS && slots->slots[i].name; i++)
+        if (strcmp(slots->slots[i].name, slot) == 0)
+            snprintf(slots->files[i], sizeof slots->files[i], "%s", file);
+}
+
 enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
                               struct orl_buf **buf)
 {

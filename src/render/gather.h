@@ -33,6 +33,8 @@ struct gather_slots {
     struct orl_slot slots[GATHER_SLOTS];
 };
 void orl_gather_slots(const struct frame *frame, struct gather_slots *out);
+// Puts another file into a slot.
+void orl_gather_set_slot(struct gather_slots *slots, const char *slot, const char *file);
 // Empties the picture and what belongs to it.
 void orl_gather_clear(const struct frame *frame);
 // Ensures room for `bytes` in *buf, whose contents may be lost.

@@ -101,11 +101,15 @@ static size_t slot_budget(const struct photos *photos, const struct slot_size *s
     return budget > loading ? budget - loading : 1;
 }
 
+// Of everything that a method may ask for.
 static size_t slot_bytes(const struct photos *photos, const struct slot_size *size)
 {
+    struct photos mask = {.format = GL_R8}, background = {.format = GL_SRGB8_ALPHA8};
     return color_bytes(photos, size) +
            (size_t)size->depth_width * (size_t)size->depth_height *
-               (photos->scene->defaults.depth_half ? 2 : 4);
+               (photos->scene->defaults.depth_half ? 2 : 4) +
+           (photos->silhouettes ? color_bytes(&mask, size) : 0) +
+           (photos->places ? color_bytes(&background, size) : 0);
 }
 
 static bool fits_all(const struct photos *photos, const struct slot_size *size, int count,
@@ -202,6 +206,9 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         photos->states[i].slot = -1;
     }
     find_exposures(photos);
+    for (size_t i = 0; i < scene->photo_count; i++)
+        photos->silhouettes |= photos->states[i].usable && scene->photos[i].masked;
+    photos->places = orl_photos_backgrounds(photos);
     photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
     enum orl_textures textures = ORL_TEXTURES_AUTO;
     enum orl_result result = orl_textures_choose(log, scene, params, &textures);

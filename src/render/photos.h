@@ -34,6 +34,7 @@ struct photos {
                                 // It outlives a moment. NULL: none was asked for; owned
     const struct orl_progress *progress; // see struct orl_renderer_params
     size_t uploaded;            // bytes of photographs and masks that went to the device
+    bool silhouettes, places;   // methods may ask for mask, for background
     int slot_count, divide;     // divide: photographs are loaded at 1/divide of their size
     unsigned clock;
     int moment;                 // scene->frame of what is resident

@@ -11,7 +11,7 @@
 
 bool orl_frame_shows_room(const struct frame *frame)
 {
-    return frame->params->fill == ORL_FILL_ROOM && !frame->radiance;
+    return frame->params->fill == ORL_FILL_ROOM;
 }
 
 // The middle and the half sides of the room. Of a shell: the middle of what the proxy shows, and
@@ -58,6 +58,8 @@ static void project(const struct frame *frame, bool backgrounds, size_t first, s
     char defines[96];
     place(frame, &block);
     orl_gather_slots(frame, &slots);
+    if (frame->radiance)
+        orl_gather_set_slot(&slots, "combine", "gather/radiance/mean.glsl");
     // Behind layers the room shows through.
     snprintf(defines, sizeof defines, "SWEEP 0\nROOM %d\n%s%s",
              orl_painter_of(frame->params)->layers ? 2 : 1,
@@ -119,7 +121,8 @@ enum orl_result orl_room_paint(struct frame *frame)
     struct orl_render_params params = *frame->params;
     struct frame room = *frame;
     bool backgrounds = orl_photos_backgrounds(frame->photos);
-    bool recurrence = orl_render_params_equal(frame->params, "combine=recurrence");
+    bool recurrence =
+        !frame->radiance && orl_render_params_equal(frame->params, "combine=recurrence");
     room.params = &params;
     params.border_px = 0;
     snprintf(params.weight, sizeof params.weight, "equal");

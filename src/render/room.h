@@ -5,14 +5,14 @@
 
 #include "render/frame.h"
 
-// True if this frame shows the room where there is no surface: fill=room. Radiance shows the colours
-// of neighbours instead.
+// True if this frame shows the room where there is no surface: fill=room.
 bool orl_frame_shows_room(const struct frame *frame);
 // Paints frame->room, in the encoding of blended pixels: the scene's room, or where it has none a
 // shell around the scene. With pictures of the place without the subject these are projected, else
 // the photographs, except where the subject is before the walls. Photographs that see a wall count
-// alike (equation 1), or as with combine=recurrence if the frame has that. Overwrites the frame's
-// chosen photographs.
+// alike (equation 1), or as with combine=recurrence if the frame has that. In radiance photographs
+// are projected, each weighted by its confidence: pictures of the empty place have no exposure.
+// Overwrites the frame's chosen photographs.
 enum orl_result orl_room_paint(struct frame *frame);
 // Shows it in the picture where nothing was painted before it.
 void orl_room_show(const struct frame *frame);

@@ -2,6 +2,7 @@
 // found by hand and on a figure whose silhouettes are exact.
 #include <math.h>
 
+#include "core/color.h"
 #include "figure_scene.h"
 #include "render/billboards.h"
 #include "render/voxels.h"
@@ -211,6 +212,99 @@ static void colours_blend_by_the_weights(void **state)
     teardown(&f);
 }
 
+// --- radiance and memory ---
+
+// Makes the last photograph grey: `ball` within `radius` pixels of its middle, else `wall`.
+static void paint_ball(struct fixture *f, double radius, uint8_t ball, uint8_t wall)
+{
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        image.u8[i] = hypot(i / 3 % SIDE + 0.5 - SIDE / 2, i / 3 / SIDE + 0.5 - SIDE / 2) < radius
+                          ? ball : wall;
+    repaint_photo(f, &image);
+}
+
+// Of two photographs that count alike the one that clips gives way, on the ball and on the walls.
+static void clipped_photographs_give_way(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"goldluecke", "li"};
+    static const double turns[] = {0.3, -0.3, 1.6};
+    const struct orl_renderer_params radiance = {.radiance = true};
+    struct fixture f;
+    setup_empty(&f, 4);
+    f.scene.room = (struct orl_room){{-6, -3, -6}, {6, 3, 6}, true};
+    double radius = 60 * tan(asin(0.5 / 4)), middle = 0.5 * SIDE;
+    for (int i = 0; i < 3; i++) {
+        add_disc_photo(&f, look_around(turns[i], 4, SIDE, 60), red, middle, middle, radius);
+        paint_ball(&f, radius, i == 1 ? 255 : 150, i == 1 ? 255 : 188);
+    }
+    for (int c = 0; c < 3; c++)
+        f.photos[1].gain[c] = 0.25f; // exposed for four times as long
+    double ball = (double)orl_srgb_decode(150 / 255.0f);
+    double wall = (double)orl_srgb_decode(188 / 255.0f);
+    for (int m = 0; m < 2; m++) {
+        struct orl_render_params params = orl_method_find(NULL, methods[m])->params;
+        params.sample = ORL_SAMPLE_RADIANCE;
+        params.fill = ORL_FILL_ROOM;
+        struct orl_frame frame =
+            draw_by(gpu, &f, look_around(0, 4, SIDE, 60), &params, &radiance);
+        for (int c = 0; c < 3; c++) {
+            assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[c], ball, 0.01);
+            assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2 - 16)[c], wall, 0.01);
+        }
+        assert_float_equal(frame.depth.f32[(SIDE / 2 - 16) * SIDE + SIDE / 2], 0, 0);
+        orl_frame_finish(&frame);
+    }
+    teardown(&f);
+}
+
+static void add_background(const struct fixture *f)
+{
+    struct orl_image image;
+    size_t last = f->scene.photo_count - 1;
+    const struct orl_camera *c = &f->photos[last].view.camera;
+    char *folder = orl_path_join(NULL, f->dir, "background");
+    char *path = orl_scene_background_path(NULL, &f->scene, last);
+    assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
+    assert_int_equal(orl_image_init(NULL, &image, c->width, c->height, 3, ORL_PIXEL_U8), ORL_OK);
+    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+    orl_image_finish(&image);
+    free(folder);
+    free(path);
+}
+
+// Masks and pictures of the empty place are part of the plan for the device's memory.
+static void memory_stays_within_the_plan(void **state)
+{
+    (void)state;
+    enum { COUNT = 60, BUDGET = 3100 << 10 };
+    static const char *const methods[] = {"goldluecke", "li"};
+    struct fixture f;
+    struct orl_renderer *renderer;
+    setup_empty(&f, 4);
+    for (int i = 0; i < COUNT; i++) {
+        add_disc_photo(&f, look_around(6.2832 * i / COUNT, 4, SIDE, 60), red, 0.5 * SIDE,
+                       0.5 * SIDE, 8);
+        add_background(&f);
+    }
+    const struct orl_renderer_params limited = {.max_vram_bytes = BUDGET,
+                                                .textures = ORL_TEXTURES_FULL};
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, &limited, &renderer), ORL_OK);
+    for (int m = 0; m < 2; m++) {
+        struct orl_render_params params = orl_method_find(NULL, methods[m])->params;
+        params.fill = ORL_FILL_ROOM;
+        assert_int_equal(orl_renderer_draw(renderer, &f.photos[0].view, &params, NULL, NULL),
+                         ORL_OK);
+    }
+    size_t bytes = orl_gpu_owner_bytes(gpu, ORL_OWNER_PHOTOGRAPHS);
+    print_message("photographs take %zu KiB of %d\n", bytes >> 10, BUDGET >> 10);
+    assert_true(bytes > BUDGET / 2 && bytes <= BUDGET);
+    orl_renderer_destroy(&renderer);
+    teardown(&f);
+}
+
 // --- the figure ---
 
 // PSNR to photograph `index` of all pixels that lie `margin` pixels within its silhouette.
@@ -353,6 +447,8 @@ int main(void)
         cmocka_unit_test(points_fill_voxels),
         cmocka_unit_test(the_nearest_two_weigh_by_their_arcs),
         cmocka_unit_test(colours_blend_by_the_weights),
+        cmocka_unit_test(clipped_photographs_give_way),
+        cmocka_unit_test(memory_stays_within_the_plan),
         cmocka_unit_test(photographs_come_back_at_their_axis),
         cmocka_unit_test(a_photograph_left_out_carves_nothing),
         cmocka_unit_test(a_frame_uploads_as_much_as_the_paper_says),

@@ -1,7 +1,7 @@
 // Samples of a surface point in photographs of several exposures, and their confidence weights.
 // Included after "gather/ask.glsl". The code selects rather than branches, since software renderers
 // run both sides of a condition.
-#include "gather/radiance/trust.glsl"
+#include "gather/radiance/alone.glsl"
 
 #define MODEL model_variance
 
@@ -14,21 +14,9 @@ struct Sample {
     int shot;     // the photograph
 };
 
-// Squared relative error of a photograph due to noise; inverse: 1 / radiance.
-float noise_of(photo shot, vec3 inverse)
-{
-    return relative_variance(shot.gain.rgb * inverse, shot.noise);
-}
-
-// A geometric weight is also an inverse variance, in units of 1 / MODEL. Errors of the model and of
-// noise add up, and a photograph taken from the viewpoint has noise only. The bound max(weight, 1)
-// never excuses noise by bad geometry, since samples of bad geometry are unreliable anyway.
 float total_weight(Sample s, float noise)
 {
-    // Clipped samples with minimal confidence are ranked by it, whatever their geometry.
-    float trace = min(1024.0 * s.clip, 1.0);
-    return s.clip * s.clip * s.clip * trace * trace * s.weight /
-           (1.0 + max(s.weight, 1.0) * noise / MODEL);
+    return confident_weight(s.weight, s.clip, noise);
 }
 
 // Squared difference in stops, averaged over the channels.
