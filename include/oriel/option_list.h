@@ -95,7 +95,7 @@
     NUMBER(unknown_trust, 0.5f, 0, 1, "share", "visibility=soft sample=radiance", \
         ORL_TRIES(0, 0.02, 0.05, 0.15, 0.5), \
         "How far a photograph is trusted that has no depth where the surface would be.") \
-    NUMBER(distance_floor, 0.03f, 1e-7, 1, "fraction of viewing distance", "weight=airieau", \
+    NUMBER(distance_floor, 0.03f, 9e-7, 1, "fraction of viewing distance", "weight=airieau", \
         ORL_TRIES(0.01, 0.03, 0.1, 0.3), \
         "Keeps Airieau's difference of distances away from zero.") \
     NUMBER(border_px, 8, 0, 1024, "pixels of the photograph", "paint=gather paint=tiled", \

@@ -33,7 +33,7 @@ const struct orl_method orl_methods[] = {
      {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .min_support = 8, .candidates = 3,
       .photos_per_pixel = 2}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
-     {DEFAULTS .distance_floor = 1e-4f, .border_px = 0, .points_per_pixel = 0}},
+     {DEFAULTS .distance_floor = 1e-6f, .border_px = 0, .points_per_pixel = 0}},
     {"ulr", "the best four photographs by angle and resolution",
      "Buehler 2001, 4.2, as SIBR's ulrv2", {DEFAULTS .weight = "ulr", .combine = "top", .border_px = 0}},
     {"orzan-view", "the four photographs nearest by direction, outliers left out",
