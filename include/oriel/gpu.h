@@ -119,9 +119,9 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
 // Copies the top left width x height part of a level of `from` to level 0 of a layer of `to`.
 void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,
                         struct orl_tex *to, int layer);
-// Compresses all levels of `from`, 8 bits per channel, into a layer of the array `to`, which must
-// have the same size and levels. Oriel encodes them (bc1.h, bc7.h). Alpha is lost. Waits
-// for the device.
+// Compresses all levels of `to` from `from`, 8 bits per channel, into a layer of the array `to`,
+// which must have the same size. RGTC1 gets the luma; RGTC2 the chroma, and has half the size,
+// rounded up. Oriel encodes them (bc1.h, bc7.h, rgtc.h). Alpha is lost. Waits for the device.
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer) ORL_CHECK_RESULT;
 // Sets every channel of every layer of one level to 0.

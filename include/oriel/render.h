@@ -123,11 +123,14 @@ enum orl_textures {
     ORL_TEXTURES_AUTO,
     ORL_TEXTURES_FULL, // 4 bytes per pixel, lossless
     ORL_TEXTURES_BC7,  // 1 byte per pixel
+    ORL_TEXTURES_YCC,  // luma, and chroma at half the size: 3/4 byte per pixel
     ORL_TEXTURES_BC1,  // half a byte per pixel
     ORL_TEXTURES_COUNT
 };
 // By enum orl_textures, ended by NULL.
 extern const char *const orl_textures_names[ORL_TEXTURES_COUNT + 1];
+// True if the device can sample photographs of this format.
+bool orl_textures_available(const struct orl_gpu *gpu, enum orl_textures textures);
 
 struct orl_renderer_params {
     const bool *use;       // per photograph: may it be used? NULL: all that are not held out

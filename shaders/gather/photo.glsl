@@ -36,6 +36,11 @@ struct Point {
 // 0) do not affect filtered neighbours.
 layout(binding = 0) uniform sampler2DArray photo_color;
 layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: estimated in a hole, 0: none
+// CHROMA: photo_color is the luma of sRGB, and photo_chroma its Cb and Cr at half the size.
+#ifdef CHROMA
+layout(binding = ORL_PHOTO_CHROMA) uniform sampler2DArray photo_chroma;
+#include "shared/srgb.glsl"
+#endif
 
 #include "gather/projection.glsl"
 
@@ -54,14 +59,31 @@ vec4 photo_texel(vec2 at, float slot, float lod)
     return textureLod(photo_color, vec3(at, slot), lod);
 }
 
+// The colour of which `texel` was read: with CHROMA, luma alone was.
+vec4 photo_complete(vec4 texel, vec2 pixel, float slot, float lod)
+{
+#ifdef CHROMA
+    vec2 size = 2.0 * vec2(textureSize(photo_chroma, 0).xy);
+    vec2 chroma = textureLod(photo_chroma, vec3(pixel / size, slot), lod).rg - 128.0 / 255.0;
+    // The inverse of src/gpu/rgtc.c (ITU-R BT.601).
+    vec3 color = texel.r + vec3(1.402 * chroma.g, -0.344136 * chroma.r - 0.714136 * chroma.g,
+                                1.772 * chroma.r);
+    return vec4(srgb_decode(clamp(color, 0.0, 1.0)), 1.0);
+#else
+    return texel;
+#endif
+}
+
 vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
 {
-    return photo_texel(pixel * (1.0 / slot_size.xy), shot.gain.w, mip);
+    vec4 texel = photo_texel(pixel * (1.0 / slot_size.xy), shot.gain.w, mip);
+    return photo_complete(texel, pixel, shot.gain.w, mip);
 }
 
 #include "gather/bicubic.glsl"
 
 vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
 {
-    return bicubic(pixel, shot.gain.w, slot_size.xy, mip);
+    vec4 texel = bicubic(pixel, shot.gain.w, slot_size.xy, mip);
+    return photo_complete(texel, pixel, shot.gain.w, floor(mip + 0.5));
 }

@@ -122,6 +122,7 @@ ORL_BLOCK(gather_block)
 };
 #endif
 
+#define ORL_PHOTO_CHROMA 3 // texture unit of photographs' chroma
 #define ORL_BICUBIC 1 // value of opt.sampling
 
 // Selection of photographs per tile.

@@ -89,11 +89,8 @@ static enum orl_result add_varied(const struct orl_log *log, const struct orl_sc
 static enum orl_result add_renderers(struct orl_gpu *gpu, const struct chart_config *base,
                                      struct chart_plan *plan)
 {
-    static const struct {
-        enum orl_textures textures;
-        GLenum format;
-    } kinds[] = {{ORL_TEXTURES_BC7, GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM},
-                 {ORL_TEXTURES_BC1, GL_COMPRESSED_SRGB_S3TC_DXT1_EXT}};
+    static const enum orl_textures kinds[] = {ORL_TEXTURES_BC7, ORL_TEXTURES_YCC,
+                                              ORL_TEXTURES_BC1};
     const struct orl_log *log = orl_gpu_log(gpu);
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(photo_divides); i++) {
@@ -104,10 +101,10 @@ static enum orl_result add_renderers(struct orl_gpu *gpu, const struct chart_con
     }
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(kinds); i++) {
         struct chart_config config = *base;
-        config.textures = kinds[i].textures;
+        config.textures = kinds[i];
         snprintf(config.setting, sizeof config.setting, "textures %s",
-                 orl_textures_names[kinds[i].textures]);
-        if (orl_gpu_has_compressed(gpu, kinds[i].format))
+                 orl_textures_names[kinds[i]]);
+        if (orl_textures_available(gpu, kinds[i]))
             result = add(log, plan, &config);
     }
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(size_divides); i++) {

@@ -43,13 +43,14 @@ static bool assign(const struct orl_render_params *render, const char *assignmen
 
 static enum orl_textures next_textures(const struct trim_search *s, enum orl_textures textures)
 {
-    bool bc1 = orl_gpu_has_compressed(s->source.gpu, GL_COMPRESSED_SRGB_S3TC_DXT1_EXT);
-    // Software renderers decode BC7 several times as slowly.
-    bool bc7 = !orl_gpu_caps(s->source.gpu)->software &&
-               orl_gpu_has_compressed(s->source.gpu, GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM);
-    if (textures == ORL_TEXTURES_AUTO && bc7)
-        return ORL_TEXTURES_BC7;
-    return textures != ORL_TEXTURES_BC1 && bc1 ? ORL_TEXTURES_BC1 : textures;
+    // Each takes less than the one before. Software renderers decode BC7 several times as slowly.
+    bool software = orl_gpu_caps(s->source.gpu)->software;
+    int next = textures == ORL_TEXTURES_AUTO ? ORL_TEXTURES_BC7 : (int)textures + 1;
+    for (; next < ORL_TEXTURES_COUNT; next++)
+        if (!(software && next == ORL_TEXTURES_BC7) &&
+            orl_textures_available(s->source.gpu, (enum orl_textures)next))
+            return (enum orl_textures)next;
+    return textures;
 }
 
 bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *move)

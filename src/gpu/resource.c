@@ -5,6 +5,7 @@
 #include "gpu/bc1.h"
 #include "gpu/bc7.h"
 #include "gpu/internal.h"
+#include "gpu/rgtc.h"
 
 enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
                                size_t size, const void *data, struct orl_buf **out)
@@ -94,16 +95,23 @@ static size_t texel_bytes(GLenum format)
 // Bytes of a 4x4 block of a compressed format; 0: the format is not compressed.
 static size_t block_bytes(GLenum format)
 {
-    return format == GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM ? 16
-           : format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT  ? 8
-                                                         : 0;
+    switch (format) {
+    case GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM:
+    case GL_COMPRESSED_RG_RGTC2:
+        return 16;
+    case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT:
+    case GL_COMPRESSED_RED_RGTC1:
+        return 8;
+    default:
+        return 0;
+    }
 }
 
 bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
 {
     GLint supported = GL_FALSE;
     (void)gpu;
-    // BPTC is part of GL 4.5. S3TC is an extension, and GL_EXT_texture_sRGB adds its sRGB formats.
+    // BPTC and RGTC are part of GL 4.5. S3TC is an extension, and GL_EXT_texture_sRGB adds its sRGB formats.
     if (format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT &&
         !(epoxy_has_gl_extension("GL_EXT_texture_compression_s3tc") &&
           epoxy_has_gl_extension("GL_EXT_texture_sRGB")))
@@ -262,20 +270,25 @@ void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int he
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer)
 {
-    const struct orl_tex_params *p = &to->params;
-    size_t room = (size_t)p->width * (size_t)p->height * 4;
+    const struct orl_tex_params *p = &to->params, *source = &from->params;
+    size_t room = (size_t)source->width * (size_t)source->height * 4;
     size_t block_room = ((size_t)p->width + 3) * ((size_t)p->height + 3);
-    bool bc7 = p->format == GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM;
     uint8_t *pixels = orl_array(gpu->log, room, 1);
     uint8_t *blocks = orl_array(gpu->log, block_room, 1);
     enum orl_result result = pixels && blocks ? ORL_OK : ORL_ERR_MEMORY;
     for (int level = 0; result == ORL_OK && level < p->levels; level++) {
         int width = level_side(p->width, level), height = level_side(p->height, level);
+        int from_width = level_side(source->width, level);
+        int from_height = level_side(source->height, level);
         orl_tex_read(from, level, GL_RGBA, GL_UNSIGNED_BYTE, room, pixels);
-        if (bc7)
+        if (p->format == GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM)
             orl_bc7_encode(pixels, width, height, blocks);
-        else
+        else if (p->format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT)
             orl_bc1_encode(pixels, width, height, blocks);
+        else if (p->format == GL_COMPRESSED_RED_RGTC1)
+            orl_rgtc_encode_luma(pixels, width, height, blocks);
+        else
+            orl_rgtc_encode_chroma(pixels, from_width, from_height, width, height, blocks);
         struct orl_tex_params one = {.width = width, .height = height, .format = p->format};
         glCompressedTextureSubImage3D(to->id, level, 0, 0, layer, width, height, 1, p->format,
                                       (GLsizei)orl_tex_layer_bytes(&one), blocks);

@@ -128,7 +128,8 @@ static void place_voxels(const struct frame *frame, const struct voxel_state *st
 static struct orl_prog *program(const struct frame *frame)
 {
     char defines[64];
-    snprintf(defines, sizeof defines, "PAINTED 1\n%s%s", frame->radiance ? "RADIANCE 1\n" : "",
+    snprintf(defines, sizeof defines, "PAINTED 1\n%s%s%s", frame->radiance ? "RADIANCE 1\n" : "",
+             frame->reads_chroma ? "CHROMA 1\n" : "",
              frame->params->projection_bits > 0 ? "TABLES 1\n" : "");
     char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s", frame->gather->options, defines);
     struct orl_prog *prog =
@@ -151,7 +152,8 @@ static void draw(const struct frame *frame, const struct voxel_state *state,
                     true},
                    {billboards, offsetof(struct billboard, second), stride, 1, GL_FLOAT, true}},
         .primitive = GL_TRIANGLES, .count = 6, .instances = count, .over = true,
-        .textures = {frame->photos->color, NULL, frame->photos->mask},
+        .textures = {frame->photos->color, NULL, frame->photos->mask,
+                     [ORL_PHOTO_CHROMA] = frame->photos->chroma},
         .images = {[PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
         .targets = {frame->picture},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT};

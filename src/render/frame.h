@@ -19,6 +19,7 @@ struct frame {
     const struct orl_view *view;
     const struct orl_render_params *params;
     bool radiance;             // photographs are sampled as radiance
+    bool reads_chroma;         // colours of photographs are luma, and chroma in a second texture
     bool finishes;             // the painter leaves finished pixels (struct painter)
     struct orl_progressive *progressive; // NULL: the frame waits for its photographs
     bool normals;              // the surface has normals

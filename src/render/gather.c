@@ -157,8 +157,8 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines)
 {
-    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s", frame->gather->options,
-                            defines ? defines : "");
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s", frame->gather->options,
+                            frame->reads_chroma ? "CHROMA 1\n" : "", defines ? defines : "");
     struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;
     free(text);
     return prog;
@@ -264,7 +264,8 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
         .params = &block, .params_size = sizeof block,
         // Without depth maps no shader reads them, but a sampler wants a texture.
         .textures = {frame->photos->color,
-                     frame->photos->depth ? frame->photos->depth : frame->photos->color},
+                     frame->photos->depth ? frame->photos->depth : frame->photos->color,
+                     [ORL_PHOTO_CHROMA] = frame->photos->chroma},
         .images = {{frame->surface.depth, 0, GL_READ_ONLY},
                    {frame->picture, 0, GL_READ_WRITE},
                    {frame->radiance ? frame->trusted : frame->states[0], 0, GL_READ_WRITE},

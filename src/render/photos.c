@@ -80,12 +80,29 @@ static int mip_levels(int width, int height)
     return levels;
 }
 
+// Colour of all slots as textures: of textures=ycc, `chroma` is the second one.
+static struct orl_tex_params color_params(const struct photos *photos,
+                                          const struct slot_size *size, bool chroma)
+{
+    int width = chroma ? (size->width + 1) / 2 : size->width;
+    int height = chroma ? (size->height + 1) / 2 : size->height;
+    return (struct orl_tex_params){
+        .width = width, .height = height, .layers = photos->slot_count,
+        .levels = mip_levels(width, height),
+        .format = chroma ? GL_COMPRESSED_RG_RGTC2 : photos->format, .linear = true,
+        .owner = ORL_OWNER_PHOTOGRAPHS, .tag = chroma ? "photograph chroma" : "photographs"};
+}
+
+static bool has_chroma(const struct photos *photos)
+{
+    return photos->format == GL_COMPRESSED_RED_RGTC1;
+}
+
 static size_t color_bytes(const struct photos *photos, const struct slot_size *size)
 {
-    return orl_tex_layer_bytes(
-        &(struct orl_tex_params){.width = size->width, .height = size->height,
-                                 .levels = mip_levels(size->width, size->height),
-                                 .format = photos->format});
+    const struct orl_tex_params color = color_params(photos, size, false);
+    const struct orl_tex_params chroma = color_params(photos, size, true);
+    return orl_tex_layer_bytes(&color) + (has_chroma(photos) ? orl_tex_layer_bytes(&chroma) : 0);
 }
 
 static bool is_compressed(const struct photos *photos)
@@ -222,17 +239,15 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         state->color_camera = camera_of(&scene->photos[i], photos->divide);
         state->depth_camera = depth_camera_of(&state->color_camera, scene->defaults.depth_divide);
     }
-    struct orl_tex_params color = {.width = size.width, .height = size.height,
-                                   .layers = photos->slot_count,
-                                   .levels = mip_levels(size.width, size.height),
-                                   .format = photos->format,
-                                   .linear = true, .owner = ORL_OWNER_PHOTOGRAPHS,
-                                   .tag = "photographs"};
+    const struct orl_tex_params color = color_params(photos, &size, false);
+    const struct orl_tex_params chroma = color_params(photos, &size, true);
     photos->depth_params = (struct orl_tex_params){
         .width = size.depth_width, .height = size.depth_height, .layers = photos->slot_count,
         .format = scene->defaults.depth_half ? GL_R16F : GL_R32F,
         .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph depth"};
     result = orl_tex_create(gpu, &color, &photos->color);
+    if (result == ORL_OK && has_chroma(photos))
+        result = orl_tex_create(gpu, &chroma, &photos->chroma);
     if (result != ORL_OK)
         orl_photos_finish(gpu, photos);
     return result;
@@ -242,6 +257,7 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
 {
     orl_photo_loader_destroy(&photos->loader);
     orl_tex_destroy(gpu, &photos->color);
+    orl_tex_destroy(gpu, &photos->chroma);
     orl_tex_destroy(gpu, &photos->depth);
     orl_tex_destroy(gpu, &photos->loading);
     orl_tex_destroy(gpu, &photos->mask);
@@ -398,6 +414,8 @@ enum orl_result orl_photos_put(struct orl_gpu *gpu, struct photos *photos, size_
     orl_tex_make_mipmaps(to, layer);
     if (result == ORL_OK && photos->loading)
         result = orl_tex_compress_layer(gpu, photos->loading, photos->color, slot);
+    if (result == ORL_OK && photos->chroma)
+        result = orl_tex_compress_layer(gpu, photos->loading, photos->chroma, slot);
     if (result == ORL_OK) {
         photos->states[index].slot = slot;
         drop_loading(gpu, photos);

@@ -24,6 +24,7 @@ struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
     struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence
+    struct orl_tex *chroma;     // of textures=ycc, whose color is luma: Cb, Cr; else NULL
     GLenum format;              // of color
     struct orl_tex *loading;    // a photograph before compression; NULL: none is being loaded
     struct orl_tex *depth;      // z; < 0: estimated in a hole, 0: none; NULL: no method asked for it

@@ -221,7 +221,7 @@ static struct frame start_frame(struct orl_renderer *r, struct proxy *proxy,
 {
     return (struct frame){
         .gpu = r->gpu, .scene = r->scene, .view = view, .params = params, .skip = skip,
-        .radiance = r->photos.radiance,
+        .radiance = r->photos.radiance, .reads_chroma = r->photos.chroma != NULL,
         .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
         .proxy = proxy, .photos = &r->photos,
         .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges,

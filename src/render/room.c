@@ -69,7 +69,7 @@ static void project(const struct frame *frame, bool backgrounds, size_t first, s
         .prog = orl_gather_prog(frame, "gather/gather.comp", slots.slots, defines),
         .params = &block, .params_size = sizeof block,
         .textures = {backgrounds ? frame->photos->background : frame->photos->color,
-                     frame->photos->depth},
+                     frame->photos->depth, [ORL_PHOTO_CHROMA] = frame->photos->chroma},
         .images = {{frame->surface.depth, 0, GL_READ_ONLY},
                    {frame->room, 0, GL_READ_WRITE},
                    {frame->states[0], 0, GL_READ_WRITE},
@@ -124,6 +124,7 @@ enum orl_result orl_room_paint(struct frame *frame)
     bool recurrence =
         !frame->radiance && orl_render_params_equal(frame->params, "combine=recurrence");
     room.params = &params;
+    room.reads_chroma = frame->reads_chroma && !backgrounds;
     params.border_px = 0;
     snprintf(params.weight, sizeof params.weight, "equal");
     snprintf(params.combine, sizeof params.combine, recurrence ? "recurrence" : "mean");

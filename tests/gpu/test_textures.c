@@ -80,9 +80,16 @@ static float largest_difference(const struct orl_frame *a, const struct orl_fram
 
 static bool device_has(enum orl_textures textures)
 {
-    return orl_gpu_has_compressed(gpu, textures == ORL_TEXTURES_BC7
-                                           ? GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM
-                                           : GL_COMPRESSED_SRGB_S3TC_DXT1_EXT);
+    return orl_textures_available(gpu, textures);
+}
+
+// Blocks of all mip levels of a photograph.
+static size_t blocks_of(int side)
+{
+    size_t blocks = 0;
+    for (; side; side /= 2)
+        blocks += (size_t)((side + 3) / 4 * ((side + 3) / 4));
+    return blocks;
 }
 
 static void check_flat(enum orl_textures textures, size_t block, float tolerance)
@@ -96,10 +103,9 @@ static void check_flat(enum orl_textures textures, size_t block, float tolerance
     struct orl_renderer *small =
         renderer_of(&f, &(struct orl_renderer_params){.textures = textures});
     struct orl_frame frame = draw_at(small, 0.7);
-    size_t blocks = 0;
-    for (int side = SIDE; side; side /= 2)
-        blocks += (size_t)((side + 3) / 4 * ((side + 3) / 4));
-    assert_int_equal(bytes_of("photographs"), 3 * blocks * block);
+    assert_int_equal(bytes_of("photographs"), 3 * blocks_of(SIDE) * block);
+    if (textures == ORL_TEXTURES_YCC)
+        assert_int_equal(bytes_of("photograph chroma"), 3 * blocks_of(SIDE / 2) * 16);
     orl_renderer_destroy(&small);
     float off = largest_difference(&plain, &frame);
     assert_true(off > 0 || block == 16); // BC1 has 5 or 6 bits
@@ -124,6 +130,13 @@ static void bc1_shows_like_colours_in_an_eighth(void **state)
     if (!device_has(ORL_TEXTURES_BC1))
         skip();
     check_flat(ORL_TEXTURES_BC1, 8, 0.04f);
+}
+
+// Luma and chroma are rounded to 8 bits, and blue is 1.8 times its chroma.
+static void ycc_shows_like_colours_in_a_fifth(void **state)
+{
+    (void)state;
+    check_flat(ORL_TEXTURES_YCC, 8, 0.03f);
 }
 
 // The scene's own textures and depth maps are used, and a command's textures win.
@@ -219,6 +232,43 @@ static void bc7_keeps_texels_along_a_line(void **state)
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
 }
 
+// Two colours, each in its half of the picture: luma keeps each pixel, chroma the mean of 2x2.
+static void ycc_keeps_luma_and_chroma(void **state)
+{
+    (void)state;
+    enum { W = 18, H = 7, HALF_W = 9, HALF_H = 4 }; // no multiple of a block
+    struct orl_tex_params params = {.width = W, .height = H, .levels = 1,
+                                    .format = GL_SRGB8_ALPHA8, .tag = "plain"};
+    struct orl_tex *from, *luma, *chroma;
+    assert_int_equal(orl_tex_create(gpu, &params, &from), ORL_OK);
+    params.format = GL_COMPRESSED_RED_RGTC1;
+    params.layers = 1;
+    assert_int_equal(orl_tex_create(gpu, &params, &luma), ORL_OK);
+    params = (struct orl_tex_params){.width = HALF_W, .height = HALF_H, .levels = 1, .layers = 1,
+                                     .format = GL_COMPRESSED_RG_RGTC2, .tag = "chroma"};
+    assert_int_equal(orl_tex_create(gpu, &params, &chroma), ORL_OK);
+    static uint8_t in[W * H][4], y[W * H][4], c[HALF_W * HALF_H][4];
+    static const uint8_t colors[2][4] = {{255, 0, 0, 255}, {20, 120, 220, 255}};
+    // Y, Cb and Cr of JPEG's formulas.
+    static const int wanted[2][3] = {{76, 85, 255}, {102, 195, 70}};
+    for (int i = 0; i < W * H; i++)
+        memcpy(in[i], colors[i % W > W / 2], 4);
+    orl_tex_write(from, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, in);
+    assert_int_equal(orl_tex_compress_layer(gpu, from, luma, 0), ORL_OK);
+    assert_int_equal(orl_tex_compress_layer(gpu, from, chroma, 0), ORL_OK);
+    orl_tex_read(luma, 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof y, y);
+    orl_tex_read(chroma, 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof c, c);
+    for (int i = 0; i < W * H; i++)
+        assert_true(abs(y[i][0] - wanted[i % W > W / 2][0]) <= 1);
+    for (int i = 0; i < HALF_W * HALF_H; i++)
+        for (int k = 0; k < 2; k++)
+            assert_true(abs(c[i][k] - wanted[2 * (i % HALF_W) > W / 2][1 + k]) <= 1);
+    orl_tex_destroy(gpu, &from);
+    orl_tex_destroy(gpu, &luma);
+    orl_tex_destroy(gpu, &chroma);
+    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+}
+
 // A renderer that has room for SLOTS photographs, by trying budgets.
 static struct orl_renderer *renderer_of_few(const struct fixture *f, size_t color, size_t depth)
 {
@@ -279,6 +329,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bc7_shows_the_same_colours_in_a_quarter),
         cmocka_unit_test(bc1_shows_like_colours_in_an_eighth),
+        cmocka_unit_test(ycc_shows_like_colours_in_a_fifth),
+        cmocka_unit_test(ycc_keeps_luma_and_chroma),
         cmocka_unit_test(the_scene_says_how_photographs_are_kept),
         cmocka_unit_test(short_of_memory_compresses_first),
         cmocka_unit_test(bc7_keeps_texels_along_a_line),
