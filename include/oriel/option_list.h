@@ -92,6 +92,9 @@
         ORL_TRIES(0, 0.03, 0.06, 0.12, 0.25), \
         "How far colours may lie from their place where depth is guessed and photographs " \
         "differ. They are blurred as far. With 0 they are not.") \
+    NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
+        "How many depths are tried where only a guessed depth is known. One at which " \
+        "photographs agree clearly better replaces the guess. With 0 none are tried.") \
     NUMBER(unknown_trust, 0.5f, 0, 1, "share", "visibility=soft sample=radiance", \
         ORL_TRIES(0, 0.02, 0.05, 0.15, 0.5), \
         "How far a photograph is trusted that has no depth where the surface would be.") \

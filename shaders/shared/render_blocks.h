@@ -115,6 +115,10 @@ ORL_BLOCK(gather_block)
     FLOAT(voxel);            // edge of a voxel, scene units
     INT(voxel_side);         // voxels each way
     FLOAT(billboard_half);   // half the width of a billboard, scene units
+    INT(planes);             // planes of shaders/guess
+    FLOAT(plane_step);       // inverse depth between two of them
+    FLOAT(unused_1);
+    FLOAT(unused_2);
     // Rows of rotation | translation: of billboards to units of a voxel, of the room to a space
     // where its walls are at -1 and 1, or the shell has radius 1.
     VEC4S(local_from_view, 3);
@@ -128,6 +132,9 @@ ORL_BLOCK(gather_block)
 // Selection of photographs per tile.
 #define CHOICE_TILE 16 // pixels
 #define CANDIDATES 8   // most photographs listed per tile
+// Estimated depth from photographs: pixels of a cell each way; lines of cells of a work group.
+#define GUESS_CELL 4
+#define GUESS_LINES 32
 #define KEPT_MAX 4     // most photographs blended per pixel
 #define GUESS_BLUR_MOST 0.012 // largest blur, fraction of the picture's longer side
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel

@@ -11,6 +11,7 @@ struct gather;
 struct fill;
 struct soften;
 struct edges;
+struct guess;
 
 // The state that every pass gets. Passes keep data that outlives a frame in their own structs.
 struct frame {
@@ -33,6 +34,7 @@ struct frame {
     struct fill *fill;
     struct soften *soften;
     struct edges *edges;
+    struct guess *guess;
     // Indices of the photographs that this frame asks, ascending; memory of the renderer.
     size_t *chosen;
     float (*selected)[4];      // by the selection: weight of each; x y z its own use

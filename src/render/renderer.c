@@ -8,6 +8,7 @@
 #include "render/edges.h"
 #include "render/fill.h"
 #include "render/gather.h"
+#include "render/guess.h"
 #include "render/method.h"
 #include "render/photos.h"
 #include "render/progressive.h"
@@ -28,6 +29,7 @@ struct orl_renderer {
     struct fill fill;
     struct soften soften;
     struct edges edges;
+    struct guess guess;
     struct gather gather;
     struct orl_tex *picture, *trusted, *room, *states[2]; // textures of struct frame
     size_t *chosen;           // memory of struct frame's list
@@ -121,6 +123,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_fill_finish(r->gpu, &r->fill);
     orl_soften_finish(r->gpu, &r->soften);
     orl_edges_finish(r->gpu, &r->edges);
+    orl_guess_finish(r->gpu, &r->guess);
     orl_gather_finish(r->gpu, &r->gather);
     orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->picture);
@@ -181,6 +184,8 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
         result = orl_soften_resize(r->gpu, &r->soften, width, height);
     if (result == ORL_OK && !frame->radiance)
         result = orl_edges_resize(r->gpu, &r->edges, width, height);
+    if (result == ORL_OK && frame->finishes)
+        result = orl_guess_resize(frame, &r->guess);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(targets); i++)
         result = retarget(r->gpu, targets[i].tag, targets[i].wanted, width, height,
                           targets[i].format, targets[i].tex);
@@ -224,7 +229,7 @@ static struct frame start_frame(struct orl_renderer *r, struct proxy *proxy,
         .radiance = r->photos.radiance, .reads_chroma = r->photos.chroma != NULL,
         .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
         .proxy = proxy, .photos = &r->photos,
-        .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges,
+        .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges, .guess = &r->guess,
         .chosen = r->chosen, .selected = r->selected};
 }
 

@@ -5,6 +5,7 @@
 #include "render/edges.h"
 #include "render/fill.h"
 #include "render/gather.h"
+#include "render/guess.h"
 #include "render/photos.h"
 #include "render/progressive.h"
 #include "render/soften.h"
@@ -76,6 +77,8 @@ static enum orl_result paint_chosen(const struct frame *frame)
     orl_pass_begin(frame->gpu, "choose");
     orl_gpu_dispatch(frame->gpu, &d);
     orl_pass_end(frame->gpu);
+    if (orl_guess_applies(frame))
+        orl_guess_depth(frame, &d, &block);
     if (block.reach > 0)
         orl_edges_cut(frame, &d);
     gather_tiles(frame, block.kept > 2, d);

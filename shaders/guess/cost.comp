@@ -1,0 +1,127 @@
+// Costs of the planes of each open cell: how much the photographs of its tile differ when they are
+// projected to a plane (plane sweep of Collins 1996), how many of them see past it, and how far it
+// is from the depth that was estimated from the surfaces around.
+#include "gather/penalty.glsl"
+#include "gather/hidden.glsl"
+#include "gather/sample/srgb.glsl"
+#include "guess/planes.glsl"
+
+layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
+layout(r32f, binding = 0) readonly uniform image2D view_depth;  // < 0: estimated background depth
+layout(r32f, binding = 1) writeonly uniform image2D estimated;  // inverse depth; 0: a closed cell
+layout(std430, binding = 1) readonly buffer tile_lists {
+    int chosen[];
+};
+layout(std430, binding = 3) writeonly buffer plane_costs {
+    float costs[];
+};
+
+const int AT_ONCE = 4; // planes for which the parameters of a photograph are loaded once
+// Difference between photographs, in square roots of light, that costs 1, the most.
+const float DIFFER_MOST = 0.15;
+// Cost of leaving the estimate by FAR planes or more, and by fewer in proportion.
+const float PRIOR = 0.4, FAR = 4.0;
+// A cell with surfaces in more than this share of the (2 AROUND + 1)^2 cells around it is closed:
+// the surfaces around a small hole know its depth better than colours do.
+const int AROUND = 4;
+const float SURFACES_MOST = 0.4;
+
+// Mean inverse depth of the estimates in a cell; 0: there are none, or surfaces all around.
+float open_estimate(ivec2 cell)
+{
+    float sum = 0.0, count = 0.0, surfaces = 0.0;
+    for (int k = 0; k < GUESS_CELL * GUESS_CELL; k++) {
+        ivec2 at = GUESS_CELL * cell + ivec2(k % GUESS_CELL, k / GUESS_CELL);
+        float z = imageLoad(view_depth, at).r; // 0 outside
+        sum += z < 0.0 ? -1.0 / z : 0.0;
+        count += z < 0.0 ? 1.0 : 0.0;
+    }
+    for (int y = -AROUND; y <= AROUND; y++)
+        for (int x = -AROUND; x <= AROUND; x++) {
+            ivec2 at = (cell + ivec2(x, y)) * GUESS_CELL + GUESS_CELL / 2;
+            surfaces += imageLoad(view_depth, clamp(at, ivec2(0), view_size - 1)).r > 0.0 ? 1.0
+                                                                                          : 0.0;
+        }
+    float side = float(2 * AROUND + 1);
+    return count > 0.0 && surfaces <= SURFACES_MOST * side * side ? sum / count : 0.0;
+}
+
+// What the photographs say of a point.
+struct opinion {
+    vec4 sum;      // colour * weight, weight
+    float squares; // of colours, times weight
+    float weights; // squares of the weights
+    float past;    // weight of the photographs that see a surface behind the point
+    float all;     // weight of all photographs that show the point's place
+};
+
+void ask(photo shot, bool listed, vec3 p, inout opinion o)
+{
+    vec2 pixel;
+    float z;
+    bool inside = photo_project(shot, p, pixel, z) && listed;
+    vec4 seen = photo_depths(shot, pixel);
+    vec4 behind = clamp((seen - z) * (1.0 / (z * opt.depth_tolerance)) - 1.0, 0.0, 1.0);
+    float past = dot(behind, vec4(0.25)), penalty = photo_penalty(shot, p);
+    float weight = photo_border(shot, pixel, false) * photo_beside(penalty) / (penalty + 0.05);
+    weight = inside ? weight : 0.0;
+    float open = weight * photo_unhidden_share(shot, seen, z), counts = open * (1.0 - past);
+    // A texel of this level is as large as half a cell.
+    float mip = photo_mip(shot, z, p.z) + log2(0.5 * float(GUESS_CELL));
+    vec3 color = photo_bilinear(shot, pixel, floor(min(mip, last_mip) + 0.5)).rgb;
+    color = sqrt(photo_aligned(shot, pixel, color));
+    o.sum += vec4(color, 1.0) * counts;
+    o.squares += dot(color, color) * counts;
+    o.weights += counts * counts;
+    o.past += open * past;
+    o.all += weight;
+}
+
+// Between 0 and 1 if photographs agree, and 1 if fewer than two see the point, plus the share of
+// those that see past it.
+float cost_of(opinion o)
+{
+    float weight = max(o.sum.a, 1e-30);
+    float voices = weight * weight / max(o.weights, 1e-30); // effective number of photographs
+    vec3 mean = o.sum.rgb / weight;
+    float variance = max(o.squares / weight - dot(mean, mean), 0.0) * voices /
+                     max(voices - 1.0, 0.5);
+    float differ = min(sqrt(variance) / DIFFER_MOST, 1.0);
+    return mix(1.0, differ, clamp(voices - 1.0, 0.0, 1.0)) + o.past / max(o.all, 1e-30);
+}
+
+void main()
+{
+    ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(cell, cells_across_down())))
+        return;
+    float estimate = open_estimate(cell);
+    int row = first_cost(cell);
+    imageStore(estimated, cell, vec4(estimate));
+    if (estimate == 0.0) {
+        for (int k = 0; k < planes; k++)
+            costs[row + k] = CLOSED;
+        return;
+    }
+    vec2 centre = (vec2(cell) + 0.5) * float(GUESS_CELL);
+    vec3 ray = vec3((centre - view_focal.zw) / view_focal.xy, 1.0);
+    ivec2 tile = cell * GUESS_CELL / CHOICE_TILE;
+    int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
+    for (int first = 0; first < planes; first += AT_ONCE) {
+        opinion opinions[AT_ONCE];
+        for (int n = 0; n < AT_ONCE; n++)
+            opinions[n] = opinion(vec4(0.0), 0.0, 0.0, 0.0, 0.0);
+        int c = 0, i = chosen[list];
+        do { // the condition comes last: see tiled.comp
+            photo shot = photo_at(max(i, 0));
+            for (int n = 0; n < AT_ONCE; n++)
+                ask(shot, i >= 0, ray / plane_inverse(float(first + n)), opinions[n]);
+            c++;
+            i = c < asked ? chosen[list + c] : -1;
+        } while (i >= 0);
+        for (int n = 0; n < AT_ONCE && first + n < planes; n++) {
+            float off = abs(float(first + n) - estimate / plane_step);
+            costs[row + first + n] = cost_of(opinions[n]) + PRIOR * min(off / FAR, 1.0);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+// Depth where the surface has none: photographs agree on what is behind an opening in a wall.
+#include <math.h>
+
+#include "wall_scene.h"
+
+enum { SIDE = 128, INNER = 20 };
+static const double FOCAL = 128, OPENING = 1.1, WALL_Z = 4, BEHIND_Z = 8;
+
+static struct orl_gpu *gpu;
+
+// Squares of random brightness, half a unit wide, in 8 bits.
+static uint8_t behind(double x, double y)
+{
+    uint32_t h = (uint32_t)(int)floor(2 * x) * 2654435761u ^ (uint32_t)(int)floor(2 * y) * 40503u;
+    h = (h ^ h >> 15) * 2246822519u;
+    return (uint8_t)(h >> 24);
+}
+
+// What a photograph from (eye, 0, 0) shows at a pixel: the green wall, or what is behind its
+// opening.
+static void shade(double eye, int i, int side, uint8_t rgb[3])
+{
+    double x = (i % side + 0.5 - side / 2) / FOCAL, y = (i / side + 0.5 - side / 2) / FOCAL;
+    bool open = fabs(eye + WALL_Z * x) < OPENING && fabs(WALL_Z * y) < OPENING;
+    uint8_t grey = behind(eye + BEHIND_Z * x, BEHIND_Z * y);
+    memcpy(rgb, open ? (const uint8_t[3]){grey, grey, grey} : green, 3);
+}
+
+static void add_true_photo(struct fixture *f, double eye)
+{
+    enum { PHOTO_SIDE = 2 * SIDE };
+    add_photo(f, look_from(eye, 0, 0, PHOTO_SIDE, FOCAL), green);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, PHOTO_SIDE, PHOTO_SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < PHOTO_SIDE * PHOTO_SIDE; i++)
+        shade(eye, i, PHOTO_SIDE, &image.u8[3 * i]);
+    repaint_photo(f, &image);
+}
+
+// The wall's points without those of the opening.
+static void make_wall(struct orl_points *points)
+{
+    enum { WALL = 128 };
+    size_t kept = 0;
+    assert_int_equal(orl_points_init(NULL, points, WALL * WALL), ORL_OK);
+    set_square(points, 0, WALL, 6, 0, (float)WALL_Z, green);
+    for (size_t i = 0; i < WALL * WALL; i++) {
+        const float *at = points->position[i];
+        if (fabs((double)at[0]) < OPENING && fabs((double)at[1]) < OPENING)
+            continue;
+        memcpy(points->position[kept], at, sizeof points->position[kept]);
+        kept++; // everything else is the same for all
+    }
+    points->count = kept;
+}
+
+// Mean absolute error of the picture in the middle of the opening.
+static double error_with(float depths)
+{
+    struct fixture f;
+    setup_empty(&f, WALL_Z);
+    make_wall(&f.scene.points);
+    static const double eyes[] = {-0.7, -0.4, 0.3, 0.6};
+    for (size_t i = 0; i < ORL_COUNT(eyes); i++)
+        add_true_photo(&f, eyes[i]);
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    params.guess_depths = depths;
+    params.guess_blur = 0;
+    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
+    double sum = 0;
+    for (int y = SIDE / 2 - INNER; y < SIDE / 2 + INNER; y++)
+        for (int x = SIDE / 2 - INNER; x < SIDE / 2 + INNER; x++) {
+            uint8_t truth[3];
+            shade(0, y * SIDE + x, SIDE, truth);
+            sum += fabs(sqrt((double)color_at(&frame, x, y)[1]) -
+                        pow(truth[1] / 255.0, 1.1)); // sRGB is about a power of 2.2
+        }
+    orl_frame_finish(&frame);
+    teardown(&f);
+    return sum / (4 * INNER * INNER);
+}
+
+static void photographs_tell_the_depth_behind_an_opening(void **state)
+{
+    (void)state;
+    double rim = error_with(0), tried = error_with(16);
+    print_message("mean error: depth of the rim %.3f, depths tried %.3f\n", rim, tried);
+    assert_true(rim > 0.1);
+    assert_true(tried < 0.5 * rim);
+}
+
+int main(void)
+{
+    gpu = gpu_test_device();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(photographs_tell_the_depth_behind_an_opening),
+    };
+    int failed = cmocka_run_group_tests_name("guess", tests, NULL, NULL);
+    orl_gpu_destroy(&gpu);
+    return failed;
+}
