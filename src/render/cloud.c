@@ -364,7 +364,7 @@ enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points
     enum orl_result result = find_order(log, points, &order, count);
     if (result == ORL_OK)
         *map = orl_array(log, *count, sizeof **map);
-    if (!*map) {
+    if (!*map || !order) {
         free(order);
         return result == ORL_OK ? ORL_ERR_MEMORY : result;
     }
