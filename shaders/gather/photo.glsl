@@ -39,8 +39,8 @@ layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: estimated in 
 // CHROMA: photo_color is the luma of sRGB, and photo_chroma its Cb and Cr at half the size.
 #ifdef CHROMA
 layout(binding = ORL_PHOTO_CHROMA) uniform sampler2DArray photo_chroma;
-#include "shared/srgb.glsl"
 #endif
+#include "shared/srgb.glsl" // not within the condition: a file is included once
 
 #include "gather/projection.glsl"
 
