@@ -78,7 +78,14 @@ class Client:
         return data
 
     def receive(self):
-        """Opcode and data of the next message."""
+        """Opcode and data of the next message. Answers the pings of a server that has not heard for long."""
+        while True:
+            opcode, data = self.any_message()
+            if opcode != 9:
+                return opcode, data
+            self.send(data, opcode=10)
+
+    def any_message(self):
         first, size = self.exactly(2)
         size &= 127
         if size == 126:

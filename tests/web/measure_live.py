@@ -122,4 +122,5 @@ def main():
         walk.close()
 
 
-main()
+if __name__ == "__main__":
+    main()
