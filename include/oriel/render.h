@@ -86,6 +86,10 @@ struct orl_method {
 };
 // All methods, terminated by a NULL name. The first is the default.
 extern const struct orl_method orl_methods[];
+// What of a scene the method draws, the most fitting first: points, a mesh, silhouettes.
+const char *orl_method_asks(const struct orl_method *method);
+// Writes what it reads for each pixel, as a phrase: photographs, how often, and their depth maps.
+void orl_method_cost(const struct orl_method *method, char *text, size_t size);
 // The name of the method that the scene states as its default, or else (or without a scene) of the
 // first.
 const char *orl_method_default(const struct orl_scene *scene);

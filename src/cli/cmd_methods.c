@@ -7,8 +7,12 @@
 
 static void print_list(void)
 {
-    for (const struct orl_method *m = orl_methods; m->name; m++)
-        printf("%-14s %s\n%-14s source: %s\n", m->name, m->description, "", m->source);
+    for (const struct orl_method *m = orl_methods; m->name; m++) {
+        char cost[128];
+        orl_method_cost(m, cost, sizeof cost);
+        printf("%-14s %s\n%-14s source: %s\n%-14s asks: %s\n%-14s cost: %s\n", m->name,
+               m->description, "", m->source, "", orl_method_asks(m), "", cost);
+    }
     printf("\noriel methods NAME lists the options of one.\n");
 }
 
@@ -34,8 +38,11 @@ static enum orl_result print_method(const struct orl_log *log, const char *name)
     const struct orl_method *method = orl_method_find(log, name);
     if (!method)
         return ORL_ERR_ARGUMENT;
-    printf("%s: %s\nsource: %s\n\n%-18s %-12s %-30s %s\n", method->name, method->description,
-           method->source, "option", "value", "allowed", "what it is");
+    char cost[128];
+    orl_method_cost(method, cost, sizeof cost);
+    printf("%s: %s\nsource: %s\nasks: %s\ncost: %s\n\n%-18s %-12s %-30s %s\n", method->name,
+           method->description, method->source, orl_method_asks(method), cost, "option", "value",
+           "allowed", "what it is");
     for (const struct orl_render_option *o = orl_render_options; o->key; o++)
         if (orl_render_option_read(o, &method->params))
             print_option(o, &method->params);

@@ -1,0 +1,52 @@
+// What a method asks of a scene, and what it does at each pixel, told from its row.
+#include <stdio.h>
+#include <string.h>
+
+#include "render/billboards.h"
+#include "render/gather.h"
+#include "render/method.h"
+#include "render/proxy.h"
+#include "render/tiled.h"
+
+const char *orl_method_asks(const struct orl_method *method)
+{
+    const struct proxy_kind *kind = orl_proxy_kind_of(&method->params);
+    if (orl_painter_of(&method->params) == &orl_paint_points)
+        return "points";
+    return kind == &orl_proxy_hull     ? "silhouettes, or a mesh, or points"
+           : kind == &orl_proxy_voxels ? "silhouettes, or points"
+           : kind == &orl_proxy_mesh   ? "a mesh"
+                                       : "points, or a mesh";
+}
+
+static void name_photographs(const struct orl_render_params *p, char text[64])
+{
+    int nearest = (int)p->nearest, extras = (int)p->extras;
+    if (orl_painter_of(p) == &orl_paint_tiled)
+        snprintf(text, 64, "%d photographs, of %d of its tile", (int)p->photos_per_pixel,
+                 (int)p->candidates);
+    else if (strcmp(p->select, "nearest") == 0)
+        snprintf(text, 64, "%d photographs", nearest);
+    else if (strcmp(p->select, "princ") == 0)
+        snprintf(text, 64, "%d photographs", nearest + extras);
+    else
+        snprintf(text, 64, "all photographs");
+}
+
+void orl_method_cost(const struct orl_method *method, char *text, size_t size)
+{
+    const struct orl_render_params *p = &method->params;
+    const struct painter *painter = orl_painter_of(p);
+    bool maps = strcmp(p->visibility, "none") != 0 && strcmp(p->visibility, "facing") != 0;
+    char photographs[64];
+    if (painter == &orl_paint_points) {
+        snprintf(text, size, "no photograph");
+    } else if (painter == &orl_paint_billboards) {
+        snprintf(text, size, "for each voxel 2 photographs; which see it, once for each hull");
+    } else {
+        name_photographs(p, photographs);
+        snprintf(text, size, "for each pixel %s%s%s", photographs,
+                 orl_combine_of(p)->sweeps == 2 ? ", read twice" : "",
+                 maps ? "; a depth map of each" : "");
+    }
+}
