@@ -175,7 +175,7 @@ class Page(unittest.TestCase):
         # Up to where steps get shorter, and a good while longer: each frame moves the walker on.
         self.browser.keys("KeyS", "s", "return oriel.navigator.farOut")
         self.browser.js("""
-            window.framesLeft = 30;
+            window.framesLeft = 12;
             oriel.onFrame = () => framesLeft--;""")
         self.browser.keys("KeyS", "s", "return framesLeft <= 0")
         self.browser.js("oriel.onFrame = null")
