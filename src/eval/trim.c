@@ -95,6 +95,8 @@ static enum orl_result undo_last(struct trim_search *s)
     struct trim_past *past = &s->history[--s->history_count];
     s->trim->steps[past->step].taken = false;
     s->trim->undone++;
+    if (past->move)
+        past->move->dead = true;
     free(s->state.removed);
     s->state = past->state;
     orl_trim_model_close(&s->model);
@@ -124,6 +126,9 @@ static void settle(struct trim_search *s)
     const struct orl_trim *trim = s->trim;
     s->total_loss_db = trim->before.psnr_db - trim->after.psnr_db;
     s->ms = trim->after.frame_ms;
+    s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
+    s->file_bytes = (double)orl_trim_photo_file_bytes(&s->source, s->model->scene.dir,
+                                                      s->state.removed);
     s->version++;
     for (size_t i = 0; i < s->targets.count; i++)
         s->lost_db[i] = s->first_db[i] - s->now_db[i];
@@ -132,17 +137,18 @@ static void settle(struct trim_search *s)
 }
 
 // The judges are few, so that steps may cost less than they said: the search goes on with what is
-// left of the tolerance, as long as it finds more to leave out.
+// left of the tolerance, as long as it finds more to leave out. It also goes on without steps that
+// were taken back.
 static enum orl_result search_and_confirm(struct trim_search *s)
 {
     enum orl_result result = ORL_OK;
     for (int round = 0; round < ROUNDS_MAX; round++) {
         size_t kept = s->history_count;
         result = search(s);
-        if (result == ORL_OK && (round == 0 || s->history_count > kept))
+        size_t searched = s->history_count;
+        if (result == ORL_OK && (round == 0 || searched > kept))
             result = confirm(s);
-        if (result != ORL_OK || orl_trim_has_budget(s) || !s->trim->complete ||
-            s->trim->undone || s->history_count == kept)
+        if (result != ORL_OK || orl_trim_has_budget(s) || !s->trim->complete || searched == kept)
             break;
         settle(s);
     }

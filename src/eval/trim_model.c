@@ -10,9 +10,9 @@
 #include "eval/trim_internal.h"
 #include "io/picture.h"
 
-const double orl_trim_point_shares[TRIM_POINT_LEVELS] = {1,    0.7,   0.5,  0.35,  0.25,
-                                                         0.18, 0.125, 0.09, 0.0625};
-const double orl_trim_scales[TRIM_SCALE_LEVELS] = {1, 0.75, 0.5};
+const double orl_trim_point_shares[TRIM_POINT_LEVELS] = {
+    1, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.125, 0.1, 0.08, 0.0625};
+const double orl_trim_scales[TRIM_SCALE_LEVELS] = {1, 0.875, 0.75, 0.5};
 const int orl_trim_qualities[TRIM_QUALITY_LEVELS] = {0, 95, 90, 80};
 // Quality of photographs that are made smaller and would otherwise stay as they are.
 enum { RESIZED_QUALITY = 95 };

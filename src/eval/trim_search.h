@@ -31,6 +31,7 @@ struct trim_move {
 struct trim_past {
     struct trim_state state;
     size_t step; // index of the report's step
+    struct trim_move *move; // that led from this state; NULL: tuned options
 };
 
 struct trim_search {

@@ -250,12 +250,27 @@ static double gain_of(const struct trim_search *s, const struct trial *t)
     return bytes + weight_of_files * files + weight * time;
 }
 
+// Smaller files and passes that go would use up the tolerance: they come when nothing else makes the
+// model smaller on the device. Where a frame's time is what is wanted, all moves are alike.
+static bool comes_later(const struct trim_search *s, const struct trim_move *move)
+{
+    return !(s->params->max_frame_ms > 0) &&
+           (move->part == ORL_TRIM_QUALITY || move->part == ORL_TRIM_OPTION);
+}
+
+static bool promises_more(const struct trim_search *s, const struct trim_move *a,
+                          const struct trim_move *b)
+{
+    bool later = comes_later(s, a);
+    return later != comes_later(s, b) ? !later : a->ratio > b->ratio;
+}
+
 struct trim_move *orl_trim_best_move(const struct trim_search *s, const struct trim_move *except)
 {
     struct trim_move *best = NULL;
     for (size_t i = 0; i < s->move_count; i++) {
         struct trim_move *m = &s->moves[i];
-        if (m != except && !m->dead && !m->blocked && (!best || m->ratio > best->ratio))
+        if (m != except && !m->dead && !m->blocked && (!best || promises_more(s, m, best)))
             best = m;
     }
     return best;
@@ -289,7 +304,7 @@ static enum orl_result take(struct trim_search *s, struct trial *t)
                                       s->history_count + 1, sizeof *s->history);
     if (result != ORL_OK)
         return result;
-    s->history[s->history_count++] = (struct trim_past){s->state, s->trim->step_count - 1};
+    s->history[s->history_count++] = (struct trim_past){s->state, s->trim->step_count - 1, t->move};
     for (size_t i = 0; i < s->targets.count; i++) {
         double db;
         s->lost_db[i] += view_loss(s, t, i, &db);
@@ -328,7 +343,8 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     bool allowed = gain > 0 && is_allowed(s, &t);
     move->ratio = gain / fmax(move->measured.loss_db, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
-    bool taken = allowed && (!other || good_enough * other->ratio <= move->ratio);
+    bool taken = allowed && (!other || comes_later(s, other) != comes_later(s, move) ||
+                             good_enough * other->ratio <= move->ratio);
     if (taken || !move->tried)
         result = note_step(s, &t, taken);
     move->tried = true;
@@ -370,6 +386,8 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
         result = note_step(s, &t, taken);
     if (result == ORL_OK && taken)
         result = take(s, &t);
+    if (result == ORL_OK && taken)
+        s->history[s->history_count - 1].move = NULL; // it ends with this function
     end(&t);
     return result;
 }
