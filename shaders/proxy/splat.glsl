@@ -43,12 +43,13 @@ ivec2 splat_listed_point(int k)
     uint index = (gl_WorkGroupID.x * ORL_SPLAT_POINTS + uint(k)) *
                      (ORL_POINT_GROUP / ORL_ITEM_POINTS) +
                  gl_LocalInvocationID.x / ORL_ITEM_POINTS;
-    uint item = imageLoad(items, int(index)).x;
+    uint count = imageLoad(draw_arguments, 3).x;
+    uint item = imageLoad(items, int(min(index, max(count, 1u) - 1u))).x;
     int block = int(item & ((1u << ORL_ITEM_BLOCK_BITS) - 1u));
     int part = int(item >> ORL_ITEM_BLOCK_BITS);
     int point = (part * (point_count / ORL_BLOCK_POINTS) + block) * ORL_ITEM_POINTS +
                 int(gl_LocalInvocationID.x) % ORL_ITEM_POINTS;
-    return index < imageLoad(draw_arguments, 3).x ? ivec2(point, block) : ivec2(-1);
+    return index < count ? ivec2(point, block) : ivec2(-1);
 }
 
 // Position of that point in the camera frame; behind the eye if there is none. Without a branch,
