@@ -28,13 +28,16 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
                               const struct orl_scene *scene, const char *device,
                               const struct orl_method *method, const struct orl_tune *tune)
 {
-    json_t *settings = orl_choice_settings(method, &tune->best, true), *value;
+    json_t *settings = orl_choice_settings(method, &tune->best), *value;
     const char *key;
     printf("%s: %.3f dB, was %.3f; %zu photographs at 1/%d, each rendered without itself%s\n",
            method->name, tune->best_db, tune->start_db, tune->views, o->size_divide,
            tune->complete ? "" : "; the budget ended the search");
     json_object_foreach(settings, key, value)
-        printf("--set %s=%.6g\n", key, json_number_value(value));
+        if (json_is_string(value))
+            printf("--set %s=%s\n", key, json_string_value(value));
+        else
+            printf("--set %s=%.6g\n", key, json_number_value(value));
     enum orl_result result = ORL_OK;
     if (o->json)
         result = orl_tune_write_json(log, o->json, scene, method, device, o->size_divide, tune);

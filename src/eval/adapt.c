@@ -188,7 +188,7 @@ static enum orl_result store(const struct orl_log *log, const struct orl_scene *
                              struct orl_scene_defaults defaults)
 {
     json_t *record = json_pack("{s:o}", "settings",
-                               orl_choice_settings(choice->method, &choice->params, false));
+                               orl_choice_settings(choice->method, &choice->params));
     defaults.method = (char *)choice->method->name;
     enum orl_result result = orl_tuned_write(log, scene->dir, choice->method->name, record);
     return result == ORL_OK ? orl_defaults_write(log, scene->dir, &defaults) : result;

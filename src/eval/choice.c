@@ -48,14 +48,14 @@ static const char *rounded(const char *value, char text[ORL_OPTION_NAME_BYTES])
 }
 
 json_t *orl_choice_settings(const struct orl_method *method,
-                            const struct orl_render_params *params, bool tunable)
+                            const struct orl_render_params *params)
 {
     json_t *settings = json_object();
     for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
         char own[ORL_OPTION_NAME_BYTES], value[ORL_OPTION_NAME_BYTES];
         orl_render_option_print(o, &method->params, own, sizeof own);
         orl_render_option_print(o, params, value, sizeof value);
-        if (strcmp(own, value) == 0 || (tunable && o->try_count == 0))
+        if (strcmp(own, value) == 0)
             continue;
         json_object_set_new(settings, o->key, o->kind == ORL_OPTION_NUMBER
                                                   ? json_real(atof(rounded(value, own)))

@@ -15,18 +15,18 @@ struct orl_choice {
 };
 
 // scene: its tuned values are used; NULL: none are. method: a name; NULL: the scene's default.
-// sample: what the renderer samples photographs for, which decides which options may be set. ORL_ERR_ARGUMENT, with a list of what is allowed: an
-// unknown method or key, a key that the method does not read, or a bad value.
+// sample: what the renderer samples photographs for, which decides which options may be set.
+// ORL_ERR_ARGUMENT, with a list of what is allowed: an unknown method or key, a key that the method
+// does not read, or a bad value.
 enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scene *scene,
                                 enum orl_sample sample, const char *method,
                                 const struct orl_names *settings,
                                 struct orl_choice *choice) ORL_CHECK_RESULT;
 
 // Keys and values, numbers or names, of the options in which `params` differs from the method's own
-// values: "settings" of "tuned" in scene.json. tunable: only those that oriel tune may change. A new
-// reference.
+// values: "settings" of "tuned" in scene.json. A new reference.
 json_t *orl_choice_settings(const struct orl_method *method,
-                            const struct orl_render_params *params, bool tunable);
+                            const struct orl_render_params *params);
 
 struct orl_choices {
     struct orl_choice *items; // owned

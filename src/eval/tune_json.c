@@ -12,7 +12,7 @@ static json_t *record(const struct orl_method *method, int size_divide,
                       const struct orl_tune *tune)
 {
     return json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
-                     orl_choice_settings(method, &tune->best, true), "before_psnr_db",
+                     orl_choice_settings(method, &tune->best), "before_psnr_db",
                      tune->start_db, "psnr_db", tune->best_db, "photographs",
                      (json_int_t)tune->views, "size_divide", size_divide, "complete",
                      tune->complete);

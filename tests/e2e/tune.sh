@@ -42,6 +42,12 @@ picture start.png --set depth_tolerance=0.0002
 cmp -s tuned.png same.png || fail "render does not use what was kept"
 cmp -s tuned.png start.png && fail "--set does not win"
 cp ws/scene.json kept.json
+# Names that the search did not change are kept with the numbers that were found under them.
+runs 0 "${tune[@]}" --set visibility=soft --only min_support --apply --quiet
+grep -q "^--set visibility=soft$" stdout.txt || fail "does not print a setting with a name"
+runs 0 "$oriel" info ws
+grep -q "visibility=soft" stdout.txt || fail "forgets a setting with a name"
+cp kept.json ws/scene.json
 runs 0 "$oriel" render ws --at "${names[1]}" --method points --quiet --out other.png
 cp whole.jpg "ws/images/${names[4]}"
 runs 0 "$oriel" eval ws --method airieau --json tuned.json --quiet
