@@ -12,8 +12,9 @@ enum { FRAMES_TIMED = 3 };
 // Losses below this are noise. Time and files decide between steps that save as many bytes on the
 // device: a time is measured with noise, and a pass that goes would use up the tolerance.
 static const double least_loss_db = 0.002, weight_of_time = 0.03, weight_of_files = 0.03;
-// Smaller differences of a frame's time are noise: a share of it, and milliseconds.
-static const double least_time = 0.1, least_ms = 3;
+// Smaller differences of a frame's time are noise: a share of it, and milliseconds, more of them
+// where the frame is drawn by the processor, which other programs share.
+static const double least_time = 0.1, least_ms = 3, least_software_ms = 20;
 // A frame may not take longer than this factor times the first. While it takes longer at all, time
 // weighs as much as bytes.
 static const double slower_most = 1.6;
@@ -222,11 +223,17 @@ bool orl_trim_has_budget(const struct trim_search *s)
     return s->params->max_bytes || s->params->max_frame_ms > 0;
 }
 
+static double noise_ms(const struct trim_search *s)
+{
+    double least = orl_gpu_caps(s->source.gpu)->software ? least_software_ms : least_ms;
+    return fmax(least, least_time * s->first_ms);
+}
+
 static bool is_allowed(const struct trim_search *s, const struct trial *t)
 {
     const struct trim_measured *m = &t->move->measured;
     double worst = m->between_db, db;
-    if (m->ms > fmax(slower_most * s->first_ms + least_ms, s->ms))
+    if (m->ms > fmax(slower_most * s->first_ms + noise_ms(s), s->ms))
         return false;
     if (orl_trim_has_budget(s))
         return true;
@@ -241,12 +248,11 @@ static double gain_of(const struct trim_search *s, const struct trial *t)
 {
     double bytes = (s->bytes - t->bytes) / s->first_bytes;
     double files = (s->file_bytes - t->file_bytes) / s->first_file_bytes;
-    double time = (s->ms - t->move->measured.ms) / s->first_ms;
-    if (fabs(time) < least_time || fabs(time) * s->first_ms < least_ms)
-        time = 0;
+    double ms = s->ms - t->move->measured.ms;
+    double time = fabs(ms) < noise_ms(s) ? 0 : ms / s->first_ms;
     if (s->params->max_frame_ms > 0 && !s->params->max_bytes)
         return time;
-    double weight = s->ms > s->first_ms ? 1 : weight_of_time;
+    double weight = s->ms > s->first_ms + noise_ms(s) ? 1 : weight_of_time;
     return bytes + weight_of_files * files + weight * time;
 }
 
