@@ -24,7 +24,7 @@ mv "$scene" "$work/half"
 # Differences between the scene and what it should be. Times and logs may differ; looks is a cache;
 # what a killed writer left is swept when it is old enough to be nobody's (unit/test_core_atomic).
 differences() {
-    diff -rq -x stages.json -x logs -x lock -x looks -x '.oriel-part-*' -I '"wall_s"' -I '"cpu_s"' -I 'peak_rss_mib"' \
+    diff -rq -x stages.json -x logs -x lock -x looks -x '.oriel-part-*' -I '_s"' -I 'peak_rss_mib"' \
         "$scene" "$whole" |
         sed "s|$work/||g" | head -n 3 | tr '\n' ';'
     diff -rq "$photos" "$work/p-before"
