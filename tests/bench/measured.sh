@@ -329,8 +329,8 @@ Accuracy is that of held-out photographs, over whole pictures. Time is processor
 to the first row; memory is that of the device with everything that the method asked for. A dash: the method asks
 for something that the scene lacks. The figure has silhouettes, a hull as a mesh and no points, so that `points` shows
 the background alone; there all methods paint the room behind it, as `li` does. The last three scenes, too, have known
-cameras, silhouettes and their hull, and no points; behind the subject nothing is painted, though the photographs show
-velvet or a room there, which is most of the error. Figures of different scenes are of different things.
+cameras, silhouettes and their hull, and no points; behind temple and dino nothing is painted, though the photographs
+show velvet there, which is most of the error. Figures of different scenes are of different things.
 END
     command_block "$synth" "$import" "${outlines[@]}" 'oriel eval SCENE --method METHOD --quiet --json -' \
         "oriel bench SCENE --method METHOD $methods_bench --quiet --json -"
@@ -338,7 +338,7 @@ END
     method_table WORK/figure "--set fill=room"
     method_table WORK/temple "--set fill=none"
     method_table WORK/dino "--set fill=none"
-    method_table WORK/dancer "--set fill=none"
+    method_table WORK/dancer "--set fill=room"
 }
 
 page_airieau() {
