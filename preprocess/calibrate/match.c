@@ -6,7 +6,6 @@
 
 #include "core/memory.h"
 #include "core/process.h"
-#include "preprocess/calibrate/database.h"
 #include "preprocess/calibrate/pairs.h"
 #include "preprocess/calibrate/raw_matches.h"
 #include "preprocess/job/colmap_run.h"
@@ -91,8 +90,8 @@ static enum orl_result name_pairs(const struct orl_job *job, const struct orl_pa
     return result;
 }
 
-static enum orl_result open_database(const struct orl_job *job, const char *name,
-                                     struct orl_database **db)
+enum orl_result orl_match_open_database(const struct orl_job *job, const char *name,
+                                        struct orl_database **db)
 {
     *db = NULL;
     char *path = orl_job_path(job, "%s", name);
@@ -104,7 +103,7 @@ static enum orl_result open_database(const struct orl_job *job, const char *name
 static enum orl_result hide_spaces(const struct orl_job *job, const char *database, bool hide)
 {
     struct orl_database *db;
-    enum orl_result result = open_database(job, database, &db);
+    enum orl_result result = orl_match_open_database(job, database, &db);
     if (result == ORL_OK)
         result = orl_database_hide_spaces(db, hide);
     orl_database_close(&db);
@@ -116,7 +115,7 @@ static enum orl_result match_features(const struct orl_job *job, const char *dat
 {
     struct orl_database *db = NULL;
     const char **names = orl_array(job->log, job->source_count, sizeof *names);
-    enum orl_result result = names ? open_database(job, database, &db) : ORL_ERR_MEMORY;
+    enum orl_result result = names ? orl_match_open_database(job, database, &db) : ORL_ERR_MEMORY;
     for (size_t i = 0; names && i < job->source_count; i++)
         names[i] = job->sources[i].name;
     if (result == ORL_OK)
@@ -181,7 +180,7 @@ static enum orl_result read_photos(const struct orl_job *job, const char *databa
                                    struct orl_pair_photo *photos)
 {
     struct orl_database *db;
-    enum orl_result result = open_database(job, database, &db);
+    enum orl_result result = orl_match_open_database(job, database, &db);
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
         const struct orl_exif *exif = &job->sources[i].exif;
         uint8_t *data;

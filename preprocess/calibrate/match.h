@@ -2,6 +2,7 @@
 #ifndef ORL_PREPROCESS_MATCH_H
 #define ORL_PREPROCESS_MATCH_H
 
+#include "preprocess/calibrate/database.h"
 #include "preprocess/calibrate/pairs.h"
 #include "preprocess/job/job.h"
 
@@ -10,6 +11,9 @@
 #define ORL_CALIBRATE_STEM ORL_CALIBRATE_WORK "/database" // without its extension
 #define ORL_CALIBRATE_DATABASE ORL_CALIBRATE_STEM ".db"
 
+// Opens the database `name`, a name below the scene; closed with orl_database_close.
+enum orl_result orl_match_open_database(const struct orl_job *job, const char *name,
+                                        struct orl_database **db) ORL_CHECK_RESULT;
 // The way that these parameters and this many photographs ask for; never auto.
 enum orl_matching orl_match_way(const struct orl_job *job);
 // Does the option --matching (NULL: auto) mean retrieval for so many photographs?

@@ -10,7 +10,6 @@
 #include "core/json.h"
 #include "core/lock.h"
 #include "core/memory.h"
-#include "preprocess/calibrate/database.h"
 #include "preprocess/job/colmap_run.h"
 
 #define WORK ORL_CALIBRATE_WORK
@@ -166,16 +165,6 @@ static enum orl_result rename_in(const struct orl_job *job, const char *from, co
     return result;
 }
 
-static enum orl_result open_in(const struct orl_job *job, const char *name,
-                               struct orl_database **db)
-{
-    char *path = orl_job_path(job, "%s", name);
-    *db = NULL;
-    enum orl_result result = path ? orl_database_open(job->log, path, db) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
-}
-
 // --- the jobs ---
 
 struct part {
@@ -210,7 +199,7 @@ static enum orl_result join_features(const struct part *part)
         if (result == ORL_OK && k == 0)
             result = orl_file_copy(job->log, from, to);
         if (result == ORL_OK && k == 0)
-            result = open_in(job, part->temp_db, &db);
+            result = orl_match_open_database(job, part->temp_db, &db);
         else if (result == ORL_OK)
             result = orl_database_add_photographs(db, from);
         free(name);
@@ -395,7 +384,7 @@ enum orl_result orl_parts_join(struct orl_job *job, struct orl_match_summary *su
     if (result == ORL_OK)
         result = read_pairs(job, &list, summary);
     if (result == ORL_OK)
-        result = open_in(job, ORL_CALIBRATE_DATABASE, &db);
+        result = orl_match_open_database(job, ORL_CALIBRATE_DATABASE, &db);
     for (int k = 0; result == ORL_OK && k < parts; k++) {
         char *part = part_name(job->log, ORL_PART_MATCHES, k, parts, ".db");
         char *path = part ? orl_job_path(job, "%s", part) : NULL;
