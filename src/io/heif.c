@@ -129,13 +129,13 @@ enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
 static enum orl_result check_curve(const struct heif_file *file)
 {
     struct heif_color_profile_nclx *profile = NULL;
-    if (heif_image_handle_get_nclx_color_profile(file->picture, &profile).code != heif_error_Ok)
-        return ORL_OK;
-    bool hdr = profile->transfer_characteristics ==
-                   heif_transfer_characteristic_ITU_R_BT_2100_0_PQ ||
-               profile->transfer_characteristics ==
-                   heif_transfer_characteristic_ITU_R_BT_2100_0_HLG;
-    heif_nclx_color_profile_free(profile);
+    struct heif_error error = heif_image_handle_get_nclx_color_profile(file->picture, &profile);
+    bool hdr = error.code == heif_error_Ok &&
+               (profile->transfer_characteristics ==
+                    heif_transfer_characteristic_ITU_R_BT_2100_0_PQ ||
+                profile->transfer_characteristics ==
+                    heif_transfer_characteristic_ITU_R_BT_2100_0_HLG);
+    heif_nclx_color_profile_free(profile); // made even for a curve that libheif does not know
     return hdr ? orl_fail(file->log, ORL_ERR_UNSUPPORTED,
                           "%s: HEIF: its samples are HDR (PQ or HLG); save it as SDR or as EXR",
                           file->path)

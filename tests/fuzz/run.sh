@@ -3,8 +3,8 @@
 # lines of each reader the inputs reach.
 # usage: tests/fuzz/run.sh SECONDS [TARGET]..      SECONDS for each target; 0: none, only count
 # The build and the inputs found so far are kept in build-fuzz/ (FUZZ_DIR). FUZZ_JOBS targets run
-# at once. Inputs that fail are in build-fuzz/failures: mend the reader, then add them to
-# tests/fuzz/inputs/TARGET. Exit status 0 only when nothing failed.
+# at once; two runs of one FUZZ_SEED begin alike. Inputs that fail are in build-fuzz/failures: mend
+# the reader, then add them to tests/fuzz/inputs/TARGET. Exit status 0 only when nothing failed.
 set -u
 [ $# -ge 1 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
 here=$(cd "$(dirname "$0")" && pwd)
@@ -45,9 +45,11 @@ run_target() {
     local name=$1 corpus=$dir/corpus/$1
     mkdir -p "$corpus"
     FUZZ_TARGET=$name LLVM_PROFILE_FILE=/dev/null ASAN_OPTIONS=allocator_may_return_null=1 \
-        UBSAN_OPTIONS=print_stacktrace=1 nice -n 19 "$fuzz" "$corpus" "$here/inputs/$name" \
+        LSAN_OPTIONS=suppressions=$here/../leaks.supp UBSAN_OPTIONS=print_stacktrace=1 \
+        nice -n 19 "$fuzz" "$corpus" "$here/inputs/$name" \
         -max_total_time="$seconds" -max_len=8192 -timeout=30 -rss_limit_mb=3000 \
-        -artifact_prefix="$dir/failures/$name-" -print_final_stats=1 >"$dir/$name.log" 2>&1
+        -seed="${FUZZ_SEED:-0}" -artifact_prefix="$dir/failures/$name-" -print_final_stats=1 \
+        >"$dir/$name.log" 2>&1
     local status=$? runs
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log")
     echo "$name ${runs:-0} $seconds" >>"$dir/tried.txt" # all runs of this build folder
@@ -55,6 +57,7 @@ run_target() {
         echo "$name: ${runs:-0} inputs"
     else
         echo "$name: FAILED, see $dir/$name.log and $dir/failures"
+        tail -n 25 "$dir/$name.log"
         touch "$dir/failed"
     fi
 }
@@ -62,7 +65,7 @@ run_target() {
 # Lines "FILE LINES LINES_REACHED" of all source files, by what all inputs reach.
 summarise() {
     llvm-cov export -summary-only -instr-profile="$dir/profiles/all" "$fuzz" |
-        sed 's/{"filename":"/\n/g' |
+        sed 's/{"filename":"/\n/g; s/"totals"/\n&/' |
         sed -nE 's/^([^"]*)".*[{,]"lines":\{"count":([0-9]+),"covered":([0-9]+).*/\1 \2 \3/p'
 }
 
