@@ -18,7 +18,7 @@ struct dots {
     struct orl_plot_series *series; // one per method, then the front
     size_t series_count;
     double *x, *y;
-    const char **labels;
+    const char **labels, **hover;
     size_t count;
 };
 
@@ -39,7 +39,8 @@ static void add_dot(struct dots *dots, const json_t *row, bool labelled)
     const char *setting = orl_row_text(row, "setting");
     dots->x[i] = json_number_value(json_object_get(row, "frame_ms"));
     dots->y[i] = psnr_of(row);
-    dots->labels[i] = labelled ? (setting[0] ? setting : orl_row_text(row, "method")) : "";
+    dots->labels[i] = labelled ? orl_row_text(row, "method") : "";
+    dots->hover[i] = setting;
     dots->series[dots->series_count - 1].count++;
 }
 
@@ -47,7 +48,7 @@ static void begin_series(struct dots *dots, const char *name, bool line)
 {
     dots->series[dots->series_count++] = (struct orl_plot_series){
         .name = name, .x = dots->x + dots->count, .y = dots->y + dots->count,
-        .labels = dots->labels + dots->count, .line = line};
+        .labels = dots->labels + dots->count, .hover = dots->hover + dots->count, .line = line};
 }
 
 static void add_methods(struct dots *dots, const json_t *rows, const char *scene)
@@ -100,10 +101,12 @@ static enum orl_result write_figure(const struct orl_log *log, const char *out,
     struct dots dots = {.series = orl_array(log, room, sizeof *dots.series),
                         .x = orl_array(log, room, sizeof *dots.x),
                         .y = orl_array(log, room, sizeof *dots.y),
-                        .labels = orl_array(log, room, sizeof *dots.labels)};
+                        .labels = orl_array(log, room, sizeof *dots.labels),
+                        .hover = orl_array(log, room, sizeof *dots.hover)};
     char *path = orl_path_join(log, out, file), *svg = NULL;
     enum orl_result result =
-        dots.series && dots.x && dots.y && dots.labels && path ? ORL_OK : ORL_ERR_MEMORY;
+        dots.series && dots.x && dots.y && dots.labels && dots.hover && path
+            ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
         add_methods(&dots, rows, scene);
         add_front(&dots, rows, scene);
@@ -119,6 +122,7 @@ static enum orl_result write_figure(const struct orl_log *log, const char *out,
     free(dots.x);
     free(dots.y);
     free(dots.labels);
+    free(dots.hover);
     free(path);
     free(svg);
     return result;

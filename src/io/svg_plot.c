@@ -5,11 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 760, LEFT = 78, RIGHT = 24, TOP = 96, PLOT_HEIGHT = 330, BOTTOM = 58 };
+#include "core/memory.h"
 
-// Okabe and Ito's palette, which colour-blind readers can distinguish.
+enum { WIDTH = 760, LEFT = 78, RIGHT = 24, PLOT_HEIGHT = 330, BOTTOM = 58 };
+// Of the legend; the plot begins under it.
+enum { LEGEND_TOP = 62, LEGEND_STEP = 20 };
+
+// Okabe and Ito's palette, which colour-blind readers can distinguish, and four colours more.
+// Series also differ in their markers, so that none of the first sixty looks like another.
 static const char *const colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                     "#e69f00", "#56b4e9", "#666666", "#b8a900"};
+                                     "#e69f00", "#56b4e9", "#666666", "#b8a900",
+                                     "#6a3d9a", "#b15928", "#2f9e44", "#e7298a"};
+// Paths of a marker around (0, 0): circle, square, triangle, diamond, triangle upside down.
+static const char *const markers[] = {
+    "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z", "M-3.7 -3.7h7.4v7.4h-7.4z", "M0 -4.8L4.7 3.6h-9.4z",
+    "M0 -5.2L5.2 0L0 5.2L-5.2 0z", "M0 4.8L4.7 -3.6h-9.4z"};
 
 static const char *color_of(size_t i)
 {
@@ -152,19 +162,38 @@ static void begin(FILE *out, int height, const char *title, const char *subtitle
     put_text(out, 20, 48, "start", wide ? "fill=\"#555\" font-size=\"10\"" : GREY, subtitle);
 }
 
-// A row of coloured names under the title; names that do not fit are left out.
-static void put_legend(FILE *out, const char *const *names, size_t count)
+// Closed by the caller, who may put a title into it.
+static void begin_marker(FILE *out, double x, double y, size_t number, const char *kind)
 {
-    double x = 20;
-    for (size_t i = 0; i < count; i++) {
-        double width = 7.0 * (double)strlen(names[i]) + 34;
-        if (x + width > WIDTH)
-            return;
-        fprintf(out, "<rect x=\"%.1f\" y=\"62\" width=\"12\" height=\"12\" fill=\"%s\"/>\n", x,
-                color_of(i));
-        put_text(out, x + 17, 73, "start", SMALL, names[i]);
-        x += width;
-    }
+    fprintf(out, "<path class=\"%s\" transform=\"translate(%.1f %.1f)\" d=\"%s\" fill=\"%s\">",
+            kind, x, y, markers[number % (sizeof markers / sizeof *markers)], color_of(number));
+}
+
+// Where a name of the legend stands.
+struct legend {
+    double x, y;
+};
+
+// Moves on to the place of the next name, in a new row where this one is full.
+static struct legend legend_next(struct legend *after, const char *name)
+{
+    double width = 7.0 * (double)strlen(name) + 34;
+    if (after->x > 20 && after->x + width > WIDTH)
+        *after = (struct legend){20, after->y + LEGEND_STEP};
+    struct legend at = *after;
+    after->x += width;
+    return at;
+}
+
+static struct legend legend_start(void)
+{
+    return (struct legend){20, LEGEND_TOP};
+}
+
+// The upper edge of the plot.
+static double top_under(struct legend last)
+{
+    return last.y + 34;
 }
 
 static void put_line(FILE *out, double x1, double y1, double x2, double y2, const char *color)
@@ -225,6 +254,21 @@ static void put_joined(FILE *out, const struct orl_plot_series *s, const struct 
         fprintf(out, "\" fill=\"none\" stroke=\"%s\" stroke-width=\"2\"/>\n", color);
 }
 
+// What the pointer shows over a dot.
+static void put_hover(FILE *out, const struct orl_plot_series *s, size_t i)
+{
+    char x[32], y[32];
+    format_number(s->x[i], x);
+    format_number(s->y[i], y);
+    fputs("<title>", out);
+    put_escaped(out, s->name);
+    if (s->hover && s->hover[i] && *s->hover[i]) {
+        fputc(' ', out);
+        put_escaped(out, s->hover[i]);
+    }
+    fprintf(out, ": %s, %s</title>", x, y);
+}
+
 static void put_series(FILE *out, const struct orl_plot_series *s, const struct axis *x,
                        const struct axis *y, size_t number)
 {
@@ -233,14 +277,84 @@ static void put_series(FILE *out, const struct orl_plot_series *s, const struct 
     for (size_t i = 0; i < s->count; i++) {
         if (!can_place(x, s->x[i]) || !can_place(y, s->y[i]))
             continue;
-        double at_x = place(x, s->x[i]), at_y = place(y, s->y[i]);
-        fprintf(out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", at_x, at_y,
-                color_of(number));
-        if (!s->labels || !s->labels[i])
-            continue;
-        bool left = at_x + 3.5 * (double)strlen(s->labels[i]) > WIDTH - RIGHT;
-        put_text(out, at_x, at_y - 9, left ? "end" : "middle", SMALL, s->labels[i]);
+        begin_marker(out, place(x, s->x[i]), place(y, s->y[i]), number, "dot");
+        put_hover(out, s, i);
+        fputs("</path>\n", out);
     }
+}
+
+// --- labels of dots ---
+
+struct box {
+    double left, top, right, bottom;
+};
+
+struct boxes {
+    struct box *items;
+    size_t count;
+};
+
+static bool is_free(const struct boxes *taken, const struct box *b)
+{
+    for (size_t i = 0; i < taken->count; i++) {
+        const struct box *t = &taken->items[i];
+        if (b->left < t->right && t->left < b->right && b->top < t->bottom && t->top < b->bottom)
+            return false;
+    }
+    return true;
+}
+
+// Puts a label at the first place beside its dot where it covers neither a dot nor a label. Without
+// such a place it is left out: the legend and the pointer name the dot.
+static void put_label(FILE *out, const char *text, double dot_x, double dot_y,
+                      const struct box *plot, struct boxes *taken)
+{
+    static const struct {
+        int side, down; // side: -1 ends before the dot, 0 centred on it, 1 begins behind it
+    } places[] = {{0, -9}, {1, 4}, {-1, 4}, {0, 19}, {1, -7}, {-1, -7}, {1, 15}, {-1, 15}};
+    double width = 6.6 * (double)strlen(text);
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+        int side = places[k].side;
+        double left = side > 0 ? dot_x + 8 : side < 0 ? dot_x - 8 - width : dot_x - 0.5 * width;
+        double base = dot_y + places[k].down;
+        struct box b = {left, base - 10, left + width, base + 3};
+        if (b.left < plot->left || b.right > plot->right || b.top < plot->top ||
+            b.bottom > plot->bottom || !is_free(taken, &b))
+            continue;
+        put_text(out, left, base, "start", SMALL, text);
+        taken->items[taken->count++] = b;
+        return;
+    }
+}
+
+static enum orl_result put_labels(const struct orl_log *log, FILE *out, const struct orl_plot *plot,
+                                  const struct axis *x, const struct axis *y)
+{
+    enum { SIDE = 5 }; // of a marker, from its centre
+    size_t dots = 0;
+    for (size_t s = 0; s < plot->series_count; s++)
+        dots += plot->series[s].count;
+    struct boxes taken = {.items = orl_array(log, 2 * dots, sizeof *taken.items)};
+    if (!taken.items)
+        return ORL_ERR_MEMORY;
+    // Labels may reach above the plot's upper edge, where its dots do.
+    const struct box room = {x->from, y->to - 14, x->to, y->from};
+    for (int pass = 0; pass < 2; pass++) // dots first: they stay where they are
+        for (size_t s = 0; s < plot->series_count; s++)
+            for (size_t i = 0; i < plot->series[s].count; i++) {
+                const struct orl_plot_series *of = &plot->series[s];
+                const char *label = of->labels ? of->labels[i] : NULL;
+                if (!can_place(x, of->x[i]) || !can_place(y, of->y[i]))
+                    continue;
+                double at_x = place(x, of->x[i]), at_y = place(y, of->y[i]);
+                if (pass == 0)
+                    taken.items[taken.count++] =
+                        (struct box){at_x - SIDE, at_y - SIDE, at_x + SIDE, at_y + SIDE};
+                else if (label && *label)
+                    put_label(out, label, at_x, at_y, &room, &taken);
+            }
+    free(taken.items);
+    return ORL_OK;
 }
 
 // Closes the stream, which sets *text (open_memstream).
@@ -263,6 +377,21 @@ static FILE *open_text(const struct orl_log *log, char **text, size_t *size)
     return out;
 }
 
+// Puts the names of all series; returns where the last one stands.
+static struct legend put_markers(FILE *out, const struct orl_plot *plot, bool draw)
+{
+    struct legend after = legend_start(), at = after;
+    for (size_t i = 0; i < plot->series_count; i++) {
+        at = legend_next(&after, plot->series[i].name);
+        if (!draw)
+            continue;
+        begin_marker(out, at.x + 6, at.y + 7, i, "key");
+        fputs("</path>\n", out);
+        put_text(out, at.x + 17, at.y + 11, "start", SMALL, plot->series[i].name);
+    }
+    return at;
+}
+
 char *orl_plot_svg(const struct orl_log *log, const struct orl_plot *plot)
 {
     char *text = NULL;
@@ -270,23 +399,26 @@ char *orl_plot_svg(const struct orl_log *log, const struct orl_plot *plot)
     FILE *out = open_text(log, &text, &size);
     if (!out)
         return NULL;
-    const char *names[8];
-    size_t named = 0;
-    for (size_t i = 0; i < plot->series_count && i < 8; i++)
-        names[named++] = plot->series[i].name;
+    double top = top_under(put_markers(out, plot, false)), bottom = top + PLOT_HEIGHT;
     struct axis x = make_axis(plot, false, LEFT, WIDTH - RIGHT);
-    struct axis y = make_axis(plot, true, TOP + PLOT_HEIGHT, TOP);
-    begin(out, TOP + PLOT_HEIGHT + BOTTOM, plot->title, plot->subtitle);
-    put_legend(out, names, named);
-    put_x_axis(out, &x, TOP, TOP + PLOT_HEIGHT, plot->x_label);
+    struct axis y = make_axis(plot, true, bottom, top);
+    begin(out, (int)bottom + BOTTOM, plot->title, plot->subtitle);
+    put_markers(out, plot, true);
+    put_x_axis(out, &x, top, bottom, plot->x_label);
     put_y_axis(out, &y, plot->y_label);
     if (plot->behind) {
         put_joined(out, plot->behind, &x, &y, "#999");
-        put_text(out, WIDTH - RIGHT, TOP - 6, "end", GREY, plot->behind->name);
+        put_text(out, WIDTH - RIGHT, top - 6, "end", GREY, plot->behind->name);
     }
     for (size_t i = 0; i < plot->series_count; i++)
         put_series(out, &plot->series[i], &x, &y, i);
-    return finish(log, out, &text);
+    enum orl_result result = put_labels(log, out, plot, &x, &y);
+    text = finish(log, out, &text);
+    if (result != ORL_OK) {
+        free(text);
+        text = NULL;
+    }
+    return text;
 }
 
 // --- bars ---
@@ -325,6 +457,20 @@ static void put_bar(FILE *out, const struct orl_bars *bars, const struct axis *x
              "fill=\"#111\" font-size=\"12\" font-weight=\"bold\"", text);
 }
 
+static struct legend put_parts(FILE *out, const struct orl_bars *bars, bool draw)
+{
+    struct legend after = legend_start(), at = after;
+    for (size_t i = 0; i < bars->part_count; i++) {
+        at = legend_next(&after, bars->parts[i]);
+        if (!draw)
+            continue;
+        fprintf(out, "<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"12\" fill=\"%s\"/>\n", at.x,
+                at.y, color_of(i));
+        put_text(out, at.x + 17, at.y + 11, "start", SMALL, bars->parts[i]);
+    }
+    return at;
+}
+
 char *orl_bars_svg(const struct orl_log *log, const struct orl_bars *bars)
 {
     char *text = NULL;
@@ -332,15 +478,16 @@ char *orl_bars_svg(const struct orl_log *log, const struct orl_bars *bars)
     FILE *out = open_text(log, &text, &size);
     if (!out)
         return NULL;
-    double most = 0, bottom = TOP + BAR_STEP * (double)bars->row_count;
+    double most = 0, top = top_under(put_parts(out, bars, false));
+    double bottom = top + BAR_STEP * (double)bars->row_count;
     for (size_t i = 0; i < bars->row_count; i++)
         most = fmax(most, row_sum(bars, i));
     struct axis x = {.from = BAR_LEFT, .to = WIDTH - RIGHT - 46};
     set_linear(&x, 0, most);
     begin(out, (int)bottom + BOTTOM, bars->title, bars->subtitle);
-    put_legend(out, bars->parts, bars->part_count);
-    put_x_axis(out, &x, TOP, bottom, bars->x_label);
+    put_parts(out, bars, true);
+    put_x_axis(out, &x, top, bottom, bars->x_label);
     for (size_t i = 0; i < bars->row_count; i++)
-        put_bar(out, bars, &x, i, TOP + BAR_STEP * (double)i + 0.5 * (BAR_STEP - BAR_HEIGHT));
+        put_bar(out, bars, &x, i, top + BAR_STEP * (double)i + 0.5 * (BAR_STEP - BAR_HEIGHT));
     return finish(log, out, &text);
 }

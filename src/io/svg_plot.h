@@ -7,7 +7,8 @@
 struct orl_plot_series {
     const char *name;
     const double *x, *y;
-    const char *const *labels; // text beside each dot; NULL: none
+    const char *const *labels; // text beside each dot; NULL: none. Left out where there is no room
+    const char *const *hover;  // what a dot is, shown under the pointer beside its name; NULL: none
     size_t count;
     bool line;                 // joins the dots in their order
 };

@@ -42,6 +42,8 @@ static void check_well_formed(const char *text)
     assert_int_equal(roots, 1);
 }
 
+static const char dot[] = "<path class=\"dot\"";
+
 static size_t count(const char *text, const char *what)
 {
     size_t found = 0;
@@ -55,8 +57,8 @@ static void draws_lines(void **state)
     (void)state;
     static const double x[] = {1, 2, 4}, y[] = {10, 20, 40}, bad[] = {NAN, 5, 0};
     static const char *const labels[] = {"a < b", "\"c\" & d", NULL};
-    const struct orl_plot_series series[] = {{"one & only", x, y, labels, 3, true},
-                                             {"dots", x, bad, NULL, 3, false}};
+    const struct orl_plot_series series[] = {{"one & only", x, y, labels, NULL, 3, true},
+                                             {"dots", x, bad, NULL, NULL, 3, false}};
     struct orl_plot plot = {.title = "T", .subtitle = "<S>", .x_label = "x (px)",
                             .y_label = "y (ms)", .series = series, .series_count = 2};
     for (int kind = 0; kind < 4; kind++) {
@@ -66,7 +68,7 @@ static void draws_lines(void **state)
         assert_non_null(text);
         check_well_formed(text);
         // NaN is never shown, 0 not on a logarithmic axis.
-        assert_int_equal(count(text, "<circle"), 3 + (plot.y_log ? 1 : 2));
+        assert_int_equal(count(text, dot), 3 + (plot.y_log ? 1 : 2));
         assert_int_equal(count(text, "<polyline"), 1);
         assert_null(strstr(text, "nan"));
         assert_non_null(strstr(text, ">a &lt; b<"));
@@ -89,7 +91,7 @@ static void draws_without_data(void **state)
 {
     (void)state;
     static const double one[] = {7};
-    const struct orl_plot_series series = {"one", one, one, NULL, 1, true};
+    const struct orl_plot_series series = {"one", one, one, NULL, NULL, 1, true};
     struct orl_plot plot = {.title = "T", .x_label = "x", .y_label = "y", .series = &series};
     for (int kind = 0; kind < 4; kind++) {
         plot.series_count = kind & 1;
@@ -99,7 +101,7 @@ static void draws_without_data(void **state)
         check_well_formed(text);
         assert_null(strstr(text, "nan"));
         assert_null(strstr(text, "inf"));
-        assert_int_equal(count(text, "<circle"), plot.series_count);
+        assert_int_equal(count(text, dot), plot.series_count);
         free(text);
     }
     char *text = orl_bars_svg(NULL, &(struct orl_bars){.title = "T", .x_label = "ms"});
@@ -112,16 +114,78 @@ static void draws_a_line_behind(void **state)
 {
     (void)state;
     static const double x[] = {1, 2, 3}, y[] = {1, 4, 9};
-    const struct orl_plot_series dots = {"dots", x, y, NULL, 3, false};
-    const struct orl_plot_series line = {"the front", x, y, NULL, 3, true};
+    const struct orl_plot_series dots = {"dots", x, y, NULL, NULL, 3, false};
+    const struct orl_plot_series line = {"the front", x, y, NULL, NULL, 3, true};
     char *text = orl_plot_svg(NULL, &(struct orl_plot){.title = "T", .x_label = "x",
                                                        .y_label = "y", .series = &dots,
                                                        .series_count = 1, .behind = &line});
     check_well_formed(text);
-    assert_int_equal(count(text, "<circle"), 3);
+    assert_int_equal(count(text, dot), 3);
     assert_int_equal(count(text, "<polyline"), 1);
     assert_non_null(strstr(text, ">the front<"));
-    assert_true(strstr(text, "<polyline") < strstr(text, "<circle"));
+    assert_true(strstr(text, "<polyline") < strstr(text, dot));
+    free(text);
+}
+
+// The fill and the shape of the key of each name in the legend.
+static void read_key(const char **at, char key[160])
+{
+    *at = strstr(*at, "<path class=\"key\"");
+    assert_non_null(*at);
+    const char *shape = strstr(*at, " d=\"");
+    snprintf(key, 160, "%.*s", (int)strcspn(shape, ">"), shape);
+    (*at)++;
+}
+
+// All of many series are in the legend, each with a key of its own.
+static void names_every_series(void **state)
+{
+    (void)state;
+    enum { SERIES = 20 };
+    static const double x[] = {1}, y[] = {1};
+    struct orl_plot_series series[SERIES];
+    char names[SERIES][32], keys[SERIES][160], shown[64];
+    for (int i = 0; i < SERIES; i++) {
+        snprintf(names[i], sizeof names[i], "method number %d", i);
+        series[i] = (struct orl_plot_series){.name = names[i], .x = x, .y = y, .count = 1};
+    }
+    char *text = orl_plot_svg(NULL, &(struct orl_plot){.title = "T", .x_label = "x",
+                                                       .y_label = "y", .series = series,
+                                                       .series_count = SERIES});
+    check_well_formed(text);
+    const char *at = text;
+    for (int i = 0; i < SERIES; i++) {
+        snprintf(shown, sizeof shown, ">%.31s<", names[i]);
+        assert_non_null(strstr(text, shown));
+        read_key(&at, keys[i]);
+        for (int k = 0; k < i; k++)
+            assert_string_not_equal(keys[i], keys[k]);
+    }
+    free(text);
+}
+
+// Labels that would cover each other are left out; those with room stay.
+static void leaves_out_labels_without_room(void **state)
+{
+    (void)state;
+    enum { DOTS = 40 };
+    double x[DOTS], y[DOTS];
+    const char *labels[DOTS], *hover[DOTS];
+    for (int i = 0; i < DOTS; i++) {
+        x[i] = y[i] = i ? 5 : 1; // one dot alone, the others in one place
+        labels[i] = i ? "crowded" : "alone";
+        hover[i] = "what & it is";
+    }
+    const struct orl_plot_series dots = {.name = "dots", .x = x, .y = y, .labels = labels,
+                                         .hover = hover, .count = DOTS};
+    char *text = orl_plot_svg(NULL, &(struct orl_plot){.title = "T", .x_label = "x",
+                                                       .y_label = "y", .series = &dots,
+                                                       .series_count = 1});
+    check_well_formed(text);
+    assert_int_equal(count(text, ">alone<"), 1);
+    size_t crowded = count(text, ">crowded<");
+    assert_true(crowded >= 1 && crowded <= 8);
+    assert_int_equal(count(text, "<title>dots what &amp; it is: "), DOTS);
     free(text);
 }
 
@@ -161,6 +225,8 @@ int main(void)
         cmocka_unit_test(draws_lines),
         cmocka_unit_test(draws_without_data),
         cmocka_unit_test(draws_a_line_behind),
+        cmocka_unit_test(names_every_series),
+        cmocka_unit_test(leaves_out_labels_without_room),
         cmocka_unit_test(draws_bars),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
