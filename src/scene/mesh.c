@@ -74,13 +74,14 @@ enum orl_result orl_mesh_read(const struct orl_log *log, const char *path, struc
     struct orl_mesh_builder builder = {0};
     char magic[4] = "";
     memset(mesh, 0, sizeof *mesh);
-    FILE *stream = fopen(path, "rb");
-    size_t got = stream ? fread(magic, 1, 3, stream) : 0;
-    if (stream)
-        fclose(stream);
-    enum orl_result result = got == 3 && strcmp(magic, "ply") == 0
-                                 ? orl_mesh_read_ply(log, path, &builder)
-                                 : orl_mesh_read_obj(log, path, &builder);
+    FILE *stream;
+    enum orl_result result = orl_file_open(log, path, &stream);
+    if (result != ORL_OK)
+        return result;
+    size_t got = fread(magic, 1, 3, stream);
+    fclose(stream);
+    result = got == 3 && strcmp(magic, "ply") == 0 ? orl_mesh_read_ply(log, path, &builder)
+                                                   : orl_mesh_read_obj(log, path, &builder);
     if (result == ORL_OK)
         result = check(log, path, &builder.mesh);
     if (result == ORL_OK)

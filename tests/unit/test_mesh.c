@@ -1,6 +1,8 @@
 // Meshes: both formats by hand, damaged files, surfaces of fields.
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "scene/isosurface.h"
 #include "scene/mesh.h"
@@ -198,6 +200,19 @@ static void check_closed(const struct orl_mesh *mesh)
     free(balance);
 }
 
+static void waits_for_no_fifo(void **state)
+{
+    (void)state;
+    char *path = test_path(dir, "fifo");
+    struct orl_mesh mesh;
+    assert_int_equal(mkfifo(path, 0600), 0);
+    alarm(20);
+    assert_int_equal(orl_mesh_read(NULL, path, &mesh), ORL_ERR_IO);
+    alarm(0);
+    unlink(path);
+    free(path);
+}
+
 static void finds_surfaces(void **state)
 {
     (void)state;
@@ -246,8 +261,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_ply), cmocka_unit_test(reads_obj), cmocka_unit_test(round_trips),
-        cmocka_unit_test(refuses_damage), cmocka_unit_test(finds_surfaces),
-        cmocka_unit_test(refuses_open_fields), cmocka_unit_test(decimates),
+        cmocka_unit_test(refuses_damage), cmocka_unit_test(waits_for_no_fifo),
+        cmocka_unit_test(finds_surfaces), cmocka_unit_test(refuses_open_fields), cmocka_unit_test(decimates),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
