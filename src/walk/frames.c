@@ -17,18 +17,6 @@ enum { SIDE_LEAST = 16, SIDE_MOST = 4096, PIXELS_MOST = 4000000 };
 static const char *const layer_names[WALK_LAYERS] = {"color", "depth", "normal", "coverage",
                                                      "points"};
 
-// Is the matrix orthonormal, up to rounding?
-static bool is_rotation(double r[3][3])
-{
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            double product = r[i][0] * r[j][0] + r[i][1] * r[j][1] + r[i][2] * r[j][2];
-            if (!(fabs(product - (i == j)) < 1e-3))
-                return false;
-        }
-    return true;
-}
-
 static bool read_view(const json_t *root, struct orl_view *view)
 {
     struct orl_camera *c = &view->camera;
@@ -37,7 +25,7 @@ static bool read_view(const json_t *root, struct orl_view *view)
     if (!orl_json_read_numbers(json_object_get(root, "size"), 2, size) ||
         !orl_json_read_numbers(json_object_get(root, "focal"), 4, focal) ||
         !orl_json_read_numbers(json_object_get(root, "r"), 9, &pose->r[0][0]) ||
-        !orl_json_read_numbers(json_object_get(root, "eye"), 3, eye) || !is_rotation(pose->r))
+        !orl_json_read_numbers(json_object_get(root, "eye"), 3, eye))
         return false;
     if (!(size[0] >= SIDE_LEAST && size[1] >= SIDE_LEAST && size[0] <= SIDE_MOST &&
           size[1] <= SIDE_MOST && size[0] * size[1] <= PIXELS_MOST))
@@ -45,7 +33,7 @@ static bool read_view(const json_t *root, struct orl_view *view)
     *c = (struct orl_camera){(int)size[0], (int)size[1], focal[0], focal[1], focal[2], focal[3]};
     for (int i = 0; i < 3; i++)
         pose->t[i] = -(pose->r[i][0] * eye[0] + pose->r[i][1] * eye[1] + pose->r[i][2] * eye[2]);
-    return orl_camera_valid(c);
+    return !orl_view_problem(view);
 }
 
 // "ev": stops, within what a scene of several exposures spans. "tone": the name of a tone curve.
