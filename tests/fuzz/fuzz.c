@@ -17,8 +17,12 @@ const struct fuzz_target fuzz_targets[] = {
     {"exif", fuzz_exif},                   {"jpeg", fuzz_jpeg},
     {"png", fuzz_png},                     {"tiff", fuzz_tiff},
     {"heif", fuzz_heif},                   {"exr", fuzz_exr},
-    {"raw", fuzz_raw},
-    {"options", fuzz_options},             {"shader", fuzz_shader},
+    {"raw", fuzz_raw},                     {"cameras_json", fuzz_cameras_json},
+    {"bundler", fuzz_bundler},             {"middlebury", fuzz_middlebury},
+    {"workspace", fuzz_workspace},         {"mesh", fuzz_mesh},
+    {"database", fuzz_database},           {"walk_message", fuzz_walk_message},
+    {"walk_settings", fuzz_walk_settings}, {"options", fuzz_options},
+    {"shader", fuzz_shader},
     {0},
 };
 
@@ -82,6 +86,23 @@ void fuzz_save(const char *name, const uint8_t *data, size_t size)
     bool ok = file && fwrite(data, 1, size, file) == size;
     if (!file || fclose(file) != 0 || !ok)
         abort();
+}
+
+void fuzz_save_parts(const char *const *names, size_t count, const uint8_t *data, size_t size)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t length = size;
+        if (i + 1 < count) {
+            length = size >= 2 ? (size_t)data[0] | (size_t)data[1] << 8 : 0;
+            size_t head = size >= 2 ? 2 : size;
+            data += head;
+            size -= head;
+            length = length < size ? length : size;
+        }
+        fuzz_save(names[i], data, length);
+        data += length;
+        size -= length;
+    }
 }
 
 void fuzz_require(bool promise, const char *what)

@@ -27,8 +27,14 @@ extern const struct orl_log fuzz_log;
 const char *fuzz_path(const char *name);
 // Writes it there, or ends the program.
 void fuzz_save(const char *name, const uint8_t *data, size_t size);
+// Saves an input that is `count` files, each but the last ahead by its length in two bytes.
+void fuzz_save_parts(const char *const *names, size_t count, const uint8_t *data, size_t size);
 // Ends the program: a reader broke a promise.
 void fuzz_require(bool promise, const char *what);
+
+struct orl_scene;
+// A scene of three photographs without files, in the folder of this process.
+struct orl_scene *fuzz_scene(void);
 
 void fuzz_colmap_binary(const uint8_t *data, size_t size);
 void fuzz_colmap_text(const uint8_t *data, size_t size);
@@ -49,5 +55,13 @@ void fuzz_exr(const uint8_t *data, size_t size);
 void fuzz_raw(const uint8_t *data, size_t size);
 void fuzz_options(const uint8_t *data, size_t size);
 void fuzz_shader(const uint8_t *data, size_t size);
+void fuzz_cameras_json(const uint8_t *data, size_t size);
+void fuzz_bundler(const uint8_t *data, size_t size);
+void fuzz_middlebury(const uint8_t *data, size_t size);
+void fuzz_workspace(const uint8_t *data, size_t size);
+void fuzz_mesh(const uint8_t *data, size_t size);
+void fuzz_database(const uint8_t *data, size_t size);
+void fuzz_walk_message(const uint8_t *data, size_t size);
+void fuzz_walk_settings(const uint8_t *data, size_t size);
 
 #endif

@@ -3,10 +3,11 @@
 # lines of each reader the inputs reach.
 # usage: tests/fuzz/run.sh SECONDS [TARGET]..      SECONDS for each target; 0: none, only count
 # The build and the inputs found so far are kept in build-fuzz/ (FUZZ_DIR). FUZZ_JOBS targets run
-# at once; two runs of one FUZZ_SEED begin alike. Inputs that fail are in build-fuzz/failures: mend
-# the reader, then add them to tests/fuzz/inputs/TARGET. Exit status 0 only when nothing failed.
+# at once. Runs of one FUZZ_SEED try the same inputs in the same order, FUZZ_RUNS of them at most.
+# Inputs that fail are in build-fuzz/failures: mend the reader, then add them to
+# tests/fuzz/inputs/TARGET. Exit status 0 only when nothing failed.
 set -u
-[ $# -ge 1 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
+[ $# -ge 1 ] || { sed -n '2,9s/^# *//p' "$0"; exit 2; }
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../../.ci/deps.sh"
 dir=${FUZZ_DIR:-$here/../../build-fuzz} jobs=${FUZZ_JOBS:-1} seconds=$1
@@ -36,8 +37,16 @@ readers=(
     "heif src/io/heif.c"
     "exr src/io/exr_read.c"
     "raw src/io/raw.c"
+    "cameras_json src/scene/known_json.c src/scene/known_cameras.c preprocess/import/import_target.c"
+    "bundler src/scene/known_text.c src/scene/text_lines.c"
+    "middlebury src/scene/known_text.c"
+    "workspace src/scene/scene.c src/scene/info.c src/scene/ground_plane.c"
+    "mesh src/scene/mesh_ply.c src/scene/mesh_obj.c src/scene/ply.c src/scene/mesh.c"
+    "database preprocess/calibrate/database.c"
+    "walk_message src/walk/choices.c src/walk/content.c src/walk/rendering.c"
+    "walk_settings src/walk/settings.c"
     "options src/render/options.c"
-    "shader src/gpu/shader_source.c src/gpu/check_source.c"
+    "shader src/gpu/shader_source.c"
 )
 wanted=" ${*:-} "
 
@@ -48,7 +57,7 @@ run_target() {
         LSAN_OPTIONS=suppressions=$here/../leaks.supp UBSAN_OPTIONS=print_stacktrace=1 \
         nice -n 19 "$fuzz" "$corpus" "$here/inputs/$name" \
         -max_total_time="$seconds" -max_len=8192 -timeout=30 -rss_limit_mb=3000 \
-        -seed="${FUZZ_SEED:-0}" -artifact_prefix="$dir/failures/$name-" -print_final_stats=1 \
+        -seed="${FUZZ_SEED:-0}" -runs="${FUZZ_RUNS:--1}" -artifact_prefix="$dir/failures/$name-" -print_final_stats=1 \
         >"$dir/$name.log" 2>&1
     local status=$? runs
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log")

@@ -16,24 +16,6 @@
 #include "scene/thin.h"
 #include "scene/tuned_settings.h"
 
-// The input is `count` files, each but the last ahead by its length in two bytes.
-static void save_parts(const char *const *names, size_t count, const uint8_t *data, size_t size)
-{
-    for (size_t i = 0; i < count; i++) {
-        size_t length = size;
-        if (i + 1 < count) {
-            length = size >= 2 ? (size_t)data[0] | (size_t)data[1] << 8 : 0;
-            size_t head = size >= 2 ? 2 : size;
-            data += head;
-            size -= head;
-            length = length < size ? length : size;
-        }
-        fuzz_save(names[i], data, length);
-        data += length;
-        size -= length;
-    }
-}
-
 static void use_model(const struct orl_colmap_model *model)
 {
     for (size_t i = 0; i < model->image_count; i++) {
@@ -62,14 +44,14 @@ static void read_model(const char *dir)
 void fuzz_colmap_binary(const uint8_t *data, size_t size)
 {
     static const char *const names[] = {"cameras.bin", "points3D.bin", "images.bin"};
-    save_parts(names, ORL_COUNT(names), data, size);
+    fuzz_save_parts(names, ORL_COUNT(names), data, size);
     read_model(fuzz_path("."));
 }
 
 void fuzz_colmap_text(const uint8_t *data, size_t size)
 {
     static const char *const names[] = {"cameras.txt", "points3D.txt", "images.txt"};
-    save_parts(names, ORL_COUNT(names), data, size);
+    fuzz_save_parts(names, ORL_COUNT(names), data, size);
     read_model(fuzz_path("."));
 }
 
@@ -149,7 +131,7 @@ void fuzz_ply(const uint8_t *data, size_t size)
     orl_points_finish(&points);
 }
 
-static struct orl_scene *make_scene(void)
+struct orl_scene *fuzz_scene(void)
 {
     static const char *const names[] = {"a.jpg", "b.jpg", "c.jpg"};
     struct orl_scene *scene = calloc(1, sizeof *scene);
@@ -167,7 +149,7 @@ static struct orl_scene *make_scene(void)
 
 void fuzz_manifest(const uint8_t *data, size_t size)
 {
-    struct orl_scene *scene = make_scene();
+    struct orl_scene *scene = fuzz_scene();
     char manifest[128];
     snprintf(manifest, sizeof manifest, "%s", fuzz_path("scene.json"));
     fuzz_save("scene.json", data, size);
@@ -192,7 +174,7 @@ void fuzz_stages(const uint8_t *data, size_t size)
 
 static void read_path(const char *name)
 {
-    struct orl_scene *scene = make_scene();
+    struct orl_scene *scene = fuzz_scene();
     struct orl_path path;
     if (orl_path_read(&fuzz_log, scene, fuzz_path(name), &path) == ORL_OK)
         fuzz_require(path.count > 0, "a path has views");
@@ -219,7 +201,7 @@ void fuzz_path_text(const uint8_t *data, size_t size)
     data += size > 0;
     size -= size > 0;
     unlink(fuzz_path("cameras.txt"));
-    save_parts(both ? names : names + 1, both ? 2 : 1, data, size);
+    fuzz_save_parts(both ? names : names + 1, both ? 2 : 1, data, size);
     read_path("images.txt");
 }
 

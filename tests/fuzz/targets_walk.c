@@ -1,0 +1,111 @@
+// What the page of a walk sends, and what a scene's walk.json says.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/json.h"
+#include "fuzz.h"
+#include "oriel/path.h"
+#include "walk/choices.h"
+#include "walk/content_internal.h"
+#include "walk/internal.h"
+#include "walk/rendering.h"
+
+static void use_request(const struct walk_request *request)
+{
+    const struct orl_camera *camera = &request->view.camera;
+    fuzz_require(!orl_view_problem(&request->view), "a requested view is usable");
+    fuzz_require(request->quality >= 1 && request->quality <= 100 && request->layer < WALK_LAYERS &&
+                     isfinite(request->tone.exposure_ev) && request->pick_count <= WALK_PICKS_MOST,
+                 "a request is within its limits");
+    for (size_t i = 0; i < request->pick_count; i++)
+        fuzz_require(request->picks[i][0] >= 0 && request->picks[i][0] < camera->width &&
+                         request->picks[i][1] >= 0 && request->picks[i][1] < camera->height,
+                     "picks lie in the frame");
+}
+
+static void use_rendering(const struct orl_scene *scene, const json_t *message)
+{
+    struct orl_path path = {0};
+    const json_t *keyframes = json_object_get(message, "render");
+    char *file = strdup(fuzz_path("keys.json"));
+    if (orl_json_write(&fuzz_log, file, keyframes) == ORL_OK)
+        (void)!orl_path_read(&fuzz_log, scene, file, &path);
+    orl_path_finish(&path);
+    free(file);
+}
+
+static void use_choice(const struct orl_scene *scene, const json_t *message,
+                       struct orl_choice *choice)
+{
+    char problem[WALK_PROBLEM_BYTES];
+    if (orl_walk_choice_read(scene, message, choice, problem) != ORL_OK)
+        fuzz_require(*problem, "a refused choice says why");
+    (void)orl_walk_moving_params(&choice->params);
+    json_decref(orl_walk_choice_json(choice));
+}
+
+static void use_path(const struct content *content, const char *text, size_t size)
+{
+    struct content_file file;
+    char *path = strndup(text, size);
+    if (orl_content_find(content, path, &file) == ORL_OK)
+        free(file.owned);
+    free(path);
+}
+
+// What the server does with a message (server.c), but for drawing. One that starts with a slash
+// stands for the path of a request for a file.
+static void use_message(struct content *content, struct orl_choice *choice, const char *text,
+                        size_t size)
+{
+    struct walk_request request;
+    if (orl_walk_request_read(text, size, &request)) {
+        use_request(&request);
+        return;
+    }
+    if (size && *text == '/')
+        use_path(content, text, size);
+    json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
+    json_t *settings = json_object_get(root, "save");
+    if (orl_walk_rendering_asked(root))
+        use_rendering(content->scene, root);
+    else if (orl_walk_choice_asked(root))
+        use_choice(content->scene, root, choice);
+    else if (settings)
+        (void)!orl_content_change(content, settings);
+    json_decref(root);
+}
+
+// Serves a scene with the walk.json that is there. message: of a client; NULL: none.
+static void walk(const char *message, size_t size)
+{
+    struct orl_scene *scene = fuzz_scene();
+    struct orl_names none = {0};
+    struct content content;
+    struct orl_choice choice;
+    fuzz_require(orl_choice_make(&fuzz_log, scene, ORL_SAMPLE_SRGB, NULL, &none, &choice) == ORL_OK,
+                 "a scene has a method");
+    if (orl_content_init(&fuzz_log, scene, NULL, true, &choice, &content) == ORL_OK) {
+        struct orl_view view;
+        if (orl_walk_settings_start(content.settings, &scene->photos[0].view.camera, &view))
+            fuzz_require(!orl_view_problem(&view), "the start view is usable");
+        if (message)
+            use_message(&content, &choice, message, size);
+        orl_content_finish(&content);
+    }
+    orl_scene_destroy(&scene);
+}
+
+void fuzz_walk_message(const uint8_t *data, size_t size)
+{
+    unlink(fuzz_path("walk.json"));
+    walk((const char *)data, size);
+}
+
+void fuzz_walk_settings(const uint8_t *data, size_t size)
+{
+    fuzz_save("walk.json", data, size);
+    walk(NULL, 0);
+}
