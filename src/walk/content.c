@@ -12,6 +12,7 @@
 #include "walk/web_table.h"
 
 enum { MAP_POINTS = 16000 };
+static const char site_folder[] = "/site/"; // where clients find the published site's data
 enum { PICTURE_SIDE = 1600, PICTURE_QUALITY = 88, THUMB_SIDE = 160, THUMB_QUALITY = 70 };
 
 // --- manifest, page and scene ---
@@ -109,6 +110,7 @@ void orl_content_finish(struct content *content)
     free(content->manifest);
     free(content->photos);
     json_decref(content->settings);
+    orl_site_table_finish(&content->site);
     *content = (struct content){0};
 }
 
@@ -192,9 +194,25 @@ static bool photo_number(const struct content *content, const char *path, const 
 static const char *type_of(const char *path)
 {
     const char *dot = strrchr(path, '.');
-    return dot && strcmp(dot, ".js") == 0    ? "text/javascript"
-           : dot && strcmp(dot, ".css") == 0 ? "text/css"
-                                             : "text/plain";
+    static const char *const types[][2] = {
+        {".js", "text/javascript"}, {".css", "text/css"}, {".json", "application/json"},
+        {".jpg", "image/jpeg"}, {".png", "image/png"}, {".bin", "application/octet-stream"}};
+    for (size_t i = 0; dot && i < ORL_COUNT(types); i++)
+        if (strcmp(dot, types[i][0]) == 0)
+            return types[i][1];
+    return "text/plain";
+}
+
+// A file of the published site, from the table of its names.
+static enum orl_result find_in_site(const struct content *content, const char *path,
+                                    struct content_file *file)
+{
+    const struct site_file *found = orl_site_table_find(&content->site, path);
+    if (!found)
+        return ORL_ERR_NOT_FOUND;
+    *file = (struct content_file){.type = type_of(path), .data = found->data,
+                                  .size = found->size, .is_private = true};
+    return ORL_OK;
 }
 
 enum orl_result orl_content_find(const struct content *content, const char *path,
@@ -209,6 +227,8 @@ enum orl_result orl_content_find(const struct content *content, const char *path
         file->is_private = true;
         return result;
     }
+    if (strncmp(path, site_folder, strlen(site_folder)) == 0)
+        return find_in_site(content, path + strlen(site_folder), file);
     if (strcmp(path, "/map.bin") == 0)
         return make_map(content, file);
     if (photo_number(content, path, "/thumbs/", &number))

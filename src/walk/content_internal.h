@@ -5,6 +5,7 @@
 #include <jansson.h>
 
 #include "eval/choice.h"
+#include "walk/site_table.h"
 
 struct content {
     const struct orl_log *log;
@@ -16,6 +17,7 @@ struct content {
     char *index, *manifest; // owned
     size_t *photos;         // owned: index in the scene for each of the page's photographs
     size_t photo_count;
+    struct site_table site; // owned: empty until a client asks for it; then it does not change
 };
 
 struct content_file {

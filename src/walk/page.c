@@ -213,6 +213,35 @@ static bool is_data(const char *path)
            strncmp(path, "js/", 3) != 0;
 }
 
+// Adds the paths of all data files below `folder` of the site ("": the site itself).
+static enum orl_result list_data(const struct orl_log *log, const char *dir, const char *folder,
+                                 struct orl_names *paths)
+{
+    struct orl_names names = {0};
+    char *here = orl_path_join(log, dir, folder);
+    enum orl_result result = here ? orl_dir_list(log, here, &names) : ORL_ERR_MEMORY;
+    for (size_t i = 0; i < names.count && result == ORL_OK; i++) {
+        char *path = orl_format(log, "%s%s%s", folder, *folder ? "/" : "", names.items[i]);
+        char *full = path ? orl_path_join(log, dir, path) : NULL;
+        if (!full)
+            result = ORL_ERR_MEMORY;
+        else if (orl_path_is_dir(full))
+            result = list_data(log, dir, path, paths);
+        else if (is_data(path))
+            result = orl_names_add(log, paths, path);
+        free(full);
+        free(path);
+    }
+    orl_names_finish(&names);
+    free(here);
+    return result;
+}
+
+enum orl_result orl_site_data(const struct orl_log *log, const char *dir, struct orl_names *paths)
+{
+    return list_data(log, dir, "", paths);
+}
+
 static void add_file(const struct site *site, const char *path, struct text *text)
 {
     uint8_t *data = NULL;
@@ -232,27 +261,13 @@ static void add_file(const struct site *site, const char *path, struct text *tex
     free(data);
 }
 
-// Adds all data files below `folder` of the site ("": the site itself).
-static void add_folder(const struct site *site, const char *folder, struct text *text)
+static void add_files(const struct site *site, struct text *text)
 {
-    struct orl_names names = {0};
-    char *dir = orl_site_path(site, folder);
-    if (text->result == ORL_OK)
-        text->result = dir ? orl_dir_list(site->log, dir, &names) : ORL_ERR_MEMORY;
-    for (size_t i = 0; i < names.count && text->result == ORL_OK; i++) {
-        char *path = orl_format(site->log, "%s%s%s", folder, *folder ? "/" : "", names.items[i]);
-        char *full = path ? orl_site_path(site, path) : NULL;
-        if (!full)
-            text->result = ORL_ERR_MEMORY;
-        else if (orl_path_is_dir(full))
-            add_folder(site, path, text);
-        else if (is_data(path))
-            add_file(site, path, text);
-        free(full);
-        free(path);
-    }
-    orl_names_finish(&names);
-    free(dir);
+    struct orl_names paths = {0};
+    text->result = orl_site_data(site->log, site->dir, &paths);
+    for (size_t i = 0; i < paths.count && text->result == ORL_OK; i++)
+        add_file(site, paths.items[i], text);
+    orl_names_finish(&paths);
 }
 
 enum orl_result orl_site_pack(struct site *site, const char *file)
@@ -264,7 +279,7 @@ enum orl_result orl_site_pack(struct site *site, const char *file)
     add(&values[STYLE].text, web_file("style.css"));
     add(&values[STYLE].text, "</style>");
     add_modules(&values[MODULES].text);
-    add_folder(site, "", &files);
+    add_files(site, &files);
     add(&values[FILES].text, "<script type=\"application/json\" id=\"files\">{");
     add_bytes(&values[FILES].text, files.data ? files.data : "", files.size);
     add(&values[FILES].text, "}</script>");

@@ -43,6 +43,7 @@ struct session {
     char *message;      // owned: the part that has arrived
     size_t message_size, message_room;
     json_t *reply;      // owned: an object to send; NULL: none
+    bool asks_site;     // waits for the published site's data
     // A request for a file.
     struct content_file file;
     size_t written;
@@ -237,14 +238,56 @@ static bool take_choice(const struct server *server, struct session *session, co
     return tell_choice(session, result == ORL_OK ? "" : problem) == ORL_OK;
 }
 
-// A message about something else than a frame: {"save": settings}, {"render": path} or {"method":
-// name, "set": options}. Returns false for a message that is none of these.
+// --- the published site's data, for clients that draw by themselves ---
+
+// Tells all who wait for the data, and that they need not wait any more if that is `last`.
+static enum orl_result tell_site(const struct server *server, const json_t *state, bool last)
+{
+    enum orl_result result = state ? ORL_OK : ORL_ERR_MEMORY;
+    for (struct session *s = server->sessions; s && result == ORL_OK; s = s->next) {
+        if (!s->asks_site)
+            continue;
+        result = reply(s, json_pack("{s:O}", "site", state));
+        s->asks_site = !last;
+    }
+    return result;
+}
+
+static enum orl_result tell_site_ready(const struct server *server)
+{
+    json_t *state = json_pack("{s:b}", "ready", 1);
+    enum orl_result result = tell_site(server, state, true);
+    json_decref(state);
+    return result;
+}
+
+static bool someone_asks_site(const struct server *server)
+{
+    const struct session *s = server->sessions;
+    while (s && !s->asks_site)
+        s = s->next;
+    return s != NULL;
+}
+
+// serve() begins to make the data, unless they are there.
+static bool take_site_request(const struct server *server, struct session *session)
+{
+    session->asks_site = true;
+    return !server->content.site.count || tell_site_ready(server) == ORL_OK;
+}
+
+// --- messages ---
+
+// A message about something else than a frame: {"save": settings}, {"render": path}, {"method":
+// name, "set": options} or {"site": true}. Returns false for a message that is none of these.
 static bool take_command(struct server *server, struct session *session)
 {
     json_t *root = json_loadb(session->message, session->message_size, JSON_REJECT_DUPLICATES, NULL);
     json_t *settings = json_object_get(root, "save");
     bool known = settings && server->content.edits;
-    if (server->content.edits && orl_walk_rendering_asked(root)) {
+    if (json_is_true(json_object_get(root, "site"))) {
+        known = take_site_request(server, session);
+    } else if (server->content.edits && orl_walk_rendering_asked(root)) {
         known = take_rendering(server, session, root);
     } else if (server->content.edits && orl_walk_choice_asked(root)) {
         known = take_choice(server, session, root);
@@ -508,13 +551,55 @@ static void render_path(struct server *server)
     json_decref(message);
 }
 
+// Between two photographs of the site, clients are served.
+static void report_site(void *priv, const char *step, double done, double total,
+                        const char *detail)
+{
+    struct server *server = priv;
+    (void)step;
+    (void)detail;
+    json_t *state = json_pack("{s:f, s:f}", "done", done, "total", total);
+    enum orl_result result = server->result;
+    if (result == ORL_OK)
+        result = tell_site(server, state, false);
+    if (result == ORL_OK)
+        result = serve_once(server, false);
+    server->result = result;
+    json_decref(state);
+}
+
+static bool site_cancelled(void *priv)
+{
+    const struct server *server = priv;
+    return server->result != ORL_OK || orl_progress_cancelled(server->params->progress);
+}
+
+// That it fails does not end the server.
+static void make_site(struct server *server)
+{
+    const struct orl_progress progress = {report_site, site_cancelled, server};
+    struct site_table table;
+    enum orl_result result = orl_site_table_make(server->walk.gpu, server->content.scene, &progress,
+                                                 &table);
+    if (result == ORL_OK)
+        server->content.site = table;
+    if (server->result != ORL_OK)
+        return;
+    json_t *problem = json_pack("{s:s}", "problem", orl_result_message(result));
+    server->result = result == ORL_OK ? tell_site_ready(server) : tell_site(server, problem, true);
+    json_decref(problem);
+}
+
 static enum orl_result serve(struct server *server)
 {
     while (server->result == ORL_OK && !orl_progress_cancelled(server->params->progress)) {
         if (server->to_render)
             render_path(server);
+        else if (someone_asks_site(server))
+            make_site(server);
         if (server->result == ORL_OK)
-            server->result = serve_once(server, !server->to_render);
+            server->result = serve_once(server,
+                                        !server->to_render && !someone_asks_site(server));
     }
     return server->result;
 }

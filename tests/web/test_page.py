@@ -381,6 +381,17 @@ class Page(unittest.TestCase):
         self.assertTrue(said)
         self.assertEqual([line for line in said if "none.jpg" not in line], [])
 
+    def test_opens_within_another_page(self):
+        """As a museum embeds it: browsers forbid some things in another site's frame."""
+        self.browser.driver.get(f"data:text/html,<iframe src='{self.address}' width=340 height=220></iframe>")
+        self.browser.driver.switch_to.frame(0)
+        self.browser.settle()
+        self.browser.js("document.getElementById('tool-help').click()")
+        self.assertEqual(self.browser.js("return document.activeElement.tagName"), "H2")
+        self.browser.driver.switch_to.default_content()
+        self.assertEqual(self.browser.errors(), [])
+        self.reopen(self.address)
+
     def test_single_file_opens_from_disk(self):
         camera = self.cameras[0]
         served, single = self.file("served.png"), self.file("single.png")

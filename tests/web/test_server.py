@@ -15,6 +15,7 @@ from browser import Browser
 from client import Client, Walk as Program
 
 ORIEL, TOOL, SCENE = sys.argv[1:4]
+TEMPORARY = tempfile.mkdtemp(dir=os.path.dirname(SCENE)) # of the server alone
 WIDTH, HEIGHT = 360, 240
 CLIENTS = 20
 
@@ -25,7 +26,7 @@ def run(*command):
 
 class Walk(Program):
     def __init__(self, *options):
-        super().__init__(ORIEL, SCENE, *options)
+        super().__init__(ORIEL, SCENE, *options, env={**os.environ, "TMPDIR": TEMPORARY})
 
 
 def opens(walk, path="/live", **headers):
@@ -188,6 +189,30 @@ class Server(unittest.TestCase):
         self.assertGreater(len(points), 16 * 1000)
         self.assertEqual(len(points) % 16, 0)
 
+    def test_data_of_the_site_are_made_when_asked_for(self):
+        client, other = Client(self.walk), Client(self.walk)
+        self.assertEqual(self.walk.get("/site/manifest.json")[0], 404)
+        said = [self.told(client, {"site": True})["site"]]
+        other.send({"site": True}) # while they are made, or after
+        while "ready" not in said[-1]:
+            self.assertGreater(said[-1]["total"], 0)
+            said.append(json.loads(client.receive()[1])["site"])
+        while "ready" not in json.loads(other.receive()[1])["site"]:
+            pass
+        manifest = json.loads(self.walk.get("/site/manifest.json")[1])
+        own = json.loads(self.walk.get("/manifest.json")[1])
+        self.assertEqual([p["name"] for p in manifest["photos"]], [p["name"] for p in own["photos"]])
+        for file in (manifest["photos"][0]["picture"], manifest["photos"][0]["depth"], manifest["points"]["coarse"]):
+            self.assertEqual(len(self.walk.get(f"/site/{file['file']}")[1]), file["bytes"])
+        for path in ("/site/", "/site/index.html", "/site/js/main.js", "/site/none", "/site//etc/passwd"):
+            self.assertEqual(self.walk.get(path)[0], 404, path)
+        self.assertEqual(os.listdir(TEMPORARY), []) # all of it is in memory
+        client.send({"site": "x"})
+        self.assertEqual(client.closed_for(), 1007)
+        client.close()
+        other.close()
+        self.works()
+
     def test_settings_are_saved_with_the_scene(self):
         settings = {"title": "Arch", "notes": [{"title": "a", "position": [1, 2, 3]}] * 150}
         client = Client(self.walk)
@@ -276,6 +301,30 @@ class Token(unittest.TestCase):
 
 
 class Page(unittest.TestCase):
+    def draws_by_itself(self, browser, camera, work):
+        """The switch to the published page's renderer and back, while the layer is depth."""
+        server, own = f"{work}/server.png", f"{work}/browser.png"
+        browser.js("document.querySelector('input[name=drawer][value=browser]').click()")
+        browser.wait("return !oriel.picture.remote")
+        browser.settle()
+        layers = browser.js("return oriel.picture.layers")
+        self.assertIn("source", layers) # which the server does not show
+        self.assertEqual(layers[browser.js("return oriel.layer")], "depth")
+        self.assertTrue(browser.js("return document.getElementById('tool-method').disabled"))
+        browser.js("oriel.setLayer(0)")
+        browser.capture(own, camera)
+        browser.keys("KeyW", "w", "return oriel.navigator.at === null") # the pointer and keys are the same
+        browser.settle()
+        browser.js("document.querySelector('input[name=drawer][value=server]').click()")
+        browser.wait("return oriel.picture.remote")
+        browser.settle()
+        browser.capture(server, camera)
+        self.assertFalse(browser.js("return document.getElementById('tool-method').disabled"))
+        self.assertTrue(browser.js("return document.getElementById('own').hidden"))
+        self.assertGreaterEqual(float(run(TOOL, "compare", own, server).split()[0]), 30)
+        browser.js("oriel.act(() => oriel.navigator.goHome())")
+        browser.settle()
+
     def test_page(self):
         walk, browser, work = Walk(), Browser(WIDTH, HEIGHT), tempfile.TemporaryDirectory()
         try:
@@ -296,7 +345,7 @@ class Page(unittest.TestCase):
             browser.keys("KeyL", "l")
             browser.wait("return oriel.layer === 1")
             browser.settle()
-            browser.js("oriel.setLayer(0)")
+            self.draws_by_itself(browser, camera, work.name)
             browser.js("oriel.notes.title.value = 'Here'; return oriel.notes.place(180, 120)")
             browser.wait("return oriel.notes.said.textContent === 'Saved.'")
             browser.wait("return !!document.querySelector('.mark:not([hidden])')") # the next frame places it

@@ -37,7 +37,7 @@ export async function benchmark(walk, seconds = SECONDS)
     walk.wake();
     return {
         title: walk.manifest.title, made_by: walk.manifest.made_by, browser: window.navigator.userAgent,
-        drawn_by: walk.manifest.live ? "server" : "browser", window: [window.innerWidth, window.innerHeight],
+        drawn_by: walk.picture.remote ? "server" : "browser", window: [window.innerWidth, window.innerHeight],
         photographs: walk.photos.length, seconds, frames: times.length,
         frames_per_second: times.length / seconds,
         frame_ms: {median: share(times, 0.5), p95: share(times, 0.95), longest: Math.max(0, ...times),

@@ -19,8 +19,10 @@ function decodeBase64(string)
 }
 
 export class Files {
-    constructor(onError)
+    // folder: that paths are relative to, as the page's own address has it; "" or ending with a slash
+    constructor(onError, folder = "")
     {
+        this.folder = folder;
         this.embedded = embeddedFiles();
         this.onError = onError;
         this.bytes = 0;      // loaded so far
@@ -31,7 +33,7 @@ export class Files {
     // Of the web server. A token in the page's own address is passed on.
     url(path)
     {
-        const url = new URL(path, document.baseURI), token = new URLSearchParams(location.search).get("token");
+        const url = new URL(this.folder + path, document.baseURI), token = new URLSearchParams(location.search).get("token");
         if (token)
             url.searchParams.set("token", token);
         return url;

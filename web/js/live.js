@@ -27,6 +27,7 @@ export class LivePicture {
         this.all = photos;
         this.onChange = onChange;
         this.layers = LAYERS;
+        this.remote = true;    // frames come later than they are asked for
         this.pixelsMost = PIXELS_MOST;
         this.number = 0;       // of the last request
         this.asked = null;     // {number, at, marks} of the one that is under way
@@ -43,6 +44,7 @@ export class LivePicture {
         this.measured = null;  // the last of what they told
         this.method = null;    // {name, settings} that was chosen
         this.saving = [];      // resolve() of each settings that were sent
+        this.site = null;      // {resolve, reject, onProgress} of who waits for the site's data
         this.onRendering = this.onMethod = () => {};
     }
 
@@ -57,6 +59,8 @@ export class LivePicture {
                 this.lost = false;
                 if (this.method)
                     this.choose(this.method.name, this.method.settings);
+                if (this.site)
+                    this.askForSite();
                 resolve();
                 this.onChange();
             };
@@ -178,6 +182,8 @@ export class LivePicture {
             this.measured = message.figures;
         if (message.choice)
             this.onMethod(message.choice, message.problem);
+        if (message.site && this.site)
+            this.hearOfSite(message.site);
     }
 
     // The server answers by onMethod(choice, problem).
@@ -194,6 +200,35 @@ export class LivePicture {
             this.saving.push(done);
             this.socket.send(JSON.stringify({save: settings}));
         });
+    }
+
+    // A promise that the published site's data are on the server; onProgress(done, total) until then.
+    prepareSite(onProgress)
+    {
+        return new Promise((resolve, reject) => {
+            this.site = {resolve, reject, onProgress};
+            this.askForSite();
+        });
+    }
+
+    askForSite()
+    {
+        if (!this.lost) // else once the server is back
+            this.socket.send(JSON.stringify({site: true}));
+    }
+
+    hearOfSite({done, total, ready, problem})
+    {
+        const {site} = this;
+        if (!ready && !problem) {
+            site.onProgress(done, total);
+            return;
+        }
+        this.site = null;
+        if (ready)
+            site.resolve();
+        else
+            site.reject(new Error(problem));
     }
 
     render(path, format) { this.socket.send(JSON.stringify({render: path, format})); }

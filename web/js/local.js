@@ -40,6 +40,7 @@ export class LocalPicture {
         this.all = photos;
         this.onChange = onChange;
         this.layers = LAYERS;
+        this.remote = false;   // a frame is there once draw() returns
         // Of a picture, whatever the screen: each takes some 120 bytes on the graphics chip.
         this.pixelsMost = handheld ? 1.0e6 : 2.6e6;
         this.device = new Device(canvas);

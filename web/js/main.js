@@ -12,7 +12,7 @@ import {Notes} from "oriel/notes.js";
 import {PathEditor} from "oriel/path.js";
 import {makePhotos} from "oriel/photos.js";
 import {text} from "oriel/strings.js";
-import {buildHelp, byId, Compare, Panel, save, showHint, showProgress, Thumbs, Tools} from "oriel/ui.js";
+import {buildHelp, byId, Compare, make, Panel, save, showHint, showProgress, Thumbs, Tools} from "oriel/ui.js";
 import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "oriel/view.js";
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
@@ -41,12 +41,15 @@ class Walk {
             pivotAt: () => this.picture.middle(),
         });
         this.running = false;
+        this.ev = 0; // exposure, stops
     }
 
     // The picture can be drawn from now on.
     begin(picture)
     {
         this.picture = picture;
+        this.server = picture.remote ? picture : null;
+        this.own = picture.remote ? null : picture; // drawn by this browser
         this.buildTools();
         this.readAddress();
         this.placePoster();
@@ -56,11 +59,21 @@ class Walk {
         this.wake();
     }
 
+    // Opens a picture on a canvas. Its changes count while it is the one that shows.
+    static async open(walk, canvas, files, manifest, photos)
+    {
+        const kind = manifest.live ? LivePicture : LocalPicture;
+        let picture = null;
+        picture = await kind.open(canvas, files, manifest, photos, took => {
+            if (picture && walk.picture === picture)
+                walk.changed(took);
+        });
+        return picture;
+    }
+
     // Something came that makes the picture better; took: milliseconds, of a frame that has come.
     changed(took)
     {
-        if (!this.picture)
-            return;
         if (took !== undefined) {
             this.adapt(took, 0);
             this.showFrame();
@@ -99,7 +112,8 @@ class Walk {
             }},
             map: {key: "m", run: toggle("map"), pressed: shown("map")},
             panel: {key: "i", pressed: shown("panel"), run: () => {
-                this.picture.measures = byId("panel").hidden;
+                if (this.server)
+                    this.server.measures = byId("panel").hidden;
                 this.refined = false;
                 toggle("panel")();
             }},
@@ -110,24 +124,28 @@ class Walk {
                     toggle("path")();
             })},
             ...(edits ? {maker: {key: "n", run: toggle("maker"), pressed: shown("maker")}} : {}),
-            ...(this.manifest.methods ? {method: {key: "o", run: toggle("method"), pressed: shown("method")}} : {}),
+            ...(this.manifest.methods ? {method: {key: "o", pressed: shown("method"), run: () => {
+                if (this.picture.remote)
+                    toggle("method")();
+            }}} : {}),
             screenshot: {key: "x", run: () => this.saveScreenshot()},
             full: {key: "f", run: () => this.toggleFull(), pressed: () => document.fullscreenElement !== null},
-            help: {key: "?", run: () => help.showModal()},
+            help: {key: "?", run: () => help.show()},
         };
         this.tools = new Tools(actions);
         this.compare = new Compare(this.files);
         this.panel = new Panel({layers: this.picture.layers, layer: this.layer, tones: this.manifest.tones || [],
                                 onLayer: layer => this.setLayer(layer),
-                                onExposure: ev => this.change(() => this.picture.setExposure(ev)),
-                                onTone: name => this.change(() => this.picture.setTone(name)),
+                                onExposure: ev => this.change(() => this.setExposure(ev)),
+                                onTone: name => this.change(() => this.server.setTone(name)),
+                                onDrawer: this.server ? id => this.drawBy(id) : null,
                                 onBenchmark: () => this.measure()});
         if (this.manifest.methods)
             this.makeMethods();
         this.makePath(edits);
         this.notes = new Notes(nav, this.manifest.walk, {
             canvas: this.canvas, wake: () => this.wake(), seen: point => this.picture.seen.get(point),
-            pick: (x, y) => this.pick(x, y), save: edits ? settings => this.picture.save(settings) : null,
+            pick: (x, y) => this.pick(x, y), save: edits ? settings => this.server.save(settings) : null,
         });
         byId("attribution").textContent = this.manifest.walk.attribution || "";
         this.map = new Map2d(nav, this.picture, photo => this.act(() => nav.goTo(photo)));
@@ -142,10 +160,10 @@ class Walk {
     {
         this.path = new PathEditor(this.navigator, {
             wake: () => this.wake(), name: () => this.manifest.title,
-            render: edits ? (path, format) => this.picture.render(path, format) : null,
+            render: edits ? (path, format) => this.server.render(path, format) : null,
         });
         if (edits)
-            this.picture.onRendering = state => this.path.showRendering(state);
+            this.server.onRendering = state => this.path.showRendering(state);
     }
 
     // The point of a surface under a place of the window, CSS pixels; null: there is none.
@@ -157,8 +175,68 @@ class Walk {
 
     makeMethods()
     {
-        this.methods = new MethodPanel(this.manifest.methods, (name, settings) => this.picture.choose(name, settings));
-        this.picture.onMethod = (choice, problem) => this.change(() => this.methods.told(choice, problem));
+        this.methods = new MethodPanel(this.manifest.methods, (name, settings) => this.server.choose(name, settings));
+        this.server.onMethod = (choice, problem) => this.change(() => this.methods.told(choice, problem));
+    }
+
+    setExposure(ev)
+    {
+        this.ev = ev;
+        this.picture.setExposure(ev);
+    }
+
+    // --- who draws ---
+
+    // Of a page with a server: "server", or "browser" as a visitor of the published page sees it.
+    async drawBy(id)
+    {
+        this.asked = id;
+        try {
+            if (id === "browser")
+                this.own = await (this.opening ||= this.openOwn());
+            if (this.asked === id)
+                this.show(id === "browser" ? this.own : this.server);
+        } catch (error) {
+            this.opening = null;
+            this.panel.showDrawer("server", text.failed(error.message));
+        }
+    }
+
+    // The published site's renderer, on a canvas above the server's, which keeps the pointer.
+    async openOwn()
+    {
+        await this.server.prepareSite((done, total) => {
+            if (this.asked === "browser")
+                this.panel.showDrawer("", text.preparing(done, total));
+        });
+        const files = new Files(this.files.onError, "site/"), manifest = await files.json("manifest.json");
+        const canvas = make("canvas", {id: "own", hidden: true});
+        canvas.setAttribute("aria-hidden", "true");
+        this.canvas.after(canvas);
+        try {
+            return await Walk.open(this, canvas, files, manifest, makePhotos(manifest));
+        } catch (error) {
+            canvas.remove();
+            throw error;
+        }
+    }
+
+    show(picture)
+    {
+        const name = this.picture.layers[this.layer];
+        this.picture = picture;
+        this.layer = Math.max(picture.layers.indexOf(name), 0);
+        this.panel.setLayers(picture.layers, this.layer);
+        this.panel.showDrawer(picture.remote ? "server" : "browser", "");
+        if (this.own)
+            this.own.canvas.hidden = picture.remote;
+        if (this.manifest.methods) {
+            byId("tool-method").disabled = !picture.remote;
+            byId("method").hidden ||= !picture.remote;
+        }
+        this.frames = [];
+        this.scale = 0;
+        this.change(() => picture.setExposure(this.ev));
     }
 
     // Something that makes the picture another one.
@@ -298,7 +376,7 @@ class Walk {
         this.picture.points = this.notes.points;
         this.picture.draw(full, camera, this.layer);
         this.refined = scale === 0;
-        if (!this.manifest.live) { // else frames tell when they come
+        if (!this.picture.remote) { // else frames tell when they come
             this.adapt(passed, performance.now() - started);
             this.showFrame();
         }
@@ -323,7 +401,7 @@ class Walk {
             return;
         const mean = this.frames.reduce((a, b) => a + b) / this.frames.length;
         this.frameMs = mean;
-        const [long, short] = this.manifest.live ? [LIVE_LONG, LIVE_SHORT] : [FRAME_LONG, FRAME_SHORT];
+        const [long, short] = this.picture.remote ? [LIVE_LONG, LIVE_SHORT] : [FRAME_LONG, FRAME_SHORT];
         const step = mean > long ? 1 : mean < short ? -1 : 0;
         const next = clamp(this.scale + step, 0, SCALES.length - 1);
         if (next !== this.scale)
@@ -387,8 +465,7 @@ async function start()
         poster.src = await files.address("poster.jpg");
     const manifest = await files.json("manifest.json");
     const photos = makePhotos(manifest), walk = new Walk(files, manifest, photos);
-    const kind = manifest.live ? LivePicture : LocalPicture;
-    walk.begin(await kind.open(walk.canvas, files, manifest, photos, took => walk.changed(took)));
+    walk.begin(await Walk.open(walk, walk.canvas, files, manifest, photos));
     window.oriel = walk;
 }
 

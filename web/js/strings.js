@@ -31,6 +31,8 @@ export const text = {
     layers: {color: "Colour", depth: "Depth", normal: "Surface direction", coverage: "Coverage",
              source: "Which photograph", points: "Points only"},
     layerLegend: "Layer",
+    drawers: {legend: "Drawn by", server: "The server", browser: "This browser"},
+    preparing: (done, total) => `The server prepares the scene for this browser: ${done} of ${total}.`,
     exposure: "Exposure",
     tone: "Tone curve",
     passes: "Milliseconds by pass", drawing: "all of drawing", encoding: "encoding", memoryBy: "Memory by owner",

@@ -68,16 +68,14 @@ export class Tools {
 // --- panel ---
 
 export class Panel {
-    // tones: {name, description} of curves; none: there is no choice
-    constructor({layers, layer, tones, onLayer, onExposure, onTone, onBenchmark})
+    // tones: {name, description} of curves; none: there is no choice. onDrawer: null: neither is there
+    // of who draws
+    constructor({layers, layer, tones, onLayer, onExposure, onTone, onDrawer, onBenchmark})
     {
         this.element = byId("panel");
-        this.choices = layers.map((id, i) => {
-            const input = make("input", {type: "radio", name: "layer", value: id, checked: i === layer});
-            input.addEventListener("change", () => onLayer(i));
-            return input;
-        });
-        const labels = this.choices.map((input, i) => make("label", {}, input, text.layers[layers[i]]));
+        this.onLayer = onLayer;
+        this.layers = make("fieldset");
+        this.setLayers(layers, layer);
         const list = make("dl");
         this.figures = {};
         for (const [id, label] of Object.entries(text.figure)) {
@@ -90,19 +88,57 @@ export class Panel {
             stops.textContent = text.stops(Number(exposure.value));
             onExposure(Number(exposure.value));
         });
-        const curve = make("select", {}, ...tones.map(t => make("option", {textContent: t.name, title: t.description})));
+        const curve = this.curve = make("select", {}, ...tones.map(t => make("option", {textContent: t.name, title: t.description})));
         curve.addEventListener("change", () => onTone(curve.value));
         this.details = make("div");
         this.element.setAttribute("aria-label", text.actions.panel);
-        this.element.append(make("fieldset", {}, make("legend", {textContent: text.layerLegend}), ...labels),
+        this.element.append(this.layers,
                             make("label", {className: "line"}, text.exposure, stops, exposure),
                             ...(tones.length ? [make("label", {className: "line"}, text.tone, curve)] : []),
+                            ...(onDrawer ? this.drawers(onDrawer) : []),
                             make("h2", {textContent: text.figures}), list, this.details,
                             this.bench = button(text.benchmark, onBenchmark),
                             make("p", {textContent: text.madeBy}));
     }
 
+    // What can be chosen from, which depends on who draws.
+    setLayers(layers, layer)
+    {
+        this.choices = layers.map((id, i) => {
+            const input = make("input", {type: "radio", name: "layer", value: id, checked: i === layer});
+            input.addEventListener("change", () => this.onLayer(i));
+            return input;
+        });
+        this.layers.replaceChildren(
+            make("legend", {textContent: text.layerLegend}),
+            ...this.choices.map((input, i) => make("label", {}, input, text.layers[layers[i]])));
+    }
+
     setLayer(layer) { this.choices[layer].checked = true; }
+
+    drawers(onDrawer)
+    {
+        const {legend, ...names} = text.drawers;
+        this.drawer = Object.fromEntries(Object.keys(names).map((id, i) => {
+            const input = make("input", {type: "radio", name: "drawer", value: id, checked: i === 0});
+            input.addEventListener("change", () => onDrawer(id));
+            return [id, input];
+        }));
+        this.drawerSaid = make("p", {className: "small"});
+        this.drawerSaid.setAttribute("role", "status");
+        return [make("fieldset", {}, make("legend", {textContent: legend}),
+                     ...Object.entries(names).map(([id, name]) => make("label", {}, this.drawer[id], name))),
+                this.drawerSaid];
+    }
+
+    // id: who draws; "" as long as it prepares. The server alone knows tone curves.
+    showDrawer(id, said)
+    {
+        if (id)
+            this.drawer[id].checked = true;
+        this.curve.disabled = id === "browser";
+        this.drawerSaid.textContent = said;
+    }
 
     // details: groups [title, rows of label and value]
     show(figures, details)
@@ -202,16 +238,22 @@ export class Compare {
 
 export function buildHelp()
 {
-    const dialog = byId("help"), list = make("dl");
+    const dialog = byId("help"), list = make("dl"), title = make("h2", {textContent: text.helpTitle, tabIndex: -1});
     for (const [keys, what] of text.help)
         list.append(make("dt", {textContent: keys}), make("dd", {textContent: what}));
     const close = make("button", {type: "button", textContent: text.close});
     close.addEventListener("click", () => dialog.close());
     dialog.setAttribute("aria-label", text.helpTitle);
-    // The heading takes the focus: the button would scroll the dialog to its end.
-    dialog.append(make("h2", {textContent: text.helpTitle, tabIndex: -1, autofocus: true}), list,
-                  make("p", {textContent: text.helpShare}), close);
-    return dialog;
+    dialog.append(title, list, make("p", {textContent: text.helpShare}), close);
+    return {
+        // The heading takes the focus: the button would scroll the dialog to its end. Browsers refuse
+        // the attribute "autofocus" in a page within another one's frame, with a warning.
+        show()
+        {
+            dialog.showModal();
+            title.focus();
+        },
+    };
 }
 
 export function showHint(message, isError = false)
