@@ -9,7 +9,7 @@ struct options {
     const char *method, *host, *title;
     struct orl_names settings;
     int port, max_vram_mib;
-    bool edits;
+    bool edits, radiance;
 };
 
 static void print_address(void *priv, const char *address)
@@ -30,11 +30,13 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_choice choice;
     enum orl_result result = orl_scene_open(log, dir, &scene);
     if (result == ORL_OK)
-        result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &choice);
+        result = orl_choice_make(log, scene, o->radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+                                 o->method, &o->settings, &choice);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
-    const struct orl_renderer_params limits = {.max_vram_bytes = (size_t)o->max_vram_mib << 20};
+    const struct orl_renderer_params limits = {.radiance = o->radiance,
+                                               .max_vram_bytes = (size_t)o->max_vram_mib << 20};
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_walk_params params = {
@@ -62,6 +64,8 @@ int cmd_walk(int argc, char **argv)
         {"method", ARG_STRING, &o.method, "NAME",
          "default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
+        {"radiance", ARG_FLAG, &o.radiance, NULL,
+         "merges exposures as oriel hdr does, for scenes that have several", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

@@ -37,9 +37,9 @@ static bool read_view(const json_t *root, struct orl_view *view)
 }
 
 // "ev": stops, within what a scene of several exposures spans. "tone": the name of a tone curve.
-static bool read_tone(const json_t *root, struct orl_tone_params *tone)
+bool orl_walk_tone_read(const json_t *message, struct orl_tone_params *tone)
 {
-    const json_t *ev = json_object_get(root, "ev"), *curve = json_object_get(root, "tone");
+    const json_t *ev = json_object_get(message, "ev"), *curve = json_object_get(message, "tone");
     *tone = (struct orl_tone_params){ORL_TONE_DEFAULTS};
     tone->exposure_ev = json_number_value(ev);
     int index = 0;
@@ -90,7 +90,7 @@ bool orl_walk_request_read(const char *text, size_t size, struct walk_request *r
                  json_integer_value(number) >= 0 && json_integer_value(number) <= UINT32_MAX &&
                  json_is_integer(quality) && json_integer_value(quality) >= 1 &&
                  json_integer_value(quality) <= 100 && read_view(root, &request->view) &&
-                 read_picks(root, request) && read_tone(root, &request->tone);
+                 read_picks(root, request) && orl_walk_tone_read(root, &request->tone);
     json_decref(root);
     return valid;
 }

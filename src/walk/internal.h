@@ -93,6 +93,9 @@ struct walk_request {
 // Reads a request from a message. Returns false for a message that the server does not answer.
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request);
 
+// Reads "ev" and "tone" of a message, both optional. Returns false if they are not valid.
+bool orl_walk_tone_read(const json_t *message, struct orl_tone_params *tone);
+
 // Words of 32 bits before the picture: number, microseconds, width, height, photographs that are
 // not complete yet, and the count of picked pixels, whose depths follow as floats (0: none).
 enum { WALK_FRAME_WORDS = 6 };

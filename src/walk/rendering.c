@@ -10,13 +10,17 @@
 #include "core/memory.h"
 #include "oriel/path.h"
 #include "render/sequence.h"
+#include "walk/internal.h"
 
 enum { WIDTH = 1280, HEIGHT = 720, FPS = 24, FRAMES_MOST = 100000, NUMBER_MOST = 999 };
 
 bool orl_walk_rendering_asked(const json_t *message)
 {
     static const char *const formats[] = {"mp4", "png", "exr"};
+    struct orl_tone_params tone;
     const char *format = orl_json_text(message, "format");
+    if (!orl_walk_tone_read(message, &tone))
+        return false;
     for (size_t i = 0; format && i < ORL_COUNT(formats); i++)
         if (strcmp(format, formats[i]) == 0)
             return json_is_object(json_object_get(message, "render"));
@@ -82,10 +86,12 @@ static enum orl_result read_path(struct run *run, const json_t *keyframes)
     return result;
 }
 
-static enum orl_result write_frames(struct run *run, const char *format)
+static enum orl_result write_frames(struct run *run, const char *format,
+                                    const struct orl_tone_params *tone)
 {
     const struct walk_rendering *r = run->rendering;
-    const struct orl_frame_output output = {ORL_FRAME_OUTPUT_DEFAULTS};
+    struct orl_frame_output output = {ORL_FRAME_OUTPUT_DEFAULTS};
+    output.tone = *tone;
     const struct orl_sequence sequence = {
         .views = run->path.views, .count = run->path.count, .draw = draw, .priv = run,
         .output = &output, .step = "render", .progress = r->progress};
@@ -97,12 +103,14 @@ static enum orl_result write_frames(struct run *run, const char *format)
 enum orl_result orl_walk_rendering_run(const struct walk_rendering *rendering, const json_t *message)
 {
     struct run run = {.rendering = rendering};
+    struct orl_tone_params tone;
     const char *format = orl_json_text(message, "format");
-    enum orl_result result = name_files(&run, format);
+    enum orl_result result = orl_walk_tone_read(message, &tone) ? name_files(&run, format)
+                                                                : ORL_ERR_FORMAT;
     if (result == ORL_OK)
         result = read_path(&run, json_object_get(message, "render"));
     if (result == ORL_OK)
-        result = write_frames(&run, format);
+        result = write_frames(&run, format, &tone);
     if (result == ORL_OK)
         rendering->report(rendering->priv, run.path.count, run.path.count, run.file);
     orl_path_finish(&run.path);

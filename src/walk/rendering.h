@@ -18,7 +18,8 @@ struct walk_rendering {
     void *priv;
 };
 
-// Is this a message {"render": keyframes, "format": "mp4" | "png" | "exr"}?
+// Is this a message {"render": keyframes, "format": "mp4" | "png" | "exr"}, with "ev" and "tone" as
+// of frames, which EXR files do without?
 bool orl_walk_rendering_asked(const json_t *message);
 // Renders it into files of the next free number: NNN.path.json, the keyframes, and NNN.mp4 or a
 // folder NNN of pictures. ORL_ERR_FORMAT: the path is not valid, and nothing is left of it.

@@ -9,5 +9,8 @@ runs 2 timeout 60 "$oriel" walk made --host 192.0.2.1 --port 0
 grep -q 'cannot listen on 192.0.2.1' stderr.txt || fail "an address that is not ours is not named"
 [ $failed -eq 0 ] || exit 1
 needs_browser
+# More light than one exposure holds.
+"$oriel" synth monument --out bright --size 120x80 --count 6 --contrast 8 --exposures -3,0,3 --quiet &&
+    "$tools/bench_truth_scene" bright bright-truth radiance 2 9 || exit 1
 timeout 400 /usr/bin/python3 -B "$source/tests/web/test_server.py" "$oriel" \
-    "$tools/bench_web_pictures" "$work/made" 2>&1
+    "$tools/bench_web_pictures" "$work/made" "$work/radiance" 2>&1

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The walk's server and its page. Made by tests/e2e/walk.sh: test_server.py ORIEL TOOL SCENE."""
+"""The walk's server and its page. Made by tests/e2e/walk.sh: test_server.py ORIEL TOOL SCENE RADIANCE."""
 import json
 import os
 import socket
@@ -14,7 +14,7 @@ import unittest
 from browser import Browser
 from client import Client, Walk as Program
 
-ORIEL, TOOL, SCENE = sys.argv[1:4]
+ORIEL, TOOL, SCENE, RADIANCE = sys.argv[1:5]
 TEMPORARY = tempfile.mkdtemp(dir=os.path.dirname(SCENE)) # of the server alone
 WIDTH, HEIGHT = 360, 240
 CLIENTS = 20
@@ -25,8 +25,8 @@ def run(*command):
 
 
 class Walk(Program):
-    def __init__(self, *options):
-        super().__init__(ORIEL, SCENE, *options, env={**os.environ, "TMPDIR": TEMPORARY})
+    def __init__(self, *options, scene=SCENE):
+        super().__init__(ORIEL, scene, *options, env={**os.environ, "TMPDIR": TEMPORARY})
 
 
 def opens(walk, path="/live", **headers):
@@ -300,6 +300,39 @@ class Token(unittest.TestCase):
             self.assertEqual(walk.close(), 0)
 
 
+class Radiance(unittest.TestCase):
+    def test_shows_what_hdr_gives(self):
+        walk, work = Walk("--radiance", scene=RADIANCE), tempfile.TemporaryDirectory()
+        try:
+            client, c = Client(walk), json.loads(run(TOOL, "cameras", RADIANCE))[0]
+            request = {"number": 1, "size": [c["width"], c["height"]], "r": c["r"], "eye": c["eye"], "rest": True,
+                       "focal": [c["fx"], c["fy"], c["cx"], c["cy"]], "layer": "color", "quality": 100}
+            # Dark enough to show the sky that most photographs clip, and bright enough for the shade.
+            for ev, tone in ((-3, "filmic"), (0, "srgb"), (3, "drago")):
+                header, jpeg = client.frame({**request, "ev": ev, "tone": tone})
+                while header[4] > 0:
+                    header, jpeg = client.frame({**request, "ev": ev, "tone": tone})
+                shown, own = f"{work.name}/shown.jpg", f"{work.name}/own.png"
+                with open(shown, "wb") as file:
+                    file.write(jpeg)
+                run(ORIEL, "hdr", RADIANCE, "--at", c["name"], "--out", own, f"--exposure={ev}", "--tone", tone, "--quiet")
+                self.assertGreaterEqual(float(run(TOOL, "compare", shown, own).split()[0]), 40, (ev, tone))
+            # A path is rendered with the exposure and tone that frames have.
+            client.send({"render": {"keyframes": [{"photo": c["name"]}]}, "format": "png", "ev": -3, "tone": "filmic"})
+            said = json.loads(client.receive()[1])["rendering"]
+            while said["done"] < said["total"]:
+                said = json.loads(client.receive()[1])["rendering"]
+            run(ORIEL, "hdr", RADIANCE, "--at", c["name"], "--size", "1280x720", "--out", own, "--exposure=-3",
+                "--tone", "filmic", "--quiet")
+            self.assertGreaterEqual(float(run(TOOL, "compare", f"{RADIANCE}/renders/001/00000.png", own).split()[0]), 60)
+            client.send({"render": {"keyframes": [{"photo": c["name"]}]}, "format": "png", "tone": "none"})
+            self.assertEqual(client.closed_for(), 1007)
+            client.close()
+        finally:
+            walk.close()
+            work.cleanup()
+
+
 class Page(unittest.TestCase):
     def draws_by_itself(self, browser, camera, work):
         """The switch to the published page's renderer and back, while the layer is depth."""
@@ -370,4 +403,4 @@ class Page(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[4:], verbosity=2)
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:], verbosity=2)

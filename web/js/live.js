@@ -231,7 +231,11 @@ export class LivePicture {
             site.reject(new Error(problem));
     }
 
-    render(path, format) { this.socket.send(JSON.stringify({render: path, format})); }
+    // With the exposure and the tone curve that frames have now.
+    render(path, format)
+    {
+        this.socket.send(JSON.stringify({render: path, format, ev: this.ev, tone: this.tone}));
+    }
 
     middle() { return null; }
 
