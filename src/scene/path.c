@@ -240,9 +240,9 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
 static enum orl_result read_json(const struct orl_log *log, const struct orl_scene *scene,
                                  const char *file, const json_t *root, struct orl_path *path)
 {
-    if (json_is_array(json_object_get(root, "keyframes")))
+    const json_t *nerfstudio = json_object_get(root, "camera_path"); // it has keyframes of its own
+    if (!nerfstudio && json_is_array(json_object_get(root, "keyframes")))
         return read_keyframes(log, scene, file, root, path);
-    const json_t *nerfstudio = json_object_get(root, "camera_path");
     const json_t *entries = json_is_array(root) ? root : nerfstudio;
     if (!json_is_array(entries))
         return orl_fail(log, ORL_ERR_FORMAT,

@@ -130,8 +130,8 @@ static void nerfstudio_axes_are_turned(void **state)
     struct orl_path path;
     assert_int_equal(
         read_text("ns.json",
-                  "{\"render_width\": 80, \"render_height\": 60, \"camera_path\": [{\"fov\": 90,"
-                  " \"camera_to_world\": [1,0,0,1, 0,1,0,2, 0,0,1,3, 0,0,0,1]}]}", &path),
+                  "{\"render_width\": 80, \"render_height\": 60, \"keyframes\": [{\"fov\": 90}],"
+                  " \"camera_path\": [{\"fov\": 90, \"camera_to_world\": [1,0,0,1, 0,1,0,2, 0,0,1,3, 0,0,0,1]}]}", &path),
         ORL_OK);
     assert_int_equal(path.views[0].camera.width, 80);
     assert_centre(&path.views[0], 1, 2, 3);

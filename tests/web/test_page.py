@@ -219,12 +219,12 @@ class Page(unittest.TestCase):
         run(ORIEL, "render", SCENE, "--at", home, "--out", own, "--quiet")
         for kind in ("oriel", "nerfstudio"):
             path = self.browser.js(f"""
-                return import("oriel/path.js").then(m => m.{kind}Path([oriel.path.keys[1]], 1));""")
+                return import("oriel/path_files.js").then(m => m.{kind}Path([oriel.path.keys[1]], 1));""")
             if kind == "nerfstudio": # its size is that of a video
                 path["render_width"], path["render_height"] = self.size(own)
             self.assertGreaterEqual(psnr(self.rendered(path, kind), own), 32, kind)
         many = self.browser.js("""
-            return import("oriel/path.js").then(m => m.orielPath(oriel.path.keys, 2));""")
+            return import("oriel/path_files.js").then(m => m.orielPath(oriel.path.keys, 2));""")
         self.assertEqual((many["frames"], len(many["keyframes"])), (49, 2))
         # The time between keyframes, by the field in their row, as the program has it.
         both = self.browser.js("""
@@ -232,8 +232,8 @@ class Page(unittest.TestCase):
             const seconds = document.querySelectorAll("#path .seconds");
             seconds[0].value = 1;
             seconds[0].dispatchEvent(new Event("change"));
-            return import("oriel/path.js").then(m => [
-                m.orielPath(oriel.path.keys, oriel.path.duration), m.viewAt(oriel.path.keys, 0.125).eye]);""")
+            return Promise.all([import("oriel/path_files.js"), import("oriel/keyframes.js")]).then(([f, k]) => [
+                f.orielPath(oriel.path.keys, oriel.path.duration), k.viewAt(oriel.path.keys, 0.125).eye]);""")
         self.assertEqual([key["seconds"] for key in both[0]["keyframes"]], [1, 3, 3])
         self.assertEqual(both[0]["frames"], 4 * 24 + 1)
         self.assertEqual(len(both[1]), 3)
@@ -250,6 +250,58 @@ class Page(unittest.TestCase):
                 document.querySelector('#path li button:last-child').click());
             document.getElementById('path').hidden = true;""")
         self.assertEqual(self.browser.js(rows), 0)
+
+    def opened(self, name, content):
+        """The keyframes of the page, and what it says, after it was given this file."""
+        with open(self.file(name), "w") as file:
+            file.write(content)
+        self.browser.js("oriel.path.said.textContent = ''")
+        self.browser.driver.find_element("css selector", "#path input[type=file]").send_keys(self.file(name))
+        self.browser.wait("return oriel.path.said.textContent !== ''")
+        return self.browser.js("return [oriel.path.keys, oriel.path.said.textContent]")
+
+    def test_saved_paths_are_opened_again(self):
+        self.addCleanup(self.browser.js, "oriel.path.change(keys => keys.splice(0))")
+        self.browser.js("""
+            for (const seconds of [2, 0.5, 3]) {
+                oriel.path.add();
+                oriel.path.keys[oriel.path.keys.length - 1] = {...oriel.navigator.view, seconds};
+                oriel.navigator.browse(1);
+            }""")
+        keys = self.browser.js("return oriel.path.keys")
+        for kind in ("oriel", "nerfstudio"):
+            saved = self.browser.js(f"""
+                return import("oriel/path_files.js").then(m => JSON.stringify(m.{kind}Path(oriel.path.keys, 2.5)));""")
+            self.browser.js("oriel.path.change(keys => keys.splice(0, 3))")
+            again, said = self.opened(f"{kind}.json", saved)
+            self.assertIn(f"{kind}.json: 3 views", said)
+            self.assertEqual([key["seconds"] for key in again[:2]], [2, 0.5]) # the last leads nowhere
+            for a, b in zip(keys, again):
+                for x, y in zip(a["eye"] + a["r"] + [a["frame"]["fy"]], b["eye"] + b["r"] + [b["frame"]["fy"]]):
+                    self.assertAlmostEqual(x, y, places=6, msg=kind) # rotations are rounded
+        # Frames without keyframes, the columns of older files, photographs by name, and places.
+        photo, files = self.manifest["photos"][0], json.loads(saved)
+        old = {**files, "keyframes": [{"fov": k["fov"], "matrix": json.dumps([k["matrix"][4 * j + i] for i in range(4)
+                                       for j in range(4)])} for k in files["keyframes"]]}
+        for content, count in ((old, 3), ({**files, "keyframes": []}, 61),
+                               ({"keyframes": [{"photo": photo["name"]}, {"position": [0, 0, 0], "target": [0, 0, 1]}],
+                                 "frames": 49}, 2)):
+            again, said = self.opened("path.json", json.dumps(content))
+            self.assertEqual(len(again), count, said)
+            if content is old:
+                for x, y in zip(keys[0]["eye"] + keys[0]["r"], again[0]["eye"] + again[0]["r"]):
+                    self.assertAlmostEqual(x, y, places=6)
+        self.assertEqual(again[1]["r"], [1, 0, 0, 0, 1, 0, 0, 0, 1])
+        self.assertEqual([key["seconds"] for key in again], [2, 2])
+        self.assertEqual(self.browser.js("return document.querySelectorAll('#path li').length"), 2)
+        # What is no path leaves the one that is there.
+        for content, problem in (("{", "not opened"), ("[1]", "neither"), ('{"keyframes": []}', "neither"),
+                                 ('{"keyframes": [{"photo": "none"}]}', "view 1"),
+                                 ('{"keyframes": [{"cam_from_world": [[1,0,0,0],[0,2,0,0],[0,0,1,0]]}]}', "view 1"),
+                                 ('{"camera_path": [{"fov": 50, "camera_to_world": [1]}]}', "view 1")):
+            kept, said = self.opened("bad.json", content)
+            self.assertIn(problem, said)
+            self.assertEqual(kept, again, content)
 
     def size(self, file):
         with open(file, "rb") as png:
@@ -383,7 +435,12 @@ class Page(unittest.TestCase):
 
     def test_opens_within_another_page(self):
         """As a museum embeds it: browsers forbid some things in another site's frame."""
-        self.browser.driver.get(f"data:text/html,<iframe src='{self.address}' width=340 height=220></iframe>")
+        os.mkdir(self.file("museum"))
+        with open(self.file("museum/index.html"), "w") as file:
+            file.write(f"<!DOCTYPE html><link rel=icon href='data:,'><iframe src='{self.address}' width=340 height=220></iframe>")
+        museum = Server(self.file("museum"))
+        self.addCleanup(museum.close)
+        self.browser.driver.get(museum.address)
         self.browser.driver.switch_to.frame(0)
         self.browser.settle()
         self.browser.js("document.getElementById('tool-help').click()")

@@ -1,5 +1,5 @@
 // Ten seconds past all photographs, and how long frames took.
-import {viewAt} from "oriel/path.js";
+import {viewAt} from "oriel/keyframes.js";
 import {photoView} from "oriel/view.js";
 
 const SECONDS = 10;

@@ -1,75 +1,15 @@
-// A path of the camera through keyframes: recorded, edited, played, saved.
-import {mix, quatFromRotation, rotationFromQuat, slerp} from "oriel/math.js";
+// A path of the camera through keyframes: recorded, edited, played.
+import {durationOf, secondsFrom, viewAt} from "oriel/keyframes.js";
+import {nerfstudioPath, orielPath, readPath} from "oriel/path_files.js";
 import {text} from "oriel/strings.js";
 import {byId, button, make, save} from "oriel/ui.js";
 import {viewFromKey, viewToKey} from "oriel/view.js";
-
-const FPS = 24;
-const SECONDS_A_KEY = 3; // from a keyframe to the next, until somebody sets another time
-const SIZE = [1280, 720]; // of a video
-
-const secondsFrom = key => key.seconds || SECONDS_A_KEY;
-
-// Of the whole path: the last keyframe's own seconds lead nowhere.
-export const durationOf = keys => keys.slice(0, -1).reduce((sum, key) => sum + secondsFrom(key), 0);
-
-// The segment that a share of the time lies in, and the place in it from 0 to 1.
-function segmentAt(keys, share)
-{
-    let left = share * durationOf(keys), i = 0;
-    while (i < keys.length - 2 && left >= secondsFrom(keys[i]))
-        left -= secondsFrom(keys[i++]);
-    return [i, Math.min(left / secondsFrom(keys[i]), 1)];
-}
-
-// Between b and c with neighbours a and d, as src/scene/path.c has it; seconds of the three segments.
-function spline(a, b, c, d, [before, own, after], t)
-{
-    const leave = (c - a) * own / (before + own), arrive = (d - b) * own / (own + after), way = c - b;
-    return b + t * (leave + t * (3 * way - 2 * leave - arrive + t * (leave + arrive - 2 * way)));
-}
-
-// The view at a share of the time along the keyframes.
-export function viewAt(keys, share)
-{
-    const [i, t] = segmentAt(keys, share), own = secondsFrom(keys[i]);
-    const times = [i > 0 ? secondsFrom(keys[i - 1]) : own, own, i < keys.length - 2 ? secondsFrom(keys[i + 1]) : own];
-    const key = n => keys[Math.min(Math.max(n, 0), keys.length - 1)], a = key(i), b = key(i + 1);
-    const eye = [0, 1, 2].map(k => spline(key(i - 1).eye[k], a.eye[k], b.eye[k], key(i + 2).eye[k], times, t));
-    const frame = {};
-    for (const name of Object.keys(a.frame))
-        frame[name] = mix(a.frame[name], b.frame[name], t);
-    for (const name of ["fx", "fy"]) // as orl_view_interpolate
-        frame[name] = a.frame[name] ** (1 - t) * b.frame[name] ** t;
-    return {eye, frame, r: rotationFromQuat(slerp(quatFromRotation(a.r), quatFromRotation(b.r), t))};
-}
-
-// The file that `oriel render --path` reads.
-export function orielPath(keys, seconds)
-{
-    const frames = Math.max(Math.round(seconds * FPS) + 1, 2);
-    return {...(keys.length > 1 ? {frames} : {}),
-            keyframes: keys.map(key => ({...viewToKey(key), seconds: secondsFrom(key)}))};
-}
-
-// nerfstudio's camera_path.json: every frame, axes as in OpenGL, row by row.
-export function nerfstudioPath(keys, seconds)
-{
-    const count = keys.length > 1 ? Math.max(Math.round(seconds * FPS) + 1, 2) : 1;
-    const views = [...Array(count).keys()].map(i => count > 1 ? viewAt(keys, i / (count - 1)) : keys[0]);
-    return {
-        camera_type: "perspective", render_width: SIZE[0], render_height: SIZE[1], fps: FPS, seconds,
-        camera_path: views.map(({r, eye, frame}) => ({
-            camera_to_world: [0, 1, 2].flatMap(k => [r[k], -r[3 + k], -r[6 + k], eye[k]]).concat(0, 0, 0, 1),
-            fov: viewToKey({r, eye, frame}).fov_y_deg, aspect: SIZE[0] / SIZE[1],
-        })),
-    };
-}
 
 export class PathEditor {
     // render(path, format): asks the server for it; null: there is no server
     constructor(navigator, {wake, name, render})
     {
+        const t = text.path;
         this.navigator = navigator;
         this.wake = wake;
         this.name = name;
@@ -83,15 +23,19 @@ export class PathEditor {
         this.scrubber.setAttribute("aria-label", text.path.scrub);
         this.scrubber.addEventListener("input", () => this.show(Number(this.scrubber.value)));
         this.playing = button(text.path.play, () => this.play());
+        this.said = make("p");
+        this.said.setAttribute("role", "status");
+        this.saving = [
+            button(t.saveOriel, () => save(`${name()}.path.json`, orielPath(this.keys, this.duration))),
+            button(t.saveNerfstudio,
+                   () => save(`${name()}.camera_path.json`, nerfstudioPath(this.keys, this.duration)))];
         this.element.append(
-            make("h2", {textContent: text.path.title}), button(text.path.add, () => this.add()), this.list,
-            make("p", {className: "small", textContent: text.path.columns}),
-            make("label", {}, text.path.seconds, this.seconds), this.scrubber, this.playing,
-            button(text.path.saveOriel, () => save(`${name()}.path.json`, orielPath(this.keys, this.duration))),
-            button(text.path.saveNerfstudio,
-                   () => save(`${name()}.camera_path.json`, nerfstudioPath(this.keys, this.duration))));
+            make("h2", {textContent: t.title}), button(t.add, () => this.add()), ...this.loading(), this.list,
+            make("p", {className: "small", textContent: t.columns}),
+            make("label", {}, t.seconds, this.seconds), this.scrubber, this.playing, ...this.saving);
         if (render)
             this.addRendering(render);
+        this.element.append(this.said);
         this.fill();
     }
 
@@ -106,16 +50,42 @@ export class PathEditor {
         this.fill();
     }
 
+    // A button that asks for a file, whose path takes the place of this one.
+    loading()
+    {
+        const file = make("input", {type: "file", accept: ".json,application/json", hidden: true});
+        file.addEventListener("change", async () => {
+            const [chosen] = file.files;
+            if (chosen)
+                this.load(chosen.name, await chosen.text());
+            file.value = ""; // the same file may be chosen again
+        });
+        return [button(text.path.load, () => file.click()), file];
+    }
+
+    // A path that cannot be read leaves the one that is there.
+    load(name, content)
+    {
+        try {
+            this.keys = readPath(content, this.navigator.photos, this.navigator.home.frame);
+            this.said.textContent = text.path.loaded(name, this.keys.length);
+        } catch (error) {
+            this.said.textContent = text.path.notLoaded(name, error.message);
+        }
+        this.fill();
+        this.wake();
+    }
+
     addRendering(render)
     {
         this.format = make("select", {}, ...["mp4", "png", "exr"].map(f => make("option", {textContent: f})));
         this.format.setAttribute("aria-label", text.path.format);
         this.bar = make("progress", {max: 1, value: 0, hidden: true});
         this.bar.setAttribute("aria-label", text.path.rendering);
-        this.said = make("p", {role: "status"});
         this.start = button(text.path.render,
                             () => render(orielPath(this.keys, this.duration), this.format.value));
-        this.element.append(make("div", {className: "row"}, this.format, this.start), this.bar, this.said);
+        this.saving.push(this.start);
+        this.element.append(make("div", {className: "row"}, this.format, this.start), this.bar);
     }
 
     // Of the server: {done, total, file, problem}
@@ -147,7 +117,7 @@ export class PathEditor {
         const many = this.keys.length > 1;
         this.list.replaceChildren(...this.keys.map((key, i) => this.row(key, i)));
         this.seconds.value = Number(durationOf(this.keys).toFixed(2));
-        for (const element of this.element.querySelectorAll(":scope > button:not(:first-of-type), :scope > .row button"))
+        for (const element of this.saving)
             element.disabled = this.keys.length === 0;
         this.playing.disabled = this.scrubber.disabled = this.seconds.disabled = !many;
     }
