@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""measure.py BUILD SCENE [--out DIR]: the published page of a scene beside `oriel render`.
+"""measure.py BUILD SCENE [--out DIR] [--views N]: the published page of a scene beside `oriel render`.
 
 Publishes SCENE, lets a headless Chromium on SwiftShader draw the held-out cameras, and prints PSNR
 and SSIM of page and renderer against the photographs and against each other, bytes until the first
-picture and in all, and the time of a frame as a ratio to points only."""
+picture and in all, memory, and the processor time of a frame as a ratio to points only."""
 import argparse
 import json
 import os
@@ -12,6 +12,7 @@ import tempfile
 import time
 
 from browser import Browser, Server
+from measure_live import processor_ms
 
 FRAMES = 7
 
@@ -24,17 +25,57 @@ def median(values):
     return sorted(values)[len(values) // 2]
 
 
-# Milliseconds of one frame of a camera, finished on the device, of each of two layers.
-TIME = """
-const [camera, layer, frames] = arguments, renderer = oriel.picture.renderer, times = [];
-for (let i = 0; i < frames; i++) {
-    const start = performance.now();
-    renderer.draw(camera, layer);
-    renderer.depthAt(0, 0);
-    times.push(performance.now() - start);
-}
-return times;
+# One frame of a camera, finished on the device.
+FRAME = """
+const [camera, layer] = arguments, renderer = oriel.picture.renderer;
+renderer.draw(camera, layer);
+renderer.depthAt(0, 0);
 """
+
+
+def family(pid):
+    """The process and those that it has started, directly or not."""
+    parents = {}
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{entry}/stat") as file:
+                parents.setdefault(int(file.read().rpartition(")")[2].split()[1]), []).append(int(entry))
+        except OSError:
+            pass # it has ended
+    found = [pid]
+    for one in found:
+        found += parents.get(one, [])
+    return found
+
+
+def frame_ms(browser, camera, layer):
+    """Processor time of a frame, of all the browser's processes: SwiftShader draws on the processor."""
+    pids, times = family(browser.driver.service.process.pid), []
+    for _ in range(FRAMES):
+        before = sum(processor_ms(pid) for pid in pids)
+        browser.js(FRAME, camera, layer)
+        times.append(sum(processor_ms(pid) for pid in pids) - before)
+    return median(times[2:])
+
+
+def browser_processes(browser):
+    """Of the page, of the graphics (SwiftShader's textures are its memory), and of all else."""
+    roles = {"page": [], "graphics": [], "other": []}
+    for pid in family(browser.driver.service.process.pid)[1:]:
+        with open(f"/proc/{pid}/cmdline") as file:
+            command = file.read()
+        role = "page" if "--type=renderer" in command else "graphics" if "--type=gpu-process" in command else "other"
+        roles[role].append(pid)
+    return roles
+
+
+def resident_mib(pids):
+    """Memory of processes, shared parts once."""
+    total = 0
+    for pid in pids:
+        with open(f"/proc/{pid}/smaps_rollup") as file:
+            total += next(int(line.split()[1]) for line in file if line.startswith("Pss:"))
+    return total / 1024
 
 
 def main():
@@ -42,6 +83,7 @@ def main():
     parser.add_argument("build")
     parser.add_argument("scene")
     parser.add_argument("--out", default=None, help="keeps the pictures")
+    parser.add_argument("--views", type=int, default=0, help="at most so many held-out cameras, evenly chosen")
     options = parser.parse_args()
     work = options.out or tempfile.mkdtemp()
     os.makedirs(work, exist_ok=True)
@@ -49,6 +91,8 @@ def main():
     print(run(oriel, "publish", options.scene, "--out", f"{work}/site").splitlines()[0])
     cameras = json.loads(run(tool, "cameras", options.scene))
     test = [c for c in cameras if c["test"]] or cameras[:3]
+    if options.views:
+        test = [test[i * len(test) // options.views] for i in range(min(options.views, len(test)))]
     server, browser = Server(f"{work}/site"), Browser(1280, 800)
     try:
         start = time.monotonic()
@@ -60,6 +104,9 @@ def main():
               f"{browser.js('return oriel.files.bytes') / 1e6:.2f} MB of data")
         browser.settle()
         print(f"everything after {time.monotonic() - start:.1f} s")
+        memory = {role: resident_mib(pids) for role, pids in browser_processes(browser).items()}
+        print("resident, MiB:", ", ".join(f"{role} {mib:.0f}" for role, mib in memory.items()))
+        print(f"{browser.js('return oriel.files.bytes') / 1e6:.1f} MB of data loaded")
         print(f"graphics memory {browser.js('return oriel.picture.device.bytes + oriel.picture.cloud.bytes') / 1e6:.0f} MB")
         print("photograph         page: PSNR  SSIM  oriel: PSNR  SSIM  page to oriel: PSNR  SSIM")
         rows = []
@@ -75,10 +122,9 @@ def main():
             print(f"{name:20} {row[0]:8.2f} {row[1]:.4f} {row[2]:8.2f} {row[3]:.4f} {row[4]:8.2f} {row[5]:.4f}")
         mean = [sum(column) / len(rows) for column in zip(*rows)]
         print(f"{'mean':20} {mean[0]:8.2f} {mean[1]:.4f} {mean[2]:8.2f} {mean[3]:.4f} {mean[4]:8.2f} {mean[5]:.4f}")
-        whole = median(browser.js(TIME, test[0], 0, FRAMES)[2:])
-        points = median(browser.js(TIME, test[0], 5, FRAMES)[2:])
-        print(f"frame of {test[0]['width']}x{test[0]['height']}: {whole:.0f} ms, points only {points:.0f} ms, "
-              f"ratio {whole / points:.2f}")
+        whole, points = frame_ms(browser, test[0], 0), frame_ms(browser, test[0], 5)
+        print(f"frame of {test[0]['width']}x{test[0]['height']}: {whole:.0f} ms of processor time, points only "
+              f"{points:.0f} ms, ratio {whole / points:.2f}")
         for error in browser.errors():
             print("console:", error)
     finally:
