@@ -85,9 +85,27 @@ static enum orl_result measure_all(struct trim_search *s, bool first,
     figures->point_bytes = s->model->point_bytes;
     figures->photo_bytes = (size_t)orl_trim_model_bytes(s, s->model, &s->state) -
                            s->model->point_bytes;
-    if (result == ORL_OK)
-        result = orl_trim_frame_time(s, s->model->renderer, &s->state, &figures->frame_ms);
     return result;
+}
+
+// Times frames of the whole scene and of the trimmed one in turns.
+static enum orl_result time_both(struct trim_search *s)
+{
+    struct trim_model *whole = NULL;
+    const struct trim_drawn after = {s->model->renderer, &s->state};
+    struct trim_drawn before = {NULL, &s->first_state};
+    double ms[2];
+    enum orl_result result = orl_trim_model_open(&s->source, &s->first_state, &whole);
+    if (result == ORL_OK) {
+        before.renderer = whole->renderer;
+        result = orl_trim_frame_times(s, &before, &after, ms);
+    }
+    orl_trim_model_close(&whole);
+    if (result != ORL_OK)
+        return result;
+    s->trim->before.frame_ms = s->first_ms = ms[0];
+    s->trim->after.frame_ms = s->ms = ms[1];
+    return ORL_OK;
 }
 
 static enum orl_result undo_last(struct trim_search *s)
@@ -117,7 +135,7 @@ static enum orl_result confirm(struct trim_search *s)
         if (result == ORL_OK)
             result = measure_all(s, false, &s->trim->after);
     }
-    return result;
+    return result == ORL_OK ? time_both(s) : result;
 }
 
 // What the steps that are kept really cost, over all training photographs, counts from now on.
@@ -125,7 +143,6 @@ static void settle(struct trim_search *s)
 {
     const struct orl_trim *trim = s->trim;
     s->total_loss_db = trim->before.psnr_db - trim->after.psnr_db;
-    s->ms = trim->after.frame_ms;
     s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
     s->file_bytes = (double)orl_trim_photo_file_bytes(&s->source, s->model->scene.dir,
                                                       s->state.removed);
@@ -133,7 +150,7 @@ static void settle(struct trim_search *s)
     for (size_t i = 0; i < s->targets.count; i++)
         s->lost_db[i] = s->first_db[i] - s->now_db[i];
     for (size_t i = 0; i < s->move_count; i++)
-        s->moves[i].blocked = false;
+        s->moves[i].blocked = s->moves[i].slow = false;
 }
 
 // The judges are few, so that steps may cost less than they said: the search goes on with what is
@@ -239,10 +256,14 @@ static enum orl_result start(struct trim_search *s)
         result = orl_trim_model_open(source, &s->state, &s->model);
     if (result == ORL_OK)
         result = measure_all(s, true, &s->trim->before);
+    const struct trim_drawn whole = {s->model ? s->model->renderer : NULL, &s->state};
+    double ms[2];
+    if (result == ORL_OK)
+        result = orl_trim_frame_times(s, &whole, NULL, ms);
     if (result != ORL_OK)
         return result;
     s->bytes = s->first_bytes = orl_trim_model_bytes(s, s->model, &s->state);
-    s->ms = s->first_ms = s->trim->before.frame_ms;
+    s->ms = s->first_ms = s->trim->before.frame_ms = ms[0];
     s->file_bytes = (double)orl_trim_photo_file_bytes(source, source->scene->dir, NULL);
     s->first_file_bytes = s->file_bytes = fmax(s->file_bytes, 1);
     return ORL_OK;

@@ -41,16 +41,13 @@ static bool assign(const struct orl_render_params *render, const char *assignmen
     return memcmp(next, render, sizeof *next) != 0;
 }
 
-static enum orl_textures next_textures(const struct trim_search *s, enum orl_textures textures)
+// Kinds of textures come in the order of their bytes. Software renderers decode BC7 several times
+// as slowly.
+static bool is_smaller(const struct trim_search *s, enum orl_textures from, enum orl_textures to)
 {
-    // Each takes less than the one before. Software renderers decode BC7 several times as slowly.
     bool software = orl_gpu_caps(s->source.gpu)->software;
-    int next = textures == ORL_TEXTURES_AUTO ? ORL_TEXTURES_BC7 : (int)textures + 1;
-    for (; next < ORL_TEXTURES_COUNT; next++)
-        if (!(software && next == ORL_TEXTURES_BC7) &&
-            orl_textures_available(s->source.gpu, (enum orl_textures)next))
-            return (enum orl_textures)next;
-    return textures;
+    return to > from && !(software && to == ORL_TEXTURES_BC7) &&
+           orl_textures_available(s->source.gpu, to);
 }
 
 bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *move)
@@ -63,7 +60,7 @@ bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *m
     case ORL_TRIM_PHOTOGRAPH:
         return s->targets.count - state->removed_count > TRAIN_LEAST;
     case ORL_TRIM_TEXTURES:
-        return next_textures(s, state->textures) != state->textures;
+        return is_smaller(s, state->textures, (enum orl_textures)move->index);
     case ORL_TRIM_DEPTH:
         return state->depth + 1 < TRIM_DEPTH_LEVELS;
     case ORL_TRIM_RESOLUTION:
@@ -93,7 +90,7 @@ void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
         snprintf(what, SIZE, "without %.80s", s->source.scene->photos[photo].name);
         break;
     case ORL_TRIM_TEXTURES:
-        state->textures = next_textures(s, state->textures);
+        state->textures = (enum orl_textures)move->index;
         snprintf(what, SIZE, "textures %s", orl_textures_names[state->textures]);
         break;
     case ORL_TRIM_DEPTH:
@@ -167,7 +164,8 @@ enum orl_result orl_trim_plan(struct trim_search *s)
         s->judges[i] = (2 * i + 1) * n / (2 * s->judge_count);
     s->near_count = n - 1 < TRIM_NEAR ? n - 1 : TRIM_NEAR;
     s->nearest = orl_array(s->source.log, n, sizeof *s->nearest);
-    s->moves = orl_array(s->source.log, n + ORL_TRIM_PART_COUNT + ORL_COUNT(cheaper),
+    s->moves = orl_array(s->source.log,
+                         n + ORL_TRIM_PART_COUNT + ORL_TEXTURES_COUNT + ORL_COUNT(cheaper),
                          sizeof *s->moves);
     if (!s->nearest || !s->moves)
         return ORL_ERR_MEMORY;
@@ -175,10 +173,11 @@ enum orl_result orl_trim_plan(struct trim_search *s)
         find_nearest(s, i);
     bool all = !s->params->settings_only;
     s->source.rewritable = all && is_rewritable(s->source.log, s->source.scene);
-    add_move(s, ORL_TRIM_TEXTURES, 0);
     add_move(s, ORL_TRIM_DEPTH, 0);
     if (all)
         add_move(s, ORL_TRIM_POINTS, 0);
+    for (size_t i = ORL_TEXTURES_BC7; i < ORL_TEXTURES_COUNT; i++)
+        add_move(s, ORL_TRIM_TEXTURES, i);
     if (s->source.rewritable) {
         add_move(s, ORL_TRIM_RESOLUTION, 0);
         add_move(s, ORL_TRIM_QUALITY, 0);

@@ -18,11 +18,13 @@ struct trim_measured {
 // A kind of step that can be taken next.
 struct trim_move {
     enum orl_trim_part part;
-    size_t index;     // of a photograph, or of a row of options
+    size_t index;     // of a photograph, of a row of options, or a kind of textures
     double ratio;     // what it promises: saved shares per dB; INFINITY: not known yet
     bool tried;
     bool dead;    // it cannot be taken any more: it saves nothing, or has been taken
-    bool blocked; // it loses too much, unless other steps gain
+    bool blocked; // it loses too much or takes too long, unless other steps gain
+    bool slow;    // it is blocked by the time of a frame alone,
+    double slower; // which the step multiplies by this
     size_t version;   // of the search's state that it was measured in
     struct trim_measured measured;
 };
@@ -74,9 +76,14 @@ enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer
                                       const struct trim_state *state, size_t view,
                                       bool psnr_alone,
                                       struct orl_metrics *metrics) ORL_CHECK_RESULT;
-// The least of a few frames, in ms: see orl_trim_run.
-enum orl_result orl_trim_frame_time(struct trim_search *s, struct orl_renderer *renderer,
-                                    const struct trim_state *state, double *ms) ORL_CHECK_RESULT;
+// The least of a few frames of each, in ms: see orl_trim_run. They are drawn in turns, since other
+// programs then slow both alike; b may be NULL.
+struct trim_drawn {
+    struct orl_renderer *renderer;
+    const struct trim_state *state;
+};
+enum orl_result orl_trim_frame_times(struct trim_search *s, const struct trim_drawn *a,
+                                     const struct trim_drawn *b, double ms[2]) ORL_CHECK_RESULT;
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
                             const struct trim_state *state);
 // Measures a move, and takes it when it is allowed and no other promises more. The search must not

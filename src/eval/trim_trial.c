@@ -14,10 +14,10 @@ enum { FRAMES_TIMED = 3 };
 static const double least_loss_db = 0.002, weight_of_time = 0.03, weight_of_files = 0.03;
 // Smaller differences of a frame's time are noise: a share of it, and milliseconds, more of them
 // where the frame is drawn by the processor, which other programs share.
-static const double least_time = 0.1, least_ms = 3, least_software_ms = 20;
-// A frame may not take longer than this factor times the first. While it takes longer at all, time
-// weighs as much as bytes.
-static const double slower_most = 1.6;
+static const double least_time = 0.03, least_ms = 0.5, least_software_ms = 4;
+// No step may make a frame slower than the whole scene's by more than a share and milliseconds of
+// it. While a frame takes longer at all, time weighs as much as bytes.
+static const double slower_most = 0.02, slower_ms = 1, slower_software_ms = 8;
 // A step is taken when no other promises more than its own gain divided by this.
 static const double good_enough = 0.8;
 
@@ -32,24 +32,31 @@ struct trial {
 
 // --- figures of a state ---
 
-enum orl_result orl_trim_frame_time(struct trim_search *s, struct orl_renderer *renderer,
-                                    const struct trim_state *state, double *ms)
+static enum orl_result time_frame(struct trim_search *s, const struct trim_drawn *drawn, double *ms)
 {
-    struct orl_render_params render = state->render;
     bool software = orl_gpu_caps(s->source.gpu)->software;
+    struct orl_render_params render = drawn->state->render;
     render.leave_out |= ORL_LAYER_NORMAL;
-    *ms = INFINITY;
-    for (int i = 0; i < FRAMES_TIMED; i++) {
-        double start = software ? orl_cpu_time_s() : orl_time_s();
-        enum orl_result result =
-            orl_renderer_draw(renderer, &s->targets.views[s->judges[0]].view, &render,
-                              state->removed, NULL);
-        if (result != ORL_OK)
-            return result;
-        double end = software ? orl_cpu_time_s() : orl_time_s();
-        *ms = fmin(*ms, 1e3 * (end - start));
+    double start = software ? orl_cpu_time_s() : orl_time_s();
+    enum orl_result result =
+        orl_renderer_draw(drawn->renderer, &s->targets.views[s->judges[0]].view, &render,
+                          drawn->state->removed, NULL);
+    double end = software ? orl_cpu_time_s() : orl_time_s();
+    *ms = fmin(*ms, 1e3 * (end - start));
+    return result;
+}
+
+enum orl_result orl_trim_frame_times(struct trim_search *s, const struct trim_drawn *a,
+                                     const struct trim_drawn *b, double ms[2])
+{
+    enum orl_result result = ORL_OK;
+    ms[0] = ms[1] = INFINITY;
+    for (int i = 0; result == ORL_OK && i < FRAMES_TIMED; i++) {
+        result = time_frame(s, a, &ms[0]);
+        if (result == ORL_OK && b)
+            result = time_frame(s, b, &ms[1]);
     }
-    return ORL_OK;
+    return result;
 }
 
 enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
@@ -166,39 +173,14 @@ static enum orl_result measure_between(struct trim_search *s, const struct trial
     size_t count = s->near_count < TRIM_BETWEEN ? s->near_count : TRIM_BETWEEN;
     enum orl_result result = ORL_OK;
     m->between_db = *mean = 0;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+    bool stays = false; // whatever the other views say
+    for (size_t i = 0; result == ORL_OK && i < count && !stays; i++) {
         double loss = 0;
         result = between_loss(s, t, s->nearest[t->move->index][i], &loss);
         m->between_db = fmax(m->between_db, loss);
+        stays = loss > s->params->worst_db && !orl_trim_has_budget(s);
         *mean += loss / (double)count;
     }
-    return result;
-}
-
-static enum orl_result measure(struct trim_search *s, struct trial *t)
-{
-    struct trim_measured *m = &t->move->measured;
-    enum orl_result result = ORL_OK;
-    double sum = 0;
-    if (t->move->tried && t->move->version == s->version)
-        return ORL_OK; // nothing has changed since
-    if (is_local(t))
-        result = measure_between(s, t, &sum);
-    m->view_count = is_local(t) ? s->near_count : s->judge_count;
-    if (m->between_db > s->params->worst_db && !orl_trim_has_budget(s))
-        m->view_count = 0; // it stays anyway
-    for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
-        m->views[i] = is_local(t) ? s->nearest[t->move->index][i] : s->judges[i];
-        result = measure_one(s, t, m->views[i], &m->db[i]);
-        if (result == ORL_OK)
-            sum += s->now_db[m->views[i]] - m->db[i];
-    }
-    m->loss_db = sum / (double)(is_local(t) ? s->targets.count : s->judge_count);
-    m->ms = s->ms;
-    if (result == ORL_OK && !is_local(t) && t->move->part != ORL_TRIM_QUALITY)
-        result = orl_trim_frame_time(s, t->own ? t->own->renderer : s->model->renderer,
-                                     &t->state, &m->ms);
-    t->move->version = s->version;
     return result;
 }
 
@@ -223,18 +205,22 @@ bool orl_trim_has_budget(const struct trim_search *s)
     return s->params->max_bytes || s->params->max_frame_ms > 0;
 }
 
-static double noise_ms(const struct trim_search *s)
+// A frame that takes longer is slower than the whole scene's.
+static double slow_limit_ms(const struct trim_search *s)
 {
-    double least = orl_gpu_caps(s->source.gpu)->software ? least_software_ms : least_ms;
-    return fmax(least, least_time * s->first_ms);
+    double least = orl_gpu_caps(s->source.gpu)->software ? slower_software_ms : slower_ms;
+    return s->first_ms + fmax(least, slower_most * s->first_ms);
 }
 
-static bool is_allowed(const struct trim_search *s, const struct trial *t)
+static bool is_slow(const struct trim_search *s, double ms)
+{
+    return !orl_trim_has_budget(s) && ms > fmax(slow_limit_ms(s), s->ms);
+}
+
+static bool is_good(const struct trim_search *s, const struct trial *t)
 {
     const struct trim_measured *m = &t->move->measured;
     double worst = m->between_db, db;
-    if (m->ms > fmax(slower_most * s->first_ms + noise_ms(s), s->ms))
-        return false;
     if (orl_trim_has_budget(s))
         return true;
     for (size_t i = 0; i < s->targets.count; i++)
@@ -243,25 +229,88 @@ static bool is_allowed(const struct trim_search *s, const struct trial *t)
            worst <= s->params->worst_db;
 }
 
-// Shares of what is saved, weighted.
+// --- measuring it ---
+
+static double noise_ms(const struct trim_search *s)
+{
+    double least = orl_gpu_caps(s->source.gpu)->software ? least_software_ms : least_ms;
+    return fmax(least, least_time * s->ms);
+}
+
+// The time of a frame after the step: that before it, times how much longer it takes.
+static enum orl_result measure_time(struct trim_search *s, const struct trial *t, double *ms)
+{
+    double both[2];
+    const struct trim_drawn before = {s->model->renderer, &s->state};
+    const struct trim_drawn after = {t->own ? t->own->renderer : s->model->renderer, &t->state};
+    enum orl_result result = orl_trim_frame_times(s, &before, &after, both);
+    if (result != ORL_OK)
+        return result;
+    *ms = s->ms * both[1] / both[0];
+    *ms = fabs(*ms - s->ms) < noise_ms(s) ? s->ms : *ms;
+    return ORL_OK;
+}
+
+static enum orl_result measure(struct trim_search *s, struct trial *t)
+{
+    struct trim_measured *m = &t->move->measured;
+    enum orl_result result = ORL_OK;
+    double sum = 0;
+    if (t->move->tried && t->move->version == s->version)
+        return ORL_OK; // nothing has changed since
+    if (is_local(t))
+        result = measure_between(s, t, &sum);
+    m->view_count = is_local(t) ? s->near_count : s->judge_count;
+    if (m->between_db > s->params->worst_db && !orl_trim_has_budget(s))
+        m->view_count = 0; // it stays anyway
+    for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
+        m->views[i] = is_local(t) ? s->nearest[t->move->index][i] : s->judges[i];
+        result = measure_one(s, t, m->views[i], &m->db[i]);
+        if (result == ORL_OK)
+            sum += s->now_db[m->views[i]] - m->db[i];
+    }
+    m->loss_db = sum / (double)(is_local(t) ? s->targets.count : s->judge_count);
+    m->ms = s->ms;
+    // The first time it says what the part of the model buys; later, a step that loses too much is
+    // not timed.
+    if (result == ORL_OK && !is_local(t) && t->move->part != ORL_TRIM_QUALITY &&
+        (!t->move->tried || is_good(s, t)))
+        result = measure_time(s, t, &m->ms);
+    t->move->version = s->version;
+    return result;
+}
+
+// --- what it is worth ---
+
+// Whether a step waits for a frame that takes less time.
+static bool waits_for_time(const struct trim_search *s)
+{
+    for (size_t i = 0; i < s->move_count; i++)
+        if (s->moves[i].slow && !s->moves[i].dead)
+            return true;
+    return false;
+}
+
+// Shares of what is saved, weighted. A step that slows a frame is no worse for it within the limit.
 static double gain_of(const struct trim_search *s, const struct trial *t)
 {
     double bytes = (s->bytes - t->bytes) / s->first_bytes;
     double files = (s->file_bytes - t->file_bytes) / s->first_file_bytes;
-    double ms = s->ms - t->move->measured.ms;
-    double time = fabs(ms) < noise_ms(s) ? 0 : ms / s->first_ms;
+    double time = fmax(s->ms - t->move->measured.ms, 0) / s->first_ms;
     if (s->params->max_frame_ms > 0 && !s->params->max_bytes)
         return time;
-    double weight = s->ms > s->first_ms + noise_ms(s) ? 1 : weight_of_time;
-    return bytes + weight_of_files * files + weight * time;
+    bool wanted = waits_for_time(s) || (!orl_trim_has_budget(s) && s->ms > slow_limit_ms(s));
+    return bytes + weight_of_files * files + (wanted ? 1 : weight_of_time) * time;
 }
 
-// Smaller files and passes that go would use up the tolerance: they come when nothing else makes the
-// model smaller on the device. Where a frame's time is what is wanted, all moves are alike.
+// Smaller files and passes that go would use up the tolerance: they come when nothing else makes
+// the model smaller on the device. Passes go earlier when a smaller model waits for the time that
+// they take. Where a frame's time is what is wanted, all moves are alike.
 static bool comes_later(const struct trim_search *s, const struct trim_move *move)
 {
     return !(s->params->max_frame_ms > 0) &&
-           (move->part == ORL_TRIM_QUALITY || move->part == ORL_TRIM_OPTION);
+           (move->part == ORL_TRIM_QUALITY ||
+            (move->part == ORL_TRIM_OPTION && !waits_for_time(s)));
 }
 
 static bool promises_more(const struct trim_search *s, const struct trim_move *a,
@@ -331,6 +380,17 @@ static enum orl_result take(struct trim_search *s, struct trial *t)
     return ORL_OK;
 }
 
+// After a step: steps that were blocked may be possible again.
+static void make_room(struct trim_search *s, bool gained)
+{
+    for (size_t i = 0; i < s->move_count; i++) {
+        struct trim_move *m = &s->moves[i];
+        bool fits = m->slow && !is_slow(s, s->ms * m->slower);
+        m->blocked &= !(gained || fits);
+        m->slow &= !fits;
+    }
+}
+
 enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
 {
     struct trial t;
@@ -346,24 +406,29 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
         return result;
     }
     double gain = gain_of(s, &t);
-    bool allowed = gain > 0 && is_allowed(s, &t);
+    bool slow = is_slow(s, move->measured.ms), good = gain > 0 && is_good(s, &t);
     move->ratio = gain / fmax(move->measured.loss_db, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
-    bool taken = allowed && (!other || comes_later(s, other) != comes_later(s, move) ||
-                             good_enough * other->ratio <= move->ratio);
+    // What loses nothing need not be compared, except photographs, which stand in for each other.
+    bool lossless = move->measured.loss_db <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH;
+    bool taken = good && !slow &&
+                 (!other || lossless || comes_later(s, other) != comes_later(s, move) ||
+                  good_enough * other->ratio <= move->ratio);
     if (taken || !move->tried)
         result = note_step(s, &t, taken);
     move->tried = true;
     move->dead = gain <= 0;
-    move->blocked = !allowed;
+    move->slower = move->measured.ms / s->ms;
+    move->slow = good && slow;
+    move->blocked = !good || slow;
     if (result == ORL_OK && taken) {
         double loss_db = move->measured.loss_db;
         result = take(s, &t);
-        for (size_t i = 0; loss_db < 0 && i < s->move_count; i++)
-            s->moves[i].blocked = false; // there is room again
-        // The next level may be worth half as much; a photograph or a pass goes only once.
+        make_room(s, loss_db < 0);
+        // The next level may be worth half as much; all others go only once.
         move->ratio *= 0.5;
-        move->dead = move->part == ORL_TRIM_PHOTOGRAPH || move->part == ORL_TRIM_OPTION;
+        move->dead = move->part == ORL_TRIM_PHOTOGRAPH || move->part == ORL_TRIM_OPTION ||
+                     move->part == ORL_TRIM_TEXTURES;
     }
     end(&t);
     return result;
@@ -385,9 +450,10 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
         result = measure_one(s, &t, m->views[i], &m->db[i]);
         m->loss_db += (s->now_db[m->views[i]] - m->db[i]) / (double)m->view_count;
     }
+    m->ms = s->ms;
     if (result == ORL_OK)
-        result = orl_trim_frame_time(s, s->model->renderer, &t.state, &m->ms);
-    bool taken = m->loss_db < 0 && is_allowed(s, &t);
+        result = measure_time(s, &t, &m->ms);
+    bool taken = m->loss_db < 0 && is_good(s, &t) && !is_slow(s, m->ms);
     if (result == ORL_OK)
         result = note_step(s, &t, taken);
     if (result == ORL_OK && taken)
