@@ -4,6 +4,7 @@
 //   INJECT_AT     which one, from 1
 //   INJECT_KILL   set: SIGKILL ahead of the call, instead of an error
 //   INJECT_MARK   this file is made when it happens
+// INJECT_DRIVE, set: every file lies on a drive without fsync, flock and symbolic links.
 // Allocations count only when the program itself makes them, not a library for its own use.
 #include <dlfcn.h>
 #include <errno.h>
@@ -17,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -29,7 +31,7 @@ enum kind { KIND_NONE, KIND_WRITE, KIND_SYNC, KIND_RENAME, KIND_UNLINK, KIND_MAL
 // A preloaded library has no owner to keep its state.
 static enum kind wanted;
 static long at;
-static bool kills;
+static bool kills, plain_drive;
 static const char *mark;
 static uintptr_t program_from, program_to;
 static atomic_long count;
@@ -56,6 +58,7 @@ __attribute__((constructor)) static void start(void)
     const char *call = getenv("INJECT_CALL"), *number = getenv("INJECT_AT");
     mark = getenv("INJECT_MARK");
     kills = getenv("INJECT_KILL") != NULL;
+    plain_drive = getenv("INJECT_DRIVE") != NULL;
     at = number ? strtol(number, NULL, 10) : 0;
     dl_iterate_phdr(find_program, NULL);
     for (size_t i = 1; call && i < sizeof names / sizeof *names; i++)
@@ -148,7 +151,29 @@ int fsync(int fd)
         errno = EIO;
         return -1;
     }
+    if (plain_drive) {
+        errno = EINVAL;
+        return -1;
+    }
     return (int)syscall(SYS_fsync, fd);
+}
+
+int flock(int fd, int operation)
+{
+    if (plain_drive) {
+        errno = EOPNOTSUPP;
+        return -1;
+    }
+    return (int)syscall(SYS_flock, fd, operation);
+}
+
+int symlink(const char *target, const char *path)
+{
+    if (plain_drive) {
+        errno = EPERM;
+        return -1;
+    }
+    return (int)syscall(SYS_symlinkat, target, AT_FDCWD, path);
 }
 
 int rename(const char *from, const char *to)

@@ -3,6 +3,7 @@
 # unlink and allocation in turn, with a stand-in for COLMAP. After each, the scene does not open or
 # is whole, the exit status tells, the photographs are as they were, and --resume gives the bytes of
 # a job that nothing disturbed.
+# Then a drive without fsync, flock and symbolic links, as many USB sticks and network drives are.
 # usage: inject_prepare.sh ORIEL SOURCE LIBRARY [all]     without all: calls 1, 3, 9, 27..
 set -u
 library=$3 all=${4:-}
@@ -69,5 +70,17 @@ for job in prepare resume; do
         done
     done
 done
+
+# A drive of few abilities: the same scene, whose maker hears that nothing locks it.
+rm -rf "$scene"
+env LD_PRELOAD="$library" INJECT_DRIVE=1 "$oriel" prepare "$photos" --out "$scene" --test-list 1.png \
+    --keep all >"$work/out" 2>"$work/err" || fail "prepare fails on a drive without fsync and flock"
+says 'cannot be locked'
+problems=$(differences)
+[ -z "$problems" ] || fail "a drive without fsync and flock: $problems"
+env LD_PRELOAD="$library" INJECT_DRIVE=1 "$oriel" prepare "$photos" --out "$scene" --test-list 1.png \
+    --keep all --resume >"$work/out" 2>"$work/err" || fail "prepare does not resume on such a drive"
+says 'done already'
+
 for kind in "${!tried[@]}"; do echo "injected: $kind ${tried[$kind]}"; done | sort
 finish
