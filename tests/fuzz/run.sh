@@ -55,9 +55,10 @@ run_target() {
     mkdir -p "$corpus"
     FUZZ_TARGET=$name LLVM_PROFILE_FILE=/dev/null ASAN_OPTIONS=allocator_may_return_null=1 \
         LSAN_OPTIONS=suppressions=$here/../leaks.supp UBSAN_OPTIONS=print_stacktrace=1 \
-        nice -n 19 "$fuzz" "$corpus" "$here/inputs/$name" \
+        "$fuzz" "$corpus" "$here/inputs/$name" \
         -max_total_time="$seconds" -max_len=8192 -timeout=30 -rss_limit_mb=3000 \
-        -seed="${FUZZ_SEED:-0}" -runs="${FUZZ_RUNS:--1}" -artifact_prefix="$dir/failures/$name-" -print_final_stats=1 \
+        -seed="${FUZZ_SEED:-0}" -runs="${FUZZ_RUNS:--1}" -print_final_stats=1 \
+        -artifact_prefix="$dir/failures/$name-" \
         >"$dir/$name.log" 2>&1
     local status=$? runs
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log")
@@ -91,13 +92,14 @@ wait
 echo "fuzzed for $((SECONDS - started)) s on $jobs core(s)"
 [ -e "$dir/failed" ] && exit 1
 
-# Coverage: every input once more, for its profile.
+# Coverage: every input once more, for its profile. A leak, which ends the program ahead of it, has
+# been looked for above.
 command -v llvm-cov >/dev/null || exit 0
 for row in "${readers[@]}"; do
     name=${row%% *}
     mkdir -p "$dir/corpus/$name"
     FUZZ_TARGET=$name LLVM_PROFILE_FILE=$dir/profiles/$name.raw \
-        ASAN_OPTIONS=allocator_may_return_null=1 nice "$fuzz" -runs=0 "$dir/corpus/$name" \
+        ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0 "$fuzz" -runs=0 "$dir/corpus/$name" \
         "$here/inputs/$name" -rss_limit_mb=3000 >/dev/null 2>&1
 done
 llvm-profdata merge -o "$dir/profiles/all" "$dir"/profiles/*.raw || exit 1
