@@ -351,16 +351,27 @@ enum orl_result orl_database_add_matches(struct orl_database *db, const char *pa
                     " SELECT * FROM part.two_view_geometries;");
 }
 
+// Runs the first statement only: a file from elsewhere may hold others behind it, such as ATTACH.
+static int run_first(sqlite3 *handle, const char *sql)
+{
+    sqlite3_stmt *statement = NULL;
+    int code = sqlite3_prepare_v2(handle, sql, -1, &statement, NULL);
+    if (code == SQLITE_OK && statement && sqlite3_step(statement) != SQLITE_DONE)
+        code = SQLITE_ERROR;
+    sqlite3_finalize(statement);
+    return code;
+}
+
 // Makes the tables of the attached database, its cameras and its photographs.
 static int copy_tables(sqlite3 *handle)
 {
     sqlite3_stmt *statement = NULL;
     int code = sqlite3_prepare_v2(handle, "SELECT sql FROM part.sqlite_master WHERE sql IS NOT NULL "
+                                          "AND type IN ('table', 'index') "
                                           "AND name NOT LIKE 'sqlite_%'", -1, &statement, NULL);
     int step = SQLITE_DONE;
     while (code == SQLITE_OK && (step = sqlite3_step(statement)) == SQLITE_ROW)
-        code = sqlite3_exec(handle, (const char *)sqlite3_column_text(statement, 0), NULL, NULL,
-                            NULL);
+        code = run_first(handle, (const char *)sqlite3_column_text(statement, 0));
     sqlite3_finalize(statement);
     if (code == SQLITE_OK && step != SQLITE_DONE)
         code = SQLITE_ERROR;

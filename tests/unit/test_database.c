@@ -1,5 +1,6 @@
 // Reading COLMAP's database.
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include "preprocess/calibrate/raw_matches.h"
 #include "sift_like.h"
@@ -421,6 +422,24 @@ static void a_part_has_the_features_of_its_pairs(void **state)
     orl_database_close(&db);
 }
 
+// A stranger's database may hold more SQL behind the statement that makes a table.
+static void a_part_runs_no_sql_of_a_stranger(void **state)
+{
+    (void)state;
+    char part[4096], other[4096], sql[9000];
+    struct orl_database *db;
+    snprintf(part, sizeof part, "%s/part.db", dir);
+    snprintf(other, sizeof other, "%s/other.db", dir);
+    make_more_tables();
+    snprintf(sql, sizeof sql, "PRAGMA writable_schema = ON; UPDATE sqlite_master SET sql = sql || "
+             "'; ATTACH ''%s'' AS other; CREATE TABLE other.evil (a)' WHERE name = 'images'", other);
+    run_sql(sql);
+    assert_int_equal(orl_database_create_like(NULL, part, file, &db), ORL_OK);
+    orl_database_close(&db);
+    assert_int_not_equal(access(other, F_OK), 0);
+    assert_int_equal(number(part, "SELECT count(*) FROM images"), 0);
+}
+
 #define FILE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -430,6 +449,7 @@ int main(void)
         FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
         FILE_TEST(parts_are_joined), FILE_TEST(a_part_has_the_features_of_its_pairs),
+        FILE_TEST(a_part_runs_no_sql_of_a_stranger),
         FILE_TEST(matches_are_written_for_colmap), FILE_TEST(matching_can_be_interrupted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
