@@ -61,13 +61,13 @@ void fuzz_bundler(const uint8_t *data, size_t size)
 {
     static const char *const names[] = {"list.txt", "bundle.out"};
     fuzz_save_parts(names, ORL_COUNT(names), data, size);
-    read_cameras(fuzz_path("bundle.out"), -1);
+    read_cameras(fuzz_path("."), -1);
 }
 
 void fuzz_middlebury(const uint8_t *data, size_t size)
 {
     fuzz_save("a_par.txt", data, size);
-    read_cameras(fuzz_path("a_par.txt"), -1);
+    read_cameras(fuzz_path("."), -1);
 }
 
 static void use_scene(const char *dir)
@@ -82,7 +82,24 @@ static void use_scene(const char *dir)
         fuzz_require(scene->points.radius[i] > 0 && isfinite(scene->points.radius[i]),
                      "points have radii");
     json_decref(orl_scene_info(&fuzz_log, scene));
+    for (size_t i = 0; i < scene->photo_count; i++)
+        (void)orl_scene_camera_users(scene, i);
+    fuzz_require(orl_scene_set_frame(&fuzz_log, scene, 0) == ORL_ERR_ARGUMENT && scene->frame == -1,
+                 "a still scene has no moments");
     orl_scene_destroy(&scene);
+}
+
+static void use_unfinished(const char *dir)
+{
+    char *sparse = orl_path_join(&fuzz_log, dir, "sparse");
+    struct orl_colmap_model model;
+    struct orl_scene *scene;
+    if (orl_colmap_read(&fuzz_log, sparse, &model) == ORL_OK) {
+        if (orl_scene_open_unfinished(&fuzz_log, dir, &model, NULL, &scene) == ORL_OK)
+            orl_scene_destroy(&scene);
+        orl_colmap_finish(&model);
+    }
+    free(sparse);
 }
 
 // A folder with a model as text: imported, and opened as a scene. The first byte's last bit: is there
@@ -108,6 +125,7 @@ void fuzz_workspace(const uint8_t *data, size_t size)
                     data + (size > 0), size - (size > 0));
     read_cameras(fuzz_path("ws"), -1);
     use_scene(fuzz_path("ws"));
+    use_unfinished(fuzz_path("ws"));
 }
 
 void fuzz_mesh(const uint8_t *data, size_t size)
@@ -135,6 +153,24 @@ void fuzz_mesh(const uint8_t *data, size_t size)
     orl_mesh_finish(&mesh);
 }
 
+// Databases of parts: one is joined to the other, or gives its features to one that is made.
+static void use_parts(struct orl_database *db)
+{
+    struct orl_database *made;
+    char *part = strdup(fuzz_path("part.db")), *like = strdup(fuzz_path("like.db"));
+    (void)!orl_database_add_photographs(db, part);
+    (void)!orl_database_add_matches(db, part);
+    unlink(like);
+    if (orl_database_create_like(&fuzz_log, like, part, &made) == ORL_OK) {
+        if (orl_database_begin(made) == ORL_OK && orl_database_take_features(made, "a.jpg") == ORL_OK)
+            (void)!orl_database_commit(made);
+        (void)!orl_database_detach(made);
+    }
+    orl_database_close(&made);
+    free(part);
+    free(like);
+}
+
 // COLMAP's database, as `prepare --resume` finds it.
 void fuzz_database(const uint8_t *data, size_t size)
 {
@@ -157,6 +193,8 @@ void fuzz_database(const uint8_t *data, size_t size)
     (void)!orl_database_write_matches(db, 2, 1, matches, ORL_COUNT(matches));
     (void)!orl_database_hide_spaces(db, true);
     (void)!orl_database_share_camera(db, "a.jpg", "b.jpg");
+    fuzz_save("part.db", data, size);
+    use_parts(db);
     orl_database_close(&db);
     unlink(fuzz_path("database.db-journal"));
 }

@@ -11,8 +11,13 @@
 static void write_again(const struct orl_image *image)
 {
     static const struct orl_exif exif = {.make = "Oriel", .exposure_s = 0.004, .iso = 70000};
+    uint8_t *jpeg;
+    size_t size;
     if (orl_image_bytes(image) > 1 << 16)
         return;
+    fuzz_require(orl_jpeg_encode(&fuzz_log, image, 75, &jpeg, &size) == ORL_OK,
+                 "a picture can be sent");
+    free(jpeg);
     fuzz_require(orl_png_write(&fuzz_log, fuzz_path("again.png"), image) == ORL_OK &&
                      orl_jpeg_write(&fuzz_log, fuzz_path("again.jpg"), image, 90, &exif) == ORL_OK,
                  "a picture can be written");

@@ -23,6 +23,11 @@ static void use_model(const struct orl_colmap_model *model)
         const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(model, image->camera_id);
         fuzz_require(camera && orl_camera_valid(&camera->pinhole), "a picture has a camera");
         fuzz_require(orl_pose_valid(&image->cam_from_world), "a pose is a pose");
+        fuzz_require(orl_colmap_image_by_name(model, image->name) == image,
+                     "a picture has one name");
+        fuzz_require(!orl_view_problem(&(struct orl_view){orl_colmap_image_view(model, image).camera,
+                                                          image->cam_from_world}),
+                     "a picture's view is usable");
         for (size_t k = 0; k < image->point_count; k++)
             fuzz_require(image->points[k] < model->point_count, "observed points are there");
     }

@@ -4,9 +4,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/json.h"
 #include "fuzz.h"
-#include "oriel/path.h"
 #include "walk/choices.h"
 #include "walk/content_internal.h"
 #include "walk/internal.h"
@@ -25,15 +25,28 @@ static void use_request(const struct walk_request *request)
                      "picks lie in the frame");
 }
 
+static void report(void *priv, size_t done, size_t total, const char *file)
+{
+    (void)priv;
+    (void)file;
+    fuzz_require(done <= total, "no more frames than there are");
+}
+
+static bool is_cancelled(void *priv)
+{
+    (void)priv;
+    return true;
+}
+
+// Up to the first frame, which needs a device.
 static void use_rendering(const struct orl_scene *scene, const json_t *message)
 {
-    struct orl_path path = {0};
-    const json_t *keyframes = json_object_get(message, "render");
-    char *file = strdup(fuzz_path("keys.json"));
-    if (orl_json_write(&fuzz_log, file, keyframes) == ORL_OK)
-        (void)!orl_path_read(&fuzz_log, scene, file, &path);
-    orl_path_finish(&path);
-    free(file);
+    const struct orl_progress progress = {.cancelled = is_cancelled};
+    const struct walk_rendering rendering = {.log = &fuzz_log, .scene = scene,
+                                             .progress = &progress, .report = report};
+    fuzz_require(orl_walk_rendering_run(&rendering, message) != ORL_OK, "nothing is drawn");
+    if (orl_dir_remove(&fuzz_log, fuzz_path("renders")) != ORL_OK)
+        abort();
 }
 
 static void use_choice(const struct orl_scene *scene, const json_t *message,
