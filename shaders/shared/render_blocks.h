@@ -12,7 +12,7 @@
 #define ORL_ITEM_BLOCK_BITS 24
 // Texels that describe a block: centre of its bounds and points per unit of area; half extent of the
 // bounds and number of points; mean normal; corner that positions are counted from and their unit
-// (src/render/point_code.h).
+// (src/scene/point_code.h).
 #define ORL_BLOCK_VEC4S 4
 // Number of points that one invocation draws.
 #define ORL_SPLAT_POINTS 4

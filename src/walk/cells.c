@@ -7,7 +7,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "render/point_code.h"
+#include "scene/point_code.h"
 #include "walk/internal.h"
 
 enum {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gpu_test.h"
-#include "render/point_code.h"
+#include "scene/point_code.h"
 #include "render/splats.h"
 
 static struct orl_gpu *gpu;

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/point_code.h"
+#include "scene/point_code.h"
 #include "test.h"
 
 static double random_value(uint32_t *state)

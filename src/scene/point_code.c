@@ -1,4 +1,4 @@
-#include "render/point_code.h"
+#include "scene/point_code.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 // Private: how points are stored on the device, in 12 bytes. Positions are whole numbers of steps
 // from the corner of their block. shaders/proxy/point.glsl decodes them.
-#ifndef ORL_RENDER_POINT_CODE_H
-#define ORL_RENDER_POINT_CODE_H
+#ifndef ORL_SCENE_POINT_CODE_H
+#define ORL_SCENE_POINT_CODE_H
 
 #include <stdbool.h>
 #include <stddef.h>
