@@ -6,6 +6,7 @@
 #include "oriel/points.h"
 
 struct orl_colmap_model;
+struct orl_lod;
 struct orl_names;
 
 struct orl_photo {
@@ -63,11 +64,15 @@ struct orl_room {
     bool known;
 };
 
+enum { ORL_LOD_SAMPLE = 2 << 20 };
+
 struct orl_scene {
     char *dir; // owned
     struct orl_photo *photos;
     size_t photo_count;
-    struct orl_points points;
+    struct orl_points points; // with `lod`, a sample of up to ORL_LOD_SAMPLE points
+    struct orl_lod *lod;      // owned: all points, drawn from a file (points.lod); NULL: `points` are
+                              // all
     struct orl_response *responses; // one per camera model that has a measured one
     size_t response_count;
     struct orl_tuned *tuned;
@@ -80,11 +85,14 @@ struct orl_scene {
     struct orl_room room;
 };
 
-// Opens SCENE (scene.json, points.ply) or a plain COLMAP dense workspace with
+// Opens SCENE (scene.json, points.ply or points.lod) or a plain COLMAP dense workspace with
 // fused.ply, whose radii are computed on the fly. A scene that prepare has not
 // finished is refused with ORL_ERR_DATA, naming the missing stage.
 enum orl_result orl_scene_open(const struct orl_log *log, const char *dir,
                                struct orl_scene **out) ORL_CHECK_RESULT;
+// Opens SCENE without its points.
+enum orl_result orl_scene_open_photos(const struct orl_log *log, const char *dir,
+                                      struct orl_scene **out) ORL_CHECK_RESULT;
 // Opens a folder that is still being prepared, from its sparse model and points.ply. Exposures are
 // unknown, photographs named in `test` (NULL: none) are held out, and the ground plane is
 // estimated from the points.
@@ -96,6 +104,8 @@ void orl_scene_destroy(struct orl_scene **scene);
 // Reads the scene's sparse model (colmap.h), whose images have the photographs' order.
 enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl_scene *scene,
                                      struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// How many points the scene has, though `points` may be a sample of them.
+size_t orl_scene_point_count(const struct orl_scene *scene);
 // Index of the photograph of this name (with or without extension), -1 if there is none.
 int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
 // Selects the photographs and silhouettes of `frame`, or with -1 those of the scene itself. Cameras

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "scene/point_lod.h"
 #include "scene/point_radii.h"
 
 // The photographs that are not held out.
@@ -79,6 +80,8 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
     result = orl_points_write(job->log, out, &points, false);
     if (result != ORL_OK)
         orl_job_hint_disk(job);
+    else
+        result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these
     json_object_set_new(record, "tool", json_string("FLANN"));
     json_object_set_new(record, "settings", json_pack(
         "{s:i, s:f, s:f, s:f}", "neighbours", params.neighbours, "overlap",

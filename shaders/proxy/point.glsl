@@ -1,4 +1,4 @@
-// Points as src/render/point_code.c encodes them: 12 bytes in two buffers. A position is a number
+// Points as src/scene/point_code.c encodes them: 12 bytes in two buffers. A position is a number
 // of steps from the corner of the point's block, which a texel gives together with the step.
 const uint POINT_NONE = 0xffffu; // x of a point that is not there
 const float POINT_CODES_PER_OCTAVE = 16.0;

@@ -35,7 +35,7 @@ void main()
                   dot(abs(rotation[2].xyz), extent));
     extent += 1e-5 * (abs(middle) + extent);
     vec2 last = vec2(view_size) - focal.zw;
-    if (middle.z + extent.z <= eye.w ||
+    if (extent_count.w == 0.0 || middle.z + extent.z <= eye.w ||
         outside(middle, extent, vec3(focal.x, 0.0, focal.z)) ||
         outside(middle, extent, vec3(-focal.x, 0.0, last.x)) ||
         outside(middle, extent, vec3(0.0, focal.y, focal.w)) ||

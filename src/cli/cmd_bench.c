@@ -141,7 +141,7 @@ static void print_rasters(const struct orl_bench *bench)
 static void print_tables(const struct orl_bench *bench)
 {
     printf("scene        %s\npoints       %zu\nphotographs  %zu of up to %dx%d\n"
-           "device       %s%s, OpenGL %s\n", bench->scene->dir, bench->scene->points.count,
+           "device       %s%s, OpenGL %s\n", bench->scene->dir, orl_scene_point_count(bench->scene),
            bench->photographs, bench->photo_width, bench->photo_height, bench->device,
            bench->software ? " (software)" : "", bench->driver);
     print_memory(bench);

@@ -20,6 +20,7 @@ int cmd_bench(int argc, char **argv);
 int cmd_chart(int argc, char **argv);
 int cmd_import(int argc, char **argv);
 int cmd_info(int argc, char **argv);
+int cmd_lod(int argc, char **argv);
 int cmd_methods(int argc, char **argv);
 int cmd_plan(int argc, char **argv);
 int cmd_publish(int argc, char **argv);

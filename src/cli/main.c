@@ -15,6 +15,7 @@ static const struct command commands[] = {
     {"hdr", "radiance views from photographs of several exposures", cmd_hdr},
     {"import", "make a scene from known cameras, silhouettes, sequences", cmd_import},
     {"info", "say what is in a scene", cmd_info},
+    {"lod", "levels of detail for points that are more than memory holds", cmd_lod},
     {"methods", "list the methods of rendering and their options", cmd_methods},
     {"plan", "the work left for a scene as jobs for several machines", cmd_plan},
     {"prepare", "make a scene from photographs", cmd_prepare},

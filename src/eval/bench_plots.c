@@ -24,8 +24,8 @@ static enum orl_result save(const struct orl_log *log, const char *dir, const ch
 static void describe(const struct orl_bench *bench, char text[256])
 {
     snprintf(text, 256, "%s: %zu points, %zu photographs of up to %dx%d; %.60s%s",
-             orl_path_name(bench->scene->dir), bench->scene->points.count, bench->photographs,
-             bench->photo_width, bench->photo_height, bench->device,
+             orl_path_name(bench->scene->dir), orl_scene_point_count(bench->scene),
+             bench->photographs, bench->photo_width, bench->photo_height, bench->device,
              bench->software ? " (no GPU)" : "");
 }
 

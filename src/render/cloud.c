@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "render/cloud.h"
+#include "render/cloud_pages.h"
 #include "scene/point_blocks.h"
 
 enum {
@@ -107,8 +108,7 @@ static enum orl_result find_order(const struct orl_log *log, const struct orl_po
     return result == ORL_OK ? orl_point_order(log, points, &cube, order, count) : result;
 }
 
-// Points of a chunk: whole blocks, as many as the device can read of a buffer.
-static size_t chunk_points(const struct orl_gpu *gpu)
+size_t orl_cloud_chunk_points(const struct orl_gpu *gpu)
 {
     size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / BLOCK * BLOCK;
     return most < CHUNK_POINTS ? most : CHUNK_POINTS;
@@ -118,7 +118,7 @@ enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points
                               uint32_t **map, size_t *count)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    size_t most = chunk_points(gpu);
+    size_t most = orl_cloud_chunk_points(gpu);
     uint32_t *order = NULL;
     *map = NULL;
     enum orl_result result = find_order(log, points, &order, count);
@@ -144,7 +144,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     memset(cloud, 0, sizeof *cloud);
     if (points->count > INT32_MAX - BLOCK)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
-    size_t most = chunk_points(gpu);
+    size_t most = orl_cloud_chunk_points(gpu);
     uint32_t *order = NULL;
     size_t count = 0;
     enum orl_result result = find_order(log, points, &order, &count);
@@ -167,6 +167,18 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     return result;
 }
 
+enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
+                                      struct cloud *cloud)
+{
+    struct point_chunk *chunk = cloud->chunks = orl_array(orl_gpu_log(gpu), 1, sizeof *chunk);
+    if (!chunk)
+        return ORL_ERR_MEMORY;
+    cloud->chunk_count = 1;
+    chunk->block_count = (int)block_count;
+    chunk->count = chunk->block_count * BLOCK;
+    return make_buffers(gpu, chunk, &(struct host_chunk){.block_count = block_count});
+}
+
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
 {
     for (size_t i = 0; i < cloud->chunk_count; i++) {
@@ -182,6 +194,7 @@ void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
             orl_buf_destroy(gpu, bufs[k]);
     }
     free(cloud->chunks);
+    orl_cloud_pages_finish(&cloud->pages);
     memset(cloud, 0, sizeof *cloud);
 }
 

@@ -20,12 +20,18 @@ struct point_chunk {
 struct cloud {
     struct point_chunk *chunks;
     size_t chunk_count;
+    struct cloud_pages *pages; // what the one chunk holds (cloud_pages.h); NULL: all points
 };
 
 // Sorts the points and uploads them. Points with a value that is not finite are omitted.
 enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct cloud *cloud);
+// Makes one chunk of this many blocks without a point.
+enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
+                                      struct cloud *cloud) ORL_CHECK_RESULT;
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);
+// How many points a chunk may have on this device: whole blocks.
+size_t orl_cloud_chunk_points(const struct orl_gpu *gpu);
 // Finds which point of `points` each point on the device is: (*map)[i], owned by the caller (free),
 // for index i of the splat index texture; UINT32_MAX: padding.
 enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points *points,

@@ -23,7 +23,7 @@ enum orl_result orl_contribution_create(struct orl_gpu *gpu, const struct orl_sc
     if (!c)
         return ORL_ERR_MEMORY;
     c->gpu = gpu;
-    enum orl_result result = orl_proxy_create(gpu, scene, &orl_proxy_splats, &c->proxy);
+    enum orl_result result = orl_proxy_create(gpu, scene, &orl_proxy_splats, 0, &c->proxy);
     if (result == ORL_OK)
         result = orl_cloud_map(gpu, &scene->points, &c->points, &c->count);
     if (result != ORL_OK)

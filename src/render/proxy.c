@@ -37,10 +37,11 @@ static void find_vertices(struct proxy *proxy, const struct orl_scene *scene)
 }
 
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                 const struct proxy_kind *kind, struct proxy *proxy)
+                                 const struct proxy_kind *kind, size_t most_bytes,
+                                 struct proxy *proxy)
 {
     *proxy = (struct proxy){.kind = kind};
-    enum orl_result result = kind->create(gpu, scene, &proxy->state);
+    enum orl_result result = kind->create(gpu, scene, most_bytes, &proxy->state);
     if (result == ORL_OK)
         find_vertices(proxy, scene);
     return result;
@@ -79,6 +80,8 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
 {
     enum orl_result result = proxy->kind->resize(gpu, proxy->state, view->camera.width,
                                                  view->camera.height, target);
+    if (result == ORL_OK && proxy->kind->bring)
+        result = proxy->kind->bring(proxy->state, view, params);
     if (result == ORL_OK)
         proxy->kind->draw(gpu, proxy->state, view, params, normals, *target, surface);
     return result;

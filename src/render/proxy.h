@@ -25,7 +25,9 @@ struct paint_into {
 // One kind of proxy. `state`: its data on the device; `target`: its textures for one picture size.
 struct proxy_kind {
     const char *name;
-    enum orl_result (*create)(struct orl_gpu *gpu, const struct orl_scene *scene, void **state);
+    // most_bytes: of device memory that a proxy keeps to which can; 0: as it needs.
+    enum orl_result (*create)(struct orl_gpu *gpu, const struct orl_scene *scene,
+                              size_t most_bytes, void **state);
     // Brings what depends on the frame's photographs and options up to date; *changed: the surfaces
     // are others now. NULL: nothing does.
     enum orl_result (*update)(const struct frame *frame, void *state, bool *changed);
@@ -39,6 +41,9 @@ struct proxy_kind {
     void (*free_target)(struct orl_gpu *gpu, void **target);
     // Bytes that a target of this size takes.
     size_t (*target_bytes)(const void *state, int width, int height);
+    // Brings the data that `view` shows to the device. NULL: it is there.
+    enum orl_result (*bring)(const void *state, const struct orl_view *view,
+                             const struct orl_render_params *params);
     // Draws the surface that `view` sees. The textures of `surface` belong to the target. Without
     // `normals` the normal is left unchanged, which saves a tenth of a software renderer's time.
     void (*draw)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
@@ -79,7 +84,8 @@ struct proxy {
 };
 
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                 const struct proxy_kind *kind, struct proxy *proxy);
+                                 const struct proxy_kind *kind, size_t most_bytes,
+                                 struct proxy *proxy);
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
 // Brings the frame's proxy up to date, before its key is asked for.
 enum orl_result orl_proxy_update(const struct frame *frame);

@@ -35,12 +35,13 @@ struct orl_renderer {
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
     struct orl_image staging; // for read_back.h
+    size_t point_bytes;       // of device memory for points that come as they are needed; 0: any
     int expected;             // moment after the next frame's; -1: none is expected
     struct ahead *ahead;      // what is prepared for it; NULL: nothing
 };
 
 // Device memory of everything but photographs: points, and targets of common sizes.
-static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *proxy)
+static size_t fixed_bytes(const struct orl_scene *scene, size_t points, const struct proxy *proxy)
 {
     int width = 1, height = 1;
     for (size_t i = 0; i < scene->photo_count; i++) {
@@ -48,13 +49,13 @@ static size_t fixed_bytes(const struct orl_scene *scene, const struct proxy *pro
         width = c->width > width ? c->width : width;
         height = c->height > height ? c->height : height;
     }
-    return scene->points.count * 24 + 2 * proxy->kind->target_bytes(proxy->state, width, height) +
+    return (points ? points : scene->points.count * 24) + 2 * proxy->kind->target_bytes(proxy->state, width, height) +
            (size_t)width * (size_t)height * (16 + 38 + 20);
 }
 
 static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
 {
-    size_t fixed = fixed_bytes(r->scene, &r->proxies[0]);
+    size_t fixed = fixed_bytes(r->scene, r->point_bytes, &r->proxies[0]);
     size_t budget = max_vram_bytes > fixed ? max_vram_bytes - fixed : 1;
     orl_logf(orl_gpu_log(r->gpu), ORL_LOG_INFO,
              "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
@@ -73,7 +74,7 @@ static enum orl_result find_proxy(struct orl_renderer *r, const struct proxy_kin
     }
     ORL_REQUIRE(orl_gpu_log(r->gpu), r->proxy_count < PROXIES_MAX);
     *proxy = &r->proxies[r->proxy_count];
-    enum orl_result result = orl_proxy_create(r->gpu, r->scene, kind, *proxy);
+    enum orl_result result = orl_proxy_create(r->gpu, r->scene, kind, r->point_bytes, *proxy);
     if (result == ORL_OK)
         r->proxy_count++;
     return result;
@@ -95,6 +96,8 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     r->expected = -1;
     r->chosen = orl_array(log, scene->photo_count, sizeof *r->chosen);
     r->selected = orl_array(log, scene->photo_count, sizeof *r->selected);
+    // Photographs take more than points do where both come as they are needed.
+    r->point_bytes = scene->lod ? params->max_vram_bytes / 3 : 0;
     struct proxy *splats;
     enum orl_result result = r->chosen && r->selected ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)

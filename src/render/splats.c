@@ -6,12 +6,17 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "render/cloud_pages.h"
 #include "render/frame.h"
 
-static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene, void **state)
+static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                              size_t most_bytes, void **state)
 {
     struct cloud *cloud = orl_array(orl_gpu_log(gpu), 1, sizeof *cloud);
-    enum orl_result result = cloud ? orl_cloud_init(gpu, &scene->points, cloud) : ORL_ERR_MEMORY;
+    enum orl_result result =
+        !cloud       ? ORL_ERR_MEMORY
+        : scene->lod ? orl_cloud_pages_init(gpu, scene->lod, most_bytes, cloud)
+                     : orl_cloud_init(gpu, &scene->points, cloud);
     if (result != ORL_OK) {
         free(cloud);
         cloud = NULL;
@@ -304,6 +309,13 @@ static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, int leas
         drop_strays(gpu, &block, least_support, t);
 }
 
+static enum orl_result bring(const void *state, const struct orl_view *view,
+                             const struct orl_render_params *params)
+{
+    const struct cloud *cloud = state;
+    return cloud->pages ? orl_cloud_pages_choose(cloud, view, params->points_per_pixel) : ORL_OK;
+}
+
 static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
                  const struct orl_render_params *params, bool normals, void *target,
                  struct surface *surface)
@@ -351,5 +363,5 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
 
 const struct proxy_kind orl_proxy_splats = {
     .name = "splats", .create = create, .vertices = vertices, .destroy = destroy, .resize = resize,
-    .free_target = free_target, .target_bytes = target_bytes, .draw = draw, .color = color,
+    .free_target = free_target, .target_bytes = target_bytes, .bring = bring, .draw = draw, .color = color,
 };

@@ -13,9 +13,10 @@
 #include "render/raster_target.h"
 #include "shared/hull_blocks.h"
 
-static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene, void **out)
+static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                              size_t most_bytes, void **out)
 {
-    (void)scene; // update makes the voxels
+    (void)scene, (void)most_bytes; // update makes the voxels
     *out = orl_array(orl_gpu_log(gpu), 1, sizeof(struct voxel_state));
     return *out ? ORL_OK : ORL_ERR_MEMORY;
 }

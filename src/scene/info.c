@@ -70,7 +70,7 @@ json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene)
         "s:O*, s:o}",
         "scene", orl_json_string(scene->dir), "counts", "photographs", (json_int_t)scene->photo_count, "train",
         (json_int_t)(scene->photo_count - test), "test", (json_int_t)test, "points",
-        (json_int_t)scene->points.count, "photo_distance", scene->photo_distance, "bounds",
+        (json_int_t)orl_scene_point_count(scene), "photo_distance", scene->photo_distance, "bounds",
         low[0], low[1], low[2], high[0], high[1], high[2], "photographs", photos, "stages",
         json_object_get(manifest, "stages"), "settings", json_object_get(manifest, "settings"),
         "left_out", json_object_get(manifest, "left_out"), "tuned",

@@ -251,9 +251,10 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
                                   struct orl_scene *scene)
 {
     // Checking pictures takes too long here; oriel info --check does it.
-    static const char *const read_on_opening[] = {"points.ply", "sparse/cameras.bin",
-                                                  "sparse/images.bin", "sparse/points3D.bin",
-                                                  NULL};
+    static const char *const read_on_opening[] = {"sparse/cameras.bin", "sparse/images.bin",
+                                                  "sparse/points3D.bin", "points.ply", NULL};
+    static const char *const without_points[] = {"sparse/cameras.bin", "sparse/images.bin",
+                                                 "sparse/points3D.bin", NULL};
     size_t changed = 0;
     json_t *root;
     enum orl_result result = orl_json_read(log, path, &root);
@@ -278,7 +279,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
     if (result == ORL_OK)
         result = orl_manifest_read_room(log, path, root, &scene->room);
     if (result == ORL_OK)
-        result = check_files(log, scene->dir, root, read_on_opening, ORL_LOG_WARNING, &changed);
+        result = check_files(log, scene->dir, root, scene->lod ? without_points : read_on_opening,
+                             ORL_LOG_WARNING, &changed);
     json_decref(root);
     return result;
 }

@@ -152,6 +152,27 @@ enum orl_result orl_ply_open(const struct orl_log *log, const char *path, struct
     return result;
 }
 
+enum orl_result orl_ply_open_header(const struct orl_log *log, const char *path,
+                                    struct orl_ply *ply, FILE **stream)
+{
+    enum { HEADER_MAX = 1 << 16 };
+    *ply = (struct orl_ply){.log = log, .path = orl_strdup(log, path),
+                            .data = orl_array(log, HEADER_MAX + 1, 1)};
+    enum orl_result result = ply->path && ply->data ? orl_file_open(log, path, stream)
+                                                    : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        ply->size = fread(ply->data, 1, HEADER_MAX, *stream);
+        result = parse_header(ply);
+    }
+    if (result == ORL_OK)
+        return ORL_OK;
+    orl_ply_close(ply);
+    if (*stream)
+        fclose(*stream);
+    *stream = NULL;
+    return result;
+}
+
 void orl_ply_close(struct orl_ply *ply)
 {
     for (int i = 0; i < ply->element_count; i++)

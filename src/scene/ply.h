@@ -2,6 +2,8 @@
 #ifndef ORL_SCENE_PLY_H
 #define ORL_SCENE_PLY_H
 
+#include <stdio.h>
+
 #include "oriel/log.h"
 
 enum orl_ply_type {
@@ -39,6 +41,10 @@ struct orl_ply {
 // Reads the file and its header.
 enum orl_result orl_ply_open(const struct orl_log *log, const char *path,
                              struct orl_ply *ply) ORL_CHECK_RESULT;
+// Reads the header alone. ply->at is the offset of the first record in the file, whose bytes are not
+// there: *stream, which the caller closes, has them.
+enum orl_result orl_ply_open_header(const struct orl_log *log, const char *path,
+                                    struct orl_ply *ply, FILE **stream) ORL_CHECK_RESULT;
 void orl_ply_close(struct orl_ply *ply);
 // Logs the reader's position in bytes and `what` is wrong there; returns ORL_ERR_FORMAT.
 enum orl_result orl_ply_bad(const struct orl_ply *ply, const char *what);

@@ -122,6 +122,17 @@ bool orl_point_decode_position(const struct point_frame *frame, const uint32_t c
     return q[0] <= (uint32_t)most_code;
 }
 
+void orl_point_decode_normal(const uint32_t code[2], float normal[3])
+{
+    float x = fmaxf((float)(int8_t)(code[1] >> 16) / 127, -1);
+    float y = fmaxf((float)(int8_t)(code[1] >> 24) / 127, -1);
+    float z = 1 - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0);
+    x += x >= 0 ? -fold : fold;
+    y += y >= 0 ? -fold : fold;
+    float length = sqrtf(x * x + y * y + z * z);
+    normal[0] = x / length, normal[1] = y / length, normal[2] = z / length;
+}
+
 float orl_point_decode_radius(const struct point_frame *frame, uint32_t attributes)
 {
     uint32_t code = attributes >> 24;

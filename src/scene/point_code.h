@@ -37,6 +37,8 @@ struct point_code orl_point_encode(const struct point_frame *frame, const float 
 // False: no point.
 bool orl_point_decode_position(const struct point_frame *frame, const uint32_t code[2],
                                float position[3]);
+// Unit length; of a point without a normal, +z.
+void orl_point_decode_normal(const uint32_t code[2], float normal[3]);
 float orl_point_decode_radius(const struct point_frame *frame, uint32_t attributes);
 // Encodes a direction as shaders/proxy/octahedron.glsl, in two signed bytes: x in the low byte.
 uint16_t orl_octahedron_bytes(const float normal[3]);

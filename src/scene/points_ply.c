@@ -1,12 +1,15 @@
 // Reading points from PLY: one point per vertex. Files of 3D Gaussian splatting (Kerbl et al. 2023,
 // "3D Gaussian splatting for real-time radiance field rendering") are read as opaque discs.
+#include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "scene/ply.h"
 #include "oriel/points.h"
+#include "scene/ply.h"
+#include "scene/point_stream.h"
 
 // The meaning of a property.
 enum role {
@@ -118,6 +121,18 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
     return ORL_OK;
 }
 
+// Finds the property of each role.
+static enum orl_result find_vertices(struct orl_ply *ply, const struct orl_ply_element *vertex,
+                                     int property[ROLE_COUNT])
+{
+    if (vertex->lists)
+        return orl_ply_bad(ply, "vertices with lists are not supported");
+    find_roles(vertex, property);
+    if (property[X] < 0 || property[Y] < 0 || property[Z] < 0)
+        return orl_ply_bad(ply, "the vertices lack x, y or z");
+    return ORL_OK;
+}
+
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,
                                 struct orl_points *points)
 {
@@ -129,20 +144,100 @@ enum orl_result orl_points_read(const struct orl_log *log, const char *path,
     if (result != ORL_OK)
         return result;
     result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
-    if (result == ORL_OK && vertex->lists)
-        result = orl_ply_bad(&ply, "vertices with lists are not supported");
-    if (result != ORL_OK)
-        goto end;
-    find_roles(vertex, property);
-    if (property[X] < 0 || property[Y] < 0 || property[Z] < 0)
-        result = orl_ply_bad(&ply, "the vertices lack x, y or z");
+    if (result == ORL_OK)
+        result = find_vertices(&ply, vertex, property);
     if (result == ORL_OK)
         result = orl_points_init(log, points, (size_t)vertex->count);
     if (result == ORL_OK)
         result = read_points(&ply, vertex, property, points);
     if (result != ORL_OK)
         orl_points_finish(points);
-end:
     orl_ply_close(&ply);
     return result;
+}
+
+// --- a part at a time ---
+
+struct orl_point_stream {
+    struct orl_ply ply; // its data: the records of one part
+    FILE *file;
+    size_t records_at;  // offset of the first record
+    size_t capacity;    // of ply.data, in bytes
+    uint64_t next;      // record
+    int property[ROLE_COUNT];
+};
+
+// The file must hold all the records that its header claims.
+static enum orl_result check_length(struct orl_point_stream *s)
+{
+    const struct orl_ply_element *vertex = &s->ply.elements[0];
+    off_t end = fseeko(s->file, 0, SEEK_END) == 0 ? ftello(s->file) : -1;
+    if (end < 0)
+        return orl_fail(s->ply.log, ORL_ERR_IO, "%s: %s", s->ply.path, strerror(errno));
+    if (vertex->count > ((uint64_t)end - s->records_at) / vertex->least)
+        return orl_ply_bad(&s->ply, "the file ends ahead of the last vertex");
+    return orl_point_stream_seek(s, 0);
+}
+
+enum orl_result orl_point_stream_open(const struct orl_log *log, const char *path,
+                                      struct orl_point_stream **out, uint64_t *total)
+{
+    struct orl_point_stream *s = *out = orl_array(log, 1, sizeof *s);
+    if (!s)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = orl_ply_open_header(log, path, &s->ply, &s->file);
+    if (result == ORL_OK && (s->ply.ascii || !s->ply.element_count ||
+                             strcmp(s->ply.elements[0].name, "vertex") != 0))
+        result = orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: only a binary PLY whose vertices come "
+                          "first can be read a part at a time", path);
+    if (result == ORL_OK)
+        result = find_vertices(&s->ply, &s->ply.elements[0], s->property);
+    if (result == ORL_OK) {
+        s->records_at = s->ply.at;
+        *total = s->ply.elements[0].count;
+        result = check_length(s);
+    }
+    if (result != ORL_OK)
+        orl_point_stream_close(out);
+    return result;
+}
+
+void orl_point_stream_close(struct orl_point_stream **stream)
+{
+    struct orl_point_stream *s = *stream;
+    if (s && s->file)
+        fclose(s->file);
+    if (s)
+        orl_ply_close(&s->ply);
+    free(s);
+    *stream = NULL;
+}
+
+enum orl_result orl_point_stream_seek(struct orl_point_stream *s, uint64_t record)
+{
+    off_t at = (off_t)(s->records_at + record * s->ply.elements[0].least);
+    s->next = record;
+    return fseeko(s->file, at, SEEK_SET) == 0
+               ? ORL_OK
+               : orl_fail(s->ply.log, ORL_ERR_IO, "%s: %s", s->ply.path, strerror(errno));
+}
+
+enum orl_result orl_point_stream_next(struct orl_point_stream *s, size_t most,
+                                      struct orl_points *points, size_t *read)
+{
+    struct orl_ply_element part = s->ply.elements[0];
+    uint64_t left = s->next < part.count ? part.count - s->next : 0;
+    *read = left < most ? (size_t)left : most;
+    part.count = *read;
+    size_t bytes = *read * part.least;
+    enum orl_result result = orl_grow(s->ply.log, (void **)&s->ply.data, &s->capacity, bytes, 1);
+    if (result != ORL_OK)
+        return result;
+    if (fread(s->ply.data, 1, bytes, s->file) != bytes)
+        return orl_fail(s->ply.log, ORL_ERR_IO, "%s: cannot read record %llu", s->ply.path,
+                        (unsigned long long)s->next);
+    s->ply.size = bytes;
+    s->ply.at = 0;
+    s->next += *read;
+    return read_points(&s->ply, &part, s->property, points);
 }

@@ -11,6 +11,7 @@
 #include "scene/ground_plane.h"
 #include "scene/manifest.h"
 #include "scene/free_space.h"
+#include "scene/point_lod.h"
 #include "scene/point_radii.h"
 
 // A still scene has no frames. Its `frame` may be 0 when the struct was only zeroed.
@@ -318,16 +319,17 @@ enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl
 
 // Paths of the files that a folder has; NULL: missing.
 struct folder {
-    char *manifest, *points, *fused;
+    char *manifest, *points, *fused, *lod;
 };
 
-static enum orl_result look(const struct orl_log *log, const char *dir, struct folder *folder)
+static enum orl_result look(const struct orl_log *log, const char *dir, bool points,
+                            struct folder *folder)
 {
     if (!orl_path_is_dir(dir))
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder", dir);
-    const char *const names[] = {"scene.json", "points.ply", "fused.ply"};
-    char **const paths[] = {&folder->manifest, &folder->points, &folder->fused};
-    for (int i = 0; i < 3; i++) {
+    const char *const names[] = {"scene.json", "points.ply", "fused.ply", ORL_LOD_NAME};
+    char **const paths[] = {&folder->manifest, &folder->points, &folder->fused, &folder->lod};
+    for (size_t i = 0; i < ORL_COUNT(names); i++) {
         *paths[i] = orl_path_join(log, dir, names[i]);
         if (!*paths[i])
             return ORL_ERR_MEMORY;
@@ -337,7 +339,8 @@ static enum orl_result look(const struct orl_log *log, const char *dir, struct f
         }
     }
     if (folder->manifest)
-        return folder->points ? ORL_OK
+        return !points || folder->points || folder->lod
+                   ? ORL_OK
                               : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: points.ply is missing", dir);
     enum orl_result result = orl_manifest_check_unfinished(log, dir);
     if (result == ORL_OK && !folder->fused)
@@ -352,7 +355,9 @@ static enum orl_result add_points(const struct orl_log *log, struct orl_scene *s
                                   const struct orl_colmap_model *model, const char *path,
                                   bool may_be_empty)
 {
-    enum orl_result result = read_points(log, scene, path, may_be_empty);
+    enum orl_result result = scene->lod ? orl_lod_sample(scene->lod, ORL_LOD_SAMPLE,
+                                                         &scene->points)
+                                        : read_points(log, scene, path, may_be_empty);
     if (result == ORL_OK)
         result = set_photo_distance(log, scene, model);
     if (result == ORL_OK && !scene->ground.known)
@@ -360,21 +365,23 @@ static enum orl_result add_points(const struct orl_log *log, struct orl_scene *s
     return result;
 }
 
-static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene,
+static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene, bool points_too,
                             struct orl_colmap_model *model, const struct folder *folder)
 {
     enum orl_result result;
-    const char *points = folder->manifest ? folder->points : folder->fused;
-    if ((result = check_inside(log, scene, points)) != ORL_OK ||
+    bool lod = points_too && folder->manifest && folder->lod;
+    const char *points = lod ? folder->lod : folder->manifest ? folder->points : folder->fused;
+    if ((points_too && (result = check_inside(log, scene, points)) != ORL_OK) ||
         (folder->manifest &&
          (result = check_inside(log, scene, folder->manifest)) != ORL_OK) ||
         (result = orl_scene_read_model(log, scene, model)) != ORL_OK ||
-        (result = set_photos(log, scene, model)) != ORL_OK)
+        (result = set_photos(log, scene, model)) != ORL_OK ||
+        (lod && (result = orl_lod_open(log, points, &scene->lod)) != ORL_OK))
         return result;
     if (folder->manifest &&
         (result = orl_manifest_read(log, folder->manifest, scene)) != ORL_OK)
         return result;
-    return add_points(log, scene, model, points, folder->manifest != NULL);
+    return points_too ? add_points(log, scene, model, points, folder->manifest != NULL) : ORL_OK;
 }
 
 static enum orl_result create(const struct orl_log *log, const char *dir, struct orl_scene **out)
@@ -388,22 +395,35 @@ static enum orl_result create(const struct orl_log *log, const char *dir, struct
     return (*out)->dir ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-enum orl_result orl_scene_open(const struct orl_log *log, const char *dir, struct orl_scene **out)
+static enum orl_result open_scene(const struct orl_log *log, const char *dir, bool points,
+                                  struct orl_scene **out)
 {
     struct folder folder = {0};
     struct orl_colmap_model model = {0};
     enum orl_result result = create(log, dir, out);
     if (result == ORL_OK)
-        result = look(log, dir, &folder);
+        result = look(log, dir, points, &folder);
     if (result == ORL_OK)
-        result = fill(log, *out, &model, &folder);
+        result = fill(log, *out, points, &model, &folder);
     orl_colmap_finish(&model);
     free(folder.manifest);
     free(folder.points);
     free(folder.fused);
+    free(folder.lod);
     if (result != ORL_OK)
         orl_scene_destroy(out);
     return result;
+}
+
+enum orl_result orl_scene_open(const struct orl_log *log, const char *dir, struct orl_scene **out)
+{
+    return open_scene(log, dir, true, out);
+}
+
+enum orl_result orl_scene_open_photos(const struct orl_log *log, const char *dir,
+                                      struct orl_scene **out)
+{
+    return open_scene(log, dir, false, out);
 }
 
 enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char *dir,
@@ -442,9 +462,15 @@ void orl_scene_destroy(struct orl_scene **handle)
     free(scene->defaults.method);
     free(scene->defaults.textures);
     orl_points_finish(&scene->points);
+    orl_lod_close(&scene->lod);
     free(scene->dir);
     free(scene);
     *handle = NULL;
+}
+
+size_t orl_scene_point_count(const struct orl_scene *scene)
+{
+    return scene->lod ? (size_t)scene->lod->points : scene->points.count;
 }
 
 int orl_scene_find_photo(const struct orl_scene *scene, const char *name)

@@ -135,7 +135,7 @@ static void setup_stage(struct stage *s)
     setup_moments(&s->f);
     s->params = params_of("li", "hull_triangles=900");
     assert_int_equal(orl_photos_init(gpu, &s->f.scene, &none, 0, &s->photos), ORL_OK);
-    assert_int_equal(orl_proxy_create(gpu, &s->f.scene, &orl_proxy_hull, &s->proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &s->f.scene, &orl_proxy_hull, 0, &s->proxy), ORL_OK);
     s->frame = (struct frame){.gpu = gpu, .scene = &s->f.scene, .params = &s->params,
                               .proxy = &s->proxy, .photos = &s->photos};
 }
@@ -185,7 +185,7 @@ static void files_are_read_once(void **state)
         remove_file(orl_scene_mask_path(NULL, &s.f.scene, i));
     }
     orl_proxy_finish(gpu, &s.proxy);
-    assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, &s.proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, 0, &s.proxy), ORL_OK);
     s.frame.ahead = ahead;
     assert_int_equal(orl_proxy_update(&s.frame), ORL_OK);
     assert_int_equal(s.proxy.vertex_count, count);

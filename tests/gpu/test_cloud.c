@@ -4,6 +4,8 @@
 
 #include "gpu_test.h"
 #include "scene/point_code.h"
+#include "scene/point_lod.h"
+#include "test.h"
 #include "render/splats.h"
 
 static struct orl_gpu *gpu;
@@ -36,7 +38,7 @@ static const struct cloud *cloud_of(const struct scene *s)
 static void open_scene(struct scene *s)
 {
     const struct orl_scene scene = {.points = s->points};
-    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, &s->proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, 0, &s->proxy), ORL_OK);
 }
 
 static void close_scene(struct scene *s)
@@ -212,6 +214,87 @@ static void chunks_draw_as_one(void **state)
     assert_memory_equal(normal[0], normal[1], sizeof normal[0]);
 }
 
+// A scene whose points are drawn from a file.
+struct paged {
+    struct scene s;
+    struct orl_lod *lod;
+    char *dir, *ply, *file;
+};
+
+static void open_pages(struct paged *p, size_t most_bytes)
+{
+    static const struct orl_lod_params params = {0};
+    make_wall(&p->s);
+    assert_int_equal(test_file_make("points.ply", &p->dir, &p->ply), 0);
+    p->file = orl_path_join(NULL, p->dir, ORL_LOD_NAME);
+    assert_int_equal(orl_points_write(NULL, p->ply, &p->s.points, false), ORL_OK);
+    assert_int_equal(orl_lod_write(NULL, NULL, &params, p->ply, p->file), ORL_OK);
+    assert_int_equal(orl_lod_open(NULL, p->file, &p->lod), ORL_OK);
+    const struct orl_scene scene = {.points = p->s.points, .lod = p->lod};
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, most_bytes, &p->s.proxy),
+                     ORL_OK);
+}
+
+static void close_pages(struct paged *p)
+{
+    close_scene(&p->s);
+    orl_lod_close(&p->lod);
+    assert_int_equal(orl_dir_remove(NULL, p->dir), ORL_OK);
+    free(p->dir);
+    free(p->ply);
+    free(p->file);
+}
+
+// Where a view needs all points, or all that the device can hold, it gets what it gets of a cloud
+// that is on the device as a whole.
+static void pages_draw_as_the_whole(void **state)
+{
+    (void)state;
+    static float depth[2][SIDE * SIDE], normal[2][SIDE * SIDE * 4];
+    for (int run = 0; run < 2; run++) {
+        struct paged p = {0};
+        if (run == 0) {
+            make_wall(&p.s);
+            open_scene(&p.s);
+        } else {
+            open_pages(&p, 0);
+        }
+        draw(&p.s, 0);
+        orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
+        orl_tex_read(p.s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
+        if (run == 0)
+            close_scene(&p.s);
+        else
+            close_pages(&p);
+    }
+    assert_memory_equal(depth[0], depth[1], sizeof depth[0]);
+    assert_memory_equal(normal[0], normal[1], sizeof normal[0]);
+}
+
+// With room for half of the pages, and for coarse levels where a few points are enough, the wall has
+// no hole; and what was drawn before does not matter.
+static void few_pages_leave_no_hole(void **state)
+{
+    (void)state;
+    struct paged p = {0};
+    static float depth[2][SIDE * SIDE];
+    open_pages(&p, 1); // the least: 16 pages; the wall's finest level has 32
+    assert_true(p.lod->levels[0].count > 16);
+    for (int run = 0; run < 3; run++) {
+        draw(&p.s, run == 1 ? 2 : 0);
+        float *to = depth[run == 2];
+        orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[0], to);
+        for (int i = 0; i < SIDE * SIDE; i++)
+            assert_float_equal(to[i], 2.0005, 0.002);
+        if (run == 0)
+            memcpy(depth[1], depth[0], sizeof depth[0]);
+    }
+    draw(&p.s, 0);
+    orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[0], depth[0]);
+    assert_memory_equal(depth[0], depth[1], sizeof depth[0]);
+    close_pages(&p);
+}
+
 static void no_points_are_no_depth(void **state)
 {
     (void)state;
@@ -235,6 +318,8 @@ int main(void)
         cmocka_unit_test(dense_blocks_are_thinned_without_holes),
         cmocka_unit_test(runs_are_the_same),
         cmocka_unit_test(chunks_draw_as_one),
+        cmocka_unit_test(pages_draw_as_the_whole),
+        cmocka_unit_test(few_pages_leave_no_hole),
         cmocka_unit_test(no_points_are_no_depth),
     };
     int failed = cmocka_run_group_tests_name("cloud", tests, NULL, NULL);

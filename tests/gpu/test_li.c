@@ -41,7 +41,7 @@ static struct proxy *hull_of(struct fixture *f, const struct orl_render_params *
 {
     const struct orl_renderer_params none = {0};
     assert_int_equal(orl_photos_init(gpu, &f->scene, &none, 0, photos), ORL_OK);
-    assert_int_equal(orl_proxy_create(gpu, &f->scene, &orl_proxy_hull, proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &f->scene, &orl_proxy_hull, 0, proxy), ORL_OK);
     struct frame frame = {.gpu = gpu, .scene = &f->scene, .params = params, .proxy = proxy,
                           .photos = photos};
     assert_int_equal(orl_proxy_update(&frame), ORL_OK);
@@ -172,7 +172,7 @@ static int count_leaks(struct fixture *f, const struct orl_view *view, const cha
     const char *const choices[] = {"proxy=mesh", "fill=none", fat};
     struct orl_render_params params = params_of(choices, 3);
     struct proxy proxy;
-    assert_int_equal(orl_proxy_create(gpu, &f->scene, &orl_proxy_mesh, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &f->scene, &orl_proxy_mesh, 0, &proxy), ORL_OK);
     const struct orl_view *photo = &f->photos[0].view;
     float *here = depth_of(&proxy, *view, 1, &params), *there = depth_of(&proxy, *photo, FINER,
                                                                          &params);

@@ -53,7 +53,7 @@ static void triangles_have_their_depth_and_normal(void **state)
     struct proxy proxy;
     struct surface surface;
     static float depth[W * H], normal[W * H][4];
-    assert_int_equal(orl_proxy_create(gpu, &f.scene, &orl_proxy_mesh, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &f.scene, &orl_proxy_mesh, 0, &proxy), ORL_OK);
     assert_int_equal(proxy.vertex_count, 7);
     assert_float_equal(proxy.extent.low[2], 2, 0);
     assert_float_equal(proxy.extent.high[0], 3, 0);
@@ -91,7 +91,7 @@ static void nothing_is_where_no_triangle_is(void **state)
     struct proxy proxy;
     struct surface surface;
     static float depth[W * H];
-    assert_int_equal(orl_proxy_create(gpu, &f.scene, &orl_proxy_mesh, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &f.scene, &orl_proxy_mesh, 0, &proxy), ORL_OK);
     assert_int_equal(orl_proxy_draw(gpu, &proxy, &view, &params, true, &proxy.view_target, &surface),
                      ORL_OK);
     orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);

@@ -57,7 +57,7 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     const struct orl_render_params params = {.splat_scale = 1};
     struct proxy proxy;
     struct surface surface;
-    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, 0, &proxy), ORL_OK);
     assert_int_equal(orl_proxy_draw(gpu, &proxy, view, &params, true, &proxy.view_target, &surface),
                      ORL_OK);
     const struct splat_target *target = proxy.view_target;
@@ -277,7 +277,7 @@ static void odd_sizes_lose_no_pixel(void **state)
     struct proxy proxy;
     struct surface surface;
     float depth[W * H];
-    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, &proxy), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, 0, &proxy), ORL_OK);
     assert_int_equal(orl_proxy_draw(gpu, &proxy, &view, &params, true, &proxy.view_target, &surface),
                      ORL_OK);
     orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);

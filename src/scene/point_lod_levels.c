@@ -1,0 +1,285 @@
+// The pages and levels of points.lod, from blocks in their order.
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/point_lod_internal.h"
+
+// The part of a block that its parent takes, in points.
+enum { TAKEN = ORL_BLOCK_POINTS / ORL_LOD_CHILDREN };
+
+struct level {
+    struct orl_atomic_file temp; // of levels above 0; never takes its final name
+    FILE *file;
+    struct orl_lod_data page;    // being filled
+    int filled;                  // its blocks
+    struct point_block group[ORL_LOD_CHILDREN]; // blocks whose parent is not made yet
+    int grouped;
+    struct orl_lod_page *pages;
+    size_t page_count, page_capacity;
+    uint64_t points;
+};
+
+struct lod_levels {
+    const struct orl_log *log;
+    char *path; // owned
+    int count;  // of levels that have begun
+    struct level *level[ORL_LOD_LEVELS_MAX];
+    struct orl_points taken; // of the parent that is being made
+    uint32_t order[ORL_BLOCK_POINTS];
+};
+
+static enum orl_result failed(const struct lod_levels *l)
+{
+    return orl_fail(l->log, ORL_ERR_IO, "%s: %s", l->path, strerror(errno));
+}
+
+static enum orl_result add_level(struct lod_levels *l, FILE *file)
+{
+    ORL_REQUIRE(l->log, l->count < ORL_LOD_LEVELS_MAX);
+    struct level *level = orl_array(l->log, 1, sizeof *level);
+    if (!level)
+        return ORL_ERR_MEMORY;
+    l->level[l->count++] = level;
+    level->file = file;
+    if (file)
+        return ORL_OK;
+    enum orl_result result = orl_atomic_begin(l->log, l->path, &level->temp);
+    int copy = result == ORL_OK ? fcntl(level->temp.fd, F_DUPFD_CLOEXEC, 0) : -1;
+    level->file = copy >= 0 ? fdopen(copy, "w+b") : NULL; // it is read again
+    if (result == ORL_OK && !level->file)
+        result = failed(l);
+    if (copy >= 0 && !level->file)
+        close(copy);
+    return result;
+}
+
+enum orl_result lod_levels_begin(const struct orl_log *log, const char *path, FILE *file,
+                                 struct lod_levels **out)
+{
+    struct lod_levels *l = *out = orl_array(log, 1, sizeof *l);
+    if (!l)
+        return ORL_ERR_MEMORY;
+    l->log = log;
+    l->path = orl_strdup(log, path);
+    enum orl_result result = l->path ? orl_points_init(log, &l->taken, ORL_BLOCK_POINTS)
+                                     : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = add_level(l, file);
+    if (result != ORL_OK)
+        lod_levels_destroy(out);
+    return result;
+}
+
+void lod_levels_destroy(struct lod_levels **levels)
+{
+    struct lod_levels *l = *levels;
+    if (!l)
+        return;
+    for (int k = 0; k < l->count; k++) {
+        if (k > 0 && l->level[k]->file)
+            fclose(l->level[k]->file);
+        orl_atomic_abort(&l->level[k]->temp);
+        free(l->level[k]->pages);
+        free(l->level[k]);
+    }
+    orl_points_finish(&l->taken);
+    free(l->path);
+    free(l);
+    *levels = NULL;
+}
+
+// --- pages ---
+
+// Bounds, number and density of a page's points, from what its blocks say.
+static struct orl_lod_page describe_page(const struct orl_lod_data *page)
+{
+    struct orl_lod_page entry = {0};
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double area = 0, measured = 0;
+    for (size_t b = 0; b < ORL_LOD_BLOCKS; b++) {
+        const float(*block)[4] = page->blocks[b];
+        float count = block[1][3], density = block[0][3];
+        if (!(count > 0))
+            continue;
+        entry.count += (uint32_t)count;
+        for (int k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], block[0][k] - block[1][k]);
+            high[k] = fmaxf(high[k], block[0][k] + block[1][k]);
+        }
+        if (density > 0) {
+            measured += (double)count;
+            area += (double)(count / density);
+        }
+    }
+    for (int k = 0; entry.count && k < 3; k++) {
+        entry.middle[k] = 0.5f * low[k] + 0.5f * high[k];
+        // Measured from the rounded middle, so that no block lies outside.
+        entry.extent[k] = fmaxf(high[k] - entry.middle[k], entry.middle[k] - low[k]);
+    }
+    double density = area > 0 ? measured / area : 0;
+    entry.density = density < 1e30 ? (float)density : 0;
+    return entry;
+}
+
+static enum orl_result flush_page(struct lod_levels *l, struct level *level)
+{
+    if (!level->filled)
+        return ORL_OK;
+    enum orl_result result = orl_grow(l->log, (void **)&level->pages, &level->page_capacity,
+                                      level->page_count + 1, sizeof *level->pages);
+    if (result != ORL_OK)
+        return result;
+    struct orl_lod_page entry = describe_page(&level->page);
+    level->points += entry.count;
+    level->pages[level->page_count++] = entry;
+    if (fwrite(&level->page, sizeof level->page, 1, level->file) != 1)
+        return failed(l);
+    memset(&level->page, 0, sizeof level->page);
+    level->filled = 0;
+    return ORL_OK;
+}
+
+static void put_block(const struct point_block *block, struct level *level)
+{
+    struct orl_lod_data *page = &level->page;
+    int b = level->filled++;
+    memcpy(page->blocks[b], block->texels, sizeof block->texels);
+    for (size_t i = 0; i < ORL_BLOCK_POINTS; i++) {
+        size_t part = i / ORL_ITEM_POINTS, at = i % ORL_ITEM_POINTS;
+        memcpy(page->positions[part][b][at], block->codes[i].position,
+               sizeof block->codes[i].position);
+        page->attributes[part][b][at] = block->codes[i].attributes;
+    }
+}
+
+// --- parents ---
+
+// Takes point i of a child, if it has as many, enlarged to cover the area of those left out.
+static void take_point(const struct point_block *child, int i, struct orl_points *taken)
+{
+    float count = child->texels[1][3], drawn = fminf(count, TAKEN);
+    const struct point_frame frame = {
+        {child->texels[3][0], child->texels[3][1], child->texels[3][2]}, child->texels[3][3]};
+    const struct point_code *code = &child->codes[i];
+    size_t to = taken->count;
+    if ((float)i >= count ||
+        !orl_point_decode_position(&frame, code->position, taken->position[to]))
+        return;
+    orl_point_decode_normal(code->position, taken->normal[to]);
+    taken->radius[to] = orl_point_decode_radius(&frame, code->attributes) * sqrtf(count / drawn);
+    for (int k = 0; k < 3; k++)
+        taken->color[to][k] = (uint8_t)(code->attributes >> 8 * k);
+    taken->count++;
+}
+
+// Takes one point of each child in turn, the children in bit-reversed order, so that any first part
+// of the parent is spread evenly, too.
+static void make_parent(struct lod_levels *l, const struct level *level, struct point_block *parent)
+{
+    static const int turns[ORL_LOD_CHILDREN] = {0, 4, 2, 6, 1, 5, 3, 7};
+    l->taken.count = 0;
+    for (int i = 0; i < TAKEN; i++)
+        for (int turn = 0; turn < ORL_LOD_CHILDREN; turn++)
+            if (turns[turn] < level->grouped)
+                take_point(&level->group[turns[turn]], i, &l->taken);
+    for (size_t i = 0; i < ORL_BLOCK_POINTS; i++)
+        l->order[i] = i < l->taken.count ? (uint32_t)i : UINT32_MAX;
+    orl_point_block_make(&l->taken, l->order, parent);
+}
+
+static enum orl_result add(struct lod_levels *l, int k, const struct point_block *block);
+
+static enum orl_result close_group(struct lod_levels *l, int k)
+{
+    struct level *level = l->level[k];
+    struct point_block parent;
+    if (!level->grouped)
+        return ORL_OK;
+    make_parent(l, level, &parent);
+    level->grouped = 0;
+    enum orl_result result = k + 1 < l->count ? ORL_OK : add_level(l, NULL);
+    return result == ORL_OK ? add(l, k + 1, &parent) : result;
+}
+
+static enum orl_result add(struct lod_levels *l, int k, const struct point_block *block)
+{
+    struct level *level = l->level[k];
+    enum orl_result result = ORL_OK;
+    put_block(block, level);
+    if (level->filled == ORL_LOD_BLOCKS)
+        result = flush_page(l, level);
+    level->group[level->grouped++] = *block;
+    if (result == ORL_OK && level->grouped == ORL_LOD_CHILDREN)
+        result = close_group(l, k);
+    return result;
+}
+
+enum orl_result lod_levels_add(struct lod_levels *levels, const struct point_block *block)
+{
+    return add(levels, 0, block);
+}
+
+// --- the end ---
+
+static enum orl_result append(struct lod_levels *l, struct level *level)
+{
+    enum orl_result result = fseeko(level->file, 0, SEEK_SET) == 0 ? ORL_OK : failed(l);
+    for (size_t i = 0; result == ORL_OK && i < level->page_count; i++)
+        if (fread(&level->page, sizeof level->page, 1, level->file) != 1 ||
+            fwrite(&level->page, sizeof level->page, 1, l->level[0]->file) != 1)
+            result = failed(l);
+    return result;
+}
+
+// The table goes behind the pages, and the header before them.
+static enum orl_result write_table(struct lod_levels *l, struct lod_header *h)
+{
+    FILE *file = l->level[0]->file;
+    struct orl_lod_page *table = orl_array(l->log, h->page_count, sizeof *table);
+    if (!table)
+        return ORL_ERR_MEMORY;
+    for (uint32_t k = 0; k < h->level_count; k++)
+        memcpy(table + h->levels[k].first, l->level[k]->pages,
+               h->levels[k].count * sizeof *table);
+    h->table_at = LOD_PAGES_AT + h->page_count * sizeof(struct orl_lod_data);
+    h->table_hash = XXH3_64bits(table, h->page_count * sizeof *table);
+    bool written = fwrite(table, sizeof *table, h->page_count, file) == h->page_count &&
+                   fseeko(file, 0, SEEK_SET) == 0 && fwrite(h, sizeof *h, 1, file) == 1 &&
+                   fflush(file) == 0;
+    free(table);
+    return written ? ORL_OK : failed(l);
+}
+
+enum orl_result lod_levels_end(struct lod_levels *l)
+{
+    struct lod_header header = {.magic = LOD_MAGIC, .block_points = ORL_BLOCK_POINTS,
+                                .page_blocks = ORL_LOD_BLOCKS, .children = ORL_LOD_CHILDREN};
+    enum orl_result result = ORL_OK;
+    bool top = false;
+    for (int k = 0; result == ORL_OK && !top; k++) {
+        struct level *level = l->level[k];
+        result = flush_page(l, level);
+        top = level->page_count <= 1;
+        if (result == ORL_OK && !top)
+            result = close_group(l, k);
+        if (result == ORL_OK && k > 0)
+            result = append(l, level);
+        if (level->page_count > UINT32_MAX - header.page_count)
+            result = orl_fail(l->log, ORL_ERR_UNSUPPORTED, "%s: too many points", l->path);
+        header.levels[k] = (struct orl_lod_level){(uint32_t)header.page_count,
+                                                  (uint32_t)level->page_count};
+        header.page_count += level->page_count;
+        header.level_count++;
+    }
+    header.points = l->level[0]->points;
+    if (result == ORL_OK && !header.points)
+        result = orl_fail(l->log, ORL_ERR_DATA, "%s: no usable points", l->path);
+    return result == ORL_OK ? write_table(l, &header) : result;
+}

@@ -1,0 +1,23 @@
+// Private: points of a PLY file, a part at a time, for clouds larger than memory.
+#ifndef ORL_SCENE_POINT_STREAM_H
+#define ORL_SCENE_POINT_STREAM_H
+
+#include "oriel/points.h"
+
+struct orl_point_stream;
+// Opens a binary PLY whose vertices come first and have no lists. *total: how many the header
+// claims, which the file is long enough for.
+enum orl_result orl_point_stream_open(const struct orl_log *log, const char *path,
+                                      struct orl_point_stream **stream,
+                                      uint64_t *total) ORL_CHECK_RESULT;
+void orl_point_stream_close(struct orl_point_stream **stream);
+// The next record to read.
+enum orl_result orl_point_stream_seek(struct orl_point_stream *stream,
+                                      uint64_t record) ORL_CHECK_RESULT;
+// Reads the next `most` records, or as many as are left, as orl_points_read does. `points` has room
+// for as many; its count becomes the number of those that are usable. *read: the number of records;
+// 0: there are no more.
+enum orl_result orl_point_stream_next(struct orl_point_stream *stream, size_t most,
+                                      struct orl_points *points, size_t *read) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# oriel lod: the same picture from points.lod as from points.ply, and refusals.
+set -u
+. "$2/tests/e2e/command_lib"
+
+monument_scene || exit 77
+name=$(basename "$(find made/images -name '*.jpg' | sort | head -n 1)")
+all=(--layers depth --set points_per_pixel=0 --quiet) # no coarser level will do
+runs 0 "$oriel" render made --at "$name" "${all[@]}" --out whole.png
+runs 0 "$oriel" info made --json
+points=$(grep -o '"points": [0-9]*' stdout.txt | head -n 1)
+mv made/points.ply cloud.ply
+runs 2 "$oriel" lod made
+grep -q "points.ply" stderr.txt || fail "what is missing is not named"
+runs 0 "$oriel" lod made --points cloud.ply
+grep -q "pages of [0-9]* levels" stdout.txt || fail "no word of what was written"
+# Without points.ply now.
+runs 0 "$oriel" render made --at "$name" "${all[@]}" --out paged.png
+# Of points at equal depth, which are many on walls made by hand, another one may win.
+if command -v compare >/dev/null; then
+    for layer in "" .depth; do
+        psnr=$(compare -metric PSNR "whole$layer.png" "paged$layer.png" null: 2>&1)
+        awk -v db="$psnr" 'BEGIN { exit !(db == "inf" || db > 40) }' ||
+            fail "another picture$layer: $psnr dB"
+    done
+fi
+runs 0 "$oriel" info made --json
+[ "$(grep -o '"points": [0-9]*' stdout.txt | head -n 1)" = "$points" ] || fail "not $points"
+runs 1 "$oriel" trim made --out trimmed
+grep -q "points.lod" stderr.txt || fail "trim does not say why"
+[ -e trimmed ] && fail "trim left a folder"
+# A damaged file is named, with what to do.
+head -c 100000 made/points.lod >cut && mv cut made/points.lod
+runs 2 "$oriel" render made --at "$name" --out cut.png
+grep -q "points.lod: .*oriel lod" stderr.txt || fail "a file that is cut off is not told"
+exit $failed
