@@ -23,13 +23,13 @@ struct lod_header {
 struct lod_levels;
 // Pages of level 0 go to `file`, which stands at the first page; those of coarser levels wait in
 // files beside `path`.
-enum orl_result lod_levels_begin(const struct orl_log *log, const char *path, FILE *file,
-                                 struct lod_levels **levels) ORL_CHECK_RESULT;
-enum orl_result lod_levels_add(struct lod_levels *levels,
-                               const struct point_block *block) ORL_CHECK_RESULT;
+enum orl_result orl_lod_levels_begin(const struct orl_log *log, const char *path, FILE *file,
+                                     struct lod_levels **levels) ORL_CHECK_RESULT;
+enum orl_result orl_lod_levels_add(struct lod_levels *levels,
+                                   const struct point_block *block) ORL_CHECK_RESULT;
 // Appends the coarser levels and the table, and writes the header.
-enum orl_result lod_levels_end(struct lod_levels *levels) ORL_CHECK_RESULT;
-void lod_levels_destroy(struct lod_levels **levels);
+enum orl_result orl_lod_levels_end(struct lod_levels *levels) ORL_CHECK_RESULT;
+void orl_lod_levels_destroy(struct lod_levels **levels);
 
 static_assert(sizeof(struct orl_lod_data) == 102400, "a page has no padding");
 static_assert(sizeof(struct orl_lod_page) == 32, "an entry of the table has no padding");

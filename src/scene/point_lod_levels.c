@@ -60,8 +60,8 @@ static enum orl_result add_level(struct lod_levels *l, FILE *file)
     return result;
 }
 
-enum orl_result lod_levels_begin(const struct orl_log *log, const char *path, FILE *file,
-                                 struct lod_levels **out)
+enum orl_result orl_lod_levels_begin(const struct orl_log *log, const char *path, FILE *file,
+                                     struct lod_levels **out)
 {
     struct lod_levels *l = *out = orl_array(log, 1, sizeof *l);
     if (!l)
@@ -73,11 +73,11 @@ enum orl_result lod_levels_begin(const struct orl_log *log, const char *path, FI
     if (result == ORL_OK)
         result = add_level(l, file);
     if (result != ORL_OK)
-        lod_levels_destroy(out);
+        orl_lod_levels_destroy(out);
     return result;
 }
 
-void lod_levels_destroy(struct lod_levels **levels)
+void orl_lod_levels_destroy(struct lod_levels **levels)
 {
     struct lod_levels *l = *levels;
     if (!l)
@@ -221,7 +221,7 @@ static enum orl_result add(struct lod_levels *l, int k, const struct point_block
     return result;
 }
 
-enum orl_result lod_levels_add(struct lod_levels *levels, const struct point_block *block)
+enum orl_result orl_lod_levels_add(struct lod_levels *levels, const struct point_block *block)
 {
     return add(levels, 0, block);
 }
@@ -257,7 +257,7 @@ static enum orl_result write_table(struct lod_levels *l, struct lod_header *h)
     return written ? ORL_OK : failed(l);
 }
 
-enum orl_result lod_levels_end(struct lod_levels *l)
+enum orl_result orl_lod_levels_end(struct lod_levels *l)
 {
     struct lod_header header = {.magic = LOD_MAGIC, .block_points = ORL_BLOCK_POINTS,
                                 .page_blocks = ORL_LOD_BLOCKS, .children = ORL_LOD_CHILDREN};

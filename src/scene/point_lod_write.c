@@ -275,7 +275,7 @@ static enum orl_result add_part(struct writer *w, const struct part *part)
     for (size_t i = 0; result == ORL_OK && i < count; i += ORL_BLOCK_POINTS) {
         struct point_block block;
         orl_point_block_make(&points, order + i, &block);
-        result = lod_levels_add(w->levels, &block);
+        result = orl_lod_levels_add(w->levels, &block);
     }
     free(order);
     orl_points_finish(&points);
@@ -316,12 +316,12 @@ static enum orl_result begin(struct writer *w, const char *ply)
     w->file = orl_atomic_stream(&w->out);
     if (!w->file || fseeko(w->file, LOD_PAGES_AT, SEEK_SET) != 0)
         return failed(w);
-    return lod_levels_begin(w->log, w->path, w->file, &w->levels);
+    return orl_lod_levels_begin(w->log, w->path, w->file, &w->levels);
 }
 
 static void finish(struct writer *w)
 {
-    lod_levels_destroy(&w->levels);
+    orl_lod_levels_destroy(&w->levels);
     if (w->file)
         fclose(w->file);
     orl_atomic_abort(&w->sorted);
@@ -346,7 +346,7 @@ enum orl_result orl_lod_write(const struct orl_log *log, const struct orl_progre
         (result = make_parts(&w)) == ORL_OK &&
         (result = for_all(&w, "sort", distribute)) == ORL_OK &&
         (result = flush_parts(&w)) == ORL_OK && (result = add_parts(&w)) == ORL_OK)
-        result = lod_levels_end(w.levels);
+        result = orl_lod_levels_end(w.levels);
     if (result == ORL_OK)
         result = orl_atomic_commit(log, &w.out);
     finish(&w);
