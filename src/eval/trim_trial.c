@@ -409,8 +409,10 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     bool slow = is_slow(s, move->measured.ms), good = gain > 0 && is_good(s, &t);
     move->ratio = gain / fmax(move->measured.loss_db, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
-    // What loses nothing need not be compared, except photographs, which stand in for each other.
-    bool lossless = move->measured.loss_db <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH;
+    // What loses nothing need not be compared, except photographs, which stand in for each other, and
+    // their resolution: where photographs do not fit each other, PSNR rises as they become blurred.
+    bool lossless = move->measured.loss_db <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH &&
+                    move->part != ORL_TRIM_RESOLUTION;
     bool taken = good && !slow &&
                  (!other || lossless || comes_later(s, other) != comes_later(s, move) ||
                   good_enough * other->ratio <= move->ratio);
