@@ -137,9 +137,9 @@ static void find_nearest(struct trim_search *s, size_t target)
     }
 }
 
-// What a photograph promises before it is tried, as a share of the tolerance that it is taken to
-// cost. Trying all photographs takes longest, and less in a model that other steps have made smaller:
-// steps that promise more come before.
+// What a photograph is taken to cost before it is tried, as a share of the tolerance. To try all
+// photographs takes longest, and less in a model that other steps have made smaller: steps that
+// promise more come first.
 static const double photo_cost = 0.25;
 
 static void add_move(struct trim_search *s, enum orl_trim_part part, size_t index)

@@ -409,8 +409,8 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     bool slow = is_slow(s, move->measured.ms), good = gain > 0 && is_good(s, &t);
     move->ratio = gain / fmax(move->measured.loss_db, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
-    // What loses nothing need not be compared, except photographs, which stand in for each other, and
-    // their resolution: where photographs do not fit each other, PSNR rises as they become blurred.
+    // What loses nothing need not be compared, except photographs, which stand in for each other,
+    // and their resolution: where photographs do not fit each other, PSNR rises with their blur.
     bool lossless = move->measured.loss_db <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH &&
                     move->part != ORL_TRIM_RESOLUTION;
     bool taken = good && !slow &&
@@ -427,8 +427,9 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
         double loss_db = move->measured.loss_db;
         result = take(s, &t);
         make_room(s, loss_db < 0);
-        // The next level may be worth half as much; all others go only once.
-        move->ratio *= 0.5;
+        // The next level may be worth half as much, or as much after one that lost nothing; all
+        // others go only once.
+        move->ratio = lossless ? INFINITY : 0.5 * move->ratio;
         move->dead = move->part == ORL_TRIM_PHOTOGRAPH || move->part == ORL_TRIM_OPTION ||
                      move->part == ORL_TRIM_TEXTURES;
     }
