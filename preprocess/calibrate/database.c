@@ -25,6 +25,15 @@ static enum orl_result fail(const struct orl_database *db)
                     sqlite3_errmsg(db->handle));
 }
 
+// A database may be a stranger's: of what it holds, tables alone take part.
+static bool open_file(const char *path, int flags, sqlite3 **handle)
+{
+    return sqlite3_open_v2(path, handle, flags, NULL) == SQLITE_OK &&
+           sqlite3_db_config(*handle, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL) == SQLITE_OK &&
+           sqlite3_db_config(*handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL) == SQLITE_OK &&
+           sqlite3_db_config(*handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL) == SQLITE_OK;
+}
+
 enum orl_result orl_database_open(const struct orl_log *log, const char *path,
                                   struct orl_database **out)
 {
@@ -40,7 +49,7 @@ enum orl_result orl_database_open(const struct orl_log *log, const char *path,
     db->path = orl_strdup(log, path);
     enum orl_result result = db->path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK &&
-        (sqlite3_open_v2(path, &db->handle, SQLITE_OPEN_READWRITE, NULL) != SQLITE_OK ||
+        (!open_file(path, SQLITE_OPEN_READWRITE, &db->handle) ||
          sqlite3_prepare_v2(db->handle, sql, -1, &db->features, NULL) != SQLITE_OK))
         result = fail(db);
     if (result == ORL_OK)
@@ -388,8 +397,7 @@ enum orl_result orl_database_create_like(const struct orl_log *log, const char *
     struct orl_database made = {.log = log, .path = (char *)(uintptr_t)path};
     int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     enum orl_result result =
-        sqlite3_open_v2(path, &made.handle, flags, NULL) == SQLITE_OK ? attach(&made, other)
-                                                                      : fail(&made);
+        open_file(path, flags, &made.handle) ? attach(&made, other) : fail(&made);
     *db = NULL;
     if (result == ORL_OK && copy_tables(made.handle) != SQLITE_OK)
         result = fail(&made);

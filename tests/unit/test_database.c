@@ -440,6 +440,20 @@ static void a_part_runs_no_sql_of_a_stranger(void **state)
     assert_int_equal(number(part, "SELECT count(*) FROM images"), 0);
 }
 
+static void no_trigger_of_a_stranger_runs(void **state)
+{
+    (void)state;
+    struct orl_database *db;
+    uint32_t matches[][2] = {{0, 1}};
+    make_more_tables();
+    run_sql("INSERT INTO images VALUES (1, 'a.png', 1);"
+            "CREATE TRIGGER evil AFTER INSERT ON matches BEGIN DELETE FROM images; END");
+    assert_int_equal(orl_database_open(NULL, file, &db), ORL_OK);
+    assert_int_equal(orl_database_write_matches(db, 1, 7, matches, 1), ORL_OK);
+    orl_database_close(&db);
+    assert_int_equal(number(file, "SELECT count(*) FROM images"), 1);
+}
+
 #define FILE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -450,6 +464,7 @@ int main(void)
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
         FILE_TEST(parts_are_joined), FILE_TEST(a_part_has_the_features_of_its_pairs),
         FILE_TEST(a_part_runs_no_sql_of_a_stranger),
+        FILE_TEST(no_trigger_of_a_stranger_runs),
         FILE_TEST(matches_are_written_for_colmap), FILE_TEST(matching_can_be_interrupted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
