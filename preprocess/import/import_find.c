@@ -197,7 +197,8 @@ static enum orl_result choose_folder(const struct import_job *job, char **dir)
                                             "--images %s: no such folder", *dir);
 }
 
-// Finds a camera's picture by the camera's name, else by the path in the file of cameras.
+// Finds a camera's picture by the camera's name, else by the path in the file of cameras, unless the
+// user named the folder: that file may be a stranger's.
 static enum orl_result find_picture(const struct import_job *job, const char *dir,
                                     const struct orl_colmap_image *image,
                                     struct import_found *found)
@@ -206,7 +207,8 @@ static enum orl_result find_picture(const struct import_job *job, const char *di
     enum orl_result result = orl_import_find(job->log, dir, image->name, "video", false, found);
     const char *told = image->id >= 1 && image->id <= known->path_count
                            ? known->paths[image->id - 1] : NULL;
-    if (result != ORL_OK || found->kind != IMPORT_NOTHING || !told || !strchr(told, '/'))
+    if (result != ORL_OK || found->kind != IMPORT_NOTHING || !told || !strchr(told, '/') ||
+        job->params->images_dir)
         return result;
     char *beside = orl_format(job->log, "%s%s%.*s", *told == '/' ? "" : known->folder,
                               *told == '/' ? "" : "/", (int)(orl_path_name(told) - told), told);
