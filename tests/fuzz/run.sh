@@ -52,6 +52,7 @@ wanted=" ${*:-} "
 
 run_target() {
     local name=$1 corpus=$dir/corpus/$1
+    local begun=$SECONDS
     mkdir -p "$corpus"
     FUZZ_TARGET=$name LLVM_PROFILE_FILE=/dev/null ASAN_OPTIONS=allocator_may_return_null=1 \
         LSAN_OPTIONS=suppressions=$here/../leaks.supp UBSAN_OPTIONS=print_stacktrace=1 \
@@ -62,7 +63,7 @@ run_target() {
         >"$dir/$name.log" 2>&1
     local status=$? runs
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log")
-    echo "$name ${runs:-0} $seconds" >>"$dir/tried.txt" # all runs of this build folder
+    echo "$name ${runs:-0} $((SECONDS - begun))" >>"$dir/tried.txt" # all runs of this build folder
     if [ $status -eq 0 ]; then
         echo "$name: ${runs:-0} inputs"
     else

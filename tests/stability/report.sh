@@ -1,32 +1,35 @@
 #!/usr/bin/env bash
 # Writes docs/measured/robustness.md: fuzzes every reader, injects every fault, soaks, counts.
-# usage: tests/stability/report.sh BUILD SECONDS|keep [all]
+# usage: tests/stability/report.sh BUILD SECONDS|keep [all|keep]
 # SECONDS of fuzzing for each reader, 0: only the inputs that there are; keep: leave what the page
-# says of fuzzing. all: every call fails in turn, which takes an hour, instead of the first ones of a
-# kind and then ever fewer. BUILD is a build folder with the program and tests. Inputs tried add up
+# says of fuzzing. all: every call fails in turn, which takes hours, instead of the first ones of a
+# kind and then ever fewer; keep: leave what the page says of faults, frames and valgrind. BUILD is a build folder with the program and tests. Inputs tried add up
 # over the runs of tests/fuzz/run.sh in build-fuzz. SOAK_FRAMES and SOAK_ROUNDS: 10000 and 1000.
 set -eu -o pipefail
-[ $# -ge 2 ] || { sed -n '2,8s/^# *//p' "$0"; exit 2; }
+[ $# -ge 2 ] || { sed -n '2,9s/^# *//p' "$0"; exit 2; }
 source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1") seconds=$2 all=${3:-}
 fuzz=${FUZZ_DIR:-$source/build-fuzz} page=$source/docs/measured/robustness.md
 status=0
 mkdir -p "$source/docs/measured" "$fuzz/failures"
 [ "$seconds" = keep ] || "$source/tests/fuzz/run.sh" "$seconds" || status=1
-: >"$fuzz/injected.txt"
-for script in inject inject_prepare inject_trim; do
-    "$source/tests/stability/$script.sh" "$build/oriel" "$source" "$build/tests/libinject.so" $all 2>&1 |
-        tee -a "$fuzz/injected.txt" || status=1
-done
-"$source/tests/stability/soak.sh" "$build/oriel" "$source" "$build/tests/soak" \
-    "${SOAK_FRAMES:-10000}" "${SOAK_ROUNDS:-1000}" 2>&1 | tee "$fuzz/soaked.txt" || status=1
-"$source/tests/stability/valgrind.sh" "$build" "$source" | tee "$fuzz/valgrind.txt" || status=1
+if [ "$all" != keep ]; then
+    : >"$fuzz/injected.txt"
+    for script in inject inject_prepare inject_trim; do
+        "$source/tests/stability/$script.sh" "$build/oriel" "$source" "$build/tests/libinject.so" \
+            $all 2>&1 | tee -a "$fuzz/injected.txt" || status=1
+    done
+    "$source/tests/stability/soak.sh" "$build/oriel" "$source" "$build/tests/soak" \
+        "${SOAK_FRAMES:-10000}" "${SOAK_ROUNDS:-1000}" 2>&1 | tee "$fuzz/soaked.txt" || status=1
+    "$source/tests/stability/valgrind.sh" "$build" "$source" | tee "$fuzz/valgrind.txt" || status=1
+fi
 
 failures() { find "$fuzz/failures" -type f | wc -l; }
 
 fuzzing() {
     echo "## Inputs tried"
     echo
-    echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
+    echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited, at commit"
+    echo "$(git -C "$source" rev-parse --short HEAD)."
     echo
     echo "| reader | inputs tried | seconds of wall clock on one core | failures left |"
     echo "|---|--:|--:|--:|"
@@ -41,26 +44,20 @@ fuzzing() {
     echo
     echo "## Lines of each reader that these inputs reach"
     echo
+    echo "Most of the lines that are left answer an allocation, a file or a library that fails, which"
+    echo "the injection of faults below does, or belong to functions that read no input."
+    echo
     echo "| file | lines | reached |"
     echo "|---|--:|--:|"
     awk '{ printf "| `%s` | %d | %.0f %% |\n", $3, $5, 100 * $4 / ($5 ? $5 : 1) }' "$fuzz/lines.txt"
     echo
 }
 
-{
-    cat <<'END'
-# Robustness: what was tried, and what failed
-
-Made by `tests/stability/report.sh BUILD SECONDS`. SECURITY.md says what Oriel promises; the inputs
-and checks below are in `tests/fuzz` and `tests/stability`.
-
-END
-    if [ "$seconds" = keep ]; then
-        sed -n '/^## Inputs tried/,/^## Faults/{/^## Faults/!p}' "$page"
-    else
-        fuzzing
-    fi
+# Faults, frames and valgrind.
+running() {
     echo "## Faults injected"
+    echo
+    echo "At commit $(git -C "$source" rev-parse --short HEAD)."
     echo
     echo "A call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
     echo "(PNG, EXR), \`hdr\` and \`synth\`. Afterwards a final name holds what it held before or the whole"
@@ -90,6 +87,26 @@ END
     echo "The stored inputs of every reader under valgrind: $(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"),"
     echo "$(grep -c ^FAILED "$fuzz/valgrind.txt" || true) readers with an error."
     echo
+}
+
+{
+    cat <<'END'
+# Robustness: what was tried, and what failed
+
+Made by `tests/stability/report.sh BUILD SECONDS`. SECURITY.md says what Oriel promises; the inputs
+and checks below are in `tests/fuzz` and `tests/stability`.
+
+END
+    if [ "$seconds" = keep ]; then
+        sed -n '/^## Inputs tried/,/^## Faults/{/^## Faults/!p}' "$page"
+    else
+        fuzzing
+    fi
+    if [ "$all" = keep ]; then
+        sed -n '/^## Faults injected/,/^## Found/{/^## Found/!p}' "$page"
+    else
+        running
+    fi
     echo "## Found, mended, and kept as tests"
     echo
     echo "| what was wrong | test |"
