@@ -544,7 +544,7 @@ page_memory() {
 }
 
 page_trim() {
-    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --random --quiet --json WORK/trimmed/NAME.json --plots WORK/trimmed/NAME'
+    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 4 --budget 400 --random --quiet --json WORK/trimmed/NAME.json --plots WORK/trimmed/NAME'
     local name
     mkdir -p "$work/trimmed"
     for name in $(scene_names fountain herz sakharov monument); do
@@ -557,7 +557,8 @@ page_trim() {
 
 What `oriel trim` leaves of a scene within 0.1 dB of mean PSNR over training photographs, each rendered without itself,
 and no photograph worse by more than 0.5 dB. *Model*: points and photographs on the device. The time of a frame is
-processor time on a software renderer. Held-out photographs confirm the result and decide nothing.
+processor time on a software renderer, the whole scene and the trimmed one drawn in turns. Held-out photographs confirm
+the result and decide nothing.
 END
     command_block "$trim"
     print_table "$work/trim.json" '
