@@ -76,7 +76,7 @@ export const text = {
     figures: "Figures",
     figure: {
         frame: "A frame takes", size: "Drawn at", points: "Points", photos: "Photographs",
-        loaded: "Loaded", memory: "Graphics memory", device: "Drawn by",
+        loaded: "Loaded", memory: "Graphics memory", device: "Renderer",
     },
     milliseconds: ms => `${ms.toFixed(1)} ms`,
     size: (w, h) => `${w} × ${h}`,
