@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""measure.py BUILD SCENE [--out DIR] [--views N]: the published page of a scene beside `oriel render`.
+"""measure.py BUILD SCENE [--out DIR] [--views N] [--window WxH]: the published page of a scene beside `oriel render`.
 
 Publishes SCENE, lets a headless Chromium on SwiftShader draw the held-out cameras, and prints PSNR
 and SSIM of page and renderer against the photographs and against each other, bytes until the first
@@ -84,6 +84,7 @@ def main():
     parser.add_argument("scene")
     parser.add_argument("--out", default=None, help="keeps the pictures")
     parser.add_argument("--views", type=int, default=0, help="at most so many held-out cameras, evenly chosen")
+    parser.add_argument("--window", default="1280x800", help="size of the page; a small one loads sooner")
     options = parser.parse_args()
     work = options.out or tempfile.mkdtemp()
     os.makedirs(work, exist_ok=True)
@@ -93,7 +94,7 @@ def main():
     test = [c for c in cameras if c["test"]] or cameras[:3]
     if options.views:
         test = [test[i * len(test) // options.views] for i in range(min(options.views, len(test)))]
-    server, browser = Server(f"{work}/site"), Browser(1280, 800)
+    server, browser = Server(f"{work}/site"), Browser(*map(int, options.window.split("x")))
     try:
         start = time.monotonic()
         browser.driver.get(server.address)
