@@ -110,9 +110,9 @@ size_t orl_tex_layer_bytes(const struct orl_tex_params *params);
 // Writes tightly packed pixels of a client format and type, such as GL_RGB, GL_UNSIGNED_BYTE.
 void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
                    const void *pixels);
-// Writes the top left width x height part in the same way.
-void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int width, int height,
-                        GLenum format, GLenum type, const void *pixels);
+// Writes the width x height part whose top left texel is (x, y) in the same way.
+void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int x, int y, int width,
+                        int height, GLenum format, GLenum type, const void *pixels);
 // Reads a level and waits for the device. `size`: room in `pixels`, bytes.
 void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
                   void *pixels);

@@ -53,6 +53,11 @@
     CHOICE(median, orl_median, "off holes all", ORL_MEDIAN_OFF, "paint=gather", \
         "A median filter of the painted picture, over 3x3 pixels of it all, or over the 5x5 " \
         "neighbours of surfaces that no photograph painted (`holes`).") \
+    CHOICE(packing, orl_packing, "off on", ORL_PACKING_OFF, "proxy=hull", \
+        "Only the parts of the photographs that show the hull are on the device, side by side in " \
+        "one texture. It takes less memory, and less to upload. Frames that need whole photographs " \
+        "have them: for a room without pictures of the empty place, for guessed depth, for " \
+        "radiance, where photographs are compressed or made smaller to fit, and in the walk.") \
     NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest select=princ", ORL_NO_TRIES, \
         "How many photographs a frame uses.") \
     NUMBER(extras, 3, 0, 8, "photographs", "select=princ", ORL_NO_TRIES, \

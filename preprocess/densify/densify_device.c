@@ -230,7 +230,7 @@ static enum orl_result upload_sources(struct densify_device *device, const struc
         const struct orl_image *luma =
             &job->sources[k]->levels[source_level(job, k, level->number)];
         pack_quads(luma, pad, quads);
-        orl_tex_write_part(level->sources, 0, k, luma->width + 2 * pad, luma->height + 2 * pad,
+        orl_tex_write_part(level->sources, 0, k, 0, 0, luma->width + 2 * pad, luma->height + 2 * pad,
                            GL_RED_INTEGER, GL_UNSIGNED_INT, quads);
     }
     free(quads);
@@ -259,7 +259,7 @@ static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct de
         size_t count = (size_t)depth->width * (size_t)depth->height;
         for (size_t i = 0; i < count; i++)
             inverse[i] = depth->f32[i] > 0.0f ? 1.0f / depth->f32[i] : 0.0f;
-        orl_tex_write_part(level->source_depths, 0, k, depth->width, depth->height, GL_RED,
+        orl_tex_write_part(level->source_depths, 0, k, 0, 0, depth->width, depth->height, GL_RED,
                            GL_FLOAT, inverse);
     }
     free(inverse);

@@ -67,7 +67,7 @@ ORL_BLOCK(pyramid_block)
 #define ORL_RADIANCE_LIST (ORL_RADIANCE_KEPT + 1) // and the best photograph's weight
 
 // Parameters of a photograph for the gather passes. A storage buffer holds an array of these.
-#define ORL_PHOTO_VEC4S 10
+#define ORL_PHOTO_VEC4S 12
 #if defined(__STDC_VERSION__)
 struct photo_data {
     VEC4S(from_view, 3); // rows of rotation | translation: photo_from_view
@@ -78,6 +78,9 @@ struct photo_data {
     VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
     VEC4(noise);         // of radiance: shot and read noise variance; z: 1 if rounded to 8 bits
     VEC4(selected);      // x: weight by the selection
+    // Of a frame that packs photographs:
+    VEC4(offset);        // xy: from a pixel of the photograph to its place in the packed texture
+    VEC4(region);        // places that may be read: least x, y and largest x, y
 };
 #endif
 

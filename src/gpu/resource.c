@@ -192,19 +192,19 @@ void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
     *handle = NULL;
 }
 
-void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int width, int height,
-                        GLenum format, GLenum type, const void *pixels)
+void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int x, int y, int width,
+                        int height, GLenum format, GLenum type, const void *pixels)
 {
     if (tex->params.layers)
-        glTextureSubImage3D(tex->id, level, 0, 0, layer, width, height, 1, format, type, pixels);
+        glTextureSubImage3D(tex->id, level, x, y, layer, width, height, 1, format, type, pixels);
     else
-        glTextureSubImage2D(tex->id, level, 0, 0, width, height, format, type, pixels);
+        glTextureSubImage2D(tex->id, level, x, y, width, height, format, type, pixels);
 }
 
 void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
                    const void *pixels)
 {
-    orl_tex_write_part(tex, level, layer, level_side(tex->params.width, level),
+    orl_tex_write_part(tex, level, layer, 0, 0, level_side(tex->params.width, level),
                        level_side(tex->params.height, level), format, type, pixels);
 }
 

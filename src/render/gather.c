@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "render/packing.h"
 #include "render/photos.h"
 #include "render/progressive.h"
 
@@ -98,7 +99,9 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
         data->lens[c] = aligned ? photo->vignette[c] : 0;
     }
     data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
-    data->gain[3] = (float)state->slot;
+    data->gain[3] = frame->packs ? 0 : (float)state->slot;
+    if (frame->packs)
+        orl_packing_describe(photos->packing, index, data);
     if (!frame->radiance)
         return;
     for (int c = 0; c < 3; c++)
@@ -126,7 +129,9 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
     struct gather *g = frame->gather;
     const struct photos *photos = frame->photos;
     const struct orl_render_params *params = frame->params;
-    const struct orl_tex_params *color = &photos->color->params, *depth = &photos->depth_params;
+    const struct orl_tex_params *depth = &photos->depth_params;
+    const struct orl_tex_params *color = frame->packs ? &photos->packing->color->params
+                                                      : &photos->color_params;
     for (size_t i = 0; i < count; i++) {
         describe_photo(frame, frame->chosen[first + i], &g->list[i]);
         memcpy(g->list[i].selected, frame->selected[first + i], sizeof g->list[i].selected);
@@ -157,8 +162,9 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines)
 {
-    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s", frame->gather->options,
-                            frame->reads_chroma ? "CHROMA 1\n" : "", defines ? defines : "");
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s", frame->gather->options,
+                            frame->reads_chroma ? "CHROMA 1\n" : "",
+                            frame->packs ? "PACKED 1\n" : "", defines ? defines : "");
     struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;
     free(text);
     return prog;
@@ -259,12 +265,12 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
     struct gather_slots slots;
     struct gather_block block = orl_gather_prepare(frame, first, count);
     orl_gather_slots(frame, &slots);
+    struct orl_tex *color = frame->packs ? frame->photos->packing->color : frame->photos->color;
     struct orl_dispatch d = {
         .prog = generic_program(frame, &slots, sweep),
         .params = &block, .params_size = sizeof block,
         // Without depth maps no shader reads them, but a sampler wants a texture.
-        .textures = {frame->photos->color,
-                     frame->photos->depth ? frame->photos->depth : frame->photos->color,
+        .textures = {color, frame->photos->depth ? frame->photos->depth : color,
                      [ORL_PHOTO_CHROMA] = frame->photos->chroma},
         .images = {{frame->surface.depth, 0, GL_READ_ONLY},
                    {frame->picture, 0, GL_READ_WRITE},

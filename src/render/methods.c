@@ -54,7 +54,7 @@ const struct orl_method orl_methods[] = {
     {"li", "a hull of the silhouettes, all photographs that see it alike, before the room's walls",
      "Li 2003, sections 4 and 5",
      {DEFAULTS .proxy = "hull", .visibility = "opaque", .weight = "equal", .fill = ORL_FILL_ROOM,
-      .border_px = 0, .hull_side = 128}},
+      .border_px = 0, .hull_side = 128, .packing = ORL_PACKING_ON}},
     {"goldluecke", "voxels of silhouettes as billboards, each from the two photographs nearest by axis",
      "Goldluecke 2003, section 3",
      {DEFAULTS .proxy = "voxels", .paint = "billboards", .fill = ORL_FILL_NONE}},

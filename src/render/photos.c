@@ -10,6 +10,7 @@
 #include "io/picture.h"
 #include "render/ahead.h"
 #include "render/method.h"
+#include "render/packing.h"
 #include "render/photos.h"
 #include "scene/silhouette.h"
 #include "shared/hull_blocks.h"
@@ -239,23 +240,43 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         state->color_camera = camera_of(&scene->photos[i], photos->divide);
         state->depth_camera = depth_camera_of(&state->color_camera, scene->defaults.depth_divide);
     }
-    const struct orl_tex_params color = color_params(photos, &size, false);
-    const struct orl_tex_params chroma = color_params(photos, &size, true);
+    photos->color_params = color_params(photos, &size, false);
     photos->depth_params = (struct orl_tex_params){
         .width = size.depth_width, .height = size.depth_height, .layers = photos->slot_count,
         .format = scene->defaults.depth_half ? GL_R16F : GL_R32F,
         .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph depth"};
-    result = orl_tex_create(gpu, &color, &photos->color);
-    if (result == ORL_OK && has_chroma(photos))
-        result = orl_tex_create(gpu, &chroma, &photos->chroma);
+    result = orl_photos_ready(gpu, photos);
     if (result != ORL_OK)
         orl_photos_finish(gpu, photos);
     return result;
 }
 
+enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos)
+{
+    const struct slot_size size = {.width = photos->color_params.width,
+                                   .height = photos->color_params.height};
+    const struct orl_tex_params chroma = color_params(photos, &size, true);
+    enum orl_result result = ORL_OK;
+    if (!photos->color)
+        result = orl_tex_create(gpu, &photos->color_params, &photos->color);
+    if (result == ORL_OK && has_chroma(photos) && !photos->chroma)
+        result = orl_tex_create(gpu, &chroma, &photos->chroma);
+    return result;
+}
+
+void orl_photos_spare(struct orl_gpu *gpu, struct photos *photos)
+{
+    for (size_t i = 0; i < photos->scene->photo_count; i++)
+        if (photos->states[i].has_color)
+            return;
+    orl_tex_destroy(gpu, &photos->color);
+    orl_tex_destroy(gpu, &photos->chroma);
+}
+
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
 {
     orl_photo_loader_destroy(&photos->loader);
+    orl_packing_destroy(gpu, &photos->packing);
     orl_tex_destroy(gpu, &photos->color);
     orl_tex_destroy(gpu, &photos->chroma);
     orl_tex_destroy(gpu, &photos->depth);
@@ -279,7 +300,7 @@ static void evict(struct photo_state *state)
 {
     state->slot = -1;
     state->depth_divide = 0;
-    state->has_mask = false;
+    state->has_color = state->has_mask = false;
 }
 
 // Returns a free slot, or else evicts the least recently used photograph. There is at least one slot.
@@ -301,6 +322,13 @@ static int take_slot(struct photos *photos)
     return taken;
 }
 
+static void give_slot(struct photos *photos, struct photo_state *state)
+{
+    state->last_use = ++photos->clock;
+    if (state->slot < 0)
+        state->slot = take_slot(photos);
+}
+
 void orl_photos_follow_moment(struct photos *photos)
 {
     if (photos->moment == photos->scene->frame)
@@ -315,7 +343,7 @@ void orl_photos_follow_moment(struct photos *photos)
 static void write_pixels(const struct orl_image *image, struct orl_tex *tex, int layer)
 {
     bool radiance = image->type == ORL_PIXEL_F32;
-    orl_tex_write_part(tex, 0, layer, image->width, image->height, radiance ? GL_RGBA : GL_RGB,
+    orl_tex_write_part(tex, 0, layer, 0, 0, image->width, image->height, radiance ? GL_RGBA : GL_RGB,
                        radiance ? GL_FLOAT : GL_UNSIGNED_BYTE, image->data);
 }
 
@@ -377,18 +405,18 @@ static enum orl_result make_loading(struct orl_gpu *gpu, struct photos *photos)
         orl_tex_clear(photos->loading, 0);
         return ORL_OK;
     }
-    struct orl_tex_params params = photos->color->params;
+    struct orl_tex_params params = photos->color_params;
     params.layers = 0;
     params.format = GL_SRGB8_ALPHA8;
     params.tag = "photograph being loaded";
     return orl_tex_create(gpu, &params, &photos->loading);
 }
 
-// Once every photograph has its slot, none will be loaded again.
+// Once every photograph has its colours, none will be loaded again.
 static void drop_loading(struct orl_gpu *gpu, struct photos *photos)
 {
     for (size_t i = 0; i < photos->scene->photo_count; i++)
-        if (photos->states[i].usable && photos->states[i].slot < 0)
+        if (photos->states[i].usable && !photos->states[i].has_color)
             return;
     orl_tex_destroy(gpu, &photos->loading);
 }
@@ -396,28 +424,29 @@ static void drop_loading(struct orl_gpu *gpu, struct photos *photos)
 enum orl_result orl_photos_put(struct orl_gpu *gpu, struct photos *photos, size_t index,
                                struct orl_image *image)
 {
-    enum orl_result result = ORL_OK;
-    if (photos->radiance)
+    enum orl_result result = orl_photos_ready(gpu, photos);
+    if (result == ORL_OK && photos->radiance)
         result = make_radiance(orl_gpu_log(gpu), photos, index, image);
     if (result == ORL_OK && is_compressed(photos))
         result = make_loading(gpu, photos);
     if (result != ORL_OK)
         return result;
-    int slot = take_slot(photos);
+    struct photo_state *state = &photos->states[index];
+    give_slot(photos, state);
     // Coarser levels are made before compression, so that compression errors do not accumulate.
     struct orl_tex *to = photos->loading ? photos->loading : photos->color;
-    int layer = photos->loading ? 0 : slot;
+    int layer = photos->loading ? 0 : state->slot;
     if (photos->divide > 1)
         result = upload_smaller(gpu, image, photos->divide, to, layer);
     else
         write_pixels(image, to, layer);
     orl_tex_make_mipmaps(to, layer);
     if (result == ORL_OK && photos->loading)
-        result = orl_tex_compress_layer(gpu, photos->loading, photos->color, slot);
+        result = orl_tex_compress_layer(gpu, photos->loading, photos->color, state->slot);
     if (result == ORL_OK && photos->chroma)
-        result = orl_tex_compress_layer(gpu, photos->loading, photos->chroma, slot);
+        result = orl_tex_compress_layer(gpu, photos->loading, photos->chroma, state->slot);
     if (result == ORL_OK) {
-        photos->states[index].slot = slot;
+        state->has_color = true;
         drop_loading(gpu, photos);
         photos->uploaded += orl_image_bytes(image);
     }
@@ -525,9 +554,9 @@ enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool
     struct photo_state *state = &photos->states[photo];
     if (orl_progress_cancelled(photos->progress))
         return ORL_ERR_CANCELLED;
-    state->last_use = ++photos->clock;
+    give_slot(photos, state);
     enum orl_result result = ORL_OK;
-    if (state->slot < 0)
+    if (!state->has_color && !frame->packs)
         result = load_color(frame, photo);
     if (result == ORL_OK && depth && orl_photos_depth_divide(frame, photo) != 1)
         result = orl_photos_draw_depth(frame, photo, 1);
@@ -561,10 +590,11 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
-    struct orl_tex_params params = photos->color->params;
+    struct orl_tex_params params = photos->color_params;
     struct orl_image whole = {0}, image = {0};
     params.format = GL_SRGB8_ALPHA8;
     params.tag = "backgrounds";
+    give_slot(photos, state);
     if (orl_photos_has_background(photos, photo))
         return ORL_OK;
     char *path = orl_scene_background_path(log, photos->scene, photo);
@@ -637,7 +667,7 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
 {
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
-    struct orl_tex_params params = photos->color->params;
+    struct orl_tex_params params = photos->color_params;
     struct orl_image alpha = {0};
     params.format = GL_R8;
     params.tag = "photograph masks";
@@ -648,7 +678,7 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
     if (result == ORL_OK)
         result = make_alpha(frame, photo, &alpha);
     if (result == ORL_OK) {
-        orl_tex_write_part(photos->mask, 0, state->slot, alpha.width, alpha.height, GL_RED,
+        orl_tex_write_part(photos->mask, 0, state->slot, 0, 0, alpha.width, alpha.height, GL_RED,
                            GL_UNSIGNED_BYTE, alpha.data);
         orl_tex_make_mipmaps(photos->mask, state->slot);
         photos->uploaded += orl_image_bytes(&alpha);

@@ -11,7 +11,7 @@
 struct photo_state {
     bool usable;
     int slot; // layer of the arrays; -1: not resident
-    bool has_mask;
+    bool has_color, has_mask;
     int depth_divide;   // its depth has 1/depth_divide of the size of depth_camera; 0: no depth
     uint64_t depth_key; // of the frame that its depth was drawn for
     unsigned last_use;
@@ -23,9 +23,12 @@ struct photo_state {
 struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
-    struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence
+    struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence; NULL: all
+                                // frames packed so far
     struct orl_tex *chroma;     // of textures=ycc, whose color is luma: Cb, Cr; else NULL
+    struct orl_tex_params color_params; // of color
     GLenum format;              // of color
+    struct packing *packing;    // what frames that pack read instead; NULL: none did
     struct orl_tex *loading;    // a photograph before compression; NULL: none is being loaded
     struct orl_tex *depth;      // z; < 0: estimated in a hole, 0: none; NULL: no method asked for it
     struct orl_tex_params depth_params; // of depth
@@ -60,10 +63,15 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
                                 const struct orl_renderer_params *params, size_t budget_bytes,
                                 struct photos *photos);
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
+// Releases the textures of colours while they hold no photograph.
+void orl_photos_spare(struct orl_gpu *gpu, struct photos *photos);
 // Evicts all photographs if the scene shows another moment than they do.
 void orl_photos_follow_moment(struct photos *photos);
-// Makes a photograph's colour resident, and its depth if asked for, drawn by the frame's proxy with
-// the frame's parameters. Evicts the least recently used photograph if all slots are taken.
+// Makes the textures of colours if they are not there. Frames that pack do without.
+enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos);
+// Makes a photograph's colour resident, unless the frame packs colours, and its depth if asked for,
+// drawn by the frame's proxy with the frame's parameters. Evicts the least recently used photograph
+// if all slots are taken.
 enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool depth);
 // Brings the mask of a resident photograph to the device: 1 within the subject, 0.5 on its boundary
 // (Goldluecke 2003, section 3), 1 throughout where the photograph has none.
@@ -72,9 +80,9 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
 uint64_t orl_photos_depth_key(const struct frame *frame);
 // True if all photographs in use have such a picture.
 bool orl_photos_backgrounds(const struct photos *photos);
-// True if the background of a resident photograph is on the device.
+// True if the background of a photograph that has a slot is on the device.
 bool orl_photos_has_background(const struct photos *photos, size_t photo);
-// Brings the picture to the device, into the slot of its photograph, which must be resident.
+// Brings the picture to the device, into the slot of its photograph, which gets one if it has none.
 enum orl_result orl_photos_require_background(const struct frame *frame, size_t photo);
 // Reads a photograph's mask, of the size of its camera.
 enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_scene *scene,

@@ -119,7 +119,7 @@ static enum orl_result draw_depth(struct turn *turn, size_t photo, int divide)
 // The photograph is on the device with colours and, if needed, depth.
 static bool is_present(const struct turn *turn, size_t photo)
 {
-    return turn->frame->photos->states[photo].slot >= 0 &&
+    return turn->frame->photos->states[photo].has_color &&
            (!turn->depth || orl_photos_depth_divide(turn->frame, photo) > 0);
 }
 
@@ -140,9 +140,9 @@ static enum orl_result bring(struct turn *turn)
             continue;
         if (!fits(turn, photos->costs.color + photos->costs.coarse, true))
             break;
-        if (photos->states[photo].slot < 0)
+        if (!photos->states[photo].has_color)
             result = upload(turn, photo);
-        if (result == ORL_OK && photos->states[photo].slot >= 0 && !is_present(turn, photo))
+        if (result == ORL_OK && photos->states[photo].has_color && !is_present(turn, photo))
             result = draw_depth(turn, photo, COARSE);
     }
     bool at_rest = turn->frame->progressive->at_rest;
@@ -169,7 +169,7 @@ static enum orl_result ask(struct turn *turn)
     enum orl_result result = absent ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < turn->count; i++) {
         size_t photo = turn->order[i];
-        if (photos->states[photo].slot >= 0)
+        if (photos->states[photo].has_color)
             photos->states[photo].last_use = ++photos->clock;
         else
             absent[count++] = photo;

@@ -85,9 +85,8 @@ static enum orl_result require(const struct frame *room, bool backgrounds, const
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        result = orl_photos_require(room, photos[i], !backgrounds);
-        if (result == ORL_OK && backgrounds)
-            result = orl_photos_require_background(room, photos[i]);
+        result = backgrounds ? orl_photos_require_background(room, photos[i])
+                             : orl_photos_require(room, photos[i], true);
     }
     return result;
 }
@@ -101,7 +100,7 @@ static enum orl_result keep_present(struct frame *room, bool backgrounds, size_t
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < room->chosen_count; i++) {
         size_t photo = room->chosen[i];
-        bool there = room->photos->states[photo].slot >= 0;
+        bool there = room->photos->states[photo].has_color;
         if (there && backgrounds && !orl_photos_has_background(room->photos, photo)) {
             there = !has_read;
             has_read = true;
@@ -125,6 +124,7 @@ enum orl_result orl_room_paint(struct frame *frame)
         !frame->radiance && orl_render_params_equal(frame->params, "combine=recurrence");
     room.params = &params;
     room.reads_chroma = frame->reads_chroma && !backgrounds;
+    room.packs = false; // backgrounds are not packed
     params.border_px = 0;
     snprintf(params.weight, sizeof params.weight, "equal");
     snprintf(params.combine, sizeof params.combine, recurrence ? "recurrence" : "mean");
