@@ -24,6 +24,12 @@ enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene 
 // A smooth walk past all photographs in name order; frames >= 2.
 enum orl_result orl_path_through_photos(const struct orl_log *log, const struct orl_scene *scene,
                                         size_t frames, struct orl_path *path) ORL_CHECK_RESULT;
+// A circle around what the photographs look at, the point nearest to their optical axes, at the mean
+// of their distances and heights, upright as they are on average. It starts beside the first
+// photograph, whose intrinsics it has, and ends one step before its start. ORL_ERR_DATA: the axes
+// do not meet before the cameras.
+enum orl_result orl_path_around(const struct orl_log *log, const struct orl_scene *scene,
+                                size_t frames, struct orl_path *path) ORL_CHECK_RESULT;
 void orl_path_finish(struct orl_path *path);
 
 // The camera for a picture of another size and aspect. The vertical field of view stays the same

@@ -208,7 +208,8 @@ int cmd_hdr(int argc, char **argv)
         {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
         {"path", ARG_STRING, &o.views.path, "FILE",
-         "along the cameras in FILE; \"photos\": past all photographs", 0, 0},
+         "along the cameras in FILE; \"photos\": past all photographs; \"circle\": around what they "
+         "look at", 0, 0},
         {"replace-series", ARG_INT, &o.replace_series, "N",
          "make a scene with the photographs of this series as radiance", 0, 65535},
         {"panorama", ARG_SIZE, &o.panorama, "WxH",
@@ -229,7 +230,7 @@ int cmd_hdr(int argc, char **argv)
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
         OUTPUT_OPTION_ROWS(&o.output, "depth, normal, coverage, confidence; default: all in .exr"),
         {"half", ARG_FLAG, &o.half, NULL, "of .exr: 16-bit colour, the default", 0, 0},
-        {"frames", ARG_INT, &o.views.frames, "N", "of --path photos; default 120", 2, 100000},
+        {"frames", ARG_INT, &o.views.frames, "N", "of --path photos and circle; default 120", 2, 100000},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

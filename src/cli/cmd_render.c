@@ -149,7 +149,8 @@ int cmd_render(int argc, char **argv)
         {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
         {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
         {"path", ARG_STRING, &o.views.path, "FILE",
-         "along the cameras in FILE; \"photos\": past all photographs", 0, 0},
+         "along the cameras in FILE; \"photos\": past all photographs; \"circle\": around what they "
+         "look at", 0, 0},
         {"frame", ARG_INT, &o.moment, "N",
          "moment of a sequence, from 0; default: along a path all, else the first", 0, 1 << 20},
         {"out", ARG_STRING, &o.out, "FILE|DIR",
@@ -162,7 +163,7 @@ int cmd_render(int argc, char **argv)
         OUTPUT_OPTION_ROWS(&o.output, "also write depth, normal, coverage"),
         {"part", ARG_STRING, &o.part, "K/N", "only the K-th of N parts of the frames of a path",
          0, 0},
-        {"frames", ARG_INT, &o.views.frames, "N", "of --path photos; default 120", 2, 100000},
+        {"frames", ARG_INT, &o.views.frames, "N", "of --path photos and circle; default 120", 2, 100000},
         {"fps", ARG_NUMBER, &o.fps, "N", "of .mp4; default 30", 1, 240},
         {"textures", ARG_ENUM, &o.textures, "KIND", "photographs on the device", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},

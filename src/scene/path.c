@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "scene/colmap.h"
 #include "scene/json_views.h"
 
@@ -133,6 +134,96 @@ enum orl_result orl_path_through_photos(const struct orl_log *log, const struct 
         keys.views[i] = scene->photos[i].view;
     result = spread_frames(log, &(struct keys){&keys, NULL}, frames, path);
     orl_path_finish(&keys);
+    return result;
+}
+
+// --- a circle ---
+
+// The point with the least sum of squared distances from the optical axes: the solution of
+// sum(I - d d') x = sum(I - d d') c for axes from c along d. False if they are parallel.
+static bool meet_axes(const struct orl_scene *scene, double point[3])
+{
+    double a[3][4] = {{0}};
+    for (size_t n = 0; n < scene->photo_count; n++) {
+        const struct orl_pose *pose = &scene->photos[n].view.cam_from_world;
+        const double *d = pose->r[2];
+        double c[3];
+        orl_pose_centre(pose, c);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++) {
+                double m = (i == k) - d[i] * d[k];
+                a[i][k] += m;
+                a[i][3] += m * c[k];
+            }
+    }
+    double det[4]; // of the matrix, and with the right side in each column: Cramer's rule
+    for (int column = -1; column < 3; column++) {
+        double m[3][3];
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++)
+                m[i][k] = a[i][k == column ? 3 : k];
+        det[column + 1] = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                          m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    }
+    for (int k = 0; k < 3; k++)
+        point[k] = det[k + 1] / det[0];
+    return det[0] > 1e-6 * pow((double)scene->photo_count, 3);
+}
+
+struct circle {
+    double middle[3]; // what its cameras look at
+    double up[3], ahead[3], aside[3]; // unit vectors; ahead: from the middle to the first photograph
+    double radius, height;
+};
+
+static bool find_circle(const struct orl_scene *scene, struct circle *circle)
+{
+    size_t before = 0;
+    memset(circle, 0, sizeof *circle);
+    if (!meet_axes(scene, circle->middle))
+        return false;
+    for (size_t n = 0; n < scene->photo_count; n++)
+        for (int k = 0; k < 3; k++)
+            circle->up[k] -= scene->photos[n].view.cam_from_world.r[1][k];
+    if (!(orl_normalize3(circle->up) > 0))
+        return false;
+    for (size_t n = 0; n < scene->photo_count; n++) {
+        const struct orl_pose *pose = &scene->photos[n].view.cam_from_world;
+        double from[3];
+        orl_pose_centre(pose, from);
+        for (int k = 0; k < 3; k++)
+            from[k] -= circle->middle[k];
+        double height = orl_dot3(from, circle->up);
+        before += orl_dot3(from, pose->r[2]) < 0;
+        circle->height += height / (double)scene->photo_count;
+        circle->radius += sqrt(fmax(orl_dot3(from, from) - height * height, 0)) /
+                          (double)scene->photo_count;
+        for (int k = 0; n == 0 && k < 3; k++)
+            circle->ahead[k] = from[k] - height * circle->up[k];
+    }
+    orl_cross3(circle->up, circle->ahead, circle->aside);
+    return orl_normalize3(circle->ahead) > 0 && orl_normalize3(circle->aside) > 0 &&
+           before == scene->photo_count;
+}
+
+enum orl_result orl_path_around(const struct orl_log *log, const struct orl_scene *scene,
+                                size_t frames, struct orl_path *path)
+{
+    struct circle circle;
+    memset(path, 0, sizeof *path);
+    if (scene->photo_count < 2 || !find_circle(scene, &circle))
+        return orl_fail(log, ORL_ERR_DATA, "the photographs do not look at one place that a path "
+                        "could circle");
+    enum orl_result result = allocate(log, frames, path);
+    for (size_t i = 0; result == ORL_OK && i < frames; i++) {
+        double angle = 2 * pi * (double)i / (double)frames, eye[3];
+        for (int k = 0; k < 3; k++)
+            eye[k] = circle.middle[k] + circle.height * circle.up[k] +
+                     circle.radius * (cos(angle) * circle.ahead[k] + sin(angle) * circle.aside[k]);
+        path->views[i].camera = scene->photos[0].view.camera;
+        path->views[i].cam_from_world = orl_pose_look_at(eye, circle.middle, circle.up);
+    }
     return result;
 }
 

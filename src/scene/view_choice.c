@@ -47,6 +47,8 @@ enum orl_result orl_views_choose(const struct orl_log *log, const struct orl_sce
             result = single_view(log, &scene->photos[photo].view, path);
     } else if (choice->path && strcmp(choice->path, "photos") == 0) {
         result = orl_path_through_photos(log, scene, (size_t)choice->frames, path);
+    } else if (choice->path && strcmp(choice->path, "circle") == 0) {
+        result = orl_path_around(log, scene, (size_t)choice->frames, path);
     } else {
         result = read_file(log, scene, choice, path);
     }

@@ -8,8 +8,9 @@
 struct orl_view_choice {
     const char *at;     // a photograph's name; or
     const char *camera; // a file with one camera; or
-    const char *path;   // a file with cameras, or "photos": a path past all photographs
-    int frames;         // length of the path "photos"
+    const char *path;   // a file with cameras, "photos": a path past all photographs, or "circle":
+                        // a path around what they look at
+    int frames;         // length of the paths "photos" and "circle"
     int width, height;  // picture size in pixels; 0 0: that of the cameras
 };
 // Makes the chosen path of at least one view. Errors name what is missing.

@@ -35,7 +35,7 @@ for own in mesh.ply images/cam03.jpg; do
     cp kept "moving/frames/00001/$own"
 done
 if command -v ffprobe >/dev/null; then
-    runs 0 "$oriel" render moving --path photos --frames 6 "${method[@]}" --out circle.mp4
+    runs 0 "$oriel" render moving --path circle --frames 6 "${method[@]}" --out circle.mp4
     frames=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 circle.mp4)
     [ "$frames" = 6 ] || fail "$frames frames instead of 6"
 fi

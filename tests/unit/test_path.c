@@ -99,6 +99,38 @@ static void frames_move_smoothly_from_end_to_end(void **state)
     orl_path_finish(&path);
 }
 
+// Two cameras a quarter of a circle apart look level at (2, -2, 5) from 3 away.
+static void a_circle_leads_around_what_they_see(void **state)
+{
+    (void)state;
+    const double up[3] = {0, -1, 0}, level[3] = {2, -2, 5};
+    const double eyes[2][3] = {{2, -2, 2}, {5, -2, 5}};
+    struct orl_photo ring[2] = {photos[0], photos[1]};
+    struct orl_scene round = {.photos = ring, .photo_count = 2};
+    struct orl_path path;
+    for (int i = 0; i < 2; i++)
+        ring[i].view.cam_from_world = orl_pose_look_at(eyes[i], level, up);
+    assert_int_equal(orl_path_around(NULL, &round, 4, &path), ORL_OK);
+    assert_int_equal(path.count, 4);
+    assert_centre(&path.views[0], 2, -2, 2);
+    for (size_t i = 0; i < 4; i++) {
+        double c[3];
+        orl_pose_centre(&path.views[i].cam_from_world, c);
+        assert_float_equal(hypot(c[0] - 2, c[2] - 5), 3, 1e-9);
+        assert_float_equal(c[1], -2, 1e-9);
+        assert_sees(&path.views[i], 2, -2, 5, 100, 50);
+    }
+    assert_centre(&path.views[2], 2, -2, 8);
+    orl_path_finish(&path);
+    // Parallel axes meet nowhere, and those of cameras that look away meet behind them.
+    assert_int_equal(orl_path_around(NULL, &scene, 4, &path), ORL_ERR_DATA);
+    for (int i = 0; i < 2; i++) {
+        const double away[3] = {2 * eyes[i][0] - 2, eyes[i][1], 2 * eyes[i][2] - 5};
+        ring[i].view.cam_from_world = orl_pose_look_at(eyes[i], away, up);
+    }
+    assert_int_equal(orl_path_around(NULL, &round, 4, &path), ORL_ERR_DATA);
+}
+
 static void keyframes_have_their_own_seconds(void **state)
 {
     (void)state;
@@ -268,6 +300,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(keyframes_stand_where_they_say, set_up, tear_down),
         cmocka_unit_test_setup_teardown(frames_move_smoothly_from_end_to_end, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_circle_leads_around_what_they_see, set_up, tear_down),
         cmocka_unit_test_setup_teardown(keyframes_have_their_own_seconds, set_up, tear_down),
         cmocka_unit_test_setup_teardown(nerfstudio_axes_are_turned, set_up, tear_down),
         cmocka_unit_test_setup_teardown(inria_rotation_is_world_from_camera, set_up, tear_down),
