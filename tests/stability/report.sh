@@ -45,7 +45,8 @@ fuzzing() {
     echo "## Lines of each reader that these inputs reach"
     echo
     echo "Most of the lines that are left answer an allocation, a file or a library that fails, which"
-    echo "the injection of faults below does, or belong to functions that read no input."
+    echo "the injection of faults below does, or belong to functions that read no input: \`mesh.c\` also"
+    echo "makes empty meshes, \`content.c\` sends photographs and \`rendering.c\` draws with a device."
     echo
     echo "| file | lines | reached |"
     echo "|---|--:|--:|"
