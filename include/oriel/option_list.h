@@ -97,6 +97,9 @@
         ORL_TRIES(0, 0.03, 0.06, 0.12, 0.25), \
         "How far colours may lie from their place where depth is guessed and photographs " \
         "differ. They are blurred as far. With 0 they are not.") \
+    NUMBER(surface_seeds, 1, 0, 1, "share", "paint=tiled", ORL_TRIES(0.03, 0.2, 1), \
+        "How much surfaces count beside guessed places in the colours that fill what no " \
+        "photograph paints. It is mostly background, not the surface before it.") \
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
         "How many depths are tried where only a guessed depth is known. One at which " \
         "photographs agree clearly better replaces the guess. With 0 none are tried.") \

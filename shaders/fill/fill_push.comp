@@ -1,5 +1,6 @@
 // Fills pixels without a value bilinearly from the coarser level (Gortler 1996, push). One
 // invocation handles 2x2 pixels.
+// PARTLY: a value of a weight below 1 gets the rest from the coarser level.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 
@@ -19,7 +20,12 @@ void main()
     fill_finer(parent, finer);
     for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
         ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
-        if (finer[k].a > 0.0 && !(imageLoad(fine, at).a > 0.0))
+        vec4 own = imageLoad(fine, at);
+        if (finer[k].a > 0.0 && !(own.a > 0.0))
             imageStore(fine, at, finer[k]);
+#ifdef PARTLY
+        else if (finer[k].a > 0.0 && own.a < 1.0)
+            imageStore(fine, at, own + finer[k] * ((1.0 - own.a) / finer[k].a));
+#endif
     }
 }

@@ -163,7 +163,7 @@ void main()
         float own;
         colors[k] = blend(spots[k], rankings[k], own);
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
-        seed += colors[k];
+        seed += colors[k] * (is_guess(spots[k]) ? 1.0 : opt.surface_seeds);
         guess += guessed;
         blur = guessed.a > 0.0 ? max(blur, own) : blur;
     }

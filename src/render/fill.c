@@ -61,11 +61,12 @@ static void run(const struct frame *frame, struct step step, const struct orl_te
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
-// Spreads the known values of level 0 over all of it (pull-push, Gortler 1996).
-static void spread(const struct frame *frame)
+// Spreads the known values of level 0 over all of it (pull-push, Gortler 1996). `how`: a define of
+// fill_push.comp, or NULL.
+static void spread(const struct frame *frame, const char *how)
 {
     static const struct step pull = {"fill/fill_pull.comp", NULL, 1};
-    static const struct step push = {"fill/fill_push.comp", NULL, 2};
+    const struct step push = {"fill/fill_push.comp", how, 2};
     struct orl_tex *const *level = frame->fill->level;
     for (int i = 1; i < frame->fill->levels; i++)
         run(frame, pull, level[i - 1], GL_READ_ONLY, level[i], GL_WRITE_ONLY, level[i]);
@@ -92,7 +93,7 @@ void orl_fill_depth(const struct frame *frame)
     orl_frame_ground(frame, block->ground);
     orl_pass_begin(frame->gpu, "fill");
     seed(frame, "SEED_DEPTH", depth, GL_WRITE_ONLY);
-    spread(frame);
+    spread(frame, NULL);
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
     orl_pass_end(frame->gpu);
 }
@@ -102,9 +103,9 @@ static void lift(const struct frame *frame)
 {
     static const struct step apply = {"fill/fill_lift.comp", NULL, 2};
     seed(frame, "SEED_LEAST", frame->picture, GL_WRITE_ONLY);
-    spread(frame);
+    spread(frame, NULL);
     seed(frame, "SEED_BRIGHTER", frame->picture, GL_READ_WRITE);
-    spread(frame);
+    spread(frame, NULL);
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->picture, GL_READ_WRITE,
         frame->picture);
 }
@@ -115,5 +116,5 @@ void orl_fill_color(const struct frame *frame)
         lift(frame);
     if (!frame->finishes)
         seed(frame, NULL, frame->picture, GL_WRITE_ONLY);
-    spread(frame);
+    spread(frame, frame->finishes && frame->params->surface_seeds < 1 ? "PARTLY" : NULL);
 }
