@@ -346,8 +346,6 @@ class Page(unittest.TestCase):
         self.assertTrue(browser.js("return document.getElementById('tool-method').disabled"))
         browser.js("oriel.setLayer(0)")
         browser.capture(own, camera)
-        browser.keys("KeyW", "w", "return oriel.navigator.at === null") # the pointer and keys are the same
-        browser.settle()
         browser.js("document.querySelector('input[name=drawer][value=server]').click()")
         browser.wait("return oriel.picture.remote")
         browser.settle()
@@ -355,8 +353,6 @@ class Page(unittest.TestCase):
         self.assertFalse(browser.js("return document.getElementById('tool-method').disabled"))
         self.assertTrue(browser.js("return document.getElementById('own').hidden"))
         self.assertGreaterEqual(float(run(TOOL, "compare", own, server).split()[0]), 30)
-        browser.js("oriel.act(() => oriel.navigator.goHome())")
-        browser.settle()
 
     def test_page(self):
         walk, browser, work = Walk(), Browser(WIDTH, HEIGHT), tempfile.TemporaryDirectory()
