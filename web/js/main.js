@@ -20,7 +20,6 @@ const FRAME_LONG = 38, FRAME_SHORT = 14;  // milliseconds: fewer pixels, more pi
 const LIVE_LONG = 75, LIVE_SHORT = 40;    // the same of frames that come over the network
 const REFINE_AFTER = 140;                 // milliseconds of rest
 const SIDE = ["path", "maker", "method"]; // panels that share a place
-const DRAW_SHARE = 0.25;                  // of the time, while photographs come: the rest loads them
 const POSTER_SHARE = 0.625;               // height to width: POSTER_* of site_photos.c
 
 class Walk {
@@ -36,7 +35,6 @@ class Walk {
         this.dirty = true;
         this.restSince = 0;
         this.refined = false;
-        this.refineAt = 0;       // not before, unless nothing more is on its way
         this.lastTime = 0;
         this.navigator = new Navigator(manifest, this.photos, {
             calm: matchMedia("(prefers-reduced-motion: reduce)").matches,
@@ -246,7 +244,6 @@ class Walk {
     {
         what();
         this.refined = false;
-        this.refineAt = 0;
         this.wake();
     }
 
@@ -359,7 +356,7 @@ class Walk {
         const rests = time - this.restSince > REFINE_AFTER && !this.input.dragging;
         if (changed || (this.dirty && !rests))
             this.drawFrame(rests || !this.refined && this.frames.length === 0 ? 0 : this.scale, passed);
-        else if (rests && !this.refined && (time >= this.refineAt || this.picture.complete))
+        else if (rests && !this.refined)
             this.drawFrame(0, 0);
         else if (this.dirty)
             this.showState();
@@ -379,7 +376,6 @@ class Walk {
         this.picture.points = this.notes.points;
         this.picture.draw(full, camera, this.layer);
         this.refined = scale === 0;
-        this.refineAt = performance.now() + (1 / DRAW_SHARE - 1) * (performance.now() - started);
         if (!this.picture.remote) { // else frames tell when they come
             this.adapt(passed, performance.now() - started);
             this.showFrame();
