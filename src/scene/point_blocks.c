@@ -205,7 +205,7 @@ static float density(float (*const p)[3], const struct orl_points *points,
     }
     qsort(distances, samples, sizeof *distances, compare_floats);
     float d2 = distances[samples / 2];
-    return d2 > 0 ? NEIGHBOUR / (3.14159265f * d2) : 0;
+    return d2 > 1e-30f ? NEIGHBOUR / (3.14159265f * d2) : 0;
 }
 
 // Writes the texels of a block, which shaders/proxy/splat_cull.comp explains.

@@ -136,6 +136,9 @@ void orl_lod_close(struct orl_lod **handle)
 
 // --- pages ---
 
+// Of what a block states, so that radii and positions that follow from it are finite.
+static const float largest = 2e30f;
+
 enum orl_result orl_lod_read(const struct orl_lod *lod, size_t page, struct orl_lod_data *data)
 {
     ORL_REQUIRE(lod->log, page < lod->page_count);
@@ -145,7 +148,7 @@ enum orl_result orl_lod_read(const struct orl_lod *lod, size_t page, struct orl_
         float count = data->blocks[b][1][3];
         bool sound = count >= 0 && count <= ORL_BLOCK_POINTS && count == floorf(count);
         for (int i = 0; i < 4 * ORL_BLOCK_VEC4S; i++)
-            sound = sound && isfinite(texels[i]);
+            sound = sound && fabsf(texels[i]) <= largest;
         if (!sound)
             result = bad(lod, "a block is damaged");
     }

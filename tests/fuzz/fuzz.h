@@ -41,6 +41,7 @@ void fuzz_colmap_text(const uint8_t *data, size_t size);
 void fuzz_depth_map(const uint8_t *data, size_t size);
 void fuzz_visibility(const uint8_t *data, size_t size);
 void fuzz_ply(const uint8_t *data, size_t size);
+void fuzz_lod(const uint8_t *data, size_t size);
 void fuzz_manifest(const uint8_t *data, size_t size);
 void fuzz_stages(const uint8_t *data, size_t size);
 void fuzz_path_json(const uint8_t *data, size_t size);

@@ -12,6 +12,7 @@
 #include "scene/colmap.h"
 #include "scene/manifest.h"
 #include "oriel/path.h"
+#include "scene/point_lod.h"
 #include "scene/point_radii.h"
 #include "scene/thin.h"
 #include "scene/tuned_settings.h"
@@ -134,6 +135,81 @@ void fuzz_ply(const uint8_t *data, size_t size)
     if (orl_points_read(&fuzz_log, fuzz_path("points.ply"), &points) == ORL_OK)
         use_points(&points);
     orl_points_finish(&points);
+}
+
+// Reads all of points.lod, if it can be opened.
+static size_t use_lod(void)
+{
+    struct orl_lod *lod;
+    struct orl_points points;
+    size_t count = 0;
+    if (orl_lod_open(&fuzz_log, fuzz_path(ORL_LOD_NAME), &lod) != ORL_OK)
+        return 0;
+    for (size_t page = 0, first, children; page < lod->page_count; page++) {
+        (void)orl_lod_children(lod, page, &first, &children);
+        fuzz_require(first + children <= page, "children lie before their parents");
+    }
+    if (orl_lod_sample(lod, SIZE_MAX, &points) == ORL_OK) {
+        count = points.count;
+        for (size_t i = 0; i < count; i++)
+            fuzz_require(orl_point_usable(points.position[i]) && isfinite(points.radius[i]),
+                         "a sampled point can be used");
+        orl_points_finish(&points);
+    }
+    orl_lod_close(&lod);
+    return count;
+}
+
+static enum orl_result write_lod(void)
+{
+    static const struct orl_lod_params params = {.max_bytes = 1};
+    char *cloud = strdup(fuzz_path("points.ply"));
+    enum orl_result result = orl_lod_write(&fuzz_log, NULL, &params, cloud,
+                                           fuzz_path(ORL_LOD_NAME));
+    free(cloud);
+    return result;
+}
+
+// Saves the levels of detail of a small cloud, in which each five bytes of the input change one: its
+// place and its value.
+static void save_changed_lod(const uint8_t *data, size_t size)
+{
+    enum { COUNT = 300 };
+    struct orl_points points;
+    uint8_t *file;
+    size_t length;
+    fuzz_require(orl_points_init(NULL, &points, COUNT) == ORL_OK, "memory");
+    for (size_t i = 0; i < COUNT; i++) {
+        points.position[i][0] = (float)(i % 20);
+        points.position[i][1] = (float)(i / 20);
+        points.radius[i] = 1;
+    }
+    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("points.ply"), &points, false) == ORL_OK &&
+                     write_lod() == ORL_OK && use_lod() == COUNT &&
+                     orl_file_read(&fuzz_log, fuzz_path(ORL_LOD_NAME), SIZE_MAX / 2, &file,
+                                   &length) == ORL_OK,
+                 "what is written can be read");
+    for (; size >= 5; data += 5, size -= 5) {
+        uint32_t at;
+        memcpy(&at, data, sizeof at);
+        file[at % length] = data[4];
+    }
+    fuzz_save(ORL_LOD_NAME, file, length - size); // 0 to 4 bytes left over: the file is cut
+    free(file);
+    orl_points_finish(&points);
+}
+
+// The first byte: a PLY follows, to be divided; or changes of a file of levels.
+void fuzz_lod(const uint8_t *data, size_t size)
+{
+    if (size && data[0] % 2) {
+        fuzz_save("points.ply", data + 1, size - 1);
+        if (write_lod() == ORL_OK)
+            fuzz_require(use_lod() > 0, "a cloud that was divided can be read");
+    } else {
+        save_changed_lod(data + (size > 0), size - (size > 0));
+        (void)use_lod();
+    }
 }
 
 struct orl_scene *fuzz_scene(void)
