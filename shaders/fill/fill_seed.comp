@@ -5,6 +5,7 @@
 // SEED_LEAST: light of pixels for which it is only a lower bound.
 // SEED_BRIGHTER: logarithm of light that is as bright as the lower bound that SEED_LEAST has spread
 // to this pixel, so that a clipped area does not become as dark as the wall beside it.
+// SEED_SURFACES: colour on surfaces.
 // SEED_GUESSES: colour on estimated background depth, for the blur. Without a define: colour.
 #define BLOCK_IMAGE
 #include "shared/pixel.glsl"
@@ -18,6 +19,9 @@ layout(rgba32f, binding = 0) readonly uniform image2D known; // blended pixels o
 #endif
 #ifdef SEED_GUESSES
 layout(rgba32f, binding = 2) readonly uniform image2D trusted; // z: see gather/radiance/merge.glsl
+#endif
+#ifdef SEED_SURFACES
+layout(r32f, binding = 2) readonly uniform image2D depth;
 #endif
 #ifdef SEED_BRIGHTER
 layout(rgba32f, binding = 1) uniform image2D seeded; // updated in place
@@ -47,6 +51,9 @@ vec4 seed(ivec2 at)
     float weight = smoothstep(BRIGHT_FROM, 1.0, min(min(share.r, share.g), share.b));
     return value.a > 0.0 ? vec4(log2(max(light, 1e-9)), 1.0) * weight : vec4(0.0);
 #else
+#ifdef SEED_SURFACES
+    value *= imageLoad(depth, at).r > 0.0 ? 1.0 : 0.0;
+#endif
     return value.a > 0.0 ? value / value.a : vec4(0.0);
 #endif
 }

@@ -3,6 +3,8 @@
 #include "render/fill.h"
 
 #include "core/memory.h"
+#include "render/method.h"
+#include "render/room.h"
 
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill)
 {
@@ -54,7 +56,8 @@ static void run(const struct frame *frame, struct step step, const struct orl_te
     block.image_size[1] = height;
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, step.file, NULL, step.defines),
                              .params = &block, .params_size = sizeof block,
-                             .images = {{first, 0, first_access}, {second, 0, second_access}},
+                             .images = {{first, 0, first_access}, {second, 0, second_access},
+                                        {frame->surface.depth, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
     orl_pixel_groups((width + n - 1) / n, (height + n - 1) / n, d.groups);
@@ -110,11 +113,22 @@ static void lift(const struct frame *frame)
         frame->picture);
 }
 
+void orl_fill_room(const struct frame *frame)
+{
+    static const struct step apply = {"fill/fill_room.comp", NULL, 2};
+    seed(frame, NULL, frame->room, GL_WRITE_ONLY);
+    spread(frame, NULL);
+    run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->room, GL_READ_WRITE,
+        frame->room);
+}
+
 void orl_fill_color(const struct frame *frame)
 {
+    // Before a complete room only surfaces are left to fill, and the walls' colours are not theirs.
+    bool surfaces = orl_frame_shows_room(frame) && !orl_painter_of(frame->params)->layers;
     if (frame->radiance)
         lift(frame);
     if (!frame->finishes)
-        seed(frame, NULL, frame->picture, GL_WRITE_ONLY);
+        seed(frame, surfaces ? "SEED_SURFACES" : NULL, frame->picture, GL_WRITE_ONLY);
     spread(frame, frame->finishes && frame->params->surface_seeds < 1 ? "PARTLY" : NULL);
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "render/fill.h"
 #include "render/gather.h"
 #include "render/method.h"
 #include "render/photos.h"
@@ -145,6 +146,8 @@ enum orl_result orl_room_paint(struct frame *frame)
         if (result == ORL_OK)
             project(&room, backgrounds, first, count);
     }
+    if (result == ORL_OK)
+        orl_fill_room(frame);
     orl_pass_end(frame->gpu);
     return result;
 }

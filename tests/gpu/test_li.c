@@ -237,31 +237,39 @@ static void fat_outlines_stop_leaks(void **state)
 
 // --- section 5.1: the room ---
 
+// A white ball in a room, photographed from two sides, and with `count` 3 from a third; the pictures
+// of the empty room are red, green and blue.
+static void setup_room(struct fixture *f, int count)
+{
+    static const uint8_t *const colors[] = {red, green, blue};
+    static const double turns[] = {0.3, -0.3, 3.14159265};
+    setup_empty(f, 4);
+    f->scene.room = (struct orl_room){{-6, -3, -6}, {6, 3, 6}, true};
+    double radius = 60 * tan(asin(0.5 / 4)), middle = 0.5 * SIDE;
+    char *folder = orl_path_join(NULL, f->dir, "background");
+    assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
+    for (int i = 0; i < count; i++) {
+        struct orl_image background;
+        add_disc_photo(f, look_around(turns[i], 4, SIDE, 60), (uint8_t[3]){255, 255, 255}, middle,
+                       middle, radius);
+        assert_int_equal(orl_image_init(NULL, &background, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+        for (int p = 0; p < SIDE * SIDE; p++)
+            memcpy(&background.u8[3 * p], colors[i], 3);
+        char *path = orl_scene_background_path(NULL, &f->scene, (size_t)i);
+        assert_int_equal(orl_png_write(NULL, path, &background), ORL_OK);
+        orl_image_finish(&background);
+        free(path);
+    }
+    free(folder);
+}
+
 // The walls show the pictures without the subject: where two see a wall the mean, else the one, and
 // a camera projects nothing behind itself.
 static void the_room_has_its_pictures(void **state)
 {
     (void)state;
-    static const uint8_t *const colors[] = {red, green, blue};
-    static const double turns[] = {0.3, -0.3, 3.14159265};
     struct fixture f;
-    setup_empty(&f, 4);
-    f.scene.room = (struct orl_room){{-6, -3, -6}, {6, 3, 6}, true};
-    double radius = 60 * tan(asin(0.5 / 4)), middle = 0.5 * SIDE;
-    char *folder = orl_path_join(NULL, f.dir, "background");
-    assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
-    for (int i = 0; i < 3; i++) {
-        struct orl_image background;
-        add_disc_photo(&f, look_around(turns[i], 4, SIDE, 60), (uint8_t[3]){255, 255, 255}, middle,
-                       middle, radius);
-        assert_int_equal(orl_image_init(NULL, &background, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
-        for (int p = 0; p < SIDE * SIDE; p++)
-            memcpy(&background.u8[3 * p], colors[i], 3);
-        char *path = orl_scene_background_path(NULL, &f.scene, (size_t)i);
-        assert_int_equal(orl_png_write(NULL, path, &background), ORL_OK);
-        orl_image_finish(&background);
-        free(path);
-    }
+    setup_room(&f, 3);
     struct orl_render_params params = params_of(NULL, 0);
     struct orl_view view = look_around(0, 4, SIDE, 30); // wider than the photographs
     struct orl_frame frame = draw(gpu, &f, view, &params, 0);
@@ -277,7 +285,32 @@ static void the_room_has_its_pictures(void **state)
     assert_true(fabsf(one[0] - other[1]) < 0.01 && fabsf(one[0] - one[1]) > 0.98f);
     assert_float_equal(frame.coverage.f32[SIDE / 2 * SIDE + (int)left], 0, 0);
     orl_frame_finish(&frame);
-    free(folder);
+    teardown(&f);
+}
+
+// Seen from aside, where no photograph shows all of the ball nor all of the walls: neither takes
+// colours of the other.
+static void unseen_places_take_colors_of_their_own(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_room(&f, 2);
+    struct orl_render_params params = params_of(NULL, 0);
+    struct orl_view view = look_around(2.2, 4, SIDE, 60);
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+    int ball = 0, unseen = 0, walls = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float *c = &frame.color.f32[3 * i];
+        bool on_ball = frame.depth.f32[i] > 0;
+        ball += on_ball;
+        walls += !on_ball;
+        unseen += on_ball && frame.coverage.f32[i] == 0;
+        assert_float_equal(c[2], on_ball ? 1 : 0, 0.03); // the walls are red and green
+        assert_float_equal(c[0] + c[1], on_ball ? 2 : 1, 0.06);
+    }
+    print_message("%d pixels of the ball, %d of them unseen; %d of walls\n", ball, unseen, walls);
+    assert_true(unseen > ball / 10 && unseen < ball && walls > SIDE * SIDE / 2);
+    orl_frame_finish(&frame);
     teardown(&f);
 }
 
@@ -480,6 +513,7 @@ int main(void)
         cmocka_unit_test(photographs_count_alike),
         cmocka_unit_test(fat_outlines_stop_leaks),
         cmocka_unit_test(the_room_has_its_pictures),
+        cmocka_unit_test(unseen_places_take_colors_of_their_own),
         cmocka_unit_test(the_subject_is_not_on_the_walls),
         cmocka_unit_test(turns_change_nothing),
         cmocka_unit_test(regions_lie_side_by_side),
