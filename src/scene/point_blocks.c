@@ -183,7 +183,7 @@ enum orl_result orl_point_order(const struct orl_log *log, const struct orl_poin
 static float density(float (*const p)[3], const struct orl_points *points,
                      const uint32_t *order, size_t count)
 {
-    float distances[DENSITY_SAMPLES];
+    float distances[DENSITY_SAMPLES] = {0};
     size_t samples = count < DENSITY_SAMPLES ? count : DENSITY_SAMPLES;
     if (count <= NEIGHBOUR)
         return 0;
