@@ -25,6 +25,9 @@ bool orl_point_usable(const float position[3]);
 // Drops points that are not usable and counts them in a warning.
 void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *points);
 
+// Drops points without a radius, which are not drawn; how many.
+size_t orl_points_drop_flat(struct orl_points *points);
+
 // Reads PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue, radius,
 // photographs, in any order and scalar type. Other properties and elements are skipped. Files of 3D
 // Gaussian splatting (f_dc_0 .. 2, opacity, scale_0 .. 2) become opaque discs, those without that are

@@ -104,6 +104,9 @@ void orl_scene_destroy(struct orl_scene **scene);
 // Reads the scene's sparse model (colmap.h), whose images have the photographs' order.
 enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl_scene *scene,
                                      struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// The cameras of the photographs that are not held out. *views is owned by the caller (free).
+enum orl_result orl_scene_training_views(const struct orl_log *log, const struct orl_scene *scene,
+                                         struct orl_view **views, size_t *count) ORL_CHECK_RESULT;
 // How many points the scene has, though `points` may be a sample of them.
 size_t orl_scene_point_count(const struct orl_scene *scene);
 // Index of the photograph of this name (with or without extension), -1 if there is none.

@@ -13,18 +13,6 @@ struct options {
     int max_ram_mib;
 };
 
-// The cameras of the photographs that are not held out.
-static enum orl_result list_views(const struct orl_log *log, const struct orl_scene *scene,
-                                  struct orl_view **views, size_t *count)
-{
-    *count = 0;
-    *views = orl_array(log, scene->photo_count, sizeof **views);
-    for (size_t i = 0; *views && i < scene->photo_count; i++)
-        if (!scene->photos[i].test)
-            (*views)[(*count)++] = scene->photos[i].view;
-    return *views ? ORL_OK : ORL_ERR_MEMORY;
-}
-
 static enum orl_result report(const struct orl_log *log, const char *path)
 {
     struct orl_lod *lod;
@@ -47,7 +35,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_lod_params params = {.max_bytes = (size_t)o->max_ram_mib << 20};
     enum orl_result result = to ? orl_scene_open_photos(log, dir, &scene) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = list_views(log, scene, &views, &params.view_count);
+        result = orl_scene_training_views(log, scene, &views, &params.view_count);
     params.views = views;
     if (result == ORL_OK) {
         from = o->points ? orl_strdup(log, o->points) : orl_path_join(log, dir, "points.ply");

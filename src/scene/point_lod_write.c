@@ -228,36 +228,12 @@ static enum orl_result read_part(const struct writer *w, const struct part *part
     return result;
 }
 
-// Where no point has a radius: radii, and normals where they are missing.
-static enum orl_result find_radii(const struct writer *w, struct orl_points *points)
+static bool has_radii(const struct orl_points *points)
 {
-    const struct orl_lod_params *params = w->params;
     for (size_t i = 0; i < points->count; i++)
         if (points->radius[i] > 0)
-            return ORL_OK;
-    double (*viewers)[3] = orl_array(w->log, params->view_count, sizeof *viewers);
-    if (!viewers)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < params->view_count; i++)
-        orl_pose_centre(&params->views[i].cam_from_world, viewers[i]);
-    enum orl_result result =
-        orl_points_set_radii(w->log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
-                             (const double (*)[3])viewers, params->view_count, points);
-    if (result == ORL_OK)
-        result = orl_points_limit_radii(w->log,
-                                        &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS},
-                                        params->views, params->view_count, points);
-    free(viewers);
-    return result;
-}
-
-static void drop_flat(struct orl_points *points)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < points->count; i++)
-        if (points->radius[i] > 0)
-            orl_points_copy(points, i, points, kept++);
-    points->count = kept;
+            return true;
+    return false;
 }
 
 static enum orl_result add_part(struct writer *w, const struct part *part)
@@ -266,10 +242,10 @@ static enum orl_result add_part(struct writer *w, const struct part *part)
     uint32_t *order = NULL;
     size_t count = 0;
     enum orl_result result = read_part(w, part, &points);
-    if (result == ORL_OK && points.count)
-        result = find_radii(w, &points);
+    if (result == ORL_OK && points.count && !has_radii(&points))
+        result = orl_points_find_radii(w->log, w->params->views, w->params->view_count, &points);
     if (result == ORL_OK) {
-        drop_flat(&points);
+        orl_points_drop_flat(&points);
         result = orl_point_order(w->log, &points, &w->cube, &order, &count);
     }
     for (size_t i = 0; result == ORL_OK && i < count; i += ORL_BLOCK_POINTS) {

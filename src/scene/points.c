@@ -124,3 +124,13 @@ enum orl_result orl_points_write(const struct orl_log *log, const char *path,
     orl_atomic_abort(&file);
     return result;
 }
+
+size_t orl_points_drop_flat(struct orl_points *points)
+{
+    size_t kept = 0, all = points->count;
+    for (size_t i = 0; i < all; i++)
+        if (points->radius[i] > 0)
+            orl_points_copy(points, i, points, kept++);
+    points->count = kept;
+    return all - kept;
+}

@@ -222,44 +222,35 @@ static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_
     return ORL_OK;
 }
 
+enum orl_result orl_scene_training_views(const struct orl_log *log, const struct orl_scene *scene,
+                                         struct orl_view **views, size_t *count)
+{
+    *count = 0;
+    *views = orl_array(log, scene->photo_count, sizeof **views);
+    for (size_t i = 0; *views && i < scene->photo_count; i++)
+        if (!scene->photos[i].test)
+            (*views)[(*count)++] = scene->photos[i].view;
+    return *views ? ORL_OK : ORL_ERR_MEMORY;
+}
+
 // Drops points without a radius, which would not be drawn.
 static void drop_flat_points(const struct orl_log *log, struct orl_scene *scene)
 {
-    struct orl_points *points = &scene->points;
-    size_t kept = 0;
-    for (size_t i = 0; i < points->count; i++) {
-        if (!(points->radius[i] > 0))
-            continue;
-        orl_points_copy(points, i, points, kept++);
-    }
-    if (kept < points->count)
+    size_t all = scene->points.count, dropped = orl_points_drop_flat(&scene->points);
+    if (dropped)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu points have no radius: dropped",
-                 scene->dir, points->count - kept, points->count);
-    points->count = kept;
+                 scene->dir, dropped, all);
 }
 
 static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene *scene)
 {
-    double (*viewers)[3] = orl_array(log, scene->photo_count, sizeof *viewers);
-    struct orl_view *views = orl_array(log, scene->photo_count, sizeof *views);
-    enum orl_result result = viewers && views ? ORL_OK : ORL_ERR_MEMORY;
-    size_t count = 0;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        if (scene->photos[i].test)
-            continue;
-        views[count] = scene->photos[i].view;
-        orl_pose_centre(&scene->photos[i].view.cam_from_world, viewers[count++]);
-    }
+    struct orl_view *views;
+    size_t count;
+    enum orl_result result = orl_scene_training_views(log, scene, &views, &count);
     if (result == ORL_OK)
         result = orl_points_drop_in_free_space(log, views, count, &scene->points);
     if (result == ORL_OK)
-        result = orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
-                                      (const double (*)[3])viewers, count, &scene->points);
-    if (result == ORL_OK)
-        result = orl_points_limit_radii(
-            log, &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS}, views, count,
-            &scene->points);
-    free(viewers);
+        result = orl_points_find_radii(log, views, count, &scene->points);
     free(views);
     return result;
 }
