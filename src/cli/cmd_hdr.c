@@ -11,13 +11,14 @@
 #include "hdr/replace.h"
 #include "oriel/hdr.h"
 #include "render/sequence.h"
+#include "scene/light.h"
 #include "scene/view_choice.h"
 
 struct options {
     struct orl_view_choice views;
     struct arg_size size;
     struct output_options output;
-    const char *out, *method;
+    const char *out, *method, *light;
     struct arg_enum merge;
     struct orl_names settings, exclude, position, up;
     struct arg_size panorama;
@@ -115,9 +116,9 @@ static enum orl_result check(const struct options *o, const struct orl_log *log)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --position and --up are of --panorama");
     if (panorama && o->size.width)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --panorama has its own size");
-    if (replace && (o->size.width || o->output.layers.count))
+    if (replace && (o->size.width || o->output.layers.count || o->light))
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --replace-series makes photographs: without "
-                        "--size and --layers");
+                        "--size, --layers and --light");
     if (o->half && o->output.float_color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --half and --float exclude each other");
     bool many = o->views.path || replace, file = orl_frame_can_write(o->out);
@@ -155,6 +156,8 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
     job->params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
+    if (result == ORL_OK)
+        result = orl_scene_set_light(log, job->scene, o->light);
     if (result == ORL_OK)
         result = orl_choice_make(log, job->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings,
                                  &choice);
@@ -228,6 +231,7 @@ int cmd_hdr(int argc, char **argv)
          "of rendering; default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
+        LIGHT_OPTION_ROW(&o.light),
         OUTPUT_OPTION_ROWS(&o.output, "depth, normal, coverage, confidence; default: all in .exr"),
         {"half", ARG_FLAG, &o.half, NULL, "of .exr: 16-bit colour, the default", 0, 0},
         {"frames", ARG_INT, &o.views.frames, "N", "of --path photos and circle; default 120", 2, 100000},

@@ -2,10 +2,13 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
+#include "cli/command_output.h"
+#include "scene/light.h"
 #include "walk/publish.h"
 
 struct options {
     struct orl_publish_params params;
+    const char *light;
     int max_points;
 };
 
@@ -33,6 +36,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     params.progress = &terminal->progress;
     enum orl_result result = orl_scene_open(log, dir, &scene);
     if (result == ORL_OK)
+        result = orl_scene_set_light(log, scene, o->light);
+    if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
     if (result == ORL_OK)
@@ -53,6 +58,7 @@ int cmd_publish(int argc, char **argv)
          0, 0},
         {"title", ARG_STRING, &o.params.title, "TEXT",
          "of the page; default: that of walk.json, else the scene's name", 0, 0},
+        LIGHT_OPTION_ROW(&o.light),
         {"single-file", ARG_FLAG, &o.params.single_file, NULL,
          "everything in one HTML file SITE, which also opens from disk", 0, 0},
         {"max-size", ARG_INT, &o.params.photo_side, "PX",

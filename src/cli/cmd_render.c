@@ -6,6 +6,7 @@
 #include "cli/command_output.h"
 #include "eval/choice.h"
 #include "render/sequence.h"
+#include "scene/light.h"
 #include "scene/view_choice.h"
 
 struct job {
@@ -26,7 +27,7 @@ struct options {
     struct orl_view_choice views;
     struct arg_size size;
     struct output_options output;
-    const char *out, *method, *part;
+    const char *out, *method, *part, *light;
     struct arg_enum textures;
     struct orl_names settings, exclude;
     int max_vram_mib, moment; // moment of a sequence; -1: all of them along a path
@@ -119,6 +120,8 @@ static enum orl_result run(const struct options *options, const struct arg_commo
         result = output_choose(log, &options->output, false, &job->output);
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
+    if (result == ORL_OK)
+        result = orl_scene_set_light(log, job->scene, options->light);
     if (result == ORL_OK && options->moment >= 0)
         result = orl_scene_set_frame(log, job->scene, options->moment);
     if (result == ORL_OK)
@@ -160,6 +163,7 @@ int cmd_render(int argc, char **argv)
          "default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
+        LIGHT_OPTION_ROW(&o.light),
         OUTPUT_OPTION_ROWS(&o.output, "also write depth, normal, coverage"),
         {"part", ARG_STRING, &o.part, "K/N", "only the K-th of N parts of the frames of a path",
          0, 0},

@@ -2,11 +2,13 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
+#include "cli/command_output.h"
 #include "eval/choice.h"
+#include "scene/light.h"
 #include "walk/server.h"
 
 struct options {
-    const char *method, *host, *title;
+    const char *method, *host, *title, *light;
     struct orl_names settings;
     int port, max_vram_mib;
     bool edits, radiance;
@@ -29,6 +31,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_renderer *renderer = NULL;
     struct orl_choice choice;
     enum orl_result result = orl_scene_open(log, dir, &scene);
+    if (result == ORL_OK)
+        result = orl_scene_set_light(log, scene, o->light);
     if (result == ORL_OK)
         result = orl_choice_make(log, scene, o->radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
                                  o->method, &o->settings, &choice);
@@ -64,6 +68,7 @@ int cmd_walk(int argc, char **argv)
         {"method", ARG_STRING, &o.method, "NAME",
          "default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
+        LIGHT_OPTION_ROW(&o.light),
         {"radiance", ARG_FLAG, &o.radiance, NULL,
          "merges exposures as oriel hdr does, for scenes that have several", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},

@@ -30,6 +30,12 @@ void output_options_init(struct output_options *options);
 enum orl_result output_choose(const struct orl_log *log, const struct output_options *options,
                               bool confidence, struct orl_frame_output *output) ORL_CHECK_RESULT;
 
+// The row of a command's table for `name`, of which orl_scene_set_light (scene/light.h) takes the
+// photograph.
+#define LIGHT_OPTION_ROW(name)                                                                   \
+    {"light", ARG_STRING, name, "PHOTO",                                                         \
+     "show the scene in this photograph's exposure and white balance", 0, 0}
+
 // Writes a report to a file or, for "-", to stdout, and releases it. NULL: out of memory.
 enum orl_result report_write(const struct orl_log *log, const char *path,
                              char *text) ORL_CHECK_RESULT;

@@ -57,6 +57,9 @@ refuses 2 'nonsense.*splat_scale' "$oriel" render ws --at 0001 --out out.png --s
 refuses 2 'from 0.01 to 16' "$oriel" render ws --at 0001 --out out.png --set splat_scale=99
 refuses 2 'no photograph 7777' "$oriel" render ws --at 7777 --out out.png
 refuses 2 'no photograph 7777' "$oriel" render ws --at 0001 --out out.png --exclude 7777
+refuses 2 'light 7777' "$oriel" render ws --at 0001 --out out.png --light 7777
+"$oriel" render ws --at 0001 --out light.png --light 0002 --quiet ||
+    { echo "--light of a photograph fails" >&2; failed=1; }
 refuses 2 'png or .exr' "$oriel" render ws --at 0001 --out out.gif
 refuses 2 'depth, normal, coverage' "$oriel" render ws --at 0001 --out out.png --layers smell
 refuses 2 'velvia.*reinhard, filmic' "$oriel" render ws --at 0001 --out out.png --tone velvia
