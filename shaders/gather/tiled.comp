@@ -7,7 +7,7 @@
 #include "shared/pixel.glsl"
 #include <visibility>
 
-// KEPT: most photographs that a pixel may blend, 2 or 4; a software renderer samples all of them.
+// KEPT: most photographs that a pixel may blend, opt.photos_per_pixel.
 // One invocation handles 2x2 pixels, so that it loads the parameters of a photograph once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
@@ -41,7 +41,7 @@ struct sight {
 // The best photographs of a pixel in ascending order of penalty, and the next greater penalty.
 struct ranking {
     sight best[KEPT];
-    float next;
+    float next; // the limit of what is blended
 };
 
 // The code selects rather than branches, here and below: a branch costs a software renderer a mask
@@ -57,15 +57,6 @@ void insert(sight s, inout ranking r)
                   better ? other.pixel : s.pixel, better ? other.mip : s.mip);
     }
     r.next = min(r.next, s.penalty);
-}
-
-// The least penalty of a photograph that is not blended.
-float limit_of(ranking r)
-{
-    float limit = r.next;
-    for (int k = 1; k < KEPT; k++)
-        limit = kept == k ? r.best[k].penalty : limit;
-    return limit;
 }
 
 // Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
@@ -110,10 +101,9 @@ const float GUESS_SEVERITY = 4.0;
 // differences roughly perceptually uniform.
 vec4 blend(spot s, ranking r, out float blur)
 {
-    float limit = limit_of(r);
     vec4 samples[KEPT], vote = vec4(0.0), sum = vec4(0.0);
     for (int k = 0; k < KEPT; k++) {
-        samples[k] = look(r.best[k], r.best[0].penalty, limit, s);
+        samples[k] = look(r.best[k], r.best[0].penalty, r.next, s);
         vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);

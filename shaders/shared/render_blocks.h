@@ -138,7 +138,6 @@ ORL_BLOCK(gather_block)
 // Estimated depth from photographs: pixels of a cell each way; lines of cells of a work group.
 #define GUESS_CELL 4
 #define GUESS_LINES 32
-#define KEPT_MAX 4     // most photographs blended per pixel
 #define GUESS_BLUR_MOST 0.012 // largest blur, fraction of the picture's longer side
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 

@@ -1,5 +1,6 @@
 #include "render/tiled.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "render/edges.h"
@@ -28,14 +29,14 @@ static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_
 }
 
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
-static void gather_tiles(const struct frame *frame, bool many, struct orl_dispatch d)
+static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
 {
+    char defines[32];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
-    // There is one program for at most two photographs per pixel and one for more.
-    bool bicubic = frame->params->sampling == ORL_SAMPLING_BICUBIC;
-    const char *defines = bicubic ? many ? "BICUBIC 1\nKEPT 4" : "BICUBIC 1\nKEPT 2"
-                                  : many ? "KEPT 4" : "KEPT 2";
+    // The number of photographs per pixel is part of the program, so that none is sampled in vain.
+    snprintf(defines, sizeof defines, "%sKEPT %d",
+             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "", kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
@@ -81,7 +82,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
         orl_guess_depth(frame, &d, &block);
     if (block.reach > 0)
         orl_edges_cut(frame, &d);
-    gather_tiles(frame, block.kept > 2, d);
+    gather_tiles(frame, block.kept, d);
     return ORL_OK;
 }
 
