@@ -164,6 +164,10 @@ static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
     orl_colmap_arg(&args, "--PatchMatchStereo.geom_consistency", "1");
     enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "patch_match_stereo", .step = "densify", .share = 1, .total = 1}, &args);
+    char *maps = orl_job_path(job, "stereo");
+    if (result == ORL_OK)
+        result = maps ? orl_flush(job->log, maps) : ORL_ERR_MEMORY;
+    free(maps);
     json_object_set_new(record, "tool",
                         json_sprintf("COLMAP %s patch_match_stereo", job->colmap_version));
     if (result == ORL_OK)

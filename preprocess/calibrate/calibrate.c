@@ -169,12 +169,15 @@ static void say(const struct calibration *c, const char *what)
 // Marks the database as whole for these inputs and settings.
 static enum orl_result set_mark(const struct calibration *c, bool matched)
 {
-    char *path = orl_job_path(c->job, WORK "/matched");
+    char *path = orl_job_path(c->job, WORK "/matched"), *work = orl_job_path(c->job, WORK);
     const char *key = c->job->keys[ORL_STAGE_CALIBRATE];
-    enum orl_result result = !path ? ORL_ERR_MEMORY
-                             : matched ? orl_file_write(c->job->log, path, key, strlen(key))
-                                       : orl_dir_remove(c->job->log, path);
+    enum orl_result result = path && work ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !matched)
+        result = orl_dir_remove(c->job->log, path);
+    else if (result == ORL_OK && (result = orl_flush(c->job->log, work)) == ORL_OK)
+        result = orl_file_write(c->job->log, path, key, strlen(key));
     free(path);
+    free(work);
     return result;
 }
 

@@ -157,7 +157,7 @@ static enum orl_result find_parts(const struct orl_job *job, enum orl_part_step 
 static enum orl_result rename_in(const struct orl_job *job, const char *from, const char *to)
 {
     char *source = orl_job_path(job, "%s", from), *target = orl_job_path(job, "%s", to);
-    enum orl_result result = source && target ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = source && target ? orl_flush(job->log, source) : ORL_ERR_MEMORY;
     if (result == ORL_OK && rename(source, target) != 0)
         result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", target, strerror(errno));
     free(source);

@@ -139,6 +139,35 @@ static bool flush_to_disk(int fd)
     return fsync(fd) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP;
 }
 
+static enum orl_result flush_file(const struct orl_log *log, const char *path)
+{
+    int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    enum orl_result result = fd >= 0 && flush_to_disk(fd) ? ORL_OK : fail_errno(log, path);
+    if (fd >= 0)
+        close(fd);
+    return result;
+}
+
+enum orl_result orl_flush(const struct orl_log *log, const char *path)
+{
+    struct stat st;
+    if (lstat(path, &st) != 0)
+        return errno == ENOENT ? ORL_OK : fail_errno(log, path);
+    if (S_ISREG(st.st_mode))
+        return flush_file(log, path);
+    if (!S_ISDIR(st.st_mode))
+        return ORL_OK;
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(log, path, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        char *child = orl_path_join(log, path, names.items[i]);
+        result = child ? orl_flush(log, child) : ORL_ERR_MEMORY;
+        free(child);
+    }
+    orl_names_finish(&names);
+    return result;
+}
+
 enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_file *file)
 {
     enum orl_result result = ORL_OK;

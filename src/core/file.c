@@ -204,8 +204,10 @@ enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, ch
 
 enum orl_result orl_new_dir_finish(const struct orl_log *log, const char *part, const char *out)
 {
-    return rename(part, out) == 0 ? ORL_OK
-                                  : orl_fail(log, ORL_ERR_IO, "%s: %s", out, strerror(errno));
+    enum orl_result result = orl_flush(log, part);
+    if (result == ORL_OK && rename(part, out) != 0)
+        result = orl_fail(log, ORL_ERR_IO, "%s: %s", out, strerror(errno));
+    return result;
 }
 
 enum orl_result orl_dir_list(const struct orl_log *log, const char *path, struct orl_names *names)

@@ -49,6 +49,10 @@ void orl_atomic_abort(struct orl_atomic_file *file);
 // Writes a whole file from memory in one atomic step.
 enum orl_result orl_file_write(const struct orl_log *log, const char *path, const void *data,
                                size_t size) ORL_CHECK_RESULT;
+// Flushes a file, or all files in a folder and below it, that another program has written, so that
+// a power failure cannot leave their names without their content once they are told to be done. A
+// missing path and symbolic links count as flushed.
+enum orl_result orl_flush(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 // Copies a regular file, making the folders that lead to `to`.
 enum orl_result orl_file_copy(const struct orl_log *log, const char *from,
                               const char *to) ORL_CHECK_RESULT;
@@ -59,7 +63,8 @@ enum orl_result orl_dir_sweep(const struct orl_log *log, const char *dir) ORL_CH
 enum orl_result orl_dir_make(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 // Creates the folder that a file is in, and its parents.
 enum orl_result orl_file_make_folder(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
-// A folder that is filled under the name "OUT.part" and takes its own name once it is whole. Refuses
+// A folder that is filled under the name "OUT.part" and takes its own name once it is whole and
+// flushed. Refuses
 // an `out` that is a file or not empty; removes an unfinished folder of an earlier run. *part is
 // owned by the caller, who removes the folder if it is not finished.
 enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,

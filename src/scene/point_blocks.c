@@ -229,6 +229,7 @@ static void describe_block(float (*const positions)[3], const struct orl_points 
     }
     block[0][3] = density(positions, points, order, count);
     block[1][3] = (float)count;
+    block[2][3] = 0; // nothing, but it gets into files
     block[3][3] = frame->step;
 }
 

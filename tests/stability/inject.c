@@ -1,14 +1,18 @@
 // LD_PRELOAD: fails, or kills the program, at the N-th call of a kind, as a full disk, a lost
 // drive, an exhausted memory or a power switch would.
-//   INJECT_CALL   write, sync, rename, unlink or malloc
+//   INJECT_CALL   write, sync, rename, unlink, malloc, or end: when the program has done its work
 //   INJECT_AT     which one, from 1
 //   INJECT_KILL   set: SIGKILL ahead of the call, instead of an error
+//   INJECT_LOSE   a folder: ahead of that SIGKILL every file in it that changed since the start, and
+//                 was not synced since, becomes empty, as after a power failure; names stay
+//   INJECT_ZEROS  set: such a file becomes zeros of its length instead
 //   INJECT_MARK   this file is made when it happens
 // INJECT_DRIVE, set: every file lies on a drive without fsync, flock and symbolic links.
 // Allocations count only when the program itself makes them, not a library for its own use.
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <link.h>
 #include <signal.h>
 #include <stdatomic.h>
@@ -19,6 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -26,15 +31,80 @@ void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *old, size_t size);
 
-enum kind { KIND_NONE, KIND_WRITE, KIND_SYNC, KIND_RENAME, KIND_UNLINK, KIND_MALLOC };
+enum kind { KIND_NONE, KIND_WRITE, KIND_SYNC, KIND_RENAME, KIND_UNLINK, KIND_MALLOC, KIND_END };
 
 // A preloaded library has no owner to keep its state.
 static enum kind wanted;
 static long at;
 static bool kills, plain_drive;
-static const char *mark;
+static const char *mark, *lose;
+static bool zeros;
 static uintptr_t program_from, program_to;
 static atomic_long count;
+
+// --- a power failure ---
+
+// What the drive is known to hold: the file as it was at the start, or when it was last synced.
+struct held {
+    dev_t device;
+    ino_t file;
+    off_t size;
+    struct timespec changed;
+};
+
+enum { HELD_MAX = 1 << 16 };
+static struct held held[HELD_MAX];
+static size_t held_count;
+static atomic_flag held_busy = ATOMIC_FLAG_INIT;
+
+static bool is_held(const struct stat *st)
+{
+    for (size_t i = held_count; i-- > 0;)
+        if (held[i].device == st->st_dev && held[i].file == st->st_ino)
+            return held[i].size == st->st_size && held[i].changed.tv_sec == st->st_mtim.tv_sec &&
+                   held[i].changed.tv_nsec == st->st_mtim.tv_nsec;
+    return false;
+}
+
+static int hold(const char *path, const struct stat *st, int type, struct FTW *level)
+{
+    (void)path;
+    (void)level;
+    if (type != FTW_F || is_held(st))
+        return 0;
+    if (held_count == HELD_MAX)
+        abort();
+    held[held_count++] = (struct held){st->st_dev, st->st_ino, st->st_size, st->st_mtim};
+    return 0;
+}
+
+static void hold_file(int fd)
+{
+    struct stat st;
+    if (!lose || fstat(fd, &st) != 0 || !S_ISREG(st.st_mode))
+        return;
+    while (atomic_flag_test_and_set(&held_busy))
+        ;
+    hold(NULL, &st, FTW_F, NULL);
+    atomic_flag_clear(&held_busy);
+}
+
+static int lose_file(const char *path, const struct stat *st, int type, struct FTW *level)
+{
+    (void)level;
+    if (type != FTW_F || is_held(st))
+        return 0;
+    bool ok = truncate(path, 0) == 0 && (!zeros || truncate(path, st->st_size) == 0);
+    return ok || errno == ENOENT ? 0 : -1;
+}
+
+static void walk(int (*visit)(const char *, const struct stat *, int, struct FTW *))
+{
+    if (lose && nftw(lose, visit, 16, FTW_PHYS) != 0)
+        abort();
+}
+
+// --- which call ---
 
 static int find_program(struct dl_phdr_info *info, size_t size, void *priv)
 {
@@ -54,16 +124,19 @@ __attribute__((constructor)) static void start(void)
 {
     static const char *const names[] = {[KIND_WRITE] = "write", [KIND_SYNC] = "sync",
                                         [KIND_RENAME] = "rename", [KIND_UNLINK] = "unlink",
-                                        [KIND_MALLOC] = "malloc"};
+                                        [KIND_MALLOC] = "malloc", [KIND_END] = "end"};
     const char *call = getenv("INJECT_CALL"), *number = getenv("INJECT_AT");
     mark = getenv("INJECT_MARK");
     kills = getenv("INJECT_KILL") != NULL;
     plain_drive = getenv("INJECT_DRIVE") != NULL;
+    lose = getenv("INJECT_LOSE");
+    zeros = getenv("INJECT_ZEROS") != NULL;
     at = number ? strtol(number, NULL, 10) : 0;
     dl_iterate_phdr(find_program, NULL);
     for (size_t i = 1; call && i < sizeof names / sizeof *names; i++)
         if (strcmp(call, names[i]) == 0)
             wanted = (enum kind)i;
+    walk(hold);
     unsetenv("LD_PRELOAD"); // not for programs that this one runs
 }
 
@@ -76,9 +149,16 @@ static bool hits(enum kind kind)
         if (fd >= 0)
             syscall(SYS_close, fd);
     }
-    if (kills)
+    if (kills) {
+        walk(lose_file);
         syscall(SYS_kill, getpid(), SIGKILL);
+    }
     return true;
+}
+
+__attribute__((destructor)) static void end(void)
+{
+    (void)hits(KIND_END);
 }
 
 static void *next(const char *name)
@@ -155,7 +235,15 @@ int fsync(int fd)
         errno = EINVAL;
         return -1;
     }
-    return (int)syscall(SYS_fsync, fd);
+    int result = (int)syscall(SYS_fsync, fd);
+    if (result == 0)
+        hold_file(fd);
+    return result;
+}
+
+int fdatasync(int fd)
+{
+    return fsync(fd);
 }
 
 int flock(int fd, int operation)

@@ -1,20 +1,25 @@
 #!/usr/bin/env bash
 # Fails and kills oriel at every write, sync, rename, unlink and allocation of its commands in
-# turn. After each, a final name must hold what it held before or the whole result, the exit status
-# must tell, and no temporary file may stay unless its writer was killed.
+# turn, and lets the power fail there and at their ends, so that what was not synced is lost. After
+# each, a final name must hold what it held before or the whole result, the exit status must tell, and
+# no temporary file may stay unless its writer was killed.
 # usage: inject.sh ORIEL SOURCE LIBRARY [all]     without all: the first six calls of a kind, then
 # every so many, as they grow in number
 set -u
 library=$3 all=${4:-}
 . "$2/tests/e2e/command_lib"
+. "$2/tests/stability/inject_lib"
 export MESA_SHADER_CACHE_DIR=$work/mesa ORIEL_CACHE=$work/programs # filled by the first run
 declare -A tried
 
 workspace 3 && square || exit 1
 scene train test train
 cp -r ws base
+mkdir lod
+(cd lod && monument_scene) || exit
 
-# A clean start: `out` holds an older file under each final name, but where a command refuses that.
+# A clean start: `out` holds an older file under each final name, but where a command refuses that, or
+# is a scene that the command adds to.
 prepare_out() {
     rm -rf out
     [ "${command[1]}" = synth ] && mkdir out || cp -r old out
@@ -34,15 +39,13 @@ check_out() {
 
 # once: runs "${command[@]}" with the N-th call failing; 1 when there are fewer calls.
 once() {
-    local number=$1 status problems
+    local number=$1 status problems kind="$call${killed:+, $killed}"
     prepare_out
     rm -f mark
-    (timeout -s KILL 120 env LD_PRELOAD="$library" INJECT_CALL="$call" INJECT_AT="$number" \
-        INJECT_MARK="$work/mark" ${killed:+INJECT_KILL=1} "${command[@]}" \
-        >stdout.txt 2>stderr.txt; exit $?) 2>/dev/null
+    (with_fault out "${command[@]}" >stdout.txt 2>stderr.txt; exit $?) 2>/dev/null
     status=$?
     [ -e mark ] || return 1
-    tried[$call${killed:+ kill}]=$((${tried[$call${killed:+ kill}]:-0} + 1))
+    tried[$kind]=$((${tried[$kind]:-0} + 1))
     problems=$(check_out)
     if [ "$killed" ]; then
         [ $status -eq 137 ] || problems+=" status $status after a kill"
@@ -51,7 +54,7 @@ once() {
     elif [ $status -eq 0 ] && [ "$call" != unlink ] && ! whole_result; then
         problems+=" status 0 without its result"
     fi
-    [ -z "$problems" ] || fail "${command[*]}: $call $number${killed:+, killed}:$problems"
+    [ -z "$problems" ] || fail "${command[*]}: $kind: call $number: $problems"
 }
 
 whole_result() {
@@ -61,14 +64,16 @@ whole_result() {
 sweep() {
     command=("$@")
     rm -rf old out whole
-    mkdir old out
+    mkdir old
+    [ "$2" = lod ] && cp -r lod/made out || mkdir out
     "${command[@]}" >whole.txt 2>stderr.txt || { fail "the command itself: $*"; return; }
     mv out whole
-    (cd whole && find . -type f -exec sh -c 'mkdir -p "../old/$(dirname "$1")"; echo older >"../old/$1"' _ {} \;)
+    [ "$2" = lod ] && cp -r lod/made/. old || (cd whole && find . -type f -exec sh -c 'mkdir -p "../old/$(dirname "$1")"; echo older >"../old/$1"' _ {} \;)
     local started=$SECONDS
-    for call in write sync rename unlink malloc; do
-        for killed in '' 1; do
-            [[ $killed && $call =~ malloc|unlink ]] && continue
+    for call in write sync rename unlink malloc end; do
+        for killed in '' "${endings[@]}"; do
+            makes_sense || continue
+            [[ $killed && $call = unlink ]] && continue
             local number=1
             while once $number; do
                 [ "$all" ] || [ $number -lt 6 ] && number=$((number + 1)) ||
@@ -85,5 +90,6 @@ sweep "$oriel" render base --at "$photo" --out out/view.png
 sweep "$oriel" render base --at "$photo" --out out/view.exr --layers depth,normal
 sweep "$oriel" hdr base --at "$photo" --out out/view.exr
 sweep "$oriel" synth monument --size 64x64 --count 2 --quiet --out out/photos
+sweep "$oriel" lod out
 for kind in "${!tried[@]}"; do echo "injected: $kind ${tried[$kind]}"; done | sort
 exit $failed

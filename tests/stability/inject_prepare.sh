@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Fails and kills oriel prepare, from the start and resumed half-way, at every write, sync, rename,
-# unlink and allocation in turn, with a stand-in for COLMAP. After each, the scene does not open or
-# is whole, the exit status tells, the photographs are as they were, and --resume gives the bytes of
+# unlink and allocation in turn, and lets the power fail there and at its end, with a stand-in for
+# COLMAP. After each, the scene does not open or is whole, the exit status tells, the photographs are as they were, and --resume gives the bytes of
 # a job that nothing disturbed.
 # Then a drive without fsync, flock and symbolic links, as many USB sticks and network drives are.
 # usage: inject_prepare.sh ORIEL SOURCE LIBRARY [all]     without all: calls 1, 3, 9, 27..
 set -u
 library=$3 all=${4:-}
 . "$2/tests/e2e/prepare_lib"
+. "$2/tests/stability/inject_lib"
 export ORIEL_COLMAP=$source/tests/e2e/colmap_double
 photos=$work/p scene=$work/scene whole=$work/whole
 declare -A tried
@@ -33,11 +34,11 @@ differences() {
 
 # once NUMBER: runs the job with that call failing; 1 when there are fewer calls.
 once() {
-    local number=$1 status problems= kind="$call in $job${killed:+, killed}"
+    local number=$1 status problems= kind="$call in $job${killed:+, $killed}"
     rm -rf "$scene" "$work/mark"
     [ "$job" = resume ] && cp -r "$work/half" "$scene"
-    (timeout -s KILL 60 env LD_PRELOAD="$library" INJECT_CALL="$call" INJECT_AT="$number" \
-        INJECT_MARK="$work/mark" ${killed:+INJECT_KILL=1} "$oriel" prepare "$photos" --out "$scene" \
+    mkdir -p "$scene"
+    (with_fault "$scene" "$oriel" prepare "$photos" --out "$scene" \
         --test-list 1.png --keep all --resume >"$work/out" 2>"$work/err"; exit $?) 2>/dev/null
     status=$?
     [ -e "$work/mark" ] || return 1
@@ -54,15 +55,18 @@ once() {
     if "$oriel" info "$scene" >/dev/null 2>&1 && ! "$oriel" info "$scene" --check >/dev/null 2>&1; then
         problems+=" a scene that is not whole opens;"
     fi
+    if [ "$call" = end ] && ! "$oriel" info "$scene" --check >/dev/null 2>&1; then
+        problems+=" what was done did not last;"
+    fi
     prepare --resume >/dev/null 2>"$work/err.resumed" || problems+=" resume fails: $(tail -n 1 "$work/err.resumed")"
     problems+=$(differences)
     [ -z "$problems" ] || fail "prepare: $kind: call $number: $problems"
 }
 
 for job in prepare resume; do
-    for call in write sync rename unlink malloc; do
-        for killed in '' 1; do
-            [ "$killed" ] && [ "$call" = malloc ] && continue
+    for call in write sync rename unlink malloc end; do
+        for killed in '' "${endings[@]}"; do
+            makes_sense || continue
             number=1
             while once $number; do
                 number=$((all ? number + 1 : 3 * number))

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Fails and kills oriel trim at every write, sync, rename, unlink and allocation in turn. After each,
-# SCENE2 is absent or whole, SCENE is as it was, the exit status tells, and nothing stays beside
+# Fails and kills oriel trim at every write, sync, rename, unlink and allocation in turn, and lets the
+# power fail there and at its end. After each, SCENE2 is absent or whole, SCENE is as it was, the exit status tells, and nothing stays beside
 # SCENE2 unless its writer was killed or could not remove it.
 # usage: inject_trim.sh ORIEL SOURCE LIBRARY [all]     without all: calls 1, 32, 1024.., and a search
 # that ends at once
 set -u
 library=$3 all=${4:-}
 . "$2/tests/e2e/command_lib"
+. "$2/tests/stability/inject_lib"
 export MESA_SHADER_CACHE_DIR=$work/mesa ORIEL_CACHE=$work/programs # filled by the first run
 declare -A tried
 
@@ -37,11 +38,9 @@ problems() {
 
 # once NUMBER: runs the command with that call failing; 1 when there are fewer calls.
 once() {
-    local number=$1 status found kind="$call in trim${killed:+, killed}"
+    local number=$1 status found kind="$call in trim${killed:+, $killed}"
     rm -rf out *out*part* mark
-    (timeout -s KILL 120 env LD_PRELOAD="$library" INJECT_CALL="$call" INJECT_AT="$number" \
-        INJECT_MARK="$work/mark" ${killed:+INJECT_KILL=1} "${trim[@]}" >stdout.txt 2>stderr.txt
-        exit $?) 2>/dev/null
+    (with_fault "$work" "${trim[@]}" >stdout.txt 2>stderr.txt; exit $?) 2>/dev/null
     status=$?
     [ -e mark ] || return 1
     tried[$kind]=$((${tried[$kind]:-0} + 1))
@@ -51,9 +50,9 @@ once() {
 
 runs 0 "${trim[@]}"
 runs 0 "$oriel" info out --check
-for call in write sync rename unlink malloc; do
-    for killed in '' 1; do
-        [ "$killed" ] && [ "$call" = malloc ] && continue
+for call in write sync rename unlink malloc end; do
+    for killed in '' "${endings[@]}"; do
+        makes_sense || continue
         number=1
         while once $number; do
             number=$((all ? number + 1 : 32 * number))
@@ -61,7 +60,7 @@ for call in write sync rename unlink malloc; do
     done
 done
 # What a killed one leaves does not hinder the next.
-killed=1 call=rename
+killed=killed call=rename
 once 1
 runs 0 "${trim[@]}"
 runs 0 "$oriel" info out --check

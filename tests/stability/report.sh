@@ -61,7 +61,8 @@ running() {
     echo "At commit $(git -C "$source" rev-parse --short HEAD)."
     echo
     echo "A call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
-    echo "(PNG, EXR), \`hdr\` and \`synth\`. Afterwards a final name holds what it held before or the whole"
+    echo "(PNG, EXR), \`hdr\`, \`synth\` and \`lod\`. Or the power fails there, or at the end (\`end\`): what"
+    echo "was not synced then is empty or zeros. Afterwards a final name holds what it held before or the whole"
     echo "result, the exit status tells, and only a killed program leaves a temporary file. So too in"
     echo "\`prepare\`, from the start and resumed half-way, with a stand-in for COLMAP; afterwards"
     echo "\`--resume\` gives the bytes of a job that nothing disturbed. And in \`trim\`; afterwards the scene"
@@ -70,7 +71,7 @@ running() {
     echo "| fault | times | files cut, crashes, wrong statuses |"
     echo "|---|--:|--:|"
     sed -n 's/^injected: \(.*\) \([0-9]*\)$/\1|\2/p' "$fuzz/injected.txt" | while IFS='|' read -r kind times; do
-        echo "| $kind | $times | $(grep -cE "^FAILED.*: (${kind% kill} [0-9]|$kind: call )" "$fuzz/injected.txt" || true) |"
+        echo "| $kind | $times | $(grep -c "^FAILED.*: $kind: call " "$fuzz/injected.txt" || true) |"
     done
     echo
     echo "## Soaked"

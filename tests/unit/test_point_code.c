@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/point_blocks.h"
 #include "scene/point_code.h"
 #include "test.h"
 
@@ -103,6 +104,29 @@ static void no_point_is_no_point(void **state)
                                            orl_point_code_none.position, back));
 }
 
+// What a block does not say must not be what memory held before: blocks are written to files.
+static void blocks_hold_nothing_else(void **state)
+{
+    (void)state;
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, 3), ORL_OK);
+    points.count = 3;
+    uint32_t order[ORL_BLOCK_POINTS];
+    for (size_t i = 0; i < ORL_BLOCK_POINTS; i++)
+        order[i] = i < points.count ? (uint32_t)i : UINT32_MAX;
+    for (size_t i = 0; i < points.count; i++) {
+        points.position[i][0] = (float)i;
+        points.normal[i][2] = points.radius[i] = 1;
+    }
+    struct point_block one, other;
+    memset(&one, 0x11, sizeof one);
+    memset(&other, 0x77, sizeof other);
+    orl_point_block_make(&points, order, &one);
+    orl_point_block_make(&points, order, &other);
+    assert_memory_equal(&one, &other, sizeof one);
+    orl_points_finish(&points);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -110,6 +134,7 @@ int main(void)
         cmocka_unit_test(radii_come_back),
         cmocka_unit_test(far_points_need_a_block_of_their_own),
         cmocka_unit_test(no_point_is_no_point),
+        cmocka_unit_test(blocks_hold_nothing_else),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
