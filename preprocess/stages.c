@@ -25,6 +25,7 @@
 #include "preprocess/photos/normalise.h"
 #include "preprocess/results.h"
 #include "scene/manifest.h"
+#include "scene/point_lod.h"
 
 // --- what a stage's result depends on, besides the stages before it ---
 
@@ -136,8 +137,8 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                            orl_stage_densify, {0}, "tool", false, NULL},
     [ORL_STAGE_FUSE] = {"fuse", ORL_FUSE_VERSION, ORL_STAGE_DENSIFY,
                         orl_stage_fuse_settings, orl_stage_fuse, {".oriel/fused.ply"}, "points", true, NULL},
-    [ORL_STAGE_RADII] = {"radii", 2, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
-                         {"points.ply"}, "points", true, NULL},
+    [ORL_STAGE_RADII] = {"radii", 3, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
+                         {"points.ply", ORL_LOD_NAME}, "points", true, NULL},
     [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, {0},
                           "ground", true, NULL},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, mesh_settings, orl_stage_mesh, {"mesh.ply"},

@@ -90,7 +90,8 @@ struct orl_prepare_params {
     uint32_t seed;
     struct orl_gpu *gpu;       // NULL: opened when densify needs it
     size_t max_vram_bytes;     // device memory that densify keeps to; 0: no limit
-    size_t max_ram_bytes;      // memory that fusion keeps to; 0: half of what is free then
+    size_t max_ram_bytes;      // memory that fusion and points keep to; 0: half of what is
+                               // free then
     const char *shader_dir;    // for a GPU opened here; NULL: the embedded shaders
 };
 

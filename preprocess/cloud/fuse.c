@@ -12,6 +12,7 @@
 #include "preprocess/cloud/clusters.h"
 #include "preprocess/cloud/fuse_photographs.h"
 #include "preprocess/job/colmap_run.h"
+#include "scene/point_stream.h"
 
 enum { CLUSTER_SIZE = 400 }; // photographs that are fused together by default
 
@@ -149,61 +150,81 @@ static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_cluste
 
 // --- the stage ---
 
-static enum orl_result append_cloud(const struct orl_job *job, const char *path,
-                                    struct orl_points *points)
+// Adds what a cluster's file has, and counts it; counts only where there is no writer.
+static enum orl_result add_cluster(const struct orl_job *job, const struct orl_clusters *clusters,
+                                   int cluster, struct orl_point_writer *writer, uint64_t *count)
 {
-    struct orl_points part = {0}, all = {0};
-    enum orl_result result = orl_points_read(job->log, path, &part);
-    if (result == ORL_OK)
-        result = orl_points_init(job->log, &all, points->count + part.count);
-    for (size_t i = 0; result == ORL_OK && i < all.count; i++) {
-        bool old = i < points->count;
-        orl_points_copy(old ? points : &part, old ? i : i - points->count, &all, i);
+    enum { READ_POINTS = 1 << 16 };
+    struct orl_point_stream *stream = NULL;
+    struct orl_points points = {0};
+    uint64_t total = 0;
+    size_t read = writer != NULL;
+    char *path = cluster_path(job, clusters, cluster, ".ply");
+    enum orl_result result = path ? orl_point_stream_open(job->log, path, &stream, &total)
+                                  : ORL_ERR_MEMORY;
+    if (result == ORL_OK && writer)
+        result = orl_points_init(job->log, &points, READ_POINTS);
+    while (result == ORL_OK && read) {
+        result = orl_point_stream_next(stream, READ_POINTS, &points, &read);
+        if (result == ORL_OK)
+            result = orl_point_writer_add(writer, &points);
     }
-    orl_points_finish(&part);
-    if (result != ORL_OK)
-        return result;
-    orl_points_finish(points);
-    *points = all;
-    return ORL_OK;
+    *count += total;
+    orl_points_finish(&points);
+    orl_point_stream_close(&stream);
+    free(path);
+    return result;
 }
 
+// The clusters' points one after the other, never all in memory.
 static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clusters *clusters,
-                                     struct orl_points *points)
+                                     const char *path, uint64_t *count)
 {
+    struct orl_point_writer writer = {0};
     enum orl_result result = ORL_OK;
-    for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++) {
-        result = fuse_cluster(job, clusters, c);
-        char *path = result == ORL_OK ? cluster_path(job, clusters, c, ".ply") : NULL;
-        if (result == ORL_OK)
-            result = path ? append_cloud(job, path, points) : ORL_ERR_MEMORY;
-        free(path);
-    }
+    uint64_t again = 0;
+    for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++)
+        if ((result = fuse_cluster(job, clusters, c)) == ORL_OK)
+            result = add_cluster(job, clusters, c, NULL, count);
+    if (result == ORL_OK)
+        result = orl_point_writer_begin(job->log, path, *count, false, &writer);
+    for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++)
+        result = add_cluster(job, clusters, c, &writer, &again);
+    if (result == ORL_OK)
+        result = orl_point_writer_end(&writer);
+    if (result == ORL_ERR_IO)
+        orl_job_hint_disk(job);
+    orl_point_writer_finish(&writer);
     return result;
 }
 
 // All photographs at once, in the scene itself.
 static enum orl_result fuse_all(struct orl_job *job, const struct orl_colmap_model *model,
-                                const struct orl_names *train, struct orl_points *points,
+                                const struct orl_names *train, const char *path, uint64_t *count,
                                 json_t *record)
 {
+    struct orl_points points = {0};
     char *temp = orl_job_path(job, ".oriel/fuse.tmp");
     struct orl_fusion fusion = {.workspace = job->dir, .temp = temp, .names = train, .total = 1};
     enum orl_result result = temp ? orl_job_fresh_dir(job, ".oriel/fuse.tmp") : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_fuse_photographs(job, model, &fusion, points);
+        result = orl_fuse_photographs(job, model, &fusion, &points);
     if (result == ORL_OK)
         result = orl_job_remove(job, ".oriel/fuse.tmp");
+    if (result == ORL_OK)
+        result = write_cloud(job, path, &points);
+    *count = points.count;
     json_object_set_new(record, "cache_gib", json_real(fusion.cache_gib));
     json_object_set_new(record, "points_of_three", json_integer((json_int_t)fusion.of_three));
     json_object_set_new(record, "strays", json_integer((json_int_t)fusion.strays));
+    orl_points_finish(&points);
     free(temp);
     return result;
 }
 
 enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
 {
-    struct orl_points points = {0};
+    uint64_t points = 0;
     struct orl_names train = {0};
     struct orl_clusters clusters = {0};
     const struct orl_colmap_model *model = NULL;
@@ -217,22 +238,19 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
         result = orl_clusters_make(job->log, model, &train,
                                    (size_t)size_of(job->params->fuse_cluster), &clusters);
     if (result == ORL_OK && clusters.count > 1)
-        result = fuse_clusters(job, &clusters, &points);
+        result = fuse_clusters(job, &clusters, path, &points);
     else if (result == ORL_OK)
-        result = fuse_all(job, model, &train, &points, record);
-    if (result == ORL_OK)
-        result = write_cloud(job, path, &points);
+        result = fuse_all(job, model, &train, path, &points, record);
     if (result == ORL_OK)
         result = orl_job_remove(job, "stereo/fused");
     if (result == ORL_OK) {
         json_object_set_new(record, "clusters", json_integer((json_int_t)clusters.count));
         json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
-        json_object_set_new(record, "points", json_integer((json_int_t)points.count));
+        json_object_set_new(record, "points", json_integer((json_int_t)points));
         orl_progress_report(job->progress, "fuse", 1, 1, NULL);
     }
     orl_clusters_finish(&clusters);
     orl_names_finish(&train);
-    orl_points_finish(&points);
     free(path);
     return result;
 }

@@ -4,9 +4,11 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "oriel/points.h"
 #include "preprocess/job/colmap_run.h"
 #include "scene/mesh.h"
+#include "scene/point_lod.h"
+
+enum { MESH_POINTS = 16 << 20 }; // of a larger cloud
 
 // Depth of Poisson's octree, below which density leaves are trimmed, and the most triangles.
 struct detail {
@@ -65,14 +67,12 @@ static enum orl_result crop(const struct orl_log *log, struct orl_points *points
 static enum orl_result write_points(const struct orl_job *job, const char *to)
 {
     struct orl_points points = {0};
-    char *from = orl_job_path(job, "points.ply");
-    enum orl_result result = from ? orl_points_read(job->log, from, &points) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_lod_read_cloud(job->log, job->dir, MESH_POINTS, &points);
     if (result == ORL_OK && points.count)
         result = crop(job->log, &points);
     if (result == ORL_OK)
         result = orl_points_write(job->log, to, &points, false);
     orl_points_finish(&points);
-    free(from);
     return result;
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "scene/point_lod.h"
-#include "scene/point_radii.h"
+#include "scene/point_stream.h"
 
 // The photographs that are not held out.
 struct viewers {
@@ -61,38 +61,81 @@ json_t *orl_stage_radii_settings(const struct orl_job *job)
                      params.overlap != usual.overlap ? json_real((double)params.overlap) : NULL);
 }
 
+// In memory: points.ply.
+static enum orl_result write_whole(struct orl_job *job, const struct orl_radii_params *params,
+                                   const struct viewers *viewers, const char *in, size_t *left)
+{
+    const struct orl_radii_limits limits = orl_radii_limits_of(params);
+    struct orl_points points = {0};
+    char *out = orl_job_path(job, "points.ply");
+    enum orl_result result = out ? orl_points_read(job->log, in, &points) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_points_set_radii(job->log, job->progress, params,
+                                      (const double (*)[3])viewers->centres, viewers->count,
+                                      &points);
+    if (result == ORL_OK)
+        result = orl_points_limit_radii(job->log, &limits, viewers->views, viewers->count, &points);
+    if (result == ORL_OK)
+        result = orl_points_write(job->log, out, &points, false);
+    if (result == ORL_OK)
+        result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these
+    *left = points.count;
+    orl_points_finish(&points);
+    free(out);
+    return result;
+}
+
+// In parts: points.lod.
+static enum orl_result write_levels(struct orl_job *job, const struct orl_radii_params *params,
+                                    const struct viewers *viewers, const char *in, size_t *left)
+{
+    const struct orl_lod_params how = {.max_bytes = job->params->max_ram_bytes, .radii = *params,
+                                       .views = viewers->views, .view_count = viewers->count};
+    struct orl_lod *lod = NULL;
+    char *out = orl_job_path(job, ORL_LOD_NAME);
+    enum orl_result result = out ? orl_lod_write(job->log, job->progress, &how, in, out)
+                                 : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_lod_open(job->log, out, &lod);
+    if (result == ORL_OK)
+        result = orl_job_remove(job, "points.ply"); // of a cloud that was smaller
+    *left = lod ? (size_t)lod->points : 0;
+    orl_lod_close(&lod);
+    free(out);
+    return result;
+}
+
 enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
 {
     const struct orl_radii_params params = radii_params(job->params);
     const struct orl_radii_limits limits = orl_radii_limits_of(&params);
-    struct orl_points points = {0};
+    uint64_t fused = 0, most = orl_lod_most_in_memory(job->params->max_ram_bytes);
+    size_t left = 0;
     struct viewers viewers = {0};
-    char *in = orl_job_path(job, ".oriel/fused.ply"), *out = orl_job_path(job, "points.ply");
-    enum orl_result result = in && out ? orl_points_read(job->log, in, &points) : ORL_ERR_MEMORY;
-    size_t fused = points.count;
-    if (result != ORL_OK || (result = find_viewers(job, &viewers)) != ORL_OK ||
-        (result = orl_points_set_radii(job->log, job->progress, &params,
-                                       (const double (*)[3])viewers.centres, viewers.count,
-                                       &points)) != ORL_OK ||
-        (result = orl_points_limit_radii(job->log, &limits, viewers.views, viewers.count,
-                                         &points)) != ORL_OK)
-        goto end;
-    result = orl_points_write(job->log, out, &points, false);
-    if (result != ORL_OK)
+    struct orl_point_stream *stream = NULL;
+    char *in = orl_job_path(job, ".oriel/fused.ply");
+    enum orl_result result = in ? orl_point_stream_open(job->log, in, &stream, &fused)
+                                : ORL_ERR_MEMORY;
+    orl_point_stream_close(&stream);
+    if (result == ORL_OK)
+        result = find_viewers(job, &viewers);
+    if (result == ORL_OK && fused > most)
+        orl_logf(job->log, ORL_LOG_INFO, "radii: %llu points are more than the %llu that fit in "
+                 "memory; dividing them on disk", (unsigned long long)fused,
+                 (unsigned long long)most);
+    if (result == ORL_OK)
+        result = fused > most ? write_levels(job, &params, &viewers, in, &left)
+                              : write_whole(job, &params, &viewers, in, &left);
+    if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
-    else
-        result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these
     json_object_set_new(record, "tool", json_string("FLANN"));
     json_object_set_new(record, "settings", json_pack(
         "{s:i, s:f, s:f, s:f}", "neighbours", params.neighbours, "overlap",
         (double)params.overlap, "largest_px", (double)limits.largest_px, "isolated_px",
         (double)limits.isolated_px));
-    json_object_set_new(record, "isolated", json_integer((json_int_t)(fused - points.count)));
-    json_object_set_new(record, "points", json_integer((json_int_t)points.count));
-end:
-    orl_points_finish(&points);
+    json_object_set_new(record, "isolated", json_integer((json_int_t)(fused - left)));
+    json_object_set_new(record, "points", json_integer((json_int_t)left));
     viewers_finish(&viewers);
     free(in);
-    free(out);
     return result;
 }

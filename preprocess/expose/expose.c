@@ -9,7 +9,8 @@
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/expose/metered.h"
 #include "preprocess/expose/response.h"
-#include "oriel/points.h"
+#include "oriel/scene.h"
+#include "scene/point_lod.h"
 
 static int compare_doubles(const void *a, const void *b)
 {
@@ -196,9 +197,9 @@ static enum orl_result take_samples(struct exposing *e)
     struct orl_points points = {0};
     struct orl_sample_photo *photos = orl_array(job->log, e->train, sizeof *photos);
     char **paths = orl_array(job->log, e->train, sizeof *paths);
-    char *cloud = orl_job_path(job, "points.ply");
-    enum orl_result result = photos && paths && cloud ? orl_points_read(job->log, cloud, &points)
-                                                      : ORL_ERR_MEMORY;
+    enum orl_result result = photos && paths ? orl_lod_read_cloud(job->log, job->dir,
+                                                                  ORL_LOD_SAMPLE, &points)
+                                             : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
         paths[i] = orl_job_path(job, "images/%s", e->photos[i].source->name);
         photos[i] = (struct orl_sample_photo){paths[i], e->photos[i].view};
@@ -212,7 +213,6 @@ static enum orl_result take_samples(struct exposing *e)
         free(paths[i]);
     free(paths);
     free(photos);
-    free(cloud);
     orl_points_finish(&points);
     return result;
 }

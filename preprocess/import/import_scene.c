@@ -14,7 +14,7 @@
 #include "scene/manifest.h"
 #include "oriel/points.h"
 #include "scene/free_space.h"
-#include "scene/point_radii.h"
+#include "scene/radius_limits.h"
 
 char *orl_import_path(const struct import_job *job, const char *format, ...)
 {

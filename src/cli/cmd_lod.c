@@ -32,7 +32,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_scene *scene = NULL;
     struct orl_view *views = NULL;
     char *from = NULL, *to = orl_path_join(log, dir, ORL_LOD_NAME);
-    struct orl_lod_params params = {.max_bytes = (size_t)o->max_ram_mib << 20};
+    struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = (size_t)o->max_ram_mib << 20};
     enum orl_result result = to ? orl_scene_open_photos(log, dir, &scene) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_scene_training_views(log, scene, &views, &params.view_count);

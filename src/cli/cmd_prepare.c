@@ -136,7 +136,7 @@ int cmd_prepare(int argc, char **argv)
          "find the method and the options that suit the scene, as its defaults", 0, 0},
         {"adapt-budget", ARG_NUMBER, &o.adapt_s, "SECONDS", "of --adapt; default 120", 0, 1e6},
         {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
-         "memory that fusion keeps to; default: half of what is free", 1, 1 << 24},
+         "memory that fusion and points keep to; default: half of what is free", 1, 1 << 24},
         {"fuse-cluster", ARG_INT, &o.fuse_cluster, "N",
          "photographs fused together at most; more are fused in clusters; default 400", 2, 100000},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},

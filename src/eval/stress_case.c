@@ -11,7 +11,7 @@
 #include "io/picture.h"
 #include "scene/free_space.h"
 #include "scene/hull.h"
-#include "scene/point_radii.h"
+#include "scene/radius_limits.h"
 
 enum { HULL_SIDE = 128 };           // voxels
 static const double hull_reach = 0.5; // of a voxel: thin parts stay

@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "scene/point_code.h"
 #include "scene/point_lod_internal.h"
@@ -213,5 +214,26 @@ enum orl_result orl_lod_sample(const struct orl_lod *lod, size_t most, struct or
     free(data);
     if (result != ORL_OK)
         orl_points_finish(points);
+    return result;
+}
+
+enum orl_result orl_lod_read_cloud(const struct orl_log *log, const char *dir, size_t most,
+                                   struct orl_points *points)
+{
+    struct orl_lod *lod = NULL;
+    char *paged = orl_path_join(log, dir, ORL_LOD_NAME);
+    char *whole = orl_path_join(log, dir, "points.ply");
+    enum orl_result result = paged && whole ? ORL_OK : ORL_ERR_MEMORY;
+    memset(points, 0, sizeof *points);
+    if (result == ORL_OK && orl_path_is_file(paged)) {
+        result = orl_lod_open(log, paged, &lod);
+        if (result == ORL_OK)
+            result = orl_lod_sample(lod, most, points);
+        orl_lod_close(&lod);
+    } else if (result == ORL_OK) {
+        result = orl_points_read(log, whole, points);
+    }
+    free(paged);
+    free(whole);
     return result;
 }

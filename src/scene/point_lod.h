@@ -10,6 +10,7 @@
 #include "oriel/camera.h"
 #include "oriel/points.h"
 #include "oriel/progress.h"
+#include "scene/radius_limits.h"
 #include "shared/render_blocks.h"
 
 #define ORL_LOD_NAME "points.lod"
@@ -66,14 +67,24 @@ enum orl_result orl_lod_sample(const struct orl_lod *lod, size_t most,
 
 struct orl_lod_params {
     size_t max_bytes;             // of memory, about; 0: half of what is free
+    struct orl_radii_params radii; // where no point has a radius
     const struct orl_view *views; // of the photographs; used where points have no radius
     size_t view_count;
 };
-// Writes the file from a binary PLY, which is sorted on disk beside it. Where no point of a part of
-// the sorted cloud has a radius, radii are found within that part: up to its border, which a share
-// of the points of some parts in a thousand is near. Points without a radius are dropped.
+#define ORL_LOD_DEFAULTS .radii = {ORL_RADII_DEFAULTS}
+
+// Writes the file from a binary PLY, which is sorted on disk beside it. Where no point has a radius,
+// radii and missing normals are found and limited as orl_points_find_radii does with the whole cloud
+// in memory. Otherwise points without a radius are dropped. Disk that is needed is told first.
 enum orl_result orl_lod_write(const struct orl_log *log, const struct orl_progress *progress,
                               const struct orl_lod_params *params, const char *ply,
                               const char *path) ORL_CHECK_RESULT;
+// A cloud of more points than this is not held in memory. max_bytes: as in orl_lod_params.
+uint64_t orl_lod_most_in_memory(size_t max_bytes);
+
+// The cloud of a scene's folder, for what needs no more than `most` points of it: points.ply, or
+// where there is points.lod the finest level that has no more.
+enum orl_result orl_lod_read_cloud(const struct orl_log *log, const char *dir, size_t most,
+                                   struct orl_points *points) ORL_CHECK_RESULT;
 
 #endif

@@ -165,14 +165,14 @@ static bool usable(float radius)
 }
 
 // Sets the radii of points that coincide with all their neighbours.
-static enum orl_result fill_radii(struct search *s)
+static enum orl_result fill_radii(struct search *s, size_t count)
 {
     struct orl_points *points = s->points;
     size_t known = 0;
-    float *sorted = orl_array(s->log, points->count, sizeof *sorted);
+    float *sorted = orl_array(s->log, count, sizeof *sorted);
     if (!sorted)
         return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < points->count; i++)
+    for (size_t i = 0; i < count; i++)
         if (usable(points->radius[i]))
             sorted[known++] = points->radius[i];
     qsort(sorted, known, sizeof *sorted, compare_floats);
@@ -180,7 +180,7 @@ static enum orl_result fill_radii(struct search *s)
     if (!known && s->viewer_count)
         nearest_viewer(s, points->position[0], &distance);
     float median = known ? sorted[known / 2] : (float)(0.01 * (distance > 0 ? distance : 1));
-    for (size_t i = 0; i < points->count; i++)
+    for (size_t i = 0; i < count; i++)
         if (!usable(points->radius[i]))
             points->radius[i] = median;
     free(sorted);
@@ -193,10 +193,20 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
                                      const double (*viewers)[3], size_t viewer_count,
                                      struct orl_points *points)
 {
+    orl_points_drop_unusable(log, points); // FLANN fails when distances overflow
+    return orl_points_set_some_radii(log, progress, params, viewers, viewer_count, points->count,
+                                     points);
+}
+
+enum orl_result orl_points_set_some_radii(const struct orl_log *log,
+                                          const struct orl_progress *progress,
+                                          const struct orl_radii_params *params,
+                                          const double (*viewers)[3], size_t viewer_count,
+                                          size_t own, struct orl_points *points)
+{
     ORL_REQUIRE(log, params->neighbours >= 1 && params->neighbours <= 64);
     ORL_REQUIRE(log, params->overlap > 0 && params->overlap <= 8);
-    orl_points_drop_unusable(log, points); // FLANN fails when distances overflow
-    if (points->count == 0)
+    if (own == 0)
         return ORL_OK;
     if (points->count > INT_MAX / 64)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are more than FLANN can index",
@@ -207,110 +217,17 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
         .neighbours = others < (size_t)params->neighbours ? (int)others : params->neighbours,
         .overlap = params->overlap};
     enum orl_result result = search_open(&s);
-    for (size_t first = 0; result == ORL_OK && first < points->count; first += CHUNK) {
-        orl_progress_report(progress, "radii", (double)first, (double)points->count, NULL);
-        size_t count = points->count - first < CHUNK ? points->count - first : CHUNK;
+    for (size_t first = 0; result == ORL_OK && first < own; first += CHUNK) {
+        orl_progress_report(progress, "radii", (double)first, (double)own, NULL);
+        size_t count = own - first < CHUNK ? own - first : CHUNK;
         result = orl_progress_cancelled(progress) ? ORL_ERR_CANCELLED
                                                   : search_chunk(&s, first, count);
     }
     if (result == ORL_OK)
-        result = fill_radii(&s);
+        result = fill_radii(&s, own);
     if (result == ORL_OK)
-        orl_progress_report(progress, "radii", (double)points->count, (double)points->count,
+        orl_progress_report(progress, "radii", (double)own, (double)own,
                             NULL);
     search_close(&s);
-    return result;
-}
-
-struct orl_radii_limits orl_radii_limits_of(const struct orl_radii_params *params)
-{
-    const struct orl_radii_params usual = {ORL_RADII_DEFAULTS};
-    struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
-    float scale = params->overlap / usual.overlap *
-                  sqrtf((float)params->neighbours / (float)usual.neighbours);
-    limits.largest_px *= scale;
-    limits.isolated_px *= scale;
-    return limits;
-}
-
-// Pixels per scene unit at the point, in the photograph that shows it largest; 0 when
-// the point is in no photograph's frame.
-static double finest_scale(const struct orl_view *views, size_t view_count, const float p[3])
-{
-    const double world[3] = {(double)p[0], (double)p[1], (double)p[2]};
-    double finest = 0;
-    for (size_t i = 0; i < view_count; i++) {
-        const struct orl_camera *camera = &views[i].camera;
-        double pixel[2], depth;
-        if (orl_view_project(&views[i], world, pixel, &depth) && pixel[0] >= 0 && pixel[1] >= 0 &&
-            pixel[0] < camera->width && pixel[1] < camera->height)
-            finest = fmax(finest, camera->fx / depth);
-    }
-    return finest;
-}
-
-// By how much a sparse cloud widens the limits: its typical disc is as large as it must be to meet
-// the next.
-static double sparseness(float *sizes_px, size_t count, double largest_px)
-{
-    static const double typical = 2; // a disc this many times the median is nothing unusual
-    qsort(sizes_px, count, sizeof *sizes_px, compare_floats);
-    double median = count ? (double)sizes_px[count / 2] : 0;
-    return fmax(1, typical * median / largest_px);
-}
-
-enum orl_result orl_points_limit_radii(const struct orl_log *log,
-                                       const struct orl_radii_limits *limits,
-                                       const struct orl_view *views, size_t view_count,
-                                       struct orl_points *points)
-{
-    ORL_REQUIRE(log, limits->largest_px > 0 && limits->isolated_px >= limits->largest_px);
-    size_t kept = 0, seen = 0;
-    double *scales = orl_array(log, points->count, sizeof *scales);
-    float *sizes = orl_array(log, points->count, sizeof *sizes);
-    if (!scales || !sizes) {
-        free(scales);
-        free(sizes);
-        return ORL_ERR_MEMORY;
-    }
-    for (size_t i = 0; i < points->count; i++) {
-        scales[i] = finest_scale(views, view_count, points->position[i]);
-        if (scales[i] > 0)
-            sizes[seen++] = (float)(scales[i] * (double)points->radius[i]);
-    }
-    double wider = sparseness(sizes, seen, (double)limits->largest_px);
-    for (size_t i = 0; i < points->count; i++) {
-        double size_px = scales[i] * (double)points->radius[i];
-        if (size_px > wider * (double)limits->isolated_px)
-            continue;
-        if (size_px > wider * (double)limits->largest_px)
-            points->radius[i] = (float)(wider * (double)limits->largest_px / scales[i]);
-        orl_points_copy(points, i, points, kept++);
-    }
-    free(scales);
-    free(sizes);
-    if (kept < points->count)
-        orl_logf(log, ORL_LOG_INFO, "%zu of %zu points stand alone: dropped",
-                 points->count - kept, points->count);
-    points->count = kept;
-    return ORL_OK;
-}
-
-enum orl_result orl_points_find_radii(const struct orl_log *log, const struct orl_view *views,
-                                      size_t view_count, struct orl_points *points)
-{
-    double (*viewers)[3] = orl_array(log, view_count, sizeof *viewers);
-    if (!viewers)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < view_count; i++)
-        orl_pose_centre(&views[i].cam_from_world, viewers[i]);
-    enum orl_result result =
-        orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
-                             (const double (*)[3])viewers, view_count, points);
-    if (result == ORL_OK)
-        result = orl_points_limit_radii(log,
-                                        &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS},
-                                        views, view_count, points);
-    free(viewers);
     return result;
 }

@@ -23,29 +23,12 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
                                      const double (*viewers)[3], size_t viewer_count,
                                      struct orl_points *points) ORL_CHECK_RESULT;
 
-struct orl_radii_limits {
-    float largest_px;  // radii are limited to this size in the photograph that sees most detail
-    float isolated_px; // points with larger radii are isolated and dropped
-};
-#define ORL_RADII_LIMITS_DEFAULTS .largest_px = 9.0f, .isolated_px = 16.0f
-
-// The limits for radii of these parameters: in proportion to the radii that they give on a surface,
-// where the distance to the k-th neighbour grows as the square root of k. So the same points are
-// isolated, whatever the overlap.
-struct orl_radii_limits orl_radii_limits_of(const struct orl_radii_params *params);
-
-// Limits radii that the sampling of a fused cloud cannot explain. Stereo gives some
-// outliers in mid-air, and with the distance to its neighbours as radius a single outlier
-// may hide a whole picture. A disc's size in pixels is the largest among the photographs
-// whose frame contains the point. Points in no frame stay unchanged.
-enum orl_result orl_points_limit_radii(const struct orl_log *log,
-                                       const struct orl_radii_limits *limits,
-                                       const struct orl_view *views, size_t view_count,
-                                       struct orl_points *points) ORL_CHECK_RESULT;
-
-// Sets radii and limits them, both with their defaults, for a cloud that these photographs see.
-enum orl_result orl_points_find_radii(const struct orl_log *log, const struct orl_view *views,
-                                      size_t view_count,
-                                      struct orl_points *points) ORL_CHECK_RESULT;
+// The same for the first `own` points only, whose neighbours may be any. All must be usable
+// (orl_point_usable).
+enum orl_result orl_points_set_some_radii(const struct orl_log *log,
+                                          const struct orl_progress *progress,
+                                          const struct orl_radii_params *params,
+                                          const double (*viewers)[3], size_t viewer_count,
+                                          size_t own, struct orl_points *points) ORL_CHECK_RESULT;
 
 #endif

@@ -2,6 +2,9 @@
 #ifndef ORL_SCENE_POINT_STREAM_H
 #define ORL_SCENE_POINT_STREAM_H
 
+#include <stdio.h>
+
+#include "core/file.h"
 #include "oriel/points.h"
 
 struct orl_point_stream;
@@ -19,5 +22,25 @@ enum orl_result orl_point_stream_seek(struct orl_point_stream *stream,
 // 0: there are no more.
 enum orl_result orl_point_stream_next(struct orl_point_stream *stream, size_t most,
                                       struct orl_points *points, size_t *read) ORL_CHECK_RESULT;
+
+// Writes a file as orl_points_write does, a part at a time.
+struct orl_point_writer {
+    const struct orl_log *log;
+    const char *path;
+    struct orl_atomic_file file;
+    FILE *stream;
+    uint64_t left; // points that are still to come
+    bool small;
+};
+// count: of all points. `path` must outlive the writer.
+enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
+                                       bool small,
+                                       struct orl_point_writer *writer) ORL_CHECK_RESULT;
+enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
+                                     const struct orl_points *points) ORL_CHECK_RESULT;
+// After all points: gives the file its name.
+enum orl_result orl_point_writer_end(struct orl_point_writer *writer) ORL_CHECK_RESULT;
+// Releases everything; a file that has not ended is removed. Accepts a zeroed struct.
+void orl_point_writer_finish(struct orl_point_writer *writer);
 
 #endif

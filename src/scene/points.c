@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
 #include "core/memory.h"
 #include "oriel/camera.h"
+#include "scene/point_stream.h"
 
 enum orl_result orl_points_init(const struct orl_log *log, struct orl_points *points, size_t count)
 {
@@ -89,39 +89,74 @@ static size_t pack_point(const struct orl_points *points, size_t i, bool small,
     return at;
 }
 
-static bool write_points(FILE *stream, const struct orl_points *points, bool small)
+static bool write_header(FILE *stream, uint64_t count, bool small)
 {
     const char *normal = small ? "char" : "float";
-    bool ok = fprintf(stream, "ply\nformat binary_little_endian 1.0\n"
-                              "element vertex %zu\n"
-                              "property float x\nproperty float y\nproperty float z\n"
-                              "property %s nx\nproperty %s ny\nproperty %s nz\n"
-                              "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                              "property float radius\n%send_header\n",
-                      points->count, normal, normal, normal,
-                      small ? "" : "property uchar photographs\n") > 0;
-    for (size_t i = 0; ok && i < points->count; i++) {
+    return fprintf(stream, "ply\nformat binary_little_endian 1.0\n"
+                           "element vertex %llu\n"
+                           "property float x\nproperty float y\nproperty float z\n"
+                           "property %s nx\nproperty %s ny\nproperty %s nz\n"
+                           "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                           "property float radius\n%send_header\n",
+                   (unsigned long long)count, normal, normal, normal,
+                   small ? "" : "property uchar photographs\n") > 0;
+}
+
+enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
+                                       bool small, struct orl_point_writer *writer)
+{
+    *writer = (struct orl_point_writer){.log = log, .path = path, .left = count, .small = small};
+    enum orl_result result = orl_atomic_begin(log, path, &writer->file);
+    if (result != ORL_OK)
+        return result;
+    writer->stream = orl_atomic_stream(&writer->file);
+    return writer->stream && write_header(writer->stream, count, small)
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+}
+
+enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
+                                     const struct orl_points *points)
+{
+    ORL_REQUIRE(writer->log, points->count <= writer->left);
+    writer->left -= points->count;
+    for (size_t i = 0; i < points->count; i++) {
         uint8_t record[RECORD_SIZE_MAX];
-        size_t size = pack_point(points, i, small, record);
-        ok = fwrite(record, size, 1, stream) == 1;
+        size_t size = pack_point(points, i, writer->small, record);
+        if (fwrite(record, size, 1, writer->stream) != 1)
+            return orl_fail(writer->log, ORL_ERR_IO, "%s: %s", writer->path, strerror(errno));
     }
-    return ok;
+    return ORL_OK;
+}
+
+enum orl_result orl_point_writer_end(struct orl_point_writer *writer)
+{
+    ORL_REQUIRE(writer->log, !writer->left);
+    FILE *stream = writer->stream;
+    writer->stream = NULL;
+    return fclose(stream) == 0 ? orl_atomic_commit(writer->log, &writer->file)
+                               : orl_fail(writer->log, ORL_ERR_IO, "%s: %s", writer->path,
+                                          strerror(errno));
+}
+
+void orl_point_writer_finish(struct orl_point_writer *writer)
+{
+    if (writer->stream)
+        fclose(writer->stream);
+    writer->stream = NULL;
+    orl_atomic_abort(&writer->file);
 }
 
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
                                  const struct orl_points *points, bool small)
 {
-    struct orl_atomic_file file = {0};
-    enum orl_result result = orl_atomic_begin(log, path, &file);
-    if (result != ORL_OK)
-        return result;
-    FILE *stream = orl_atomic_stream(&file);
-    bool ok = stream && write_points(stream, points, small);
-    if (stream && fclose(stream) != 0)
-        ok = false;
-    result = ok ? orl_atomic_commit(log, &file)
-                : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    orl_atomic_abort(&file);
+    struct orl_point_writer writer;
+    enum orl_result result = orl_point_writer_begin(log, path, points->count, small, &writer);
+    if (result == ORL_OK)
+        result = orl_point_writer_add(&writer, points);
+    if (result == ORL_OK)
+        result = orl_point_writer_end(&writer);
+    orl_point_writer_finish(&writer);
     return result;
 }
 

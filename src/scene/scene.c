@@ -12,7 +12,7 @@
 #include "scene/manifest.h"
 #include "scene/free_space.h"
 #include "scene/point_lod.h"
-#include "scene/point_radii.h"
+#include "scene/radius_limits.h"
 
 // A still scene has no frames. Its `frame` may be 0 when the struct was only zeroed.
 static bool shows_moment(const struct orl_scene *scene)
@@ -422,14 +422,18 @@ enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char 
                                           const struct orl_names *test, struct orl_scene **out)
 {
     char *points = orl_path_join(log, dir, "points.ply");
+    char *lod = orl_path_join(log, dir, ORL_LOD_NAME);
     enum orl_result result = create(log, dir, out);
     if (result == ORL_OK)
-        result = points ? set_photos(log, *out, model) : ORL_ERR_MEMORY;
+        result = points && lod ? set_photos(log, *out, model) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(lod))
+        result = orl_lod_open(log, lod, &(*out)->lod);
     for (size_t i = 0; result == ORL_OK && i < (*out)->photo_count; i++)
         (*out)->photos[i].test = test && orl_names_contain(test, (*out)->photos[i].name);
     if (result == ORL_OK)
         result = add_points(log, *out, model, points, true);
     free(points);
+    free(lod);
     if (result != ORL_OK)
         orl_scene_destroy(out);
     return result;

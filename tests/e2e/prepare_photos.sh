@@ -63,10 +63,24 @@ prepare --resume --max-ram 8
 says "reading them through a cache"
 [ "$(md5sum <"$work/s/points.ply")" = "$sum" ] || fail "fusion within less memory gives other points"
 
+# Less memory than all points take: they are divided, and as many.
+rm "$work/s/points.ply"
+prepare --resume --max-ram 1
+says "dividing them on disk"
+says "MiB of disk; "
+[ -s "$work/s/points.lod" ] || fail "points.lod is missing"
+[ -e "$work/s/points.ply" ] && fail "points.ply is left"
+run 0 info "$work/s"
+prints "points       $points"
+run 0 eval "$work/s"
+prepare --resume --max-ram 1
+says "radii: done already"
+
 # Less device memory than it takes: smaller maps, a scene all the same.
 prepare --resume --max-vram 2
 says "MiB of device memory; using less"
 says "undistort: done already"
+[ -s "$work/s/points.ply" ] && [ ! -e "$work/s/points.lod" ] || fail "points.lod is left"
 size=$(head -c 8 "$work/s/stereo/depth_maps/0003.jpg.geometric.bin")
 [ "${size%%&*}" -lt 256 ] || fail "the depth maps have their full size: $size"
 prepare --resume --max-vram 2

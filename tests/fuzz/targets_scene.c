@@ -13,7 +13,7 @@
 #include "scene/manifest.h"
 #include "oriel/path.h"
 #include "scene/point_lod.h"
-#include "scene/point_radii.h"
+#include "scene/radius_limits.h"
 #include "scene/thin.h"
 #include "scene/tuned_settings.h"
 
@@ -162,7 +162,7 @@ static size_t use_lod(void)
 
 static enum orl_result write_lod(void)
 {
-    static const struct orl_lod_params params = {.max_bytes = 1};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = 1};
     char *cloud = strdup(fuzz_path("points.ply"));
     enum orl_result result = orl_lod_write(&fuzz_log, NULL, &params, cloud,
                                            fuzz_path(ORL_LOD_NAME));

@@ -223,7 +223,7 @@ struct paged {
 
 static void open_pages(struct paged *p, size_t most_bytes)
 {
-    static const struct orl_lod_params params = {0};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS};
     make_wall(&p->s);
     assert_int_equal(test_file_make("points.ply", &p->dir, &p->ply), 0);
     p->file = orl_path_join(NULL, p->dir, ORL_LOD_NAME);

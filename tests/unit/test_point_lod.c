@@ -61,7 +61,7 @@ static void all_points_come_back(void **state)
 {
     (void)state;
     // Least memory: the wall is sorted in several parts.
-    static const struct orl_lod_params params = {.max_bytes = 1};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = 1};
     static bool seen[COUNT];
     write_wall(0.75f);
     struct orl_lod *lod = write_and_open(&params);
@@ -106,7 +106,7 @@ static float widest_gap(const struct orl_points *points)
 static void coarser_levels_cover_the_same(void **state)
 {
     (void)state;
-    static const struct orl_lod_params params = {0};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS};
     write_wall(0.75f);
     struct orl_lod *lod = write_and_open(&params);
     assert_int_equal(lod->level_count, 3); // 11 pages, 2 and 1
@@ -134,7 +134,7 @@ static void coarser_levels_cover_the_same(void **state)
 static void pages_are_a_tree(void **state)
 {
     (void)state;
-    static const struct orl_lod_params params = {0};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS};
     write_wall(0.75f);
     struct orl_lod *lod = write_and_open(&params);
     static bool reached[64];
@@ -161,7 +161,7 @@ static void pages_are_a_tree(void **state)
 static void radii_are_found_where_there_are_none(void **state)
 {
     (void)state;
-    static const struct orl_lod_params params = {0};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS};
     struct orl_points points;
     write_wall(0);
     struct orl_lod *lod = write_and_open(&params);
@@ -172,6 +172,69 @@ static void radii_are_found_where_there_are_none(void **state)
         near += fabsf(points.radius[i] - sqrtf(2)) < 0.05f;
     assert_true(near > COUNT * 98 / 100);
     orl_points_finish(&points);
+    orl_lod_close(&lod);
+}
+
+// A hilly ground without radii or normals, denser towards one side, with points above it here and
+// there, whose colour is their number. Written in no order, with a few that coincide.
+static void make_ground(struct orl_points *ground)
+{
+    enum { SIDE = 600, POINTS = SIDE * SIDE };
+    uint32_t random = 1;
+    assert_int_equal(orl_points_init(NULL, ground, POINTS), ORL_OK);
+    for (size_t i = 0; i < POINTS; i++) {
+        float to[3];
+        for (int k = 0; k < 3; k++) {
+            random = random * 1664525u + 1013904223u;
+            to[k] = (float)(random >> 8) / (1 << 24);
+        }
+        float x = 10 * to[0] * to[0], z = 10 * to[1] + 5;
+        ground->position[i][0] = x;
+        ground->position[i][1] = sinf(x) + cosf(z) + (i % 997 ? 0.01f : -2) * to[2];
+        ground->position[i][2] = z;
+        for (int k = 0; k < 3; k++)
+            ground->color[i][k] = (uint8_t)(i >> 8 * k);
+    }
+    for (size_t i = 0; i < 40; i++)
+        memcpy(ground->position[i], ground->position[0], sizeof ground->position[0]);
+}
+
+// In several parts, radii are those that are found with all points in memory, across the borders of
+// the parts too, and the same points are dropped.
+static void radii_in_parts_are_those_of_the_whole(void **state)
+{
+    (void)state;
+    static const struct orl_view views[2] = {
+        {{1024, 768, 700, 700, 512, 384}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {-5, 4, 0}}},
+        {{1024, 768, 900, 900, 512, 384}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {-2, 4, -4}}}};
+    const struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = 1, .views = views,
+                                          .view_count = 2};
+    struct orl_points ground, parts;
+    make_ground(&ground);
+    assert_int_equal(orl_points_write(NULL, ply, &ground, false), ORL_OK);
+    struct orl_lod *lod = write_and_open(&params);
+    float *expected = calloc(ground.count, sizeof *expected);
+    assert_non_null(expected);
+    size_t all = ground.count, far = 0;
+    assert_int_equal(orl_points_find_radii(NULL, views, 2, &ground), ORL_OK);
+    assert_in_range(ground.count, all * 9 / 10, all - 1); // some are isolated
+    for (size_t i = 0; i < ground.count; i++) {
+        const uint8_t *c = ground.color[i];
+        expected[c[0] | c[1] << 8 | c[2] << 16] = ground.radius[i];
+    }
+    assert_int_equal(orl_lod_sample(lod, SIZE_MAX, &parts), ORL_OK);
+    assert_int_equal(parts.count, ground.count);
+    for (size_t i = 0; i < parts.count; i++) {
+        const uint8_t *c = parts.color[i];
+        size_t at = (size_t)(c[0] | c[1] << 8 | c[2] << 16);
+        assert_true(at < all && expected[at] > 0);
+        far += fabsf(parts.radius[i] / expected[at] - 1) > 0.023f; // 16 steps an octave
+    }
+    print_message("%zu of %zu radii differ\n", far, parts.count);
+    assert_true(far <= 200); // those of points that coincide, and of some that stand alone
+    free(expected);
+    orl_points_finish(&parts);
+    orl_points_finish(&ground);
     orl_lod_close(&lod);
 }
 
@@ -200,7 +263,7 @@ static enum orl_result open_changed(size_t at, const void *bytes, size_t size, s
 static void damage_is_told(void **state)
 {
     (void)state;
-    static const struct orl_lod_params params = {0};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS};
     static const uint32_t many = 1000000;
     static const float nan = NAN, crowd = 129;
     write_wall(0.75f);
@@ -231,7 +294,7 @@ static size_t count_files(void)
 static void odd_clouds_are_refused(void **state)
 {
     (void)state;
-    static const struct orl_lod_params params = {0};
+    static const struct orl_lod_params params = {ORL_LOD_DEFAULTS};
     static const char text[] = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                                "property float y\nproperty float z\nend_header\n1 2 3\n";
     static const char none[] = "ply\nformat binary_little_endian 1.0\nelement vertex 0\n"
@@ -257,6 +320,7 @@ int main(void)
         cmocka_unit_test(coarser_levels_cover_the_same),
         cmocka_unit_test(pages_are_a_tree),
         cmocka_unit_test(radii_are_found_where_there_are_none),
+        cmocka_unit_test(radii_in_parts_are_those_of_the_whole),
         cmocka_unit_test(damage_is_told),
         cmocka_unit_test(odd_clouds_are_refused),
     };

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/point_radii.h"
+#include "scene/radius_limits.h"
 #include "test.h"
 
 static double random_unit(uint32_t *state)

@@ -1,0 +1,459 @@
+#include "scene/point_parts.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/point_stream.h"
+
+enum {
+    AXIS_BITS = 6,            // of a cell's place along each axis
+    AXIS = 1 << AXIS_BITS,
+    CELLS = AXIS * AXIS * AXIS, // that are counted, in the order of the Morton curve
+    READ_POINTS = 1 << 16,    // read at once
+    SAMPLE_READS = 64,        // to find the extent of the cloud
+    SAMPLE_POINTS = 4096,     // each
+    POINT_BYTES = 160,        // of memory for a point of a part: radii, order, blocks
+    LEAST_PART = 1 << 12,     // points
+    MOST_PART = 1 << 24,
+    MOST_FLAT_PART = 1 << 22, // where radii are found, which must be interruptible
+    NEAR = 27,                // cells around a cell, and itself
+    BUFFER_RECORDS = 512,     // of a run, written at once
+};
+
+struct record {
+    float position[3], normal[3], radius, scale;
+    uint8_t color[3], photographs;
+};
+
+// Records that lie together on disk.
+struct run {
+    uint64_t first, count;
+    uint64_t written;      // of them, without those in the buffer
+    struct record *buffer; // BUFFER_RECORDS
+    size_t buffered;
+};
+
+struct point_part {
+    struct run own, around;
+};
+
+struct maker {
+    const struct orl_progress *progress;
+    struct point_parts *parts;
+    struct orl_point_stream *stream;
+    uint64_t records;       // of the PLY
+    size_t max_bytes;
+    struct orl_points read; // READ_POINTS
+    uint64_t *counts;       // of points in each cell
+    uint32_t *part_of;      // each cell
+    bool *border;           // of each cell: another part's points may be near
+};
+
+static enum orl_result failed(const struct point_parts *parts)
+{
+    return orl_fail(parts->log, ORL_ERR_IO, "%s: %s", parts->path, strerror(errno));
+}
+
+// --- extent ---
+
+// The cube of a sample that is read here and there.
+static enum orl_result find_cube(struct maker *m)
+{
+    const struct orl_log *log = m->parts->log;
+    struct orl_points sample;
+    uint64_t step = m->records / SAMPLE_READS;
+    size_t count = 0, read;
+    enum orl_result result = orl_points_init(log, &sample, (size_t)SAMPLE_READS * SAMPLE_POINTS);
+    for (uint64_t k = 0; result == ORL_OK && k < SAMPLE_READS; k++) {
+        if (step > SAMPLE_POINTS)
+            result = orl_point_stream_seek(m->stream, k * step);
+        if (result == ORL_OK)
+            result = orl_point_stream_next(m->stream, SAMPLE_POINTS, &m->read, &read);
+        for (size_t i = 0; result == ORL_OK && i < m->read.count; i++)
+            orl_points_copy(&m->read, i, &sample, count++);
+    }
+    sample.count = count;
+    if (result == ORL_OK && !count)
+        result = orl_fail(log, ORL_ERR_DATA, "%s: no usable points", m->parts->path);
+    if (result == ORL_OK)
+        result = orl_point_cube_find(log, &sample, &m->parts->cube);
+    orl_points_finish(&sample);
+    return result;
+}
+
+// --- cells ---
+
+static uint32_t cell_of(const struct maker *m, const float position[3])
+{
+    return (uint32_t)(orl_point_cube_morton(&m->parts->cube, position) >> (63 - 3 * AXIS_BITS));
+}
+
+// Every third bit of a Morton code, and the reverse.
+static uint32_t gather_bits(uint32_t code)
+{
+    uint32_t value = 0;
+    for (int k = 0; k < AXIS_BITS; k++)
+        value |= (code >> 3 * k & 1) << k;
+    return value;
+}
+
+static uint32_t spread_bits(uint32_t value)
+{
+    uint32_t code = 0;
+    for (int k = 0; k < AXIS_BITS; k++)
+        code |= (value >> k & 1) << 3 * k;
+    return code;
+}
+
+// The cells around one, and itself; cells outside the cube are left out. How many.
+static size_t find_near(uint32_t cell, uint32_t near[NEAR])
+{
+    const int at[3] = {(int)gather_bits(cell), (int)gather_bits(cell >> 1),
+                       (int)gather_bits(cell >> 2)};
+    size_t count = 0;
+    for (int i = 0; i < NEAR; i++) {
+        const int to[3] = {at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1};
+        bool inside = true;
+        for (int k = 0; k < 3; k++)
+            inside = inside && to[k] >= 0 && to[k] < AXIS;
+        if (inside)
+            near[count++] = spread_bits((uint32_t)to[0]) | spread_bits((uint32_t)to[1]) << 1 |
+                            spread_bits((uint32_t)to[2]) << 2;
+    }
+    return count;
+}
+
+// Is the point so close to the cell that it may be a neighbour of one of the cell's points? A few
+// times the distance that they have if they lie on a surface, and a cell at most.
+static bool reaches(const struct maker *m, const float position[3], uint32_t cell)
+{
+    static const double times = 8;
+    double side = m->parts->cube.side / AXIS, distance2 = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = m->parts->cube.low[k] + side * (double)gather_bits(cell >> k);
+        double first = m->parts->cube.low[k], last = first + m->parts->cube.side;
+        double p = fmin(fmax((double)position[k], first), last); // cells of the border are endless
+        double d = fmax(fmax(low - p, p - low - side), 0);
+        distance2 += d * d;
+    }
+    return distance2 <= side * side * fmin(1, times * times / (double)m->counts[cell]);
+}
+
+// The other parts that the point is near to; how many.
+static size_t find_others(const struct maker *m, const float position[3], uint32_t cell,
+                          uint32_t others[NEAR])
+{
+    uint32_t near[NEAR];
+    size_t count = 0, near_count = find_near(cell, near);
+    for (size_t i = 0; i < near_count; i++) {
+        uint32_t part = m->part_of[near[i]];
+        bool known = part == m->part_of[cell] || !m->counts[near[i]];
+        for (size_t k = 0; k < count; k++)
+            known = known || others[k] == part;
+        if (!known && reaches(m, position, near[i]))
+            others[count++] = part;
+    }
+    return count;
+}
+
+// Reads all points, a part of the file at a time.
+static enum orl_result for_all(struct maker *m, const char *step,
+                               enum orl_result (*use)(struct maker *m))
+{
+    uint64_t done = 0;
+    size_t read = 1;
+    enum orl_result result = orl_point_stream_seek(m->stream, 0);
+    while (result == ORL_OK && read) {
+        orl_progress_report(m->progress, step, (double)done, (double)m->records, NULL);
+        result = orl_progress_cancelled(m->progress)
+                     ? ORL_ERR_CANCELLED
+                     : orl_point_stream_next(m->stream, READ_POINTS, &m->read, &read);
+        if (result == ORL_OK)
+            result = use(m);
+        done += read;
+    }
+    return result;
+}
+
+static enum orl_result count_cells(struct maker *m)
+{
+    for (size_t i = 0; i < m->read.count; i++) {
+        m->counts[cell_of(m, m->read.position[i])]++;
+        m->parts->flat = m->parts->flat && !(m->read.radius[i] > 0);
+    }
+    m->parts->total += m->read.count;
+    return ORL_OK;
+}
+
+// --- parts ---
+
+uint64_t orl_point_parts_most(size_t max_bytes)
+{
+    uint64_t most = (max_bytes ? max_bytes : orl_memory_available() / 2) / POINT_BYTES;
+    return most < LEAST_PART ? LEAST_PART : most;
+}
+
+static enum orl_result assign_cells(struct maker *m)
+{
+    struct point_parts *parts = m->parts;
+    uint64_t most = orl_point_parts_most(m->max_bytes);
+    uint64_t limit = parts->flat ? MOST_FLAT_PART : MOST_PART;
+    most = most < limit ? most : limit;
+    size_t capacity = 0;
+    for (size_t cell = 0; cell < CELLS; cell++) {
+        struct point_part *last = parts->count ? &parts->parts[parts->count - 1] : NULL;
+        if (!last || last->own.count + m->counts[cell] > most) {
+            enum orl_result result = orl_grow(parts->log, (void **)&parts->parts, &capacity,
+                                              parts->count + 1, sizeof *parts->parts);
+            if (result != ORL_OK)
+                return result;
+            last = &parts->parts[parts->count++];
+            *last = (struct point_part){0};
+        }
+        last->own.count += m->counts[cell];
+        m->part_of[cell] = (uint32_t)(parts->count - 1);
+    }
+    return ORL_OK;
+}
+
+// Makes room for all points of the cells around each part. Those that are too far away are never
+// written, and a file's holes take no disk.
+static void count_around(struct maker *m, uint32_t cell)
+{
+    uint32_t near[NEAR], parts[NEAR];
+    size_t count = 0, near_count = find_near(cell, near);
+    for (size_t i = 0; i < near_count; i++) {
+        uint32_t part = m->part_of[near[i]];
+        bool known = part == m->part_of[cell] || !m->counts[near[i]];
+        for (size_t k = 0; k < count; k++)
+            known = known || parts[k] == part;
+        if (!known)
+            parts[count++] = part;
+    }
+    m->border[cell] = count > 0;
+    for (size_t k = 0; k < count; k++)
+        m->parts->parts[parts[k]].around.count += m->counts[cell];
+}
+
+static enum orl_result lay_out(struct maker *m)
+{
+    struct point_parts *parts = m->parts;
+    uint64_t first = 0;
+    for (uint32_t cell = 0; parts->flat && cell < CELLS; cell++)
+        if (m->counts[cell])
+            count_around(m, cell);
+    for (size_t i = 0; i < 2 * parts->count; i++) {
+        struct point_part *part = &parts->parts[i / 2];
+        struct run *run = i % 2 ? &part->around : &part->own;
+        run->first = first;
+        first += run->count;
+        if (!(run->buffer = orl_array(parts->log, BUFFER_RECORDS, sizeof *run->buffer)))
+            return ORL_ERR_MEMORY;
+    }
+    return ORL_OK;
+}
+
+// --- the file ---
+
+static enum orl_result write_buffer(const struct point_parts *parts, struct run *run)
+{
+    const uint8_t *from = (const uint8_t *)run->buffer;
+    size_t left = run->buffered * sizeof *run->buffer;
+    off_t at = (off_t)((run->first + run->written) * sizeof *run->buffer);
+    while (left) {
+        ssize_t put = pwrite(parts->fd, from, left, at);
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put < 0)
+            return failed(parts);
+        from += put;
+        at += put;
+        left -= (size_t)put;
+    }
+    run->written += run->buffered;
+    run->buffered = 0;
+    return ORL_OK;
+}
+
+static enum orl_result add_record(const struct point_parts *parts, struct run *run,
+                                  const struct orl_points *points, size_t i, float scale)
+{
+    struct record *r = &run->buffer[run->buffered++];
+    memcpy(r->position, points->position[i], sizeof r->position);
+    memcpy(r->normal, points->normal[i], sizeof r->normal);
+    memcpy(r->color, points->color[i], sizeof r->color);
+    r->radius = points->radius[i];
+    r->scale = scale;
+    r->photographs = points->photographs[i];
+    return run->buffered == BUFFER_RECORDS ? write_buffer(parts, run) : ORL_OK;
+}
+
+static enum orl_result distribute(struct maker *m)
+{
+    const struct point_parts *parts = m->parts;
+    enum orl_result result = ORL_OK;
+    uint32_t others[NEAR];
+    for (size_t i = 0; result == ORL_OK && i < m->read.count; i++) {
+        const float *position = m->read.position[i];
+        uint32_t cell = cell_of(m, position);
+        size_t count = m->border[cell] ? find_others(m, position, cell, others) : 0;
+        result = add_record(parts, &parts->parts[m->part_of[cell]].own, &m->read, i, 0);
+        for (size_t k = 0; result == ORL_OK && k < count; k++)
+            result = add_record(parts, &parts->parts[others[k]].around, &m->read, i, 0);
+    }
+    return result;
+}
+
+static enum orl_result flush(const struct point_parts *parts)
+{
+    enum orl_result result = ORL_OK;
+    uint64_t around = 0;
+    for (size_t i = 0; result == ORL_OK && i < 2 * parts->count; i++) {
+        struct point_part *part = &parts->parts[i / 2];
+        struct run *run = i % 2 ? &part->around : &part->own;
+        result = write_buffer(parts, run);
+        run->count = run->written;
+        around += i % 2 ? run->count : 0;
+    }
+    orl_logf(parts->log, ORL_LOG_DEBUG, "%s: %llu points in %zu parts, %llu more around them",
+             parts->path, (unsigned long long)parts->total, parts->count,
+             (unsigned long long)around);
+    return result;
+}
+
+// A file without a name, beside the path: it is gone when it is closed.
+static enum orl_result open_file(struct point_parts *parts)
+{
+    struct orl_atomic_file file = {0};
+    enum orl_result result = orl_atomic_begin(parts->log, parts->path, &file);
+    if (result == ORL_OK && (parts->fd = fcntl(file.fd, F_DUPFD_CLOEXEC, 0)) < 0)
+        result = failed(parts);
+    orl_atomic_abort(&file);
+    return result;
+}
+
+enum orl_result orl_point_parts_make(const struct orl_log *log, const struct orl_progress *progress,
+                                     const char *ply, const char *path, size_t max_bytes,
+                                     struct point_parts *parts)
+{
+    struct maker m = {.progress = progress, .parts = parts, .max_bytes = max_bytes};
+    *parts = (struct point_parts){.log = log, .path = path, .flat = true, .fd = -1};
+    m.counts = orl_array(log, CELLS, sizeof *m.counts);
+    m.part_of = orl_array(log, CELLS, sizeof *m.part_of);
+    m.border = orl_array(log, CELLS, sizeof *m.border);
+    enum orl_result result = m.counts && m.part_of && m.border ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_point_stream_open(log, ply, &m.stream, &m.records);
+    if (result == ORL_OK)
+        result = orl_points_init(log, &m.read, READ_POINTS);
+    if (result == ORL_OK && (result = open_file(parts)) == ORL_OK &&
+        (result = find_cube(&m)) == ORL_OK &&
+        (result = for_all(&m, "count", count_cells)) == ORL_OK &&
+        (result = assign_cells(&m)) == ORL_OK && (result = lay_out(&m)) == ORL_OK &&
+        (result = for_all(&m, "sort", distribute)) == ORL_OK)
+        result = flush(parts);
+    free(m.counts);
+    free(m.part_of);
+    free(m.border);
+    orl_points_finish(&m.read);
+    orl_point_stream_close(&m.stream);
+    if (result != ORL_OK)
+        orl_point_parts_finish(parts);
+    return result;
+}
+
+void orl_point_parts_finish(struct point_parts *parts)
+{
+    for (size_t i = 0; i < parts->count; i++) {
+        free(parts->parts[i].own.buffer);
+        free(parts->parts[i].around.buffer);
+    }
+    free(parts->parts);
+    parts->parts = NULL;
+    parts->count = 0;
+    if (parts->fd >= 0)
+        close(parts->fd);
+    parts->fd = -1;
+}
+
+double orl_point_parts_bytes(double points)
+{
+    static const double around = 0.35; // of the points; docs/measured/points.md
+    return points * (1 + around) * sizeof(struct record);
+}
+
+// --- a part ---
+
+size_t orl_point_parts_own(const struct point_parts *parts, size_t part)
+{
+    return (size_t)parts->parts[part].own.count;
+}
+
+static enum orl_result read_run(const struct point_parts *parts, const struct run *run,
+                                struct orl_points *points, float *scales)
+{
+    for (uint64_t at = 0; at < run->count;) {
+        uint64_t here = run->count - at < BUFFER_RECORDS ? run->count - at : BUFFER_RECORDS;
+        size_t bytes = (size_t)here * sizeof(struct record);
+        ssize_t got = pread(parts->fd, run->buffer, bytes,
+                            (off_t)((run->first + at) * sizeof(struct record)));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got != (ssize_t)bytes)
+            return got < 0 ? failed(parts)
+                           : orl_fail(parts->log, ORL_ERR_IO, "%s: cannot read its parts back",
+                                      parts->path);
+        for (size_t i = 0; i < here; i++, points->count++) {
+            const struct record *r = &run->buffer[i];
+            memcpy(points->position[points->count], r->position, sizeof r->position);
+            memcpy(points->normal[points->count], r->normal, sizeof r->normal);
+            memcpy(points->color[points->count], r->color, sizeof r->color);
+            points->radius[points->count] = r->radius;
+            points->photographs[points->count] = r->photographs;
+            if (scales)
+                scales[points->count] = r->scale;
+        }
+        at += here;
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_point_parts_read(const struct point_parts *parts, size_t index, bool around,
+                                     struct orl_points *points, float **scales)
+{
+    const struct point_part *part = &parts->parts[index];
+    size_t own = (size_t)part->own.count;
+    enum orl_result result =
+        orl_points_init(parts->log, points, own + (around ? (size_t)part->around.count : 0));
+    *scales = orl_array(parts->log, own, sizeof **scales);
+    points->count = 0;
+    if (result == ORL_OK && !*scales)
+        result = ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = read_run(parts, &part->own, points, *scales);
+    if (result == ORL_OK && around)
+        result = read_run(parts, &part->around, points, NULL);
+    if (result != ORL_OK) {
+        orl_points_finish(points);
+        free(*scales);
+        *scales = NULL;
+    }
+    return result;
+}
+
+enum orl_result orl_point_parts_write(const struct point_parts *parts, size_t index,
+                                      const struct orl_points *points, const float *scales)
+{
+    struct run *run = &parts->parts[index].own;
+    enum orl_result result = ORL_OK;
+    run->written = 0;
+    for (size_t i = 0; result == ORL_OK && i < run->count; i++)
+        result = add_record(parts, run, points, i, scales[i]);
+    return result == ORL_OK ? write_buffer(parts, run) : result;
+}
