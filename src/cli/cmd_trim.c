@@ -7,7 +7,7 @@
 struct options {
     const char *method, *out, *json, *plots;
     struct orl_names settings;
-    double tolerance_db, worst_db, max_mib, max_frame_ms, budget_s;
+    double tolerance_db, tolerance_ssim, worst_db, max_mib, max_frame_ms, budget_s;
     int views, size_divide;
     bool explain, random, keep_options;
 };
@@ -104,7 +104,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
     const struct orl_trim_params params = {
-        .start = &start, .out = o->out, .tolerance_db = o->tolerance_db, .worst_db = o->worst_db,
+        .start = &start, .out = o->out, .tolerance_db = o->tolerance_db,
+        .tolerance_ssim = o->tolerance_ssim, .worst_db = o->worst_db,
         .max_bytes = (size_t)(o->max_mib * MIB), .max_frame_ms = o->max_frame_ms,
         .views = (size_t)o->views, .size_divide = o->size_divide, .budget_s = o->budget_s,
         .tune = !o->keep_options, .random = o->random, .on_step = common->quiet ? NULL : print_step,
@@ -129,11 +130,14 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_trim(int argc, char **argv)
 {
-    struct options o = {.tolerance_db = 0.1, .worst_db = 0.5, .views = 6, .size_divide = 1};
+    struct options o = {.tolerance_db = 0.1, .tolerance_ssim = 0.01, .worst_db = 0.5, .views = 6,
+                        .size_divide = 1};
     const struct arg_option table[] = {
         {"out", ARG_STRING, &o.out, "SCENE2", "the folder to make", 0, 0},
         {"tolerance", ARG_NUMBER, &o.tolerance_db, "DB",
          "training photographs may lose so much on average; default 0.1", 0, 100},
+        {"tolerance-ssim", ARG_NUMBER, &o.tolerance_ssim, "SHARE",
+         "and so much of SSIM, which sees blur that PSNR does not; default 0.01", 0, 1},
         {"worst", ARG_NUMBER, &o.worst_db, "DB", "and one of them so much; default 0.5", 0, 100},
         {"max-bytes", ARG_NUMBER, &o.max_mib, "MIB",
          "instead: the best picture within so much device memory for points and photographs",

@@ -12,7 +12,7 @@
 // Of the time that is left after the methods are compared, tuning may take this share.
 static const double tune_share = 0.7;
 // Settings may lose so much, which no one sees; a gain must be at least half of it.
-static const double tolerance_db = 0.02, gain_db = 0.01;
+static const double tolerance_db = 0.02, tolerance_ssim = 0.002, gain_db = 0.01;
 
 static size_t ranks_above(const struct orl_adapt_row *rows, size_t count, size_t row)
 {
@@ -198,8 +198,8 @@ static enum orl_result trim(struct job *job)
 {
     struct orl_trim trim;
     const struct orl_trim_params trimming = {
-        .start = &job->choice, .tolerance_db = tolerance_db, .worst_db = 5 * tolerance_db,
-        .views = job->params->views, .size_divide = job->params->size_divide,
+        .start = &job->choice, .tolerance_db = tolerance_db, .tolerance_ssim = tolerance_ssim,
+        .worst_db = 5 * tolerance_db, .views = job->params->views, .size_divide = job->params->size_divide,
         .budget_s = left_s(job), .settings_only = true, .progress = job->params->progress};
     enum orl_result result = orl_trim_run(job->gpu, job->scene, &trimming, &trim);
     if (result != ORL_OK)

@@ -140,7 +140,7 @@ enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_render
                                     const struct orl_scene *scene,
                                     const struct orl_heldout *heldout,
                                     const struct orl_render_params *render, const bool *skip,
-                                    bool psnr_alone, struct orl_metrics *metrics)
+                                    bool brief, struct orl_metrics *metrics)
 {
     struct orl_frame frame = {0};
     struct orl_image picture = {0};
@@ -150,9 +150,10 @@ enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_render
     enum orl_result result = orl_renderer_draw(renderer, &heldout->view, &params, skip, &frame);
     if (result == ORL_OK)
         result = orl_heldout_expose(log, scene, heldout->photo, render, &frame.color, &picture);
-    if (result == ORL_OK && psnr_alone)
+    if (result == ORL_OK && brief) {
         metrics->psnr_db = orl_metrics_psnr_db(&picture, &heldout->picture);
-    else if (result == ORL_OK)
+        result = orl_metrics_ssim(log, &picture, &heldout->picture, &metrics->ssim);
+    } else if (result == ORL_OK)
         result =
             orl_metrics_compare(log, &picture, &heldout->picture, &frame.coverage, metrics);
     orl_image_finish(&picture);

@@ -43,12 +43,12 @@ enum orl_result orl_heldout_expose(const struct orl_log *log, const struct orl_s
 
 // Renders the photograph's view without the photographs that `skip` marks (NULL: none), as
 // orl_renderer_draw does, and compares the picture with the photograph. `scene` is the one that the
-// photograph was loaded from; the renderer may draw another of the same place. psnr_alone: the other
-// figures, which take longer than a fast frame, stay 0.
+// photograph was loaded from; the renderer may draw another of the same place. brief: PSNR and SSIM
+// alone; the other figures, which take longer than a fast frame, stay 0.
 enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                     const struct orl_scene *scene,
                                     const struct orl_heldout *heldout,
                                     const struct orl_render_params *render, const bool *skip,
-                                    bool psnr_alone, struct orl_metrics *metrics) ORL_CHECK_RESULT;
+                                    bool brief, struct orl_metrics *metrics) ORL_CHECK_RESULT;
 
 #endif

@@ -85,10 +85,10 @@ static void set_skip(const struct orl_judges *judges, size_t photo, const bool *
 enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                    const struct orl_judges *judges, size_t view,
                                    const struct orl_render_params *render, const bool *removed,
-                                   bool psnr_alone, struct orl_metrics *metrics)
+                                   bool brief, struct orl_metrics *metrics)
 {
     const struct orl_heldout *target = &judges->views[view];
     set_skip(judges, target->photo, removed);
     return orl_heldout_compare(log, renderer, judges->scene, target, render, judges->skip,
-                               psnr_alone, metrics);
+                               brief, metrics);
 }

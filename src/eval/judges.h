@@ -33,7 +33,7 @@ bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b);
 enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                    const struct orl_judges *judges, size_t view,
                                    const struct orl_render_params *render, const bool *removed,
-                                   bool psnr_alone,
+                                   bool brief,
                                    struct orl_metrics *metrics) ORL_CHECK_RESULT;
 
 #endif

@@ -171,8 +171,8 @@ static double ssim_at(struct orl_image *const moments, size_t i)
            ((x * x + y * y + c1) * (fmax(var_x, 0) + fmax(var_y, 0) + c2));
 }
 
-static enum orl_result measure_ssim(const struct orl_log *log, const struct orl_image *a,
-                                    const struct orl_image *b, double *ssim)
+enum orl_result orl_metrics_ssim(const struct orl_log *log, const struct orl_image *a,
+                                 const struct orl_image *b, double *ssim)
 {
     struct orl_image moments[5] = {{0}};
     enum orl_result result = ORL_OK;
@@ -282,7 +282,7 @@ enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_
     struct orl_metrics measured = {0};
     measure_psnr(a, b, coverage, &measured);
     measured.psnr_cc_db = psnr_after_fit(a, b);
-    enum orl_result result = measure_ssim(log, a, b, &measured.ssim);
+    enum orl_result result = orl_metrics_ssim(log, a, b, &measured.ssim);
     if (result == ORL_OK)
         result = measure_rephoto(log, a, b, &measured);
     if (result == ORL_OK)

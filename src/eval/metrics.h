@@ -18,7 +18,9 @@ struct orl_metrics {
 enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_image *a,
                                     const struct orl_image *b, const struct orl_image *coverage,
                                     struct orl_metrics *metrics) ORL_CHECK_RESULT;
-// psnr_db alone.
+// psnr_db alone, and ssim alone.
 double orl_metrics_psnr_db(const struct orl_image *a, const struct orl_image *b);
+enum orl_result orl_metrics_ssim(const struct orl_log *log, const struct orl_image *a,
+                                 const struct orl_image *b, double *ssim) ORL_CHECK_RESULT;
 
 #endif

@@ -74,7 +74,7 @@ static enum orl_result measure_all(struct trim_search *s, bool first,
         orl_progress_report(s->params->progress, first ? "whole scene" : "trimmed scene",
                             (double)i, n, NULL);
         result = orl_trim_measure_view(s, s->model->renderer, &s->state, i, false, &m);
-        s->now_db[i] = m.psnr_db;
+        s->now[i] = (struct trim_score){m.psnr_db, m.ssim};
         s->first_db[i] = first ? m.psnr_db : s->first_db[i];
         figures->psnr_db += m.psnr_db / n;
         figures->ssim += m.ssim / n;
@@ -130,6 +130,7 @@ static enum orl_result confirm(struct trim_search *s)
     enum orl_result result = measure_all(s, false, &s->trim->after);
     while (result == ORL_OK && s->history_count && !orl_trim_has_budget(s) &&
            (trim->before.psnr_db - trim->after.psnr_db > p->tolerance_db ||
+            trim->before.ssim - trim->after.ssim > p->tolerance_ssim ||
             trim->after.worst_loss_db > p->worst_db)) {
         result = undo_last(s);
         if (result == ORL_OK)
@@ -143,12 +144,13 @@ static void settle(struct trim_search *s)
 {
     const struct orl_trim *trim = s->trim;
     s->total_loss_db = trim->before.psnr_db - trim->after.psnr_db;
+    s->total_loss_ssim = trim->before.ssim - trim->after.ssim;
     s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
     s->file_bytes = (double)orl_trim_photo_file_bytes(&s->source, s->model->scene.dir,
                                                       s->state.removed);
     s->version++;
     for (size_t i = 0; i < s->targets.count; i++)
-        s->lost_db[i] = s->first_db[i] - s->now_db[i];
+        s->lost_db[i] = s->first_db[i] - s->now[i].db;
     for (size_t i = 0; i < s->move_count; i++)
         s->moves[i].blocked = s->moves[i].slow = false;
 }
@@ -238,12 +240,12 @@ static enum orl_result start(struct trim_search *s)
         orl_judges_load(source->log, source->scene, 0, p->size_divide, &s->targets);
     size_t n = s->targets.count;
     s->first_db = orl_array(source->log, n, sizeof *s->first_db);
-    s->now_db = orl_array(source->log, n, sizeof *s->now_db);
+    s->now = orl_array(source->log, n, sizeof *s->now);
     s->lost_db = orl_array(source->log, n, sizeof *s->lost_db);
     s->first_state.render = p->start->params;
     s->first_state.removed = orl_array(source->log, photos, sizeof *s->first_state.removed);
     if (result == ORL_OK &&
-        !(s->first_db && s->now_db && s->lost_db && s->first_state.removed))
+        !(s->first_db && s->now && s->lost_db && s->first_state.removed))
         result = ORL_ERR_MEMORY;
     if (result == ORL_OK && !p->settings_only)
         result = orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress,
@@ -334,7 +336,7 @@ static void finish(struct trim_search *s)
     free(s->moves);
     free(s->nearest);
     free(s->first_db);
-    free(s->now_db);
+    free(s->now);
     free(s->lost_db);
     free(s->first_state.removed);
     free(s->state.removed);

@@ -23,13 +23,13 @@ extern const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT];
 struct orl_trim_step {
     enum orl_trim_part part;
     char what[96];         // such as "points 50 %"
-    double loss_db;        // mean over the views it was judged by, against the state before it
+    double loss_db, loss_ssim; // means over the views it was judged by, against the state before it
     double saved_bytes, saved_ms, saved_file_bytes;
     bool first;            // the first trial of its kind: what this part of the model buys
     bool taken;
     // Of a step that was taken, after it:
     double bytes, ms;      // of the model on the device; of a frame
-    double total_loss_db;  // mean, estimated from the losses of all steps
+    double total_loss_db, total_loss_ssim; // means, estimated from the losses of all steps
 };
 
 // What a scene takes and how good it is.
@@ -55,6 +55,7 @@ struct orl_trim_params {
     const struct orl_choice *start; // the method and its options
     const char *out;                // the folder to make
     double tolerance_db;  // the most that the mean over training photographs may lose
+    double tolerance_ssim; // the most SSIM that the mean may lose
     double worst_db;      // the most that one of them may lose
     size_t max_bytes;     // instead of a tolerance: least loss within these bytes of the model on
                           // the device; 0: none

@@ -26,11 +26,12 @@ static json_t *figures_json(const struct orl_trim_figures *f)
 
 static json_t *step_json(const struct orl_trim_step *s)
 {
-    return json_pack("{s:s, s:o, s:f, s:f, s:f, s:f, s:b, s:b, s:f, s:f, s:f}", "part",
+    return json_pack("{s:s, s:o, s:f, s:f, s:f, s:f, s:b, s:b, s:f, s:f, s:f, s:f, s:f}", "part",
                      orl_trim_part_names[s->part], "what", orl_json_string(s->what), "loss_db",
                      s->loss_db, "saved_bytes", s->saved_bytes, "saved_ms", s->saved_ms,
                      "saved_file_bytes", s->saved_file_bytes, "first", s->first, "taken", s->taken,
-                     "bytes", s->bytes, "ms", s->ms, "total_loss_db", s->total_loss_db);
+                     "bytes", s->bytes, "ms", s->ms, "total_loss_db", s->total_loss_db, "loss_ssim",
+                     s->loss_ssim, "total_loss_ssim", s->total_loss_ssim);
 }
 
 enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,

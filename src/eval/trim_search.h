@@ -6,13 +6,18 @@
 
 enum { TRIM_NEAR = 4, TRIM_BETWEEN = 3, TRIM_VIEWS_MAX = 64 };
 
+// How well a view is rendered.
+struct trim_score {
+    double db, ssim;
+};
+
 // What was measured of a step.
 struct trim_measured {
-    double loss_db, ms;
+    double loss_db, loss_ssim, ms;
     double between_db; // of a photograph: the greatest loss of views beside it
     size_t view_count;
     size_t views[TRIM_VIEWS_MAX]; // indices of targets
-    double db[TRIM_VIEWS_MAX];    // their PSNR
+    struct trim_score score[TRIM_VIEWS_MAX];
 };
 
 // A kind of step that can be taken next.
@@ -45,13 +50,13 @@ struct trim_search {
     size_t judges[TRIM_VIEWS_MAX], judge_count; // targets that judge what changes all views
     size_t (*nearest)[TRIM_NEAR]; // owned, per target: the others that stand nearest
     size_t near_count;
-    double *first_db, *now_db; // owned, per target: PSNR of the whole scene and in the state
-                               // reached; NAN: not known
-    double *lost_db;           // owned, per target: estimated loss so far
+    double *first_db;       // owned, per target: PSNR of the whole scene
+    struct trim_score *now; // owned, per target: in the state reached; NAN: not known
+    double *lost_db;        // owned, per target: estimated loss so far
     struct trim_state first_state, state;
     struct trim_model *model;  // of `state`
     size_t version;            // counts the steps taken
-    double bytes, file_bytes, ms, total_loss_db; // of `state`
+    double bytes, file_bytes, ms, total_loss_db, total_loss_ssim; // of `state`
     double first_bytes, first_file_bytes, first_ms;
     struct trim_move *moves; // owned
     size_t move_count;
@@ -71,10 +76,10 @@ void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
 
 // --- trim_trial.c ---
 
-// Figures of one target in a state, the target being left out; of trials PSNR alone.
+// Figures of one target in a state, the target being left out; brief: PSNR and SSIM alone.
 enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
                                       const struct trim_state *state, size_t view,
-                                      bool psnr_alone,
+                                      bool brief,
                                       struct orl_metrics *metrics) ORL_CHECK_RESULT;
 // The least of a few frames of each, in ms: see orl_trim_run. They are drawn in turns, since other
 // programs then slow both alike; b may be NULL.

@@ -61,13 +61,13 @@ enum orl_result orl_trim_frame_times(struct trim_search *s, const struct trim_dr
 
 enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
                                       const struct trim_state *state, size_t view,
-                                      bool psnr_alone, struct orl_metrics *metrics)
+                                      bool brief, struct orl_metrics *metrics)
 {
     memset(metrics, 0, sizeof *metrics);
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
     return orl_judges_compare(s->source.log, renderer, &s->targets, view, &state->render,
-                              state->removed, psnr_alone, metrics);
+                              state->removed, brief, metrics);
 }
 
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
@@ -110,19 +110,19 @@ static bool is_local(const struct trial *t)
 }
 
 static enum orl_result measure_one(struct trim_search *s, const struct trial *t, size_t view,
-                                   double *db)
+                                   struct trim_score *score)
 {
     struct orl_metrics now, then;
     enum orl_result result = ORL_OK;
-    if (isnan(s->now_db[view])) {
+    if (isnan(s->now[view].db)) {
         result = orl_trim_measure_view(s, s->model->renderer, &s->state, view, true, &now);
-        s->now_db[view] = result == ORL_OK ? now.psnr_db : NAN;
+        s->now[view] = (struct trim_score){result == ORL_OK ? now.psnr_db : NAN, now.ssim};
     }
     if (result == ORL_OK)
         result = orl_trim_measure_view(s, t->own ? t->own->renderer : s->model->renderer,
                                        &t->state, view, true, &then);
     if (result == ORL_OK)
-        *db = then.psnr_db;
+        *score = (struct trim_score){then.psnr_db, then.ssim};
     return result;
 }
 
@@ -186,16 +186,17 @@ static enum orl_result measure_between(struct trim_search *s, const struct trial
 
 // --- judging it ---
 
-// Loss of a view by the step: measured, or the mean where the step changes all views.
+// Loss of a view by the step: measured, or the mean where the step changes all views. after: the
+// view's score then.
 static double view_loss(const struct trim_search *s, const struct trial *t, size_t view,
-                        double *db)
+                        struct trim_score *after)
 {
     const struct trim_measured *m = &t->move->measured;
-    *db = is_local(t) ? s->now_db[view] : NAN;
+    *after = is_local(t) ? s->now[view] : (struct trim_score){NAN, NAN};
     for (size_t k = 0; k < m->view_count; k++)
         if (m->views[k] == view) {
-            *db = m->db[k];
-            return s->now_db[view] - m->db[k];
+            *after = m->score[k];
+            return s->now[view].db - m->score[k].db;
         }
     return is_local(t) ? 0 : m->loss_db;
 }
@@ -220,12 +221,14 @@ static bool is_slow(const struct trim_search *s, double ms)
 static bool is_good(const struct trim_search *s, const struct trial *t)
 {
     const struct trim_measured *m = &t->move->measured;
-    double worst = m->between_db, db;
+    double worst = m->between_db;
+    struct trim_score after;
     if (orl_trim_has_budget(s))
         return true;
     for (size_t i = 0; i < s->targets.count; i++)
-        worst = fmax(worst, s->lost_db[i] + view_loss(s, t, i, &db));
+        worst = fmax(worst, s->lost_db[i] + view_loss(s, t, i, &after));
     return s->total_loss_db + m->loss_db <= s->params->tolerance_db &&
+           s->total_loss_ssim + m->loss_ssim <= s->params->tolerance_ssim &&
            worst <= s->params->worst_db;
 }
 
@@ -255,7 +258,7 @@ static enum orl_result measure(struct trim_search *s, struct trial *t)
 {
     struct trim_measured *m = &t->move->measured;
     enum orl_result result = ORL_OK;
-    double sum = 0;
+    double sum = 0, ssim = 0;
     if (t->move->tried && t->move->version == s->version)
         return ORL_OK; // nothing has changed since
     if (is_local(t))
@@ -265,11 +268,15 @@ static enum orl_result measure(struct trim_search *s, struct trial *t)
         m->view_count = 0; // it stays anyway
     for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
         m->views[i] = is_local(t) ? s->nearest[t->move->index][i] : s->judges[i];
-        result = measure_one(s, t, m->views[i], &m->db[i]);
-        if (result == ORL_OK)
-            sum += s->now_db[m->views[i]] - m->db[i];
+        result = measure_one(s, t, m->views[i], &m->score[i]);
+        if (result == ORL_OK) {
+            sum += s->now[m->views[i]].db - m->score[i].db;
+            ssim += s->now[m->views[i]].ssim - m->score[i].ssim;
+        }
     }
-    m->loss_db = sum / (double)(is_local(t) ? s->targets.count : s->judge_count);
+    double judged = (double)(is_local(t) ? s->targets.count : s->judge_count);
+    m->loss_db = sum / judged;
+    m->loss_ssim = ssim / judged;
     m->ms = s->ms;
     // The first time it says what the part of the model buys; later, a step that loses too much is
     // not timed.
@@ -281,6 +288,15 @@ static enum orl_result measure(struct trim_search *s, struct trial *t)
 }
 
 // --- what it is worth ---
+
+// The loss in dB, or that of SSIM where it takes a greater share of what may be lost: where
+// photographs do not fit each other, PSNR rises as they become blurred.
+static double weighed_loss(const struct trim_search *s, const struct trim_measured *m)
+{
+    const struct orl_trim_params *p = s->params;
+    double ssim = p->tolerance_ssim > 0 ? m->loss_ssim * p->tolerance_db / p->tolerance_ssim : 0;
+    return fmax(m->loss_db, ssim);
+}
 
 // Whether a step waits for a frame that takes less time.
 static bool waits_for_time(const struct trim_search *s)
@@ -343,10 +359,12 @@ static enum orl_result note_step(struct trim_search *s, const struct trial *t, b
         return result;
     struct orl_trim_step *step = &trim->steps[trim->step_count++];
     *step = (struct orl_trim_step){
-        .part = t->move->part, .loss_db = m->loss_db, .saved_bytes = s->bytes - t->bytes,
+        .part = t->move->part, .loss_db = m->loss_db, .loss_ssim = m->loss_ssim,
+        .saved_bytes = s->bytes - t->bytes,
         .saved_ms = s->ms - m->ms, .saved_file_bytes = s->file_bytes - t->file_bytes,
         .first = !t->move->tried, .taken = taken, .bytes = t->bytes, .ms = m->ms,
-        .total_loss_db = s->total_loss_db + m->loss_db};
+        .total_loss_db = s->total_loss_db + m->loss_db,
+        .total_loss_ssim = s->total_loss_ssim + m->loss_ssim};
     memcpy(step->what, t->what, sizeof step->what);
     if (s->params->on_step)
         s->params->on_step(s->params->priv, step);
@@ -361,11 +379,12 @@ static enum orl_result take(struct trim_search *s, struct trial *t)
         return result;
     s->history[s->history_count++] = (struct trim_past){s->state, s->trim->step_count - 1, t->move};
     for (size_t i = 0; i < s->targets.count; i++) {
-        double db;
-        s->lost_db[i] += view_loss(s, t, i, &db);
-        s->now_db[i] = db;
+        struct trim_score after;
+        s->lost_db[i] += view_loss(s, t, i, &after);
+        s->now[i] = after;
     }
     s->total_loss_db += t->move->measured.loss_db;
+    s->total_loss_ssim += t->move->measured.loss_ssim;
     s->bytes = t->bytes;
     s->file_bytes = t->file_bytes;
     s->ms = t->move->measured.ms;
@@ -407,12 +426,11 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     }
     double gain = gain_of(s, &t);
     bool slow = is_slow(s, move->measured.ms), good = gain > 0 && is_good(s, &t);
-    move->ratio = gain / fmax(move->measured.loss_db, least_loss_db);
+    double loss = weighed_loss(s, &move->measured);
+    move->ratio = gain / fmax(loss, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
-    // What loses nothing need not be compared, except photographs, which stand in for each other,
-    // and their resolution: where photographs do not fit each other, PSNR rises with their blur.
-    bool lossless = move->measured.loss_db <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH &&
-                    move->part != ORL_TRIM_RESOLUTION;
+    // What loses nothing need not be compared, except photographs, which stand in for each other.
+    bool lossless = loss <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH;
     bool taken = good && !slow &&
                  (!other || lossless || comes_later(s, other) != comes_later(s, move) ||
                   good_enough * other->ratio <= move->ratio);
@@ -450,8 +468,9 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
     m->view_count = s->targets.count < TRIM_VIEWS_MAX ? s->targets.count : TRIM_VIEWS_MAX;
     for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
         m->views[i] = i * s->targets.count / m->view_count;
-        result = measure_one(s, &t, m->views[i], &m->db[i]);
-        m->loss_db += (s->now_db[m->views[i]] - m->db[i]) / (double)m->view_count;
+        result = measure_one(s, &t, m->views[i], &m->score[i]);
+        m->loss_db += (s->now[m->views[i]].db - m->score[i].db) / (double)m->view_count;
+        m->loss_ssim += (s->now[m->views[i]].ssim - m->score[i].ssim) / (double)m->view_count;
     }
     m->ms = s->ms;
     if (result == ORL_OK)

@@ -133,13 +133,14 @@ static void setup_twins(struct fixture *f)
 }
 
 // Runs on a scene in memory, as `prepare --adapt` does, or writes a scene from one on disk.
-static void trim(const struct fixture *f, double tolerance_db, struct orl_trim *result)
+static void trim(const struct fixture *f, double tolerance_db, double tolerance_ssim,
+                 struct orl_trim *result)
 {
     const struct orl_choice start = {.method = orl_method_find(NULL, "oriel"),
                                      .params = orl_method_find(NULL, "oriel")->params};
     const struct orl_trim_params params = {
-        .start = &start, .tolerance_db = tolerance_db, .worst_db = 5 * tolerance_db, .views = 8,
-        .size_divide = 1, .settings_only = true};
+        .start = &start, .tolerance_db = tolerance_db, .tolerance_ssim = tolerance_ssim,
+        .worst_db = 5 * tolerance_db, .views = 8, .size_divide = 1, .settings_only = true};
     assert_int_equal(orl_trim_run(gpu, &f->scene, &params, result), ORL_OK);
 }
 
@@ -167,7 +168,7 @@ static void the_tolerance_is_kept(void **state)
     setup_twins(&f);
     for (size_t i = 0; i < ORL_COUNT(tolerances); i++) {
         struct orl_trim result;
-        trim(&f, tolerances[i], &result);
+        trim(&f, tolerances[i], 1, &result);
         const struct orl_trim_figures *a = &result.before, *b = &result.after;
         assert_true(a->psnr_db - b->psnr_db <= tolerances[i]);
         assert_true(b->worst_loss_db <= 5 * tolerances[i]);
@@ -175,6 +176,25 @@ static void the_tolerance_is_kept(void **state)
         assert_true(is_taken(&result, "depth 1/1, 16 bits"));
         orl_trim_finish(&result);
     }
+    teardown(&f);
+}
+
+// Where PSNR would let everything go, SSIM does not.
+static void the_tolerance_of_ssim_is_kept(void **state)
+{
+    (void)state;
+    static const double tolerances[] = {1, 0.002};
+    double lost[ORL_COUNT(tolerances)];
+    struct fixture f;
+    setup_twins(&f);
+    for (size_t i = 0; i < ORL_COUNT(tolerances); i++) {
+        struct orl_trim result;
+        trim(&f, 20, tolerances[i], &result);
+        lost[i] = result.before.ssim - result.after.ssim;
+        orl_trim_finish(&result);
+    }
+    assert_true(lost[0] > 0.004);
+    assert_true(lost[1] <= tolerances[1]);
     teardown(&f);
 }
 
@@ -267,7 +287,8 @@ static void a_photograph_that_repeats_another_goes(void **state)
     const struct orl_choice start = {.method = orl_method_find(NULL, "airieau"),
                                      .params = orl_method_find(NULL, "airieau")->params};
     const struct orl_trim_params params = {.start = &start, .out = out, .tolerance_db = 0.1,
-                                           .worst_db = 0.5, .views = 8, .size_divide = 1};
+                                           .tolerance_ssim = 1, .worst_db = 0.5, .views = 8,
+                                           .size_divide = 1};
     assert_int_equal(orl_trim_run(gpu, whole, &params, &result), ORL_OK);
     assert_true(is_taken(&result, "without side/0.png") != is_taken(&result, "without side/4.png"));
     assert_int_equal(result.after.photographs, 4);
@@ -320,13 +341,13 @@ static void held_out_photographs_never_steer(void **state)
     struct fixture f;
     struct orl_trim with, without;
     setup_twins(&f);
-    trim(&f, 0.1, &without);
+    trim(&f, 0.1, 1, &without);
     struct orl_photo *held = &f.photos[f.scene.photo_count++];
     *held = f.photos[1];
     held->name = malloc(16);
     snprintf(held->name, 16, "missing.png");
     held->test = true;
-    trim(&f, 0.1, &with);
+    trim(&f, 0.1, 1, &with);
     assert_true(with.before.psnr_db == without.before.psnr_db);
     // Which step comes next depends on times too. The first trials, all of the whole scene, do not.
     for (size_t i = 0; i < with.step_count && i < without.step_count && without.steps[i].first; i++)
@@ -345,6 +366,7 @@ int main(void)
         cmocka_unit_test(same_places_are_left_out_together),
         cmocka_unit_test(a_budget_that_cannot_be_kept_is_refused),
         cmocka_unit_test(the_tolerance_is_kept),
+        cmocka_unit_test(the_tolerance_of_ssim_is_kept),
         cmocka_unit_test(a_photograph_that_repeats_another_goes),
         cmocka_unit_test(adapting_stores_the_best_method),
         cmocka_unit_test(held_out_photographs_never_steer),
