@@ -11,15 +11,17 @@ layout(std430, binding = 1) writeonly buffer tile_lists {
 
 const int ACROSS = 3; // sample points of a tile in each direction
 
-// Sample points of a tile in the view's camera frame; z 0: no depth there.
-void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS])
+// Sample points of a tile in the view's camera frame; z 0: no depth there. guess: 1 where the depth
+// is estimated, else 0.
+void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS], out float guess[ACROSS * ACROSS])
 {
     for (int i = 0; i < ACROSS * ACROSS; i++) {
         ivec2 at = tile * CHOICE_TILE + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * CHOICE_TILE /
                                             (2 * ACROSS);
         at = min(at, view_size - 1);
-        float depth = abs(imageLoad(view_depth, at).r);
-        points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
+        float depth = imageLoad(view_depth, at).r;
+        points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(depth);
+        guess[i] = depth < 0.0 ? 1.0 : 0.0;
     }
 }
 
@@ -30,7 +32,8 @@ void main()
     if (tile.x >= row || tile.y >= rows)
         return;
     vec3 points[ACROSS * ACROSS];
-    sample_depths(tile, points);
+    float guess[ACROSS * ACROSS];
+    sample_depths(tile, points, guess);
     float best[CANDIDATES];
     int index[CANDIDATES];
     for (int c = 0; c < CANDIDATES; c++) {
@@ -50,7 +53,9 @@ void main()
                 continue;
             float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
             float hidden = share > 0.9 ? 1.0 : 8.0;
-            least = min(least, photo_penalty(shot, points[s]) * hidden);
+            float penalty = photo_penalty(shot, points[s]);
+            penalty = guess[s] > 0.0 ? photo_guess_penalty(shot, penalty) : penalty;
+            least = min(least, penalty * hidden);
             seen += 1.0 / hidden;
         }
         least = seen == 0.0 ? 1e30 : least * (1.0 + 1.0 / max(seen, 0.1));

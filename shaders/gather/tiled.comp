@@ -73,7 +73,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float sees = is_guess(s) ? photo_unhidden_share(shot, seen, z) * photo_past_share(shot, seen, z) *
                                    photo_beside(penalty)
                              : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
-    penalty = is_guess(s) ? penalty : photo_surface_penalty(penalty);
+    penalty = is_guess(s) ? photo_guess_penalty(shot, penalty) : photo_surface_penalty(penalty);
     float sure = sees * photo_border(shot, pixel, is_guess(s));
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);

@@ -76,7 +76,8 @@ struct photo_data {
     VEC4(size);          // width, height of the resident photograph; width, height of its depth map
     VEC4(gain);          // rgb gain on linear colour; w: slot again, to save a load
     VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
-    VEC4(noise);         // of radiance: shot and read noise variance; z: 1 if rounded to 8 bits
+    VEC4(noise);         // of radiance: shot and read noise variance; z: 1 if rounded to 8 bits;
+                         // w: penalty on guessed depth for another colour of light
     VEC4(selected);      // x: weight by the selection
     // Of a frame that packs photographs:
     VEC4(offset);        // xy: from a pixel of the photograph to its place in the packed texture

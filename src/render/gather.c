@@ -80,6 +80,22 @@ static void relative_pose(const struct orl_pose *photo, const struct orl_pose *v
     }
 }
 
+// How far the colour of a photograph's light is from that of the scene, stops: root mean square
+// over channels, less what the white balances of one camera differ by on one day. What is common to
+// all channels is exposure, which says nothing about the light.
+static float tint_of(const float gain[3])
+{
+    static const float usual = 0.1f;
+    float stops[3], mean = 0, square = 0;
+    for (int c = 0; c < 3; c++) {
+        stops[c] = log2f(gain[c]);
+        mean += stops[c] / 3;
+    }
+    for (int c = 0; c < 3; c++)
+        square += (stops[c] - mean) * (stops[c] - mean) / 3;
+    return fmaxf(sqrtf(square) - usual, 0);
+}
+
 static void describe_photo(const struct frame *frame, size_t index, struct photo_data *data)
 {
     const struct photos *photos = frame->photos;
@@ -98,6 +114,7 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
         data->gain[c] = aligned || frame->radiance ? photo->gain[c] : 1;
         data->lens[c] = aligned ? photo->vignette[c] : 0;
     }
+    data->noise[3] = frame->params->tint_penalty * tint_of(data->gain);
     data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
     data->gain[3] = frame->packs ? 0 : (float)state->slot;
     if (frame->packs)

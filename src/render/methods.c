@@ -28,7 +28,7 @@ const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
      "Buehler 2001's penalty, weights of our own",
      {DEFAULTS TILED, .front_layer = 0.01f, .min_support = 8, .silhouette = 2,
-      .surface_seeds = 0.03f, .antialias = ORL_ANTIALIAS_ON}},
+      .surface_seeds = 0.03f, .tint_penalty = 1, .antialias = ORL_ANTIALIAS_ON}},
     {"oriel-fast", "oriel from two photographs a pixel, of three, sampled bilinearly", "as oriel",
      {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .min_support = 8, .candidates = 3,
       .photos_per_pixel = 2}},

@@ -28,15 +28,22 @@ static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_
     return ORL_OK;
 }
 
+// For the passes that compare photographs on guessed depth. Without the penalty they lose no time.
+static const char *tint_define(const struct frame *frame)
+{
+    return frame->params->tint_penalty > 0 ? "TINTED 1\n" : "";
+}
+
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
 static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
 {
-    char defines[32];
+    char defines[48];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs per pixel is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%sKEPT %d",
-             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "", kept);
+    snprintf(defines, sizeof defines, "%s%sKEPT %d",
+             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
+             tint_define(frame), kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
@@ -66,7 +73,8 @@ static enum orl_result paint_chosen(const struct frame *frame)
         return ORL_OK;
     }
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);
-    struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL, NULL),
+    struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
+                                                     tint_define(frame)),
                              .params = &block, .params_size = sizeof block,
                              .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
                              .textures = {frame->photos->color, frame->photos->depth,
