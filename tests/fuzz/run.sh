@@ -53,18 +53,19 @@ wanted=" ${*:-} "
 
 run_target() {
     local name=$1 corpus=$dir/corpus/$1
-    local begun=$SECONDS
+    local TIMEFORMAT=%U
     mkdir -p "$corpus"
-    FUZZ_TARGET=$name LLVM_PROFILE_FILE=/dev/null ASAN_OPTIONS=allocator_may_return_null=1 \
+    # Processor time, since the machine may have other work.
+    { time FUZZ_TARGET=$name LLVM_PROFILE_FILE=/dev/null ASAN_OPTIONS=allocator_may_return_null=1 \
         LSAN_OPTIONS=suppressions=$here/../leaks.supp UBSAN_OPTIONS=print_stacktrace=1 \
         "$fuzz" "$corpus" "$here/inputs/$name" \
         -max_total_time="$seconds" -max_len=8192 -timeout=30 -rss_limit_mb=3000 \
         -seed="${FUZZ_SEED:-0}" -runs="${FUZZ_RUNS:--1}" -print_final_stats=1 \
         -artifact_prefix="$dir/failures/$name-" \
-        >"$dir/$name.log" 2>&1
+        >"$dir/$name.log" 2>&1; } 2>"$dir/$name.time"
     local status=$? runs
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log")
-    echo "$name ${runs:-0} $((SECONDS - begun))" >>"$dir/tried.txt" # all runs of this build folder
+    echo "$name ${runs:-0} $(tail -n 1 "$dir/$name.time")" >>"$dir/tried.txt" # all runs of this build folder
     if [ $status -eq 0 ]; then
         echo "$name: ${runs:-0} inputs"
     else

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Fails and kills oriel at every write, sync, rename, unlink and allocation of its commands in
 # turn, and lets the power fail there and at their ends, so that what was not synced is lost. After
-# each, a final name must hold what it held before or the whole result, the exit status must tell, and
-# no temporary file may stay unless its writer was killed.
+# each, a final name must hold what it held before or the whole result, the exit status must tell,
+# and no temporary file may stay unless its writer was killed.
 # usage: inject.sh ORIEL SOURCE LIBRARY [all]     without all: the first six calls of a kind, then
 # every so many, as they grow in number
 set -u
@@ -18,8 +18,8 @@ cp -r ws base
 mkdir lod
 (cd lod && monument_scene) || exit
 
-# A clean start: `out` holds an older file under each final name, but where a command refuses that, or
-# is a scene that the command adds to.
+# A clean start: `out` holds an older file under each final name, but where a command refuses that,
+# or is a scene that the command adds to.
 prepare_out() {
     rm -rf out
     [ "${command[1]}" = synth ] && mkdir out || cp -r old out
@@ -68,7 +68,12 @@ sweep() {
     [ "$2" = lod ] && cp -r lod/made out || mkdir out
     "${command[@]}" >whole.txt 2>stderr.txt || { fail "the command itself: $*"; return; }
     mv out whole
-    [ "$2" = lod ] && cp -r lod/made/. old || (cd whole && find . -type f -exec sh -c 'mkdir -p "../old/$(dirname "$1")"; echo older >"../old/$1"' _ {} \;)
+    if [ "$2" = lod ]; then
+        cp -r lod/made/. old
+    else
+        (cd whole && find . -type f -exec sh -c \
+            'mkdir -p "../old/$(dirname "$1")"; echo older >"../old/$1"' _ {} \;)
+    fi
     local started=$SECONDS
     for call in write sync rename unlink malloc end; do
         for killed in '' "${endings[@]}"; do

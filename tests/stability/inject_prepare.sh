@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Fails and kills oriel prepare, from the start and resumed half-way, at every write, sync, rename,
 # unlink and allocation in turn, and lets the power fail there and at its end, with a stand-in for
-# COLMAP. After each, the scene does not open or is whole, the exit status tells, the photographs are as they were, and --resume gives the bytes of
-# a job that nothing disturbed.
+# COLMAP. After each, the scene does not open or is whole, the exit status tells, the photographs are
+# as they were, and --resume gives the bytes of a job that nothing disturbed.
 # Then a drive without fsync, flock and symbolic links, as many USB sticks and network drives are.
 # usage: inject_prepare.sh ORIEL SOURCE LIBRARY [all]     without all: calls 1, 3, 9, 27..
 set -u

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Fails and kills oriel trim at every write, sync, rename, unlink and allocation in turn, and lets the
-# power fail there and at its end. After each, SCENE2 is absent or whole, SCENE is as it was, the exit status tells, and nothing stays beside
-# SCENE2 unless its writer was killed or could not remove it.
+# Fails and kills oriel trim at every write, sync, rename, unlink and allocation in turn, and lets
+# the power fail there and at its end. After each, SCENE2 is absent or whole, SCENE is as it was, the
+# exit status tells, and nothing stays beside SCENE2 unless its writer was killed or could not remove
+# it.
 # usage: inject_trim.sh ORIEL SOURCE LIBRARY [all]     without all: calls 1, 32, 1024.., and a search
 # that ends at once
 set -u

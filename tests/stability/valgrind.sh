@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Replays every stored input of every reader under valgrind, which sees reads of memory that nothing
-# wrote: libraries are not built with MemorySanitizer. Takes minutes.
-# usage: valgrind.sh BUILD SOURCE      BUILD: a build folder without sanitizers
+# Replays every stored input of every reader and runs the unit tests under valgrind, which sees reads of
+# memory that nothing wrote: libraries are not built with MemorySanitizer. Takes half an hour.
+# usage: valgrind.sh BUILD SOURCE [UNIT_TEST]..      BUILD: a build folder without sanitizers
 set -u
 build=$(realpath "$1") inputs=$(realpath "$2")/tests/fuzz/inputs
+shift 2
 command -v valgrind >/dev/null || { echo "valgrind is not installed"; exit 77; }
 failed=0
 count=0
@@ -19,5 +20,14 @@ for folder in "$inputs"/*/; do
     fi
     count=$((count + $(find "$folder" -type f | wc -l)))
 done
-echo "valgrind: $count inputs"
+[ $# -gt 0 ] || for test in "$build"/tests/unit_test_*; do set -- "$@" "$(basename "$test")"; done
+for name in "$@"; do
+    log=$(valgrind -q --error-exitcode=9 --track-origins=yes "$build/tests/$name" 2>&1)
+    status=$?
+    [ $status -eq 0 ] || [ $status -eq 77 ] && continue
+    echo "FAILED: $name (status $status)"
+    grep == <<<"$log" | head -n 25
+    failed=1
+done
+echo "valgrind: $count inputs and $# unit tests"
 exit $failed
