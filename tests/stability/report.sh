@@ -54,7 +54,8 @@ fuzzing() {
     echo
     echo "Most of the lines that are left answer an allocation, a file or a library that fails, which"
     echo "the injection of faults below does, or belong to functions that read no input: \`mesh.c\` also"
-    echo "makes empty meshes, \`content.c\` sends photographs and \`rendering.c\` draws with a device."
+    echo "makes empty meshes, \`path.c\` circles, \`content.c\` sends photographs and \`rendering.c\` draws with a"
+    echo "device; \`point_lod_levels.c\` writes levels that small clouds do not have."
     echo
     echo "| file | lines | reached |"
     echo "|---|--:|--:|"
@@ -74,7 +75,9 @@ running() {
     echo "result, the exit status tells, and only a killed program leaves a temporary file. So too in"
     echo "\`prepare\`, from the start and resumed half-way, with a stand-in for COLMAP; afterwards"
     echo "\`--resume\` gives the bytes of a job that nothing disturbed. And in \`trim\`; afterwards the scene"
-    echo "that it reads is as it was, and the one that it makes is whole or absent."
+    echo "that it reads is as it was, and the one that it makes is whole or absent. Unless the script was"
+    echo "told \`all\`, these are the first six calls of a kind and then every so many, in \`prepare\` calls 1, 3,"
+    echo "9 and so on, in \`trim\` 1, 32 and 1024."
     echo
     echo "| fault | times | files cut, crashes, wrong statuses |"
     echo "|---|--:|--:|"
@@ -110,8 +113,8 @@ running() {
     fi
     echo "## Uninitialized memory"
     echo
-    echo "The stored inputs of every reader and the unit tests under valgrind: $(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"),"
-    echo "$(grep -c ^FAILED "$fuzz/valgrind.txt" || true) of them with an error."
+    echo "The stored inputs of every reader and the unit tests under valgrind:"
+    echo "$(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"), $(grep -c ^FAILED "$fuzz/valgrind.txt" || true) of them with an error."
     echo
 }
 
