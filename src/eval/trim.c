@@ -350,8 +350,9 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
     ORL_REQUIRE(log, params->size_divide >= 1 && params->size_divide <= 16);
     ORL_REQUIRE(log, params->settings_only || (params->out && *params->out));
     if (scene->lod && !params->settings_only)
-        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: its points are in points.lod, of which each "
-                        "frame takes what it needs: there is nothing to trim", scene->dir);
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: trim needs all points in memory, and they "
+                        "are in points.lod: remove it, and where there is no points.ply, oriel "
+                        "prepare --resume with a larger --max-ram writes one", scene->dir);
     char *part = NULL, *work = NULL;
     enum orl_result result = ORL_OK;
     if (!params->settings_only)

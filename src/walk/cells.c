@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/point_code.h"
+#include "scene/point_lod.h"
 #include "walk/internal.h"
 
 enum {
@@ -304,8 +305,12 @@ static enum orl_result write_coarse(struct writing *w)
 enum orl_result orl_site_points(struct site *site, json_t **out)
 {
     struct writing w = {.site = site};
+    struct orl_points level = {0}; // of a cloud that is larger than memory
+    const struct orl_lod *lod = site->scene->lod;
     json_t *files = json_array(), *coarse = NULL;
-    enum orl_result result = make_order(site->log, &site->scene->points, &w.order);
+    enum orl_result result = lod ? orl_lod_sample(lod, site->params->max_points, &level) : ORL_OK;
+    if (result == ORL_OK)
+        result = make_order(site->log, lod ? &level : &site->scene->points, &w.order);
     if (result == ORL_OK && w.order.count == 0)
         result = orl_fail(site->log, ORL_ERR_DATA, "the scene has no points: nothing to publish");
     if (result != ORL_OK)
@@ -329,6 +334,7 @@ enum orl_result orl_site_points(struct site *site, json_t **out)
 end:
     json_decref(files);
     json_decref(coarse);
+    orl_points_finish(&level);
     free(w.order.index);
     free(w.words);
     free(w.coarse_data);

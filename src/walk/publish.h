@@ -12,7 +12,8 @@ struct orl_publish_params {
     bool single_file;  // everything in one HTML file, which a browser can also open from disk
     int photo_side;    // greatest longer side of the site's photographs, pixels
     int jpeg_quality;  // of photographs, [1, 100]
-    size_t max_points; // greatest number of points; a larger cloud is thinned evenly
+    size_t max_points; // greatest number of points; a larger cloud is thinned evenly; of
+                       // points.lod the finest level that has no more
     const struct orl_progress *progress; // may be NULL
 };
 #define ORL_PUBLISH_DEFAULTS .photo_side = 1024, .jpeg_quality = 88, .max_points = 3000000

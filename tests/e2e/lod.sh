@@ -27,8 +27,12 @@ fi
 runs 0 "$oriel" info made --json
 [ "$(grep -o '"points": [0-9]*' stdout.txt | head -n 1)" = "$points" ] || fail "not $points"
 runs 1 "$oriel" trim made --out trimmed
-grep -q "points.lod" stderr.txt || fail "trim does not say why"
+grep -q "points.lod: remove it" stderr.txt || fail "trim does not say what to do"
 [ -e trimmed ] && fail "trim left a folder"
+# A site takes a coarser level.
+runs 0 "$oriel" publish made --out site --max-points 5000
+sent=$(grep -o '[0-9]* points' stdout.txt | grep -o '[0-9]*')
+[ "${sent:-0}" -ge 1000 ] && [ "$sent" -le 6000 ] || fail "a site of ${sent:-no} points"
 # A damaged file is named, with what to do.
 head -c 100000 made/points.lod >cut && mv cut made/points.lod
 runs 2 "$oriel" render made --at "$name" --out cut.png
