@@ -26,7 +26,8 @@ static json_t *settings(const struct orl_prepare_params *p)
 static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
-                                             "skipped", "ground", "files"};
+                                             "skipped", "ground", "backdrop",
+                                             "files"};
     json_t *stages = json_object();
     for (size_t k = 0; k < json_array_size(plan); k++) {
         const char *name = json_string_value(json_array_get(plan, k));
@@ -139,14 +140,15 @@ enum orl_result orl_scene_json_write(struct orl_job *job)
     const json_t *done = json_object_get(job->stages, "done");
     json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"));
     char *path = orl_job_path(job, "scene.json");
-    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O}", "format",
+    json_t *root = json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O, s:O}", "format",
                              "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                              "oriel " ORL_VERSION, "settings", settings(job->params), "counts",
                              counts(job, done, photos), "photographs", photos, "responses",
                              stage_value(done, "expose", "responses"), "left_out",
                              left_out(job, done), "stages", copy_stages(plan, done),
                              "checksums", checksums(plan, done), "ground",
-                             stage_value(done, "ground", "ground"));
+                             stage_value(done, "ground", "ground"), "backdrop",
+                             stage_value(done, "backdrop", "backdrop"));
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);

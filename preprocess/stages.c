@@ -14,6 +14,7 @@
 #include "preprocess/calibrate/calibrate.h"
 #include "preprocess/calibrate/undistort.h"
 #include "preprocess/cloud/fuse.h"
+#include "preprocess/cloud/backdrop.h"
 #include "preprocess/cloud/ground.h"
 #include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
@@ -141,6 +142,8 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                          {"points.ply", ORL_LOD_NAME}, "points", true, NULL},
     [ORL_STAGE_GROUND] = {"ground", 1, ORL_STAGE_RADII, no_settings, orl_stage_ground, {0},
                           "ground", true, NULL},
+    [ORL_STAGE_BACKDROP] = {"backdrop", 1, ORL_STAGE_RADII, no_settings, orl_stage_backdrop, {0},
+                            "backdrop", true, NULL},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, mesh_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 3, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},

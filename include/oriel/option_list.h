@@ -41,6 +41,10 @@
         "photographs projected to a guessed depth, the same with the depth no farther than " \
         "the ground, or pictures of the empty place projected on the walls of the scene's " \
         "`room`, or of a shell around it.") \
+    CHOICE(backdrop, orl_backdrop, "moves rests scene", ORL_BACKDROP_MOVES, "paint=tiled", \
+        "What lies behind the points, where depth is guessed: it `moves` with the view as that " \
+        "depth tells, or `rests` in the pictures as behind a turntable, or it does what the " \
+        "`scene` states.") \
     CHOICE(sampling, orl_sampling, "bilinear bicubic", ORL_SAMPLING_BICUBIC, \
         "paint=gather paint=tiled", \
         "The filter that photographs are sampled with. `bicubic` is sharper and takes five " \

@@ -82,6 +82,8 @@ struct orl_scene {
     int frame;             // the frame that the photographs show; -1: SCENE/images
     double photo_distance; // median distance from training photographs to the points they see
     struct orl_ground ground;
+    bool backdrop_rests; // what lies behind the points stays where it is in photographs, as behind a
+                         // turntable
     struct orl_room room;
 };
 

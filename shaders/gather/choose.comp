@@ -2,6 +2,7 @@
 // pixel does not grow with the number of photographs.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
+#include "gather/backdrop.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
@@ -49,10 +50,14 @@ void main()
         for (int s = 0; s < ACROSS * ACROSS; s++) {
             vec2 pixel;
             float z;
-            if (!(points[s].z > 0.0) || !photo_project(shot, points[s], pixel, z))
+            bool backdrop = false;
+#ifdef RESTS
+            backdrop = guess[s] > 0.0 && photo_backdrop(shot, points[s], pixel);
+#endif
+            if (!(points[s].z > 0.0) || !(photo_project(shot, points[s], pixel, z) || backdrop))
                 continue;
             float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
-            float hidden = share > 0.9 ? 1.0 : 8.0;
+            float hidden = backdrop || share > 0.9 ? 1.0 : 8.0;
             float penalty = photo_penalty(shot, points[s]);
             penalty = guess[s] > 0.0 ? photo_guess_penalty(shot, penalty) : penalty;
             least = min(least, penalty * hidden);

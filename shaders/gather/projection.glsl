@@ -1,13 +1,10 @@
 // Where a photograph shows a surface point, the same for the renderer and the web page. The file that
 // includes this one defines struct photo, border_px, last_mip and view_focal.
 
-// Projects a point of the view's camera frame into a photograph: pixel coordinates, and z in the
-// photograph's frame. Returns false if the point is behind the photograph or outside it.
-bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
+// Where a photograph shows a point of its own camera frame: pixel coordinates, and z. Returns false if
+// the point is behind the photograph or outside it.
+bool photo_shows(photo shot, vec3 q, out vec2 pixel, out float z)
 {
-    vec4 ph = vec4(p, 1.0);
-    vec3 q = vec3(dot(shot.from_view[0], ph), dot(shot.from_view[1], ph),
-                  dot(shot.from_view[2], ph));
     z = q.z;
     pixel = vec2(-1.0);
     if (!(q.z > 0.0))
@@ -16,6 +13,16 @@ bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
     vec2 border = min(pixel, shot.size.xy - pixel);
     // Rounding must not drop the outermost pixels when the view is the photograph's own.
     return min(border.x, border.y) > 0.499;
+}
+
+// Projects a point of the view's camera frame into a photograph: pixel coordinates, and z in the
+// photograph's frame. Returns what photo_shows does.
+bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
+{
+    vec4 ph = vec4(p, 1.0);
+    vec3 q = vec3(dot(shot.from_view[0], ph), dot(shot.from_view[1], ph),
+                  dot(shot.from_view[2], ph));
+    return photo_shows(shot, q, pixel, z);
 }
 
 // Factor on the border width for estimated depth, where a sky of another day or a displaced object

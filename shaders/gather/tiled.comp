@@ -2,6 +2,7 @@
 // photograph left out, at the borders of photographs, and where the surface becomes occluded.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
+#include "gather/backdrop.glsl"
 #include "gather/guess_blur.glsl"
 #include "gather/sample/srgb.glsl"
 #include "shared/pixel.glsl"
@@ -74,6 +75,15 @@ void consider(int i, photo shot, spot s, inout ranking r)
                                    photo_beside(penalty)
                              : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
     penalty = is_guess(s) ? photo_guess_penalty(shot, penalty) : photo_surface_penalty(penalty);
+#ifdef RESTS
+    vec2 place;
+    bool backdrop = photo_backdrop(shot, s.p, place) && is_guess(s);
+    inside = inside || backdrop;
+    pixel = backdrop ? place : pixel;
+    z = backdrop ? s.p.z : z;
+    sees = backdrop ? 1.0 : sees;
+    penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
+#endif
     float sure = sees * photo_border(shot, pixel, is_guess(s));
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);

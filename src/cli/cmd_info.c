@@ -87,6 +87,8 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
         printf("ground       %.4g below the photographs, up is %.3f %.3f %.3f\n",
                scene->ground.height, scene->ground.plane[0], scene->ground.plane[1],
                scene->ground.plane[2]);
+    if (scene->backdrop_rests)
+        printf("backdrop     rests in the photographs, as behind a turntable\n");
     print_choices(scene);
     print_cameras(scene);
     print_photos(scene);

@@ -20,6 +20,13 @@ bool orl_frame_guesses(const struct frame *frame)
     return frame->params->fill == ORL_FILL_DEPTH || frame->params->fill == ORL_FILL_GROUND;
 }
 
+bool orl_frame_rests(const struct frame *frame)
+{
+    enum orl_backdrop backdrop = frame->params->backdrop;
+    return backdrop == ORL_BACKDROP_RESTS ||
+           (backdrop == ORL_BACKDROP_SCENE && frame->scene->backdrop_rests);
+}
+
 void orl_frame_ground(const struct frame *frame, float out[4])
 {
     const struct orl_ground *ground = &frame->scene->ground;

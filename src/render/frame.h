@@ -55,6 +55,8 @@ struct frame {
 void orl_pixel_groups(int width, int height, unsigned groups[3]);
 // True if this frame estimates background depth where no surface covers a pixel.
 bool orl_frame_guesses(const struct frame *frame);
+// True if the backdrop stays where it is in photographs (scene.h).
+bool orl_frame_rests(const struct frame *frame);
 // The scene's ground for image_block and gather_block; zeros if the frame's estimated depth is not
 // limited by the ground.
 void orl_frame_ground(const struct frame *frame, float ground[4]);

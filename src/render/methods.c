@@ -22,7 +22,8 @@
 // Photographs of the tiles that see a surface best, and what nothing covers from guessed depth.
 #define TILED \
     .paint = "tiled", .select = "preselect", .visibility = "soft", .weight = "lumigraph", \
-    .combine = "robust", .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON
+    .combine = "robust", .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON, \
+    .backdrop = ORL_BACKDROP_SCENE
 
 const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",

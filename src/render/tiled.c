@@ -28,22 +28,25 @@ static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_
     return ORL_OK;
 }
 
-// For the passes that compare photographs on guessed depth. Without the penalty they lose no time.
-static const char *tint_define(const struct frame *frame)
+// For the passes that compare photographs on guessed depth. Without a penalty for another colour of
+// light, and without a backdrop that rests, they lose no time.
+static const char *guess_defines(const struct frame *frame)
 {
-    return frame->params->tint_penalty > 0 ? "TINTED 1\n" : "";
+    static const char *const defines[2][2] = {{"", "RESTS 1\n"},
+                                              {"TINTED 1\n", "TINTED 1\nRESTS 1\n"}};
+    return defines[frame->params->tint_penalty > 0][orl_frame_rests(frame)];
 }
 
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
 static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
 {
-    char defines[48];
+    char defines[64];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs per pixel is part of the program, so that none is sampled in vain.
     snprintf(defines, sizeof defines, "%s%sKEPT %d",
-             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
-             tint_define(frame), kept);
+             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "", guess_defines(frame),
+             kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
@@ -74,7 +77,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
     }
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);
     struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
-                                                     tint_define(frame)),
+                                                     guess_defines(frame)),
                              .params = &block, .params_size = sizeof block,
                              .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
                              .textures = {frame->photos->color, frame->photos->depth,

@@ -190,6 +190,26 @@ static enum orl_result read_ground(const struct orl_log *log, const char *path,
     return ORL_OK;
 }
 
+static const char *const backdrops[] = {"moves", "rests"};
+
+json_t *orl_manifest_backdrop(bool rests)
+{
+    return json_string(backdrops[rests]);
+}
+
+// Absent in scenes that were made before there was such a stage: it moves.
+static enum orl_result read_backdrop(const struct orl_log *log, const char *path,
+                                     const json_t *root, bool *rests)
+{
+    const json_t *told = json_object_get(root, "backdrop");
+    const char *name = json_string_value(told);
+    *rests = name && strcmp(name, backdrops[true]) == 0;
+    if (told && !*rests && !(name && strcmp(name, backdrops[false]) == 0))
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: \"backdrop\" is neither \"moves\" nor \"rests\"",
+                        path);
+    return ORL_OK;
+}
+
 enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *path,
                                        const json_t *root, struct orl_room *room)
 {
@@ -276,6 +296,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
         result = orl_tuned_read(log, path, root, scene);
     if (result == ORL_OK)
         result = read_ground(log, path, root, &scene->ground);
+    if (result == ORL_OK)
+        result = read_backdrop(log, path, root, &scene->backdrop_rests);
     if (result == ORL_OK)
         result = orl_manifest_read_room(log, path, root, &scene->room);
     if (result == ORL_OK)

@@ -24,6 +24,8 @@ enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *pa
 json_t *orl_manifest_room(const struct orl_room *room);
 // The value of "ground", released with json_decref; JSON null where there is no ground.
 json_t *orl_manifest_ground(const struct orl_ground *ground);
+// The value of "backdrop", released with json_decref.
+json_t *orl_manifest_backdrop(bool rests);
 // ORL_OK when prepare never worked on this folder. Otherwise logs the first missing stage and
 // returns ORL_ERR_DATA.
 enum orl_result orl_manifest_check_unfinished(const struct orl_log *log,

@@ -170,7 +170,8 @@ for damaged in '' '{"version": 1}' '{"version": 1, "done": []}' '{"version": 1, 
     run 0 info "$scene" --check
 done
 for edit in 's/"photographs": \[/"photographs": [1, /' 's/"name": "2.png"/"nme": "2.png"/' \
-    's/"key"/"kex"/' 's/"ground": null/"grund": null/' 's/"left_out"/"left_in"/' \
+    's/"key"/"kex"/' 's/"ground": null/"grund": null/' \
+    's/"backdrop": "moves"/"backdrop": 7/' 's/"left_out"/"left_in"/' \
     's/"files": {/"fills": {/'; do
     sed -i "$edit" "$scene/.oriel/stages.json"
     run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume

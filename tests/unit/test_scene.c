@@ -368,6 +368,33 @@ static void reads_ground(void **state)
     test_dir_remove(dir);
 }
 
+static void reads_backdrop(void **state)
+{
+    (void)state;
+    char *dir = whole(), text[2048];
+    static const struct {
+        const char *told;
+        enum orl_result result;
+        bool rests;
+    } cases[] = {{"\"rests\"", ORL_OK, true}, {"\"moves\"", ORL_OK, false},
+                 {"\"\"", ORL_ERR_FORMAT, false}, {"true", ORL_ERR_FORMAT, false}};
+    struct orl_scene *scene;
+    assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
+    assert_false(scene->backdrop_rests);
+    orl_scene_destroy(&scene);
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        snprintf(text, sizeof text, "%.*s, \"backdrop\": %s}",
+                 (int)(strrchr(manifest, '}') - manifest), manifest, cases[i].told);
+        save(dir, "scene.json", text);
+        assert_int_equal(orl_scene_open(NULL, dir, &scene), cases[i].result);
+        if (cases[i].result != ORL_OK)
+            continue;
+        assert_int_equal(scene->backdrop_rests, cases[i].rests);
+        orl_scene_destroy(&scene);
+    }
+    test_dir_remove(dir);
+}
+
 // A link to a place outside of the scene is refused wherever it stands; one that stays inside, or
 // that names the scene itself, is fine.
 static void links_out_of_the_scene_are_refused(void **state)
@@ -418,6 +445,7 @@ int main(void)
         cmocka_unit_test(reads_tuned_settings),
         cmocka_unit_test(reads_how_to_render),
         cmocka_unit_test(reads_ground),
+        cmocka_unit_test(reads_backdrop),
         cmocka_unit_test(links_out_of_the_scene_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
