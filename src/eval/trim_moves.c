@@ -114,6 +114,11 @@ void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
 
 // --- the plan ---
 
+size_t orl_trim_judge(const struct trim_search *s, size_t i, size_t count)
+{
+    return (2 * i + 1) * s->targets.count / (2 * count);
+}
+
 // Finds the targets that a photograph's removal is judged by.
 static void find_nearest(struct trim_search *s, size_t target)
 {
@@ -167,8 +172,6 @@ enum orl_result orl_trim_plan(struct trim_search *s)
     size_t n = s->targets.count, views = s->params->views;
     views = views && views < n ? views : n;
     s->judge_count = views < TRIM_VIEWS_MAX ? views : TRIM_VIEWS_MAX;
-    for (size_t i = 0; i < s->judge_count; i++)
-        s->judges[i] = (2 * i + 1) * n / (2 * s->judge_count);
     s->near_count = n - 1 < TRIM_NEAR ? n - 1 : TRIM_NEAR;
     s->nearest = orl_array(s->source.log, n, sizeof *s->nearest);
     s->moves = orl_array(s->source.log,

@@ -46,8 +46,9 @@ static enum orl_result measure(struct trim_search *s, double share, const uint32
                                           (size_t)(share * (double)scene->points.count + 0.5),
                                           &model);
     for (size_t i = 0; result == ORL_OK && i < s->judge_count; i++) {
-        result = orl_trim_measure_view(s, model->renderer, &state, s->judges[i], true, &metrics);
-        sum += s->first_db[s->judges[i]] - metrics.psnr_db;
+        size_t view = orl_trim_judge(s, i, s->judge_count);
+        result = orl_trim_measure_view(s, model->renderer, &state, view, true, &metrics);
+        sum += s->first_db[view] - metrics.psnr_db;
     }
     if (result == ORL_OK)
         *row = (struct orl_trim_random){orl_trim_model_bytes(s, model, &state),

@@ -47,7 +47,7 @@ struct trim_search {
     struct orl_trim *trim;
     const char *part; // the folder that becomes params->out when it is whole
     struct orl_judges targets; // all training photographs
-    size_t judges[TRIM_VIEWS_MAX], judge_count; // targets that judge what changes all views
+    size_t judge_count; // targets that judge what changes all views
     size_t (*nearest)[TRIM_NEAR]; // owned, per target: the others that stand nearest
     size_t near_count;
     double *first_db;       // owned, per target: PSNR of the whole scene
@@ -69,6 +69,8 @@ struct trim_search {
 
 // Lists the moves that the scene and the parameters allow.
 enum orl_result orl_trim_plan(struct trim_search *s) ORL_CHECK_RESULT;
+// The i-th of `count` targets, evenly chosen.
+size_t orl_trim_judge(const struct trim_search *s, size_t i, size_t count);
 bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *move);
 // Takes the move's next step in `state`, and describes it.
 void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,

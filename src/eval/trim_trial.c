@@ -36,11 +36,11 @@ static enum orl_result time_frame(struct trim_search *s, const struct trim_drawn
 {
     bool software = orl_gpu_caps(s->source.gpu)->software;
     struct orl_render_params render = drawn->state->render;
+    const struct orl_view *view = &s->targets.views[orl_trim_judge(s, 0, s->judge_count)].view;
     render.leave_out |= ORL_LAYER_NORMAL;
     double start = software ? orl_cpu_time_s() : orl_time_s();
     enum orl_result result =
-        orl_renderer_draw(drawn->renderer, &s->targets.views[s->judges[0]].view, &render,
-                          drawn->state->removed, NULL);
+        orl_renderer_draw(drawn->renderer, view, &render, drawn->state->removed, NULL);
     double end = software ? orl_cpu_time_s() : orl_time_s();
     *ms = fmin(*ms, 1e3 * (end - start));
     return result;
@@ -254,29 +254,70 @@ static enum orl_result measure_time(struct trim_search *s, const struct trial *t
     return ORL_OK;
 }
 
-static enum orl_result measure(struct trim_search *s, struct trial *t)
+// Measures m->views. The losses are sums.
+static enum orl_result measure_views(struct trim_search *s, const struct trial *t)
 {
     struct trim_measured *m = &t->move->measured;
     enum orl_result result = ORL_OK;
-    double sum = 0, ssim = 0;
+    m->loss_db = m->loss_ssim = 0;
+    for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
+        result = measure_one(s, t, m->views[i], &m->score[i]);
+        m->loss_db += s->now[m->views[i]].db - m->score[i].db;
+        m->loss_ssim += s->now[m->views[i]].ssim - m->score[i].ssim;
+    }
+    return result;
+}
+
+// By `count` targets, evenly chosen.
+static enum orl_result measure_global(struct trim_search *s, const struct trial *t, size_t count)
+{
+    struct trim_measured *m = &t->move->measured;
+    m->view_count = count < TRIM_VIEWS_MAX ? count : TRIM_VIEWS_MAX;
+    for (size_t i = 0; i < m->view_count; i++)
+        m->views[i] = orl_trim_judge(s, i, m->view_count);
+    enum orl_result result = measure_views(s, t);
+    m->loss_db /= (double)m->view_count;
+    m->loss_ssim /= (double)m->view_count;
+    return result;
+}
+
+// By the targets that stand nearest to the photograph that goes.
+static enum orl_result measure_local(struct trim_search *s, const struct trial *t)
+{
+    struct trim_measured *m = &t->move->measured;
+    double between = 0;
+    enum orl_result result = measure_between(s, t, &between);
+    bool stays = m->between_db > s->params->worst_db && !orl_trim_has_budget(s);
+    m->view_count = stays ? 0 : s->near_count;
+    for (size_t i = 0; i < m->view_count; i++)
+        m->views[i] = s->nearest[t->move->index][i];
+    if (result == ORL_OK)
+        result = measure_views(s, t);
+    m->loss_db = (m->loss_db + between) / (double)s->targets.count;
+    m->loss_ssim /= (double)s->targets.count;
+    return result;
+}
+
+// True if the few judges refuse a step on average that others may allow: all targets decide then.
+static bool is_doubtful(const struct trim_search *s, const struct trial *t)
+{
+    struct trim_move half = *t->move;
+    struct trial other = *t;
+    half.measured.loss_db /= 2;
+    half.measured.loss_ssim /= 2;
+    other.move = &half;
+    return !is_good(s, t) && is_good(s, &other) && t->bytes < s->bytes;
+}
+
+static enum orl_result measure(struct trim_search *s, struct trial *t)
+{
+    struct trim_measured *m = &t->move->measured;
     if (t->move->tried && t->move->version == s->version)
         return ORL_OK; // nothing has changed since
-    if (is_local(t))
-        result = measure_between(s, t, &sum);
-    m->view_count = is_local(t) ? s->near_count : s->judge_count;
-    if (m->between_db > s->params->worst_db && !orl_trim_has_budget(s))
-        m->view_count = 0; // it stays anyway
-    for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
-        m->views[i] = is_local(t) ? s->nearest[t->move->index][i] : s->judges[i];
-        result = measure_one(s, t, m->views[i], &m->score[i]);
-        if (result == ORL_OK) {
-            sum += s->now[m->views[i]].db - m->score[i].db;
-            ssim += s->now[m->views[i]].ssim - m->score[i].ssim;
-        }
-    }
-    double judged = (double)(is_local(t) ? s->targets.count : s->judge_count);
-    m->loss_db = sum / judged;
-    m->loss_ssim = ssim / judged;
+    enum orl_result result =
+        is_local(t) ? measure_local(s, t) : measure_global(s, t, s->judge_count);
+    if (result == ORL_OK && !is_local(t) && is_doubtful(s, t))
+        result = measure_global(s, t, s->targets.count);
     m->ms = s->ms;
     // The first time it says what the part of the model buys; later, a step that loses too much is
     // not timed.
@@ -465,13 +506,8 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
     enum orl_result result =
         orl_trim_state_copy(s->source.log, &s->state, s->source.scene->photo_count, &t.state);
     t.state.render = *render;
-    m->view_count = s->targets.count < TRIM_VIEWS_MAX ? s->targets.count : TRIM_VIEWS_MAX;
-    for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
-        m->views[i] = i * s->targets.count / m->view_count;
-        result = measure_one(s, &t, m->views[i], &m->score[i]);
-        m->loss_db += (s->now[m->views[i]].db - m->score[i].db) / (double)m->view_count;
-        m->loss_ssim += (s->now[m->views[i]].ssim - m->score[i].ssim) / (double)m->view_count;
-    }
+    if (result == ORL_OK)
+        result = measure_global(s, &t, s->targets.count);
     m->ms = s->ms;
     if (result == ORL_OK)
         result = measure_time(s, &t, &m->ms);
