@@ -13,6 +13,7 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "eval/commit.h"
+#include "scene/point_lod.h"
 
 void orl_row_id(const char *method, const char *setting, char id[ORL_ROW_ID_MAX])
 {
@@ -106,8 +107,8 @@ enum orl_result orl_row_checksum(const struct orl_log *log, const struct orl_sce
                                  char text[ORL_ROW_CHECKSUM_SIZE])
 {
     static const char *const files[] = {
-        "scene.json", "points.ply", "fused.ply", "sparse/cameras.bin", "sparse/images.bin",
-        "sparse/cameras.txt", "sparse/images.txt"};
+        "scene.json", "points.ply", ORL_LOD_NAME, "fused.ply", "sparse/cameras.bin",
+        "sparse/images.bin", "sparse/cameras.txt", "sparse/images.txt"};
     XXH3_state_t *state = XXH3_createState();
     if (!state)
         return orl_fail(log, ORL_ERR_MEMORY, "no memory for a checksum");
