@@ -121,22 +121,31 @@ static enum orl_result undo_last(struct trim_search *s)
     return orl_trim_model_open(&s->source, &s->state, &s->model);
 }
 
-// All training photographs have the last word: where they lose more than the judges said, the last
-// steps, which promised least, are taken back.
-static enum orl_result confirm(struct trim_search *s)
+static bool is_confirmed(const struct trim_search *s)
 {
     const struct orl_trim_params *p = s->params;
-    const struct orl_trim *trim = s->trim;
-    enum orl_result result = measure_all(s, false, &s->trim->after);
-    while (result == ORL_OK && s->history_count && !orl_trim_has_budget(s) &&
-           (trim->before.psnr_db - trim->after.psnr_db > p->tolerance_db ||
-            trim->before.ssim - trim->after.ssim > p->tolerance_ssim ||
-            trim->after.worst_loss_db > p->worst_db)) {
-        result = undo_last(s);
+    const struct orl_trim_figures *before = &s->trim->before, *after = &s->trim->after;
+    return orl_trim_has_budget(s) ||
+           (before->psnr_db - after->psnr_db <= p->tolerance_db &&
+            before->ssim - after->ssim <= p->tolerance_ssim &&
+            after->worst_loss_db <= p->worst_db && after->frame_ms <= orl_trim_slow_limit_ms(s));
+}
+
+// All training photographs have the last word: where they lose more than the judges said, or a
+// frame is slower, the last steps, which promised least, are taken back.
+static enum orl_result confirm(struct trim_search *s)
+{
+    enum orl_result result = ORL_OK;
+    bool confirmed = false;
+    while (result == ORL_OK && !confirmed) {
+        result = measure_all(s, false, &s->trim->after);
         if (result == ORL_OK)
-            result = measure_all(s, false, &s->trim->after);
+            result = time_both(s);
+        confirmed = is_confirmed(s) || s->history_count == 0;
+        if (result == ORL_OK && !confirmed)
+            result = undo_last(s);
     }
-    return result == ORL_OK ? time_both(s) : result;
+    return result;
 }
 
 // What the steps that are kept really cost, over all training photographs, counts from now on.

@@ -83,6 +83,8 @@ enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer
                                       const struct trim_state *state, size_t view,
                                       bool brief,
                                       struct orl_metrics *metrics) ORL_CHECK_RESULT;
+// A frame that takes longer is slower than the whole scene's.
+double orl_trim_slow_limit_ms(const struct trim_search *s);
 // The least of a few frames of each, in ms: see orl_trim_run. They are drawn in turns, since other
 // programs then slow both alike; b may be NULL.
 struct trim_drawn {

@@ -15,9 +15,10 @@ static const double least_loss_db = 0.002, weight_of_time = 0.03, weight_of_file
 // Smaller differences of a frame's time are noise: a share of it, and milliseconds, more of them
 // where the frame is drawn by the processor, which other programs share.
 static const double least_time = 0.03, least_ms = 0.5, least_software_ms = 4;
-// No step may make a frame slower than the whole scene's by more than a share and milliseconds of
-// it. While a frame takes longer at all, time weighs as much as bytes.
-static const double slower_most = 0.02, slower_ms = 1, slower_software_ms = 8;
+// In the end no frame may be slower than the whole scene's by more than a share and milliseconds of
+// it. On the way it may, by a larger share: smaller models tend to be faster, and while a frame
+// takes too long, time weighs as much as bytes.
+static const double slower_most = 0.02, slower_ms = 1, slower_software_ms = 8, slower_on_way = 0.12;
 // A step is taken when no other promises more than its own gain divided by this.
 static const double good_enough = 0.8;
 
@@ -206,8 +207,7 @@ bool orl_trim_has_budget(const struct trim_search *s)
     return s->params->max_bytes || s->params->max_frame_ms > 0;
 }
 
-// A frame that takes longer is slower than the whole scene's.
-static double slow_limit_ms(const struct trim_search *s)
+double orl_trim_slow_limit_ms(const struct trim_search *s)
 {
     double least = orl_gpu_caps(s->source.gpu)->software ? slower_software_ms : slower_ms;
     return s->first_ms + fmax(least, slower_most * s->first_ms);
@@ -215,7 +215,8 @@ static double slow_limit_ms(const struct trim_search *s)
 
 static bool is_slow(const struct trim_search *s, double ms)
 {
-    return !orl_trim_has_budget(s) && ms > fmax(slow_limit_ms(s), s->ms);
+    double most = fmax(orl_trim_slow_limit_ms(s), (1 + slower_on_way) * s->first_ms);
+    return !orl_trim_has_budget(s) && ms > fmax(most, s->ms);
 }
 
 static bool is_good(const struct trim_search *s, const struct trial *t)
@@ -339,9 +340,11 @@ static double weighed_loss(const struct trim_search *s, const struct trim_measur
     return fmax(m->loss_db, ssim);
 }
 
-// Whether a step waits for a frame that takes less time.
+// Whether the model, or a step, waits for a frame that takes less time.
 static bool waits_for_time(const struct trim_search *s)
 {
+    if (!orl_trim_has_budget(s) && s->ms > orl_trim_slow_limit_ms(s))
+        return true;
     for (size_t i = 0; i < s->move_count; i++)
         if (s->moves[i].slow && !s->moves[i].dead)
             return true;
@@ -356,8 +359,7 @@ static double gain_of(const struct trim_search *s, const struct trial *t)
     double time = fmax(s->ms - t->move->measured.ms, 0) / s->first_ms;
     if (s->params->max_frame_ms > 0 && !s->params->max_bytes)
         return time;
-    bool wanted = waits_for_time(s) || (!orl_trim_has_budget(s) && s->ms > slow_limit_ms(s));
-    return bytes + weight_of_files * files + (wanted ? 1 : weight_of_time) * time;
+    return bytes + weight_of_files * files + (waits_for_time(s) ? 1 : weight_of_time) * time;
 }
 
 // Smaller files and passes that go would use up the tolerance: they come when nothing else makes
