@@ -1,6 +1,6 @@
 // The search: steps that make the model smaller are tried and, best first, taken. What a step costs
 // and saves is measured again only when it is the most promising one and others have been taken
-// since (lazy greedy, Minoux 1978), so that the time grows with the number of steps, not its square.
+// since (lazy greedy, Minoux 1978): the time grows with the number of steps, not with its square.
 #include "eval/trim.h"
 
 #include <math.h>

@@ -14,7 +14,8 @@ struct trim_score {
 // What was measured of a step.
 struct trim_measured {
     double loss_db, loss_ssim, ms;
-    double between_db; // of a photograph: the greatest loss of views beside it
+    double between_db;   // of a photograph: the greatest change of views beside it
+    double beside_db;    // and their mean, as a share of all targets
     size_t view_count;
     size_t views[TRIM_VIEWS_MAX]; // indices of targets
     struct trim_score score[TRIM_VIEWS_MAX];

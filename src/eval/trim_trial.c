@@ -19,6 +19,8 @@ static const double least_time = 0.03, least_ms = 0.5, least_software_ms = 4;
 // it. On the way it may, by a larger share: smaller models tend to be faster, and while a frame
 // takes too long, time weighs as much as bytes.
 static const double slower_most = 0.02, slower_ms = 1, slower_software_ms = 8, slower_on_way = 0.12;
+// Views beside a photograph that goes may change by as much as renderings there are wrong anyway.
+static const double between_most_db = 3;
 // A step is taken when no other promises more than its own gain divided by this.
 static const double good_enough = 0.8;
 
@@ -168,19 +170,19 @@ static enum orl_result between_loss(struct trim_search *s, const struct trial *t
 
 // No training photograph judges the place of a photograph that goes: that it is left out there is a
 // matter of course. The views beside it do, compared with renderings from all photographs.
-static enum orl_result measure_between(struct trim_search *s, const struct trial *t, double *mean)
+static enum orl_result measure_between(struct trim_search *s, const struct trial *t)
 {
     struct trim_measured *m = &t->move->measured;
     size_t count = s->near_count < TRIM_BETWEEN ? s->near_count : TRIM_BETWEEN;
     enum orl_result result = ORL_OK;
-    m->between_db = *mean = 0;
+    m->between_db = m->beside_db = 0;
     bool stays = false; // whatever the other views say
     for (size_t i = 0; result == ORL_OK && i < count && !stays; i++) {
         double loss = 0;
         result = between_loss(s, t, s->nearest[t->move->index][i], &loss);
         m->between_db = fmax(m->between_db, loss);
-        stays = loss > s->params->worst_db && !orl_trim_has_budget(s);
-        *mean += loss / (double)count;
+        stays = loss > between_most_db && !orl_trim_has_budget(s);
+        m->beside_db += loss / (double)(count * s->targets.count);
     }
     return result;
 }
@@ -222,7 +224,7 @@ static bool is_slow(const struct trim_search *s, double ms)
 static bool is_good(const struct trim_search *s, const struct trial *t)
 {
     const struct trim_measured *m = &t->move->measured;
-    double worst = m->between_db;
+    double worst = -INFINITY;
     struct trim_score after;
     if (orl_trim_has_budget(s))
         return true;
@@ -230,7 +232,7 @@ static bool is_good(const struct trim_search *s, const struct trial *t)
         worst = fmax(worst, s->lost_db[i] + view_loss(s, t, i, &after));
     return s->total_loss_db + m->loss_db <= s->params->tolerance_db &&
            s->total_loss_ssim + m->loss_ssim <= s->params->tolerance_ssim &&
-           worst <= s->params->worst_db;
+           worst <= s->params->worst_db && m->between_db <= between_most_db;
 }
 
 // --- measuring it ---
@@ -286,15 +288,14 @@ static enum orl_result measure_global(struct trim_search *s, const struct trial 
 static enum orl_result measure_local(struct trim_search *s, const struct trial *t)
 {
     struct trim_measured *m = &t->move->measured;
-    double between = 0;
-    enum orl_result result = measure_between(s, t, &between);
-    bool stays = m->between_db > s->params->worst_db && !orl_trim_has_budget(s);
+    enum orl_result result = measure_between(s, t);
+    bool stays = m->between_db > between_most_db && !orl_trim_has_budget(s);
     m->view_count = stays ? 0 : s->near_count;
     for (size_t i = 0; i < m->view_count; i++)
         m->views[i] = s->nearest[t->move->index][i];
     if (result == ORL_OK)
         result = measure_views(s, t);
-    m->loss_db = (m->loss_db + between) / (double)s->targets.count;
+    m->loss_db /= (double)s->targets.count;
     m->loss_ssim /= (double)s->targets.count;
     return result;
 }
@@ -332,12 +333,13 @@ static enum orl_result measure(struct trim_search *s, struct trial *t)
 // --- what it is worth ---
 
 // The loss in dB, or that of SSIM where it takes a greater share of what may be lost: where
-// photographs do not fit each other, PSNR rises as they become blurred.
+// photographs do not fit each other, PSNR rises as they become blurred. What changes beside a
+// photograph ranks its removal, too.
 static double weighed_loss(const struct trim_search *s, const struct trim_measured *m)
 {
     const struct orl_trim_params *p = s->params;
     double ssim = p->tolerance_ssim > 0 ? m->loss_ssim * p->tolerance_db / p->tolerance_ssim : 0;
-    return fmax(m->loss_db, ssim);
+    return fmax(m->loss_db, ssim) + m->beside_db;
 }
 
 // Whether the model, or a step, waits for a frame that takes less time.
