@@ -108,19 +108,6 @@ static enum orl_result time_both(struct trim_search *s)
     return ORL_OK;
 }
 
-static enum orl_result undo_last(struct trim_search *s)
-{
-    struct trim_past *past = &s->history[--s->history_count];
-    s->trim->steps[past->step].taken = false;
-    s->trim->undone++;
-    if (past->move)
-        past->move->dead = true;
-    free(s->state.removed);
-    s->state = past->state;
-    orl_trim_model_close(&s->model);
-    return orl_trim_model_open(&s->source, &s->state, &s->model);
-}
-
 static bool is_confirmed(const struct trim_search *s)
 {
     const struct orl_trim_params *p = s->params;
@@ -131,21 +118,65 @@ static bool is_confirmed(const struct trim_search *s)
             after->worst_loss_db <= p->worst_db && after->frame_ms <= orl_trim_slow_limit_ms(s));
 }
 
+static enum orl_result reopen(struct trim_search *s)
+{
+    orl_trim_model_close(&s->model);
+    return orl_trim_model_open(&s->source, &s->state, &s->model);
+}
+
+// Measures the state after the first `steps` steps, whose model is left open.
+static enum orl_result measure_after(struct trim_search *s, size_t steps)
+{
+    const struct trim_state last = s->state;
+    enum orl_result result = ORL_OK;
+    if (steps < s->history_count) {
+        s->state = s->history[steps].state;
+        result = reopen(s);
+    }
+    if (result == ORL_OK)
+        result = measure_all(s, false, &s->trim->after);
+    if (result == ORL_OK)
+        result = time_both(s);
+    s->state = last;
+    return result;
+}
+
+// Takes all steps but the first `steps` back. The one after them breaks a tolerance; the others may
+// be tried again without it.
+static enum orl_result take_back(struct trim_search *s, size_t steps)
+{
+    while (s->history_count > steps) {
+        struct trim_past *past = &s->history[--s->history_count];
+        s->trim->steps[past->step].taken = false;
+        s->trim->undone++;
+        if (past->move)
+            past->move->dead = s->history_count == steps;
+        free(s->state.removed);
+        s->state = past->state;
+    }
+    return reopen(s);
+}
+
 // All training photographs have the last word: where they lose more than the judges said, or a
-// frame is slower, the last steps, which promised least, are taken back.
+// frame is slower, the last steps, which promised least, are taken back: as few as it takes, found
+// by halving.
 static enum orl_result confirm(struct trim_search *s)
 {
-    enum orl_result result = ORL_OK;
-    bool confirmed = false;
-    while (result == ORL_OK && !confirmed) {
-        result = measure_all(s, false, &s->trim->after);
-        if (result == ORL_OK)
-            result = time_both(s);
-        confirmed = is_confirmed(s) || s->history_count == 0;
-        if (result == ORL_OK && !confirmed)
-            result = undo_last(s);
+    size_t kept = 0, too_many = s->history_count;
+    enum orl_result result = measure_after(s, too_many);
+    if (result != ORL_OK || is_confirmed(s) || too_many == 0)
+        return result;
+    while (result == ORL_OK && kept + 1 < too_many) {
+        size_t middle = kept + (too_many - kept) / 2;
+        result = measure_after(s, middle);
+        if (is_confirmed(s))
+            kept = middle;
+        else
+            too_many = middle;
     }
-    return result;
+    if (result == ORL_OK)
+        result = take_back(s, kept);
+    return result == ORL_OK ? measure_after(s, kept) : result;
 }
 
 // What the steps that are kept really cost, over all training photographs, counts from now on.
