@@ -104,7 +104,7 @@
     NUMBER(tint_penalty, 0, 0, 16, "radians per stop", "paint=tiled", \
         ORL_TRIES(0, 0.5, 1, 2), \
         "Where depth is guessed, photographs whose white balance differs from the scene's count " \
-        "as if they were so far aside: skies of one day go together. 0.1 stops are no " \
+        "as if they were so far aside: skies of one day go together. 0.17 stops are no " \
         "difference.") \
     NUMBER(surface_seeds, 1, 0, 1, "share", "paint=tiled", ORL_TRIES(0.03, 0.2, 1), \
         "How much surfaces count beside guessed places in the colours that fill what no " \

@@ -85,7 +85,7 @@ static void relative_pose(const struct orl_pose *photo, const struct orl_pose *v
 // all channels is exposure, which says nothing about the light.
 static float tint_of(const float gain[3])
 {
-    static const float usual = 0.1f;
+    static const float usual = 0.17f;
     float stops[3], mean = 0, square = 0;
     for (int c = 0; c < 3; c++) {
         stops[c] = log2f(gain[c]);

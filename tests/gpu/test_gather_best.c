@@ -308,7 +308,7 @@ static void skies_of_other_days_count_less(void **state)
     add_photo(&f, look_from(3, 0, 0, 128, 12), green);
     memcpy(f.photos[1].gain, (float[3]){0.5f, 1, 2}, sizeof f.photos[1].gain);
     struct orl_render_params params = best();
-    double near = 0.2793 + 0.005, far = near + 2 * (sqrt(2.0 / 3) - 0.1);
+    double near = 0.2793 + 0.005, far = near + 2 * (sqrt(2.0 / 3) - 0.17);
     for (int k = 0; k < 2; k++) {
         params.tint_penalty = 2 * (float)k;
         double weight = k ? pow(near / far, (double)params.guess_sharpness) : 1;
