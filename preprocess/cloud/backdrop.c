@@ -212,21 +212,13 @@ enum orl_result orl_backdrop_find(const struct orl_log *log, struct orl_scene *s
 
 enum orl_result orl_stage_backdrop(struct orl_job *job, json_t *record)
 {
-    const struct orl_colmap_model *model;
-    struct orl_names test = {0};
     struct orl_scene *scene = NULL;
-    enum orl_result result = orl_job_sparse(job, &model);
-    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
-        if (job->sources[i].test)
-            result = orl_names_add(job->log, &test, job->sources[i].name);
-    if (result == ORL_OK)
-        result = orl_scene_open_unfinished(job->log, job->dir, model, &test, &scene);
+    enum orl_result result = orl_job_open_scene(job, &scene);
     if (result == ORL_OK)
         result = orl_backdrop_find(job->log, scene);
     if (result == ORL_OK &&
         json_object_set_new(record, "backdrop", orl_manifest_backdrop(scene->backdrop_rests)) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the backdrop");
     orl_scene_destroy(&scene);
-    orl_names_finish(&test);
     return result;
 }

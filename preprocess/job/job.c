@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/lock.h"
 #include "core/memory.h"
+#include "oriel/scene.h"
 
 static void forget(struct orl_job_model *model)
 {
@@ -345,6 +346,20 @@ enum orl_result orl_job_sparse(struct orl_job *job, const struct orl_colmap_mode
 {
     *model = &job->sparse.model;
     return read_model(job, "sparse", &job->sparse);
+}
+
+enum orl_result orl_job_open_scene(struct orl_job *job, struct orl_scene **scene)
+{
+    const struct orl_colmap_model *model;
+    struct orl_names test = {0};
+    enum orl_result result = orl_job_sparse(job, &model);
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
+        if (job->sources[i].test)
+            result = orl_names_add(job->log, &test, job->sources[i].name);
+    if (result == ORL_OK)
+        result = orl_scene_open_unfinished(job->log, job->dir, model, &test, scene);
+    orl_names_finish(&test);
+    return result;
 }
 
 enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,

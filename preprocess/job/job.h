@@ -11,6 +11,8 @@
 #include "oriel/prepare_params.h"
 #include "scene/colmap.h"
 
+struct orl_scene;
+
 // In the order in which the stages run.
 enum orl_stage_id {
     ORL_STAGE_COLLECT,
@@ -136,6 +138,9 @@ enum orl_result orl_job_calibrated(struct orl_job *job,
 // orl_job_find finds each.
 enum orl_result orl_job_sparse(struct orl_job *job,
                                const struct orl_colmap_model **model) ORL_CHECK_RESULT;
+// Opens the scene with this model, its points and held-out photographs as the sources say, before
+// there is a scene.json. The caller destroys it.
+enum orl_result orl_job_open_scene(struct orl_job *job, struct orl_scene **scene) ORL_CHECK_RESULT;
 // Makes the undistorted model in SCENE/`name`, which will become SCENE/sparse, the job's.
 enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
                                    const struct orl_colmap_model **model) ORL_CHECK_RESULT;

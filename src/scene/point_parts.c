@@ -145,7 +145,8 @@ static bool reaches(const struct maker *m, const float position[3], uint32_t cel
     return distance2 <= side * side * fmin(1, times * times / (double)m->counts[cell]);
 }
 
-// The other parts that the point is near to; how many.
+// The other parts that the point, which lies in the cell, is near to; NULL: any point of the cell may
+// be near to. How many.
 static size_t find_others(const struct maker *m, const float position[3], uint32_t cell,
                           uint32_t others[NEAR])
 {
@@ -156,7 +157,7 @@ static size_t find_others(const struct maker *m, const float position[3], uint32
         bool known = part == m->part_of[cell] || !m->counts[near[i]];
         for (size_t k = 0; k < count; k++)
             known = known || others[k] == part;
-        if (!known && reaches(m, position, near[i]))
+        if (!known && (!position || reaches(m, position, near[i])))
             others[count++] = part;
     }
     return count;
@@ -226,16 +227,8 @@ static enum orl_result assign_cells(struct maker *m)
 // written, and a file's holes take no disk.
 static void count_around(struct maker *m, uint32_t cell)
 {
-    uint32_t near[NEAR], parts[NEAR];
-    size_t count = 0, near_count = find_near(cell, near);
-    for (size_t i = 0; i < near_count; i++) {
-        uint32_t part = m->part_of[near[i]];
-        bool known = part == m->part_of[cell] || !m->counts[near[i]];
-        for (size_t k = 0; k < count; k++)
-            known = known || parts[k] == part;
-        if (!known)
-            parts[count++] = part;
-    }
+    uint32_t parts[NEAR];
+    size_t count = find_others(m, NULL, cell, parts);
     m->border[cell] = count > 0;
     for (size_t k = 0; k < count; k++)
         m->parts->parts[parts[k]].around.count += m->counts[cell];
