@@ -27,7 +27,7 @@ static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
                                              "skipped", "ground", "backdrop",
-                                             "files"};
+                                             "files", "sum"};
     json_t *stages = json_object();
     for (size_t k = 0; k < json_array_size(plan); k++) {
         const char *name = json_string_value(json_array_get(plan, k));
@@ -114,9 +114,36 @@ static json_t *left_out(const struct orl_job *job, const json_t *done)
     return list;
 }
 
-// Keeps how the scene is drawn best, as tune and trim found it, while the scene is the same. A manifest that cannot be read holds
-// nothing to keep and is written anew.
-static enum orl_result keep_tuned(const struct orl_job *job, const char *path, json_t *root)
+// Reads `root` as opening the scene would. Messages name `path`.
+static enum orl_result try_manifest(struct orl_job *job, const struct orl_log *log,
+                                    const char *path, const json_t *root)
+{
+    const struct orl_colmap_model *model;
+    struct orl_scene *scene = NULL;
+    enum orl_result result = orl_job_sparse(job, &model);
+    if (result == ORL_OK)
+        result = orl_scene_open_model(job->log, job->dir, model, &scene);
+    if (result == ORL_OK)
+        result = orl_manifest_take(log, path, root, scene);
+    orl_scene_destroy(&scene);
+    return result;
+}
+
+// Records of earlier versions have no checksum, so an edited value may come this far.
+static enum orl_result check_manifest(struct orl_job *job, const json_t *root)
+{
+    char *path = orl_job_path(job, ".oriel/stages.json");
+    enum orl_result result = path ? try_manifest(job, job->log, path, root) : ORL_ERR_MEMORY;
+    if (result == ORL_ERR_FORMAT)
+        orl_logf(job->log, ORL_LOG_ERROR, "%s: makes no scene; remove this file and run prepare with "
+                 "--resume, which does all stages again", path);
+    free(path);
+    return result;
+}
+
+// Keeps how the scene is drawn best, as tune and trim found it, while the scene is the same. What
+// cannot be read holds nothing to keep.
+static enum orl_result keep_tuned(struct orl_job *job, const char *path, json_t *root)
 {
     json_t *old = NULL;
     if (!orl_path_is_file(path)) // removed before a stage ran again
@@ -129,6 +156,13 @@ static enum orl_result keep_tuned(const struct orl_job *job, const char *path, j
         json_t *value = json_object_get(old, kept[i]);
         if (value && json_object_set(root, kept[i], value) != 0)
             result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+        if (!value || result != ORL_OK ||
+            (result = try_manifest(job, NULL, path, root)) != ORL_ERR_FORMAT)
+            continue;
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: \"%s\" cannot be read and is left out", path,
+                 kept[i]);
+        json_object_del(root, kept[i]);
+        result = ORL_OK;
     }
     json_decref(old);
     return result;
@@ -152,6 +186,8 @@ enum orl_result orl_scene_json_write(struct orl_job *job)
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    if (result == ORL_OK)
+        result = check_manifest(job, root);
     if (result == ORL_OK)
         result = keep_tuned(job, path, root);
     if (result == ORL_OK)

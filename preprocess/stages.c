@@ -155,19 +155,44 @@ static bool is_wanted(const struct orl_job *job, int id)
     return !stages[id].wanted || stages[id].wanted(job);
 }
 
+enum { SUM_SIZE = sizeof ((struct orl_job *)0)->keys[0] };
+
+// Of `digits` significant digits of numbers; 0: all.
+static enum orl_result sum_json(const struct orl_job *job, const json_t *value, size_t digits,
+                                char sum[SUM_SIZE])
+{
+    char *text = value ? json_dumps(value, JSON_COMPACT | JSON_SORT_KEYS |
+                                               JSON_REAL_PRECISION(digits))
+                       : NULL;
+    if (!text)
+        return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for a checksum");
+    snprintf(sum, SUM_SIZE, "%016" PRIx64, (uint64_t)XXH3_64bits(text, strlen(text)));
+    free(text);
+    return ORL_OK;
+}
+
+// The checksum of a stage's record without its own "sum", the same before and after the record was
+// written to a file.
+static enum orl_result sum_record(const struct orl_job *job, json_t *record, char sum[SUM_SIZE])
+{
+    json_t *rest = json_copy(record);
+    if (rest)
+        json_object_del(rest, "sum");
+    enum orl_result result = sum_json(job, rest, ORL_JSON_DIGITS, sum);
+    json_decref(rest);
+    return result;
+}
+
 static enum orl_result set_keys(struct orl_job *job)
 {
     for (int i = 0; i < ORL_STAGE_COUNT; i++) {
         json_t *inputs = json_pack("{s:s, s:i, s:s, s:o}", "stage", stages[i].name, "version",
                                    stages[i].version, "after", job->keys[stages[i].needs],
                                    "settings", stages[i].settings(job));
-        char *text = inputs ? json_dumps(inputs, JSON_COMPACT | JSON_SORT_KEYS) : NULL;
+        enum orl_result result = sum_json(job, inputs, 0, job->keys[i]);
         json_decref(inputs);
-        if (!text)
-            return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
-        snprintf(job->keys[i], sizeof job->keys[i], "%016" PRIx64,
-                 (uint64_t)XXH3_64bits(text, strlen(text)));
-        free(text);
+        if (result != ORL_OK)
+            return result;
     }
     return ORL_OK;
 }
@@ -232,32 +257,47 @@ static bool has_same_key(const struct orl_job *job, int id)
     return has_key(job, id) && strcmp(old_key(job, id), job->keys[id]) == 0;
 }
 
-// True when the record holds all that later steps need. An edited or damaged file may lack it.
-static bool is_sound(const json_t *record, enum orl_stage_id id)
+// Sets *sound when the record is as it was written and holds all that later steps need. An edited or
+// damaged file may hold anything. Records of earlier versions have no checksum.
+static enum orl_result check_record(const struct orl_job *job, json_t *record,
+                                    enum orl_stage_id id, bool *sound)
 {
+    char sum[SUM_SIZE];
+    const json_t *told_sum = json_object_get(record, "sum");
+    *sound = false;
+    enum orl_result result = sum_record(job, record, sum);
+    if (result != ORL_OK ||
+        (told_sum && !(json_is_string(told_sum) && strcmp(json_string_value(told_sum), sum) == 0)))
+        return result;
     const json_t *told = json_object_get(record, stages[id].tells);
-    bool sound = told != NULL;
+    bool named = true;
     for (size_t i = 0; id == ORL_STAGE_EXPOSE && i < json_array_size(told); i++)
-        sound = sound && orl_json_text(json_array_get(told, i), "name");
+        named = named && orl_json_text(json_array_get(told, i), "name");
     const json_t *files = json_object_get(record, "files");
-    return sound && (!stages[id].results[0] || json_object_size(files) > 0);
+    *sound = told && named && (!stages[id].results[0] || json_object_size(files) > 0);
+    return ORL_OK;
 }
 
 // Sets *there when the stage was done with these inputs and settings and its result is unchanged.
 static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id, bool *there)
 {
-    const json_t *record = json_object_get(done_stages(job), stages[id].name);
+    json_t *record = json_object_get(done_stages(job), stages[id].name);
     const char *damaged = NULL, *why = NULL;
     // There is nothing to do for a stage that is not wanted, unless its result is to be removed.
     if (!is_wanted(job, id)) {
         *there = !has_key(job, id);
         return ORL_OK;
     }
-    *there = has_same_key(job, id) && is_sound(record, id);
-    if (!*there)
+    *there = false;
+    if (!has_same_key(job, id))
         return ORL_OK;
-    enum orl_result result =
-        orl_results_check(job, json_object_get(record, "files"), &damaged, &why);
+    enum orl_result result = check_record(job, record, id, there);
+    if (result == ORL_OK && !*there)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s/.oriel/stages.json: the record of %s was changed "
+                 "or lacks a part; %s is done again", job->dir, stages[id].name, stages[id].name);
+    if (!*there)
+        return result;
+    result = orl_results_check(job, json_object_get(record, "files"), &damaged, &why);
     if (damaged)
         orl_logf(job->log, ORL_LOG_WARNING, "%s/%s: %s; %s is done again", job->dir, damaged, why,
                  stages[id].name);
@@ -414,7 +454,12 @@ static enum orl_result redo_stage(struct orl_job *job, enum orl_stage_id id, con
     if (!is_wanted(job, id))
         return remove_results(job, id);
     json_t *record = json_object();
+    char sum[SUM_SIZE];
     enum orl_result result = record ? run_stage(job, id, record) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = sum_record(job, record, sum);
+    if (result == ORL_OK && json_object_set_new(record, "sum", json_string(sum)) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for a checksum");
     if (result == ORL_OK) {
         const json_t *old = json_object_get(json_object_get(before, stages[id].name), "files");
         if (!old || !json_equal(old, json_object_get(record, "files")))

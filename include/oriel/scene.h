@@ -95,9 +95,13 @@ enum orl_result orl_scene_open(const struct orl_log *log, const char *dir,
 // Opens SCENE without its points.
 enum orl_result orl_scene_open_photos(const struct orl_log *log, const char *dir,
                                       struct orl_scene **out) ORL_CHECK_RESULT;
-// Opens a folder that is still being prepared, from its sparse model and points.ply or points.lod. Exposures are
-// unknown, photographs named in `test` (NULL: none) are held out, and the ground plane is
-// estimated from the points.
+// Opens a folder that is still being prepared, from its sparse model alone, without points and
+// exposures.
+enum orl_result orl_scene_open_model(const struct orl_log *log, const char *dir,
+                                     const struct orl_colmap_model *model,
+                                     struct orl_scene **out) ORL_CHECK_RESULT;
+// As before, with points.ply or points.lod. Photographs named in `test` (NULL: none) are held out,
+// and the ground plane is estimated from the points.
 enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char *dir,
                                           const struct orl_colmap_model *model,
                                           const struct orl_names *test,

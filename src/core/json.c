@@ -38,7 +38,7 @@ enum orl_result orl_json_read(const struct orl_log *log, const char *path, json_
 
 enum orl_result orl_json_write(const struct orl_log *log, const char *path, const json_t *value)
 {
-    char *text = json_dumps(value, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
+    char *text = json_dumps(value, JSON_INDENT(1) | JSON_REAL_PRECISION(ORL_JSON_DIGITS));
     if (!text)
         return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its text", path);
     enum orl_result result = orl_file_write(log, path, text, strlen(text));

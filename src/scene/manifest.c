@@ -267,19 +267,10 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
     return ORL_OK;
 }
 
-enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
+enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, const json_t *root,
                                   struct orl_scene *scene)
 {
-    // Checking pictures takes too long here; oriel info --check does it.
-    static const char *const read_on_opening[] = {"sparse/cameras.bin", "sparse/images.bin",
-                                                  "sparse/points3D.bin", "points.ply", NULL};
-    static const char *const without_points[] = {"sparse/cameras.bin", "sparse/images.bin",
-                                                 "sparse/points3D.bin", NULL};
-    size_t changed = 0;
-    json_t *root;
-    enum orl_result result = orl_json_read(log, path, &root);
-    if (result != ORL_OK)
-        return result;
+    enum orl_result result = ORL_OK;
     const json_t *version = json_object_get(root, "version");
     if (!json_is_integer(version) || json_integer_value(version) < 1)
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: not a scene's manifest (no \"version\")",
@@ -300,6 +291,23 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
         result = read_backdrop(log, path, root, &scene->backdrop_rests);
     if (result == ORL_OK)
         result = orl_manifest_read_room(log, path, root, &scene->room);
+    return result;
+}
+
+enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
+                                  struct orl_scene *scene)
+{
+    // Checking pictures takes too long here; oriel info --check does it.
+    static const char *const read_on_opening[] = {"sparse/cameras.bin", "sparse/images.bin",
+                                                  "sparse/points3D.bin", "points.ply", NULL};
+    static const char *const without_points[] = {"sparse/cameras.bin", "sparse/images.bin",
+                                                 "sparse/points3D.bin", NULL};
+    size_t changed = 0;
+    json_t *root;
+    enum orl_result result = orl_json_read(log, path, &root);
+    if (result != ORL_OK)
+        return result;
+    result = orl_manifest_take(log, path, root, scene);
     if (result == ORL_OK)
         result = check_files(log, scene->dir, root, scene->lod ? without_points : read_on_opening,
                              ORL_LOG_WARNING, &changed);

@@ -12,6 +12,10 @@
 // the sparse model does not match its checksum.
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
                                   struct orl_scene *scene) ORL_CHECK_RESULT;
+// The same without the checksums, from the manifest `root`. Messages name `path`, where its values
+// are from.
+enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, const json_t *root,
+                                  struct orl_scene *scene) ORL_CHECK_RESULT;
 // Checks every file that DIR/scene.json names by checksum, and counts these files in *files. Each
 // file that is missing or changed is logged as an error and counted in *bad.
 enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, size_t *bad,

@@ -417,15 +417,26 @@ enum orl_result orl_scene_open_photos(const struct orl_log *log, const char *dir
     return open_scene(log, dir, false, out);
 }
 
+enum orl_result orl_scene_open_model(const struct orl_log *log, const char *dir,
+                                     const struct orl_colmap_model *model, struct orl_scene **out)
+{
+    enum orl_result result = create(log, dir, out);
+    if (result == ORL_OK)
+        result = set_photos(log, *out, model);
+    if (result != ORL_OK)
+        orl_scene_destroy(out);
+    return result;
+}
+
 enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char *dir,
                                           const struct orl_colmap_model *model,
                                           const struct orl_names *test, struct orl_scene **out)
 {
     char *points = orl_path_join(log, dir, "points.ply");
     char *lod = orl_path_join(log, dir, ORL_LOD_NAME);
-    enum orl_result result = create(log, dir, out);
-    if (result == ORL_OK)
-        result = points && lod ? set_photos(log, *out, model) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_scene_open_model(log, dir, model, out);
+    if (result == ORL_OK && !(points && lod))
+        result = ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_path_is_file(lod))
         result = orl_lod_open(log, lod, &(*out)->lod);
     for (size_t i = 0; result == ORL_OK && i < (*out)->photo_count; i++)

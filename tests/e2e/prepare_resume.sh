@@ -46,13 +46,10 @@ sum=$(md5sum <"$scene/points.ply")
 : >"$work/trace"
 prepare 0 --resume
 [ -s "$work/trace" ] && fail "a whole scene was worked on"
-# The ground is looked for once a scene, and kept as the stage left it.
-grep -q '"ground": null' "$scene/scene.json" || fail "scene.json does not tell of the ground"
-sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' \
-    "$scene/.oriel/stages.json"
-prepare 0 --resume
 says "ground: done already"
-grep -q '"height": 1.25' "$scene/scene.json" || fail "the ground of a whole scene was not kept"
+# The ground is looked for once a scene, and opening takes what the stage found.
+grep -q '"ground": null' "$scene/scene.json" || fail "scene.json does not tell of the ground"
+sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' "$scene/scene.json"
 run 0 info "$scene"
 prints "ground       1.25 below the photographs"
 prepare 2
@@ -171,12 +168,35 @@ for damaged in '' '{"version": 1}' '{"version": 1, "done": []}' '{"version": 1, 
 done
 for edit in 's/"photographs": \[/"photographs": [1, /' 's/"name": "2.png"/"nme": "2.png"/' \
     's/"key"/"kex"/' 's/"ground": null/"grund": null/' \
-    's/"backdrop": "moves"/"backdrop": 7/' 's/"left_out"/"left_in"/' \
-    's/"files": {/"fills": {/'; do
+    's/"left_out"/"left_in"/' 's/"files": {/"fills": {/' 's/"points": [0-9]/"points": 7/' \
+    's/"backdrop": "[a-z]*"/"backdrop": 7/' \
+    's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' \
+    's/"series": 0/"series": -1/' 's/"split": "t[a-z]*"/"split": "both"/' \
+    's/"responses": \[/"responses": [7/'; do
+    cp "$scene/.oriel/stages.json" "$work/before"
     sed -i "$edit" "$scene/.oriel/stages.json"
+    cmp -s "$work/before" "$scene/.oriel/stages.json" && fail "nothing there to edit: $edit"
     run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
     run 0 info "$scene" --check
+    run 0 info "$scene"
+    grep -q '"height": 1.25' "$scene/scene.json" && fail "an edited ground was believed"
 done
+# Records of earlier versions have no checksum. What opening would refuse is not made a scene.
+manifest=$(md5sum <"$scene/scene.json")
+cp "$scene/.oriel/stages.json" "$work/before"
+sed -i 's/"sum": /"mus": /; s/"backdrop": "[a-z]*"/"backdrop": 7/' "$scene/.oriel/stages.json"
+run 2 prepare "$work/p" --out "$scene" --test-list 0 --resume
+says 'stages.json: "backdrop" is neither "moves" nor "rests"'
+says "remove this file"
+[ "$(md5sum <"$scene/scene.json")" = "$manifest" ] || fail "a scene was made of a bad value"
+sed 's/"sum": /"mus": /' "$work/before" >"$scene/.oriel/stages.json"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+says "backdrop: done already"
+sed -i '1s/^{$/{"tuned": {"oriel": {"settings": {"blend": [1]}}},/' "$scene/scene.json"
+run 2 info "$scene"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
+says '"tuned" cannot be read and is left out'
+run 0 info "$scene"
 echo '{"version' >"$scene/scene.json"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 says "scene.json: cannot be read; written anew"
