@@ -8,7 +8,7 @@
 # A section writes the page of its name. Work files lie in BUILD/measured. Needs jq.
 set -euo pipefail
 sections="scenes accuracy adapt charts methods airieau parts stress steadiness frame growth memory trim prepare
-stereo radiance replaced response resampling"
+stereo radiance replaced response resampling edges"
 [ $# -ge 3 ] || { sed -n '2,9s/^# *//p' "$0"; echo "sections: "$sections; exit 2; }
 build=$(realpath "$1") scenes=$(realpath -m "$2") datasets=$(realpath -m "$3")
 shift 3
@@ -731,6 +731,40 @@ END
     command_block "$measure"
     printf '| photograph | PSNR, dB | SSIM |\n|---|---|---|\n'
     sed 's|.*/\([^/]*\): \(.*\) dB, SSIM \(.*\)|\| \1 \| \2 \| \3 \||' "$work/resampling.txt"
+}
+
+# Pictures near steps of depth, from points of stereo and from true ones.
+page_edges() {
+    local held_out='0005 0013 0021' # what bench_truth_scene holds out
+    local synth='oriel synth monument --out WORK/edges --size 576x384 --quiet'
+    local truth='bench_truth_scene WORK/edges WORK/edges-truth WORK/edges-true 2 8'
+    local stereo='oriel import WORK/edges-truth/cameras.json --images WORK/edges --points densify --quality draft'
+    stereo+=" --test-list ${held_out// /.jpg,}.jpg --out WORK/edges-stereo --quiet"
+    local show='oriel eval WORK/edges-NAME OPTIONS --images WORK/edges-pictures --quiet --json -'
+    local error="bench_edge_error WORK/edges-pictures WORK/edges-truth oriel $held_out"
+    local points options
+    [ -e "$work/edges" ] || run "$synth" >&2
+    [ -e "$work/edges-true" ] || run "$truth" >&2
+    [ -e "$work/edges-stereo" ] || run "$stereo" >&2
+    for points in stereo true; do
+        for options in '' 'antialias=off' 'silhouette=0' 'antialias=off silhouette=0'; do
+            run "${show//OPTIONS/${options:+--set ${options// / --set }}}" $points >"$work/edges.json"
+            printf '| %s | %s | %s | %s |\n' "$points" "${options:-as it is}" \
+                "$(run "$error" | sed -E 's/near ([0-9.]+) .*away ([0-9.]+)/\1 | \2/')" \
+                "$(jq -r "$tables"'.mean | "\(.psnr_db | fixed(2)) | \(.ssim | fixed(4))"' "$work/edges.json")"
+        done
+    done >"$work/edges.txt"
+    head_of "Edges, and what true depth would give" "$work/edges.json"
+    cat <<'END'
+
+Squared error (of 8-bit values, mean) of three held-out photographs of the synthetic monument within 4 pixels of a step
+of the true depth and away from them, by method `oriel`. Cameras are the true ones, so that no photograph is resampled.
+*Stereo*: points as `prepare` makes them; *true*: points on the true surface. What remains with true points is not due
+to stereo: photographs are resampled and blended, and points lie at every second pixel of a photograph.
+END
+    command_block "$synth" "$truth" "$stereo" "$show" "$error"
+    printf '| points | options | near | away | PSNR, dB | SSIM |\n|---|---|---|---|---|---|\n'
+    cat "$work/edges.txt"
 }
 
 # --- all that is asked for ---
