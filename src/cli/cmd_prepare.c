@@ -1,9 +1,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/adapt_scene.h"
 #include "cli/commands.h"
 #include "cli/summary.h"
-#include "eval/adapt.h"
 #include "oriel/prepare.h"
 
 enum { INPUTS_MAX = 4096 };
@@ -19,8 +19,6 @@ struct options {
     int radius_neighbours, fuse_cluster;
     bool resume, adapt;
 };
-
-enum { ADAPT_VIEWS = 6, ADAPT_DIVIDE = 2 };
 
 static enum orl_result prepare(const struct terminal *terminal, const struct options *o,
                                const struct arg_common *common, const char *const *inputs,
@@ -55,34 +53,6 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
     return orl_prepare(&terminal->log, &params, &terminal->progress);
 }
 
-// Finds out how the scene is drawn best.
-static enum orl_result adapt(const struct terminal *terminal, const struct options *o,
-                             const struct arg_common *common)
-{
-    const struct orl_log *log = &terminal->log;
-    struct orl_scene *scene = NULL;
-    struct orl_gpu *gpu = NULL;
-    struct orl_adapt adapt = {0};
-    const struct orl_adapt_params params = {.views = ADAPT_VIEWS, .size_divide = ADAPT_DIVIDE,
-                                            .budget_s = o->adapt_s,
-                                            .progress = &terminal->progress};
-    enum orl_result result = orl_scene_open(log, o->out, &scene);
-    if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
-    if (result == ORL_OK)
-        result = orl_adapt_run(gpu, scene, &params, &adapt);
-    for (size_t i = 0; result == ORL_OK && i < adapt.row_count; i++)
-        printf("%-14s %7.2f dB %7.4f%s\n", adapt.rows[i].method->name, adapt.rows[i].psnr_db,
-               adapt.rows[i].ssim, i == adapt.chosen ? "  chosen" : "");
-    if (result == ORL_OK)
-        printf("%-14s %7.2f dB %7.4f%s\n", "adapted", adapt.tuned_db, adapt.tuned_ssim,
-               adapt.complete ? "" : "  (the time ran out: --adapt-budget)");
-    orl_gpu_destroy(&gpu);
-    orl_scene_destroy(&scene);
-    return result;
-}
-
 int cmd_prepare(int argc, char **argv)
 {
     struct options o = {.quality = {orl_quality_names, ORL_QUALITY_STANDARD},
@@ -94,7 +64,7 @@ int cmd_prepare(int argc, char **argv)
                         .mesh = {orl_prepare_mesh_names, ORL_MESH_NONE},
                         .leave_out = {orl_leave_out_names, ORL_LEAVE_OUT_NONE},
                         .until = {orl_until_names, ORL_UNTIL_END}, .seed = 1,
-                        .adapt_s = 120};
+                        .adapt_s = ADAPT_BUDGET_S};
     const struct arg_option options[] = {
         {"out", ARG_STRING, &o.out, "SCENE", "the scene folder to make", 0, 0},
         {"fps", ARG_NUMBER, &o.fps, "N", "frames taken of a second of video; default 2", 0.001,
@@ -156,7 +126,8 @@ int cmd_prepare(int argc, char **argv)
     if (command_begin(&command, argc, argv, &common, &terminal, inputs, &input_count, &status)) {
         enum orl_result result = prepare(&terminal, &o, &common, inputs, input_count);
         if (result == ORL_OK && o.adapt && o.until.value == ORL_UNTIL_END)
-            result = adapt(&terminal, &o, &common);
+            result = adapt_scene(&terminal, &common, o.out, ADAPT_VIEWS, ADAPT_DIVIDE,
+                                 o.adapt_s);
         terminal_finish(&terminal);
         if (result == ORL_OK && o.until.value == ORL_UNTIL_END)
             result = summary_print(&terminal.log, o.out);

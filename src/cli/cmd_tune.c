@@ -1,16 +1,19 @@
 // oriel tune: fits a method's options to a scene's training photographs.
 #include <stdio.h>
 
+#include "cli/adapt_scene.h"
 #include "cli/commands.h"
 #include "eval/choice.h"
 #include "eval/tune_json.h"
+
+enum { VIEWS = 16 };
 
 struct options {
     const char *method, *json;
     struct orl_names settings, keys;
     int size_divide, views, max_vram_mib;
     double budget_s, gain_db;
-    bool apply, fresh;
+    bool apply, fresh, adapt;
 };
 
 static void print_trial(void *priv, const struct orl_tune_trial *trial)
@@ -47,10 +50,24 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
     return result;
 }
 
+// All methods, as prepare --adapt compares them.
+static enum orl_result adapt(const struct terminal *terminal, const struct options *o,
+                             const struct arg_common *common, const char *dir)
+{
+    if (o->method || o->settings.count || o->keys.count || o->fresh || o->json)
+        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
+                        "tune: --adapt chooses the method and its options itself: without --method, "
+                        "--set, --only, --fresh and --json");
+    return adapt_scene(terminal, common, dir, (size_t)(o->views ? o->views : ADAPT_VIEWS),
+                       o->size_divide, o->budget_s > 0 ? o->budget_s : ADAPT_BUDGET_S);
+}
+
 static enum orl_result run(const struct terminal *terminal, const void *options,
                            const struct arg_common *common, const char *dir)
 {
     const struct options *o = options;
+    if (o->adapt)
+        return adapt(terminal, o, common, dir);
     const struct orl_log *log = &terminal->log;
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
@@ -75,7 +92,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     const struct orl_tune_params params = {
         .method = start.method ? start.method->name : NULL, .start = &start.params,
         .keys = &o->keys, .size_divide = o->size_divide,
-        .views = (size_t)o->views, .gain_db = o->gain_db, .budget_s = o->budget_s,
+        .views = (size_t)(o->views ? o->views : VIEWS), .gain_db = o->gain_db, .budget_s = o->budget_s,
         .on_trial = common->quiet ? NULL : print_trial, .progress = &terminal->progress};
     if (result == ORL_OK && !common->quiet)
         printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
@@ -92,7 +109,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_tune(int argc, char **argv)
 {
-    struct options o = {.size_divide = 2, .views = 16, .gain_db = 0.01};
+    struct options o = {.size_divide = ADAPT_DIVIDE, .gain_db = 0.01};
     const struct arg_option table[] = {
         {"method", ARG_STRING, &o.method, "NAME", "a method; default: the scene's, or the first", 0,
          0},
@@ -103,9 +120,12 @@ int cmd_tune(int argc, char **argv)
          "keep the result in scene.json: render, eval and others use it", 0, 0},
         {"fresh", ARG_FLAG, &o.fresh, NULL, "start from the method's values, not the scene's", 0,
          0},
-        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS", "start no trial after so long", 0, 1e6},
-        {"views", ARG_INT, &o.views, "N", "photographs to compare with, at most; default 16", 1,
-         100000},
+        {"adapt", ARG_FLAG, &o.adapt, NULL,
+         "choose among all methods, too, and keep the result, as prepare --adapt does", 0, 0},
+        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS",
+         "start no trial after so long; default: none, and 120 with --adapt", 0, 1e6},
+        {"views", ARG_INT, &o.views, "N",
+         "photographs to compare with, at most; default 16, and 6 with --adapt", 1, 100000},
         {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 2", 1,
          16},
         {"gain", ARG_NUMBER, &o.gain_db, "DB", "a change must bring so much; default 0.01", 0, 10},
@@ -114,7 +134,7 @@ int cmd_tune(int argc, char **argv)
         {0},
     };
     const struct arg_command command = {
-        "tune", "SCENE [--method NAME] [--apply]",
+        "tune", "SCENE [--method NAME] [--apply | --adapt]",
         "Finds the values of a method's options with which training photographs come out best,\n"
         "each rendered from the others. Held-out photographs take no part.", table, 1, 1};
     int status = command_main(&command, argc, argv, run, &o);

@@ -66,6 +66,15 @@ grep -q "fill: not an option that can be tuned" stderr.txt || fail "does not nam
 runs 2 "${tune[@]}" --method nonsense
 runs 0 "${tune[@]}" --budget 0.000001
 grep -q "budget" stdout.txt || fail "does not say that the budget ended it"
+# Of all methods one is chosen and kept, with its options.
+runs 2 "${tune[@]}" --adapt
+grep -q -- "without --method" stderr.txt || fail "--adapt beside --method"
+runs 0 "$oriel" tune ws --adapt --views 2 --budget 0.000001 --quiet
+chosen=$(sed -n 's/^\([a-z-]*\) .* chosen$/\1/p' stdout.txt)
+[ -n "$chosen" ] || fail "does not say what it chose"
+grep -q "^adapted .*the time ran out" stdout.txt || fail "does not say that the time ran out"
+runs 0 "$oriel" info ws
+grep -q "^drawn  *by $chosen" stdout.txt || fail "the chosen method was not kept"
 sed -i "s/\"train\"/\"test\"/" ws/scene.json
 runs 2 "${tune[@]}"
 grep -q "three are needed" stderr.txt || fail "does not say how many are needed"
