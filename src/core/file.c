@@ -20,6 +20,14 @@ char *orl_path_join(const struct orl_log *log, const char *dir, const char *name
     return orl_format(log, "%s%s%s", dir, slash, name);
 }
 
+char *orl_path_append(const struct orl_log *log, const char *path, const char *ending)
+{
+    size_t length = strlen(path);
+    while (length > 1 && path[length - 1] == '/')
+        length--;
+    return orl_format(log, "%.*s%s", (int)length, path, ending);
+}
+
 const char *orl_path_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -180,12 +188,9 @@ enum orl_result orl_file_copy(const struct orl_log *log, const char *from, const
 
 enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, char **part)
 {
-    size_t length = strlen(out);
     struct orl_names names = {0};
     enum orl_result result = ORL_OK;
     *part = NULL;
-    while (length > 1 && out[length - 1] == '/')
-        length--;
     if (orl_path_is_file(out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", out);
     if (orl_path_is_dir(out))
@@ -195,18 +200,67 @@ enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, ch
     orl_names_finish(&names);
     if (result != ORL_OK)
         return result;
-    *part = orl_format(log, "%.*s.part", (int)length, out);
+    *part = orl_path_append(log, out, ".part");
     if (!*part)
         return ORL_ERR_MEMORY;
     result = orl_dir_remove(log, *part);
     return result == ORL_OK ? orl_dir_make(log, *part) : result;
 }
 
+static enum orl_result name_dir(const struct orl_log *log, const char *from, const char *to)
+{
+    return rename(from, to) == 0
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_IO, "%s: cannot be named %s: %s", from, to, strerror(errno));
+}
+
 enum orl_result orl_new_dir_finish(const struct orl_log *log, const char *part, const char *out)
 {
     enum orl_result result = orl_flush(log, part);
-    if (result == ORL_OK && rename(part, out) != 0)
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", out, strerror(errno));
+    return result == ORL_OK ? name_dir(log, part, out) : result;
+}
+
+// Where names cannot be exchanged.
+static enum orl_result replace_aside(const struct orl_log *log, const char *part, const char *out)
+{
+    char *old = orl_path_append(log, out, ".old.part");
+    enum orl_result result = old ? orl_dir_remove(log, old) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && (result = name_dir(log, out, old)) == ORL_OK) {
+        result = name_dir(log, part, out);
+        if (result != ORL_OK)
+            (void)!rename(old, out);
+        else
+            result = orl_dir_remove(log, old);
+    }
+    free(old);
+    return result;
+}
+
+enum orl_result orl_dir_replace(const struct orl_log *log, const char *part, const char *out)
+{
+    struct stat st;
+    enum orl_result result = orl_flush(log, part);
+    if (result != ORL_OK)
+        return result;
+    if (lstat(out, &st) != 0 && errno == ENOENT)
+        return name_dir(log, part, out);
+    if (renameat2(AT_FDCWD, part, AT_FDCWD, out, RENAME_EXCHANGE) == 0)
+        return orl_dir_remove(log, part); // which is the old one now
+    return errno == EINVAL || errno == ENOSYS || errno == ENOTSUP
+               ? replace_aside(log, part, out)
+               : orl_fail(log, ORL_ERR_IO, "%s: cannot be named %s: %s", part, out,
+                          strerror(errno));
+}
+
+enum orl_result orl_dir_restore(const struct orl_log *log, const char *out)
+{
+    struct stat st;
+    char *old = orl_path_append(log, out, ".old.part");
+    if (!old)
+        return ORL_ERR_MEMORY;
+    bool lost = lstat(out, &st) != 0 && errno == ENOENT && orl_path_is_dir(old);
+    enum orl_result result = lost ? name_dir(log, old, out) : orl_dir_remove(log, old);
+    free(old);
     return result;
 }
 

@@ -9,6 +9,8 @@
 
 // "dir/name", released with free(); NULL, logged, when memory runs out.
 char *orl_path_join(const struct orl_log *log, const char *dir, const char *name);
+// `path` without slashes at its end, followed by `ending`; released with free(), NULL as above.
+char *orl_path_append(const struct orl_log *log, const char *path, const char *ending);
 // The part after the last '/', pointing into `path`.
 const char *orl_path_name(const char *path);
 bool orl_path_is_file(const char *path);
@@ -71,6 +73,13 @@ enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,
                                   char **part) ORL_CHECK_RESULT;
 enum orl_result orl_new_dir_finish(const struct orl_log *log, const char *part,
                                    const char *out) ORL_CHECK_RESULT;
+// Flushes the folder `part` and gives it the name `out`, which a folder may have that is then removed.
+// At every moment one of the two is whole under that name; on drives that cannot exchange two names
+// the old one is "OUT.old.part" for a moment, and orl_dir_restore gives it its name back if the
+// program ends just then.
+enum orl_result orl_dir_replace(const struct orl_log *log, const char *part,
+                                const char *out) ORL_CHECK_RESULT;
+enum orl_result orl_dir_restore(const struct orl_log *log, const char *out) ORL_CHECK_RESULT;
 // Removes the folder and everything in it; a missing folder counts as success. Links are
 // removed, never followed.
 enum orl_result orl_dir_remove(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;

@@ -77,14 +77,6 @@ static enum orl_result make_folders(struct site *site)
     return result;
 }
 
-static enum orl_result replace(const struct site *site, const char *out)
-{
-    enum orl_result result = orl_dir_remove(site->log, out);
-    if (result == ORL_OK && rename(site->dir, out) != 0)
-        result = orl_fail(site->log, ORL_ERR_IO, "%s: cannot be named %s", site->dir, out);
-    return result;
-}
-
 // --- the parts of the site ---
 
 static size_t folder_bytes(const struct site *site, const char *folder)
@@ -142,15 +134,6 @@ static enum orl_result make_renderer(struct site *site)
                : result;
 }
 
-// Name of the unfinished site beside `out`, which may end with a slash.
-static char *part_name(const struct orl_log *log, const char *out)
-{
-    size_t length = strlen(out);
-    while (length > 1 && out[length - 1] == '/')
-        length--;
-    return orl_format(log, "%.*s.part", (int)length, out);
-}
-
 enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
                             const struct orl_publish_params *asked,
                             struct orl_publish_report *report)
@@ -161,13 +144,15 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
     *report = (struct orl_publish_report){0};
     struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
                         .report = report};
-    enum orl_result result = check_out(log, params.out, params.single_file);
+    enum orl_result result = params.single_file ? ORL_OK : orl_dir_restore(log, params.out);
+    if (result == ORL_OK)
+        result = check_out(log, params.out, params.single_file);
     if (result == ORL_OK)
         result = orl_walk_settings_read(log, scene, &site.settings);
     if (result != ORL_OK)
         goto end;
     params.title = title = orl_walk_title(log, scene, asked->title, site.settings);
-    site.dir = part_name(log, params.out);
+    site.dir = orl_path_append(log, params.out, ".part"); // the unfinished site
     result = site.dir && title ? make_renderer(&site) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = write_site(&site);
@@ -175,7 +160,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
         report->bytes = folder_bytes(&site, site.dir);
     if (result == ORL_OK)
         result = params.single_file ? orl_site_pack(&site, params.out)
-                                    : replace(&site, params.out);
+                                    : orl_dir_replace(log, site.dir, params.out);
     if (site.dir && orl_dir_remove(log, site.dir) != ORL_OK && result == ORL_OK)
         result = ORL_ERR_IO;
 end:

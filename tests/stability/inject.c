@@ -1,13 +1,17 @@
 // LD_PRELOAD: fails, or kills the program, at the N-th call of a kind, as a full disk, a lost
 // drive, an exhausted memory or a power switch would.
-//   INJECT_CALL   write, sync, rename, unlink, malloc, or end: when the program has done its work
+//   INJECT_CALL   write, sync, rename, unlink (and rmdir), malloc, or end: when the program has done
+//                 its work
 //   INJECT_AT     which one, from 1
 //   INJECT_KILL   set: SIGKILL ahead of the call, instead of an error
 //   INJECT_LOSE   a folder: ahead of that SIGKILL every file in it that changed since the start, and
 //                 was not synced since, becomes empty, as after a power failure; names stay
 //   INJECT_ZEROS  set: such a file becomes zeros of its length instead
 //   INJECT_MARK   this file is made when it happens
-// INJECT_DRIVE, set: every file lies on a drive without fsync, flock and symbolic links.
+//   INJECT_ONLY   renames and removals of paths that begin otherwise do not count
+//   INJECT_COUNT  a program that comes to its end writes to this file how many calls there were
+// INJECT_DRIVE, set: every file lies on a drive without fsync, flock, symbolic links and exchange of
+// names.
 // Allocations count only when the program itself makes them, not a library for its own use.
 #include <dlfcn.h>
 #include <errno.h>
@@ -37,7 +41,7 @@ enum kind { KIND_NONE, KIND_WRITE, KIND_SYNC, KIND_RENAME, KIND_UNLINK, KIND_MAL
 static enum kind wanted;
 static long at;
 static bool kills, plain_drive;
-static const char *mark, *lose;
+static const char *mark, *lose, *counts, *only;
 static bool zeros;
 static uintptr_t program_from, program_to;
 static atomic_long count;
@@ -130,6 +134,8 @@ __attribute__((constructor)) static void start(void)
     kills = getenv("INJECT_KILL") != NULL;
     plain_drive = getenv("INJECT_DRIVE") != NULL;
     lose = getenv("INJECT_LOSE");
+    counts = getenv("INJECT_COUNT");
+    only = getenv("INJECT_ONLY");
     zeros = getenv("INJECT_ZEROS") != NULL;
     at = number ? strtol(number, NULL, 10) : 0;
     dl_iterate_phdr(find_program, NULL);
@@ -156,9 +162,20 @@ static bool hits(enum kind kind)
     return true;
 }
 
+static bool hits_path(enum kind kind, const char *path)
+{
+    return (!only || strncmp(path, only, strlen(only)) == 0) && hits(kind);
+}
+
 __attribute__((destructor)) static void end(void)
 {
     (void)hits(KIND_END);
+    FILE *file = counts ? fopen(counts, "w") : NULL;
+    if (file) {
+        wanted = KIND_NONE;
+        fprintf(file, "%ld\n", atomic_load(&count));
+        fclose(file);
+    }
 }
 
 static void *next(const char *name)
@@ -266,20 +283,42 @@ int symlink(const char *target, const char *path)
 
 int rename(const char *from, const char *to)
 {
-    if (hits(KIND_RENAME)) {
+    if (hits_path(KIND_RENAME, to)) {
         errno = EIO;
         return -1;
     }
     return (int)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0);
 }
 
+int renameat2(int from_dir, const char *from, int to_dir, const char *to, unsigned flags)
+{
+    if (hits_path(KIND_RENAME, to)) {
+        errno = EIO;
+        return -1;
+    }
+    if (plain_drive && flags) {
+        errno = EINVAL;
+        return -1;
+    }
+    return (int)syscall(SYS_renameat2, from_dir, from, to_dir, to, flags);
+}
+
 int unlink(const char *path)
 {
-    if (hits(KIND_UNLINK)) {
+    if (hits_path(KIND_UNLINK, path)) {
         errno = EIO;
         return -1;
     }
     return (int)syscall(SYS_unlinkat, AT_FDCWD, path, 0);
+}
+
+int rmdir(const char *path)
+{
+    if (hits_path(KIND_UNLINK, path)) {
+        errno = EIO;
+        return -1;
+    }
+    return (int)syscall(SYS_unlinkat, AT_FDCWD, path, AT_REMOVEDIR);
 }
 
 static bool no_memory(void *caller)

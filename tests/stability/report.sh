@@ -18,7 +18,7 @@ mkdir -p "$source/docs/measured" "$fuzz/failures"
 [[ $seconds =~ keep|there ]] || "$source/tests/fuzz/run.sh" "$seconds" || status=1
 if [[ ! $all =~ keep|there ]]; then
     : >"$fuzz/injected.txt"
-    for script in inject inject_prepare inject_trim; do
+    for script in inject inject_prepare inject_publish inject_trim; do
         "$source/tests/stability/$script.sh" "$build/oriel" "$source" "$build/tests/libinject.so" \
             $all 2>&1 | tee -a "$fuzz/injected.txt" || status=1
     done
