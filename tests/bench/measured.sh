@@ -621,10 +621,11 @@ page_stereo() {
 
 # Mean of the views of what bench_radiance_error prints.
 radiance_rows() {
-    awk '{ what = $2; for (i = 3; $i !~ /^[0-9.]+$/; i++) what = what " " $i
+    awk '{ m = 2; while ($m != "median") m++
+           what = $2; for (i = 3; i < m - 1; i++) what = what " " $i
            if (!(what in count)) order[++kinds] = what
-           count[what]++; rmse[what] += $i; median[what] += $(i + 2); most[what] += $(i + 4)
-           away[what] += $(i + 10) }
+           count[what]++; rmse[what] += $(m - 1); median[what] += $(m + 1); most[what] += $(m + 3)
+           away[what] += $(m + 9) }
          END { for (k = 1; k <= kinds; k++) { w = order[k]; n = count[w]
                printf "| %s | %.2f | %.3f | %.2f | %.2f |\n", w, rmse[w] / n, median[w] / n, most[w] / n,
                       away[w] / n } }' "$1"
