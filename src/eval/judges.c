@@ -9,11 +9,42 @@
 // Photographs are from the same place when they are less than this apart.
 static const double same_distance = 0.01, same_angle = 0.05;
 
+// True when there are held-out photographs, and the stage `expose` gave them the scene's reference
+// exposure because no other guess was better.
+static bool exposure_is_unknown(const struct orl_scene *scene)
+{
+    bool held = false, guessed = false;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const struct orl_photo *p = &scene->photos[i];
+        held = held || p->test;
+        for (int c = 0; c < 3; c++)
+            guessed = guessed || (p->test && p->gain[c] != 1);
+        guessed = guessed || (p->test && p->metering != 0);
+    }
+    return held && !guessed;
+}
+
+static enum orl_result copy_photos(const struct orl_log *log, const struct orl_scene *scene,
+                                   struct orl_judges *judges)
+{
+    bool unknown = exposure_is_unknown(scene);
+    judges->photos = orl_array(log, scene->photo_count, sizeof *judges->photos);
+    if (!judges->photos)
+        return ORL_ERR_MEMORY;
+    memcpy(judges->photos, scene->photos, scene->photo_count * sizeof *judges->photos);
+    for (size_t i = 0; unknown && i < scene->photo_count; i++)
+        for (int c = 0; c < 3; c++)
+            judges->photos[i].gain[c] = 1;
+    judges->scene = *scene;
+    judges->scene.photos = judges->photos;
+    return ORL_OK;
+}
+
 enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
                                 size_t most, int divide, struct orl_judges *judges)
 {
     size_t train = 0, at = 0;
-    *judges = (struct orl_judges){.scene = scene};
+    memset(judges, 0, sizeof *judges);
     for (size_t i = 0; i < scene->photo_count; i++)
         train += !scene->photos[i].test;
     if (train < 3)
@@ -23,7 +54,8 @@ enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scen
     size_t wanted = most && most < train ? most : train;
     judges->views = orl_array(log, wanted, sizeof *judges->views);
     judges->skip = orl_array(log, scene->photo_count, sizeof *judges->skip);
-    enum orl_result result = judges->views && judges->skip ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result =
+        judges->views && judges->skip ? copy_photos(log, scene, judges) : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         if (scene->photos[i].test)
             continue;
@@ -42,6 +74,7 @@ void orl_judges_finish(struct orl_judges *judges)
         orl_heldout_finish(&judges->views[i]);
     free(judges->views);
     free(judges->skip);
+    free(judges->photos);
     memset(judges, 0, sizeof *judges);
 }
 
@@ -71,7 +104,7 @@ bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b)
 // Marks what the rendering of a photograph's view does without.
 static void set_skip(const struct orl_judges *judges, size_t photo, const bool *removed)
 {
-    const struct orl_scene *scene = judges->scene;
+    const struct orl_scene *scene = &judges->scene;
     size_t left = 0;
     for (size_t i = 0; i < scene->photo_count; i++) {
         judges->skip[i] = (removed && removed[i]) || orl_judges_same_place(scene, i, photo);
@@ -89,6 +122,6 @@ enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_rendere
 {
     const struct orl_heldout *target = &judges->views[view];
     set_skip(judges, target->photo, removed);
-    return orl_heldout_compare(log, renderer, judges->scene, target, render, judges->skip,
+    return orl_heldout_compare(log, renderer, &judges->scene, target, render, judges->skip,
                                brief, metrics);
 }

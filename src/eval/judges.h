@@ -7,12 +7,15 @@
 #include "eval/metrics.h"
 
 struct orl_judges {
-    const struct orl_scene *scene; // not owned
-    struct orl_heldout *views;     // owned: the photographs, in ascending order
+    struct orl_scene scene; // shares all but `photos`, whose gains are those that judge
+    struct orl_photo *photos;  // owned
+    struct orl_heldout *views; // owned: the photographs, in ascending order
     size_t count;
     bool *skip; // owned: photographs that the current rendering does without
 };
 
+// Where the exposure of held-out photographs cannot be guessed, that of training photographs is not
+// used, either: a rendering that knows it would gain what no held-out photograph confirms.
 // Loads at most `most` training photographs, evenly chosen (0: all), at 1/divide of their size.
 // ORL_ERR_DATA: fewer than three photographs are for training.
 enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
@@ -28,8 +31,8 @@ void orl_judges_apart(const struct orl_scene *scene, size_t a, size_t b, double 
 bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b);
 // Renders the view of judges->views[view] without that photograph, those from the same place
 // (unless no other is left) and those that `removed` marks (NULL: none), and compares as
-// orl_heldout_compare does. The renderer's scene must have the photographs of judges->scene, in the
-// same order.
+// orl_heldout_compare does. The renderer's scene must have the photographs of the judges' scene, in
+// the same order.
 enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                    const struct orl_judges *judges, size_t view,
                                    const struct orl_render_params *render, const bool *removed,

@@ -101,6 +101,29 @@ static void same_places_are_left_out_together(void **state)
     teardown(&f);
 }
 
+// Where held-out photographs have the reference exposure for want of a better guess, training
+// photographs are judged without their own exposure, too.
+static void an_exposure_that_none_could_guess_does_not_judge(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    look_along(&f, 4, 0.5);
+    for (int c = 0; c < 3; c++)
+        f.scene.photos[1].gain[c] = 2;
+    f.scene.photos[3].test = true;
+    for (int guessed = 0; guessed < 2; guessed++) {
+        struct orl_judges judges;
+        f.scene.photos[3].gain[0] = guessed ? 1.5f : 1;
+        assert_int_equal(orl_judges_load(NULL, &f.scene, 0, 1, &judges), ORL_OK);
+        assert_int_equal(judges.count, 3);
+        assert_float_equal(judges.photos[1].gain[0], guessed ? 2 : 1, 0);
+        assert_float_equal(f.scene.photos[1].gain[0], 2, 0); // the scene's own stays
+        orl_judges_finish(&judges);
+    }
+    teardown(&f);
+}
+
 static bool is_taken(const struct orl_trim *trim, const char *what)
 {
     for (size_t i = 0; i < trim->step_count; i++)
@@ -364,6 +387,7 @@ int main(void)
         cmocka_unit_test(hidden_points_go_first),
         cmocka_unit_test(merged_points_lie_on_the_mean),
         cmocka_unit_test(same_places_are_left_out_together),
+        cmocka_unit_test(an_exposure_that_none_could_guess_does_not_judge),
         cmocka_unit_test(a_budget_that_cannot_be_kept_is_refused),
         cmocka_unit_test(the_tolerance_is_kept),
         cmocka_unit_test(the_tolerance_of_ssim_is_kept),
