@@ -44,7 +44,9 @@ struct orl_trim_figures {
     double held_psnr_db, held_ssim; // held-out photographs; 0: there are none
 };
 
-// The scene with points and photographs removed at random, for comparison.
+// The scene with points and photographs removed at random, for comparison: at half and a quarter of
+// the bytes, and at as many as the trimmed model has. Two photographs at least are left, which may
+// be more.
 struct orl_trim_random {
     double bytes, loss_db;
 };

@@ -5,8 +5,6 @@
 #include "core/memory.h"
 #include "eval/trim_search.h"
 
-static const double shares[ORL_TRIM_RANDOM_ROWS] = {0.5, 0.25, 0.125};
-
 static uint32_t next_random(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
@@ -60,6 +58,9 @@ static enum orl_result measure(struct trim_search *s, double share, const uint32
 
 enum orl_result orl_trim_compare_random(struct trim_search *s)
 {
+    double own = s->bytes / s->first_bytes; // of the trimmed model
+    const double shares[ORL_TRIM_RANDOM_ROWS] = { // the largest first
+        fmax(0.5, own), own > 0.5 ? 0.5 : fmax(0.25, own), fmin(0.25, own)};
     uint64_t random = 1;
     uint32_t *points = shuffled(s->source.log, s->source.scene->points.count, &random);
     uint32_t *photos = shuffled(s->source.log, s->targets.count, &random);
