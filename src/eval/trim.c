@@ -16,7 +16,7 @@
 const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
     "points", "photograph", "textures", "depth", "resolution", "quality", "option"};
 
-enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2, ROUNDS_MAX = 4 };
+enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
 // Least gain of a tuned option, as a share of the tolerance.
 static const double tuned_gain = 0.1;
 
@@ -34,6 +34,14 @@ static bool within_budget(const struct trim_search *s)
            (!(p->max_frame_ms > 0) || s->ms <= p->max_frame_ms);
 }
 
+// All training photographs confirm other steps before photographs are removed. What removals lose is
+// added to measured losses then, and other steps are not blamed for them.
+static bool is_due(const struct trim_search *s, const struct trim_move *next)
+{
+    return !orl_trim_has_budget(s) && next->part == ORL_TRIM_PHOTOGRAPH &&
+           s->state.removed_count == 0 && s->history_count > s->confirmed;
+}
+
 static enum orl_result search(struct trim_search *s)
 {
     enum orl_result result = ORL_OK;
@@ -46,6 +54,10 @@ static enum orl_result search(struct trim_search *s)
         if (out_of_time(s)) {
             s->trim->complete = false;
             break;
+        }
+        if (is_due(s, move)) {
+            result = orl_trim_confirm(s, false);
+            continue;
         }
         // Most moves are tried once, some a few times.
         double total = fmax(2.0 * (double)s->move_count, done + 1);
@@ -60,156 +72,20 @@ static enum orl_result search(struct trim_search *s)
     return result;
 }
 
-// --- all training photographs ---
-
-// `first`: the whole scene, with which later states are compared.
-static enum orl_result measure_all(struct trim_search *s, bool first,
-                                   struct orl_trim_figures *figures)
-{
-    double n = (double)s->targets.count;
-    enum orl_result result = ORL_OK;
-    *figures = (struct orl_trim_figures){.worst_loss_db = -INFINITY};
-    for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++) {
-        struct orl_metrics m;
-        orl_progress_report(s->params->progress, first ? "whole scene" : "trimmed scene",
-                            (double)i, n, NULL);
-        result = orl_trim_measure_view(s, s->model->renderer, &s->state, i, false, &m);
-        s->now[i] = (struct trim_score){m.psnr_db, m.ssim};
-        s->first_db[i] = first ? m.psnr_db : s->first_db[i];
-        figures->psnr_db += m.psnr_db / n;
-        figures->ssim += m.ssim / n;
-        figures->worst_loss_db = fmax(figures->worst_loss_db, s->first_db[i] - m.psnr_db);
-    }
-    figures->points = s->model->scene.points.count;
-    figures->photographs = s->targets.count - s->state.removed_count;
-    figures->point_bytes = s->model->point_bytes;
-    figures->photo_bytes = (size_t)orl_trim_model_bytes(s, s->model, &s->state) -
-                           s->model->point_bytes;
-    return result;
-}
-
-// Times frames of the whole scene and of the trimmed one in turns.
-static enum orl_result time_both(struct trim_search *s)
-{
-    struct trim_model *whole = NULL;
-    const struct trim_drawn after = {s->model->renderer, &s->state};
-    struct trim_drawn before = {NULL, &s->first_state};
-    double ms[2];
-    enum orl_result result = orl_trim_model_open(&s->source, &s->first_state, &whole);
-    if (result == ORL_OK) {
-        before.renderer = whole->renderer;
-        result = orl_trim_frame_times(s, &before, &after, ms);
-    }
-    orl_trim_model_close(&whole);
-    if (result != ORL_OK)
-        return result;
-    s->trim->before.frame_ms = s->first_ms = ms[0];
-    s->trim->after.frame_ms = s->ms = ms[1];
-    return ORL_OK;
-}
-
-static bool is_confirmed(const struct trim_search *s)
-{
-    const struct orl_trim_params *p = s->params;
-    const struct orl_trim_figures *before = &s->trim->before, *after = &s->trim->after;
-    return orl_trim_has_budget(s) ||
-           (before->psnr_db - after->psnr_db <= p->tolerance_db &&
-            before->ssim - after->ssim <= p->tolerance_ssim &&
-            after->worst_loss_db <= p->worst_db && after->frame_ms <= orl_trim_slow_limit_ms(s));
-}
-
-static enum orl_result reopen(struct trim_search *s)
-{
-    orl_trim_model_close(&s->model);
-    return orl_trim_model_open(&s->source, &s->state, &s->model);
-}
-
-// Measures the state after the first `steps` steps, whose model is left open.
-static enum orl_result measure_after(struct trim_search *s, size_t steps)
-{
-    const struct trim_state last = s->state;
-    enum orl_result result = ORL_OK;
-    if (steps < s->history_count) {
-        s->state = s->history[steps].state;
-        result = reopen(s);
-    }
-    if (result == ORL_OK)
-        result = measure_all(s, false, &s->trim->after);
-    if (result == ORL_OK)
-        result = time_both(s);
-    s->state = last;
-    return result;
-}
-
-// Takes all steps but the first `steps` back. The one after them breaks a tolerance; the others may
-// be tried again without it.
-static enum orl_result take_back(struct trim_search *s, size_t steps)
-{
-    while (s->history_count > steps) {
-        struct trim_past *past = &s->history[--s->history_count];
-        s->trim->steps[past->step].taken = false;
-        s->trim->undone++;
-        if (past->move)
-            past->move->dead = s->history_count == steps;
-        free(s->state.removed);
-        s->state = past->state;
-    }
-    return reopen(s);
-}
-
-// All training photographs have the last word: where they lose more than the judges said, or a
-// frame is slower, the last steps, which promised least, are taken back: as few as it takes, found
-// by halving.
-static enum orl_result confirm(struct trim_search *s)
-{
-    size_t kept = 0, too_many = s->history_count;
-    enum orl_result result = measure_after(s, too_many);
-    if (result != ORL_OK || is_confirmed(s) || too_many == 0)
-        return result;
-    while (result == ORL_OK && kept + 1 < too_many) {
-        size_t middle = kept + (too_many - kept) / 2;
-        result = measure_after(s, middle);
-        if (is_confirmed(s))
-            kept = middle;
-        else
-            too_many = middle;
-    }
-    if (result == ORL_OK)
-        result = take_back(s, kept);
-    return result == ORL_OK ? measure_after(s, kept) : result;
-}
-
-// What the steps that are kept really cost, over all training photographs, counts from now on.
-static void settle(struct trim_search *s)
-{
-    const struct orl_trim *trim = s->trim;
-    s->total_loss_db = trim->before.psnr_db - trim->after.psnr_db;
-    s->total_loss_ssim = trim->before.ssim - trim->after.ssim;
-    s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
-    s->file_bytes = (double)orl_trim_photo_file_bytes(&s->source, s->model->scene.dir,
-                                                      s->state.removed);
-    s->version++;
-    for (size_t i = 0; i < s->targets.count; i++)
-        s->lost_db[i] = s->first_db[i] - s->now[i].db;
-    for (size_t i = 0; i < s->move_count; i++)
-        s->moves[i].blocked = s->moves[i].slow = false;
-}
-
 // The judges are few, so that steps may cost less than they said: the search goes on with what is
 // left of the tolerance, as long as it finds more to leave out. It also goes on without steps that
 // were taken back.
 static enum orl_result search_and_confirm(struct trim_search *s)
 {
     enum orl_result result = ORL_OK;
-    for (int round = 0; round < ROUNDS_MAX; round++) {
-        size_t kept = s->history_count;
+    for (size_t ended = SIZE_MAX; result == ORL_OK && s->version != ended;) {
         result = search(s);
-        size_t searched = s->history_count;
-        if (result == ORL_OK && (round == 0 || searched > kept))
-            result = confirm(s);
-        if (result != ORL_OK || orl_trim_has_budget(s) || !s->trim->complete || searched == kept)
+        if (result != ORL_OK || s->version == ended)
             break;
-        settle(s);
+        result = orl_trim_confirm(s, true);
+        if (orl_trim_has_budget(s) || !s->trim->complete)
+            break;
+        ended = s->version;
     }
     return result;
 }
@@ -297,7 +173,7 @@ static enum orl_result start(struct trim_search *s)
     if (result == ORL_OK)
         result = orl_trim_model_open(source, &s->state, &s->model);
     if (result == ORL_OK)
-        result = measure_all(s, true, &s->trim->before);
+        result = orl_trim_measure_all(s, true, &s->trim->before);
     const struct trim_drawn whole = {s->model ? s->model->renderer : NULL, &s->state};
     double ms[2];
     if (result == ORL_OK)

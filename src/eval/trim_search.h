@@ -14,11 +14,12 @@ struct trim_score {
 // What was measured of a step.
 struct trim_measured {
     double loss_db, loss_ssim, ms;
+    double total_loss_db; // before the step
     double between_db;   // of a photograph: the greatest change of views beside it
     double beside_db;    // and their mean, as a share of all targets
     size_t view_count;
     size_t views[TRIM_VIEWS_MAX]; // indices of targets
-    struct trim_score score[TRIM_VIEWS_MAX];
+    struct trim_score before[TRIM_VIEWS_MAX], score[TRIM_VIEWS_MAX]; // without and with the step
 };
 
 // A kind of step that can be taken next.
@@ -53,16 +54,18 @@ struct trim_search {
     size_t near_count;
     double *first_db;       // owned, per target: PSNR of the whole scene
     struct trim_score *now; // owned, per target: in the state reached; NAN: not known
-    double *lost_db;        // owned, per target: estimated loss so far
+    double *lost_db;        // owned, per target: loss so far, estimated where `now` is not known
     struct trim_state first_state, state;
     struct trim_model *model;  // of `state`
-    size_t version;            // counts the steps taken
+    size_t version;            // counts the steps taken, and their confirmations
+    size_t changed;            // the version since which all views have changed
     double bytes, file_bytes, ms, total_loss_db, total_loss_ssim; // of `state`
     double first_bytes, first_file_bytes, first_ms;
     struct trim_move *moves; // owned
     size_t move_count;
     struct trim_past *history; // owned
     size_t history_count, history_capacity;
+    size_t confirmed; // steps that all targets have confirmed
     double start_s;
 };
 
@@ -106,6 +109,18 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
 bool orl_trim_has_budget(const struct trim_search *s);
 // The move that promises most, other than `except`; NULL: none is left.
 struct trim_move *orl_trim_best_move(const struct trim_search *s, const struct trim_move *except);
+
+// Steps that were blocked may be possible again: what was lost, or the time of a frame, has changed.
+void orl_trim_make_room(struct trim_search *s);
+
+// --- trim_confirm.c ---
+
+// Measures all targets. `first`: the whole scene, with which later states are compared.
+enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
+                                     struct orl_trim_figures *figures) ORL_CHECK_RESULT;
+// Measures all targets and takes back what breaks a tolerance. The search goes on with the measured
+// losses. timed: a frame must not be slower than the whole scene's, either.
+enum orl_result orl_trim_confirm(struct trim_search *s, bool timed) ORL_CHECK_RESULT;
 
 // --- trim_random.c ---
 

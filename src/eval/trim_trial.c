@@ -23,6 +23,8 @@ static const double slower_most = 0.02, slower_ms = 1, slower_software_ms = 8, s
 static const double between_most_db = 3;
 // A step is taken when no other promises more than its own gain divided by this.
 static const double good_enough = 0.8;
+// A step that lost too much is tried again when steps have gained this share of the tolerance.
+static const double least_room = 0.1;
 
 // A step on trial.
 struct trial {
@@ -120,6 +122,8 @@ static enum orl_result measure_one(struct trim_search *s, const struct trial *t,
     if (isnan(s->now[view].db)) {
         result = orl_trim_measure_view(s, s->model->renderer, &s->state, view, true, &now);
         s->now[view] = (struct trim_score){result == ORL_OK ? now.psnr_db : NAN, now.ssim};
+        if (result == ORL_OK)
+            s->lost_db[view] = s->first_db[view] - now.psnr_db;
     }
     if (result == ORL_OK)
         result = orl_trim_measure_view(s, t->own ? t->own->renderer : s->model->renderer,
@@ -189,13 +193,23 @@ static enum orl_result measure_between(struct trim_search *s, const struct trial
 
 // --- judging it ---
 
+// Whether the photograph of this target is one of those that the view is painted from.
+static bool is_near(const struct trim_search *s, size_t view, size_t target)
+{
+    for (size_t k = 0; k < s->near_count; k++)
+        if (s->nearest[view][k] == target)
+            return true;
+    return false;
+}
+
 // Loss of a view by the step: measured, or the mean where the step changes all views. after: the
-// view's score then.
+// view's score then; NAN: it has to be measured.
 static double view_loss(const struct trim_search *s, const struct trial *t, size_t view,
                         struct trim_score *after)
 {
     const struct trim_measured *m = &t->move->measured;
-    *after = is_local(t) ? s->now[view] : (struct trim_score){NAN, NAN};
+    bool changed = !is_local(t) || is_near(s, view, t->move->index);
+    *after = changed ? (struct trim_score){NAN, NAN} : s->now[view];
     for (size_t k = 0; k < m->view_count; k++)
         if (m->views[k] == view) {
             *after = m->score[k];
@@ -265,8 +279,9 @@ static enum orl_result measure_views(struct trim_search *s, const struct trial *
     m->loss_db = m->loss_ssim = 0;
     for (size_t i = 0; result == ORL_OK && i < m->view_count; i++) {
         result = measure_one(s, t, m->views[i], &m->score[i]);
-        m->loss_db += s->now[m->views[i]].db - m->score[i].db;
-        m->loss_ssim += s->now[m->views[i]].ssim - m->score[i].ssim;
+        m->before[i] = s->now[m->views[i]];
+        m->loss_db += m->before[i].db - m->score[i].db;
+        m->loss_ssim += m->before[i].ssim - m->score[i].ssim;
     }
     return result;
 }
@@ -300,27 +315,45 @@ static enum orl_result measure_local(struct trim_search *s, const struct trial *
     return result;
 }
 
-// True if the few judges refuse a step on average that others may allow: all targets decide then.
-static bool is_doubtful(const struct trim_search *s, const struct trial *t)
+// Whether the step is within the tolerances with half of its losses.
+static bool is_nearly_good(const struct trim_search *s, const struct trial *t)
 {
     struct trim_move half = *t->move;
     struct trial other = *t;
     half.measured.loss_db /= 2;
     half.measured.loss_ssim /= 2;
     other.move = &half;
-    return !is_good(s, t) && is_good(s, &other) && t->bytes < s->bytes;
+    return is_good(s, &other);
+}
+
+// True if the few judges refuse a step on average that others may allow: all targets decide then.
+static bool is_doubtful(const struct trim_search *s, const struct trial *t)
+{
+    return !is_good(s, t) && is_nearly_good(s, t) && t->bytes < s->bytes;
+}
+
+// Whether nothing that the step is judged by has changed since it was measured. A photograph that
+// goes changes the views around it alone.
+static bool is_measured(const struct trim_search *s, const struct trial *t)
+{
+    const struct trim_measured *m = &t->move->measured;
+    bool same = t->move->tried && t->move->version >= (is_local(t) ? s->changed : s->version);
+    for (size_t i = 0; same && i < m->view_count; i++) // false where the score is not known
+        same = s->now[m->views[i]].db == m->before[i].db;
+    return same;
 }
 
 static enum orl_result measure(struct trim_search *s, struct trial *t)
 {
     struct trim_measured *m = &t->move->measured;
-    if (t->move->tried && t->move->version == s->version)
-        return ORL_OK; // nothing has changed since
+    if (is_measured(s, t))
+        return ORL_OK;
     enum orl_result result =
         is_local(t) ? measure_local(s, t) : measure_global(s, t, s->judge_count);
     if (result == ORL_OK && !is_local(t) && is_doubtful(s, t))
         result = measure_global(s, t, s->targets.count);
     m->ms = s->ms;
+    m->total_loss_db = s->total_loss_db;
     // The first time it says what the part of the model buys; later, a step that loses too much is
     // not timed.
     if (result == ORL_OK && !is_local(t) && t->move->part != ORL_TRIM_QUALITY &&
@@ -441,16 +474,28 @@ static enum orl_result take(struct trim_search *s, struct trial *t)
         t->own = NULL;
     }
     s->version++;
+    if (!is_local(t))
+        s->changed = s->version;
     return ORL_OK;
 }
 
-// After a step: steps that were blocked may be possible again.
-static void make_room(struct trim_search *s, bool gained)
+// Whether a step that lost too much when it was measured is worth another trial. The losses of most
+// views were estimated then, and may have been overrated. Other steps may have made room since, when
+// a step may also lose less than before.
+static bool may_fit(const struct trim_search *s, struct trim_move *move)
+{
+    const struct trial t = {.move = move};
+    double room_db = move->measured.total_loss_db - s->total_loss_db;
+    return is_good(s, &t) ||
+           (room_db > least_room * s->params->tolerance_db && is_nearly_good(s, &t));
+}
+
+void orl_trim_make_room(struct trim_search *s)
 {
     for (size_t i = 0; i < s->move_count; i++) {
         struct trim_move *m = &s->moves[i];
-        bool fits = m->slow && !is_slow(s, s->ms * m->slower);
-        m->blocked &= !(gained || fits);
+        bool fits = m->slow ? !is_slow(s, s->ms * m->slower) : m->blocked && may_fit(s, m);
+        m->blocked &= !fits;
         m->slow &= !fits;
     }
 }
@@ -487,9 +532,8 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     move->slow = good && slow;
     move->blocked = !good || slow;
     if (result == ORL_OK && taken) {
-        double loss_db = move->measured.loss_db;
         result = take(s, &t);
-        make_room(s, loss_db < 0);
+        orl_trim_make_room(s);
         // The next level may be worth half as much, or as much after one that lost nothing; all
         // others go only once.
         move->ratio = lossless ? INFINITY : 0.5 * move->ratio;

@@ -1,0 +1,299 @@
+// All training photographs have the last word on the steps that were taken. Where they lose more
+// than the judges said, photographs that a view needs come back, or the last steps are taken back.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "eval/trim_search.h"
+
+// Photographs that may be put back for a view, the nearest ones; further ones show less of it.
+enum { PUT_BACK_TRIED = 6 };
+// Frames that seem too slow are timed again so many times: other programs disturb the first times.
+enum { TIMES_MOST = 3 };
+
+// --- measuring ---
+
+static void add_figures(const struct trim_search *s, struct orl_trim_figures *figures)
+{
+    double n = (double)s->targets.count;
+    *figures = (struct orl_trim_figures){.worst_loss_db = -INFINITY,
+                                         .frame_ms = figures->frame_ms};
+    for (size_t i = 0; i < s->targets.count; i++) {
+        figures->psnr_db += s->now[i].db / n;
+        figures->ssim += s->now[i].ssim / n;
+        figures->worst_loss_db = fmax(figures->worst_loss_db, s->first_db[i] - s->now[i].db);
+    }
+    figures->points = s->model->scene.points.count;
+    figures->photographs = s->targets.count - s->state.removed_count;
+    figures->point_bytes = s->model->point_bytes;
+    figures->photo_bytes = (size_t)orl_trim_model_bytes(s, s->model, &s->state) -
+                           s->model->point_bytes;
+}
+
+enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
+                                     struct orl_trim_figures *figures)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++) {
+        struct orl_metrics m;
+        orl_progress_report(s->params->progress, first ? "whole scene" : "trimmed scene",
+                            (double)i, (double)s->targets.count, NULL);
+        result = orl_trim_measure_view(s, s->model->renderer, &s->state, i, true, &m);
+        s->now[i] = (struct trim_score){m.psnr_db, m.ssim};
+        s->first_db[i] = first ? m.psnr_db : s->first_db[i];
+        s->lost_db[i] = s->first_db[i] - m.psnr_db;
+    }
+    add_figures(s, figures);
+    return result;
+}
+
+// Times frames of the whole scene and of the trimmed one in turns.
+static enum orl_result time_both(struct trim_search *s)
+{
+    struct trim_model *whole = NULL;
+    const struct trim_drawn after = {s->model->renderer, &s->state};
+    struct trim_drawn before = {NULL, &s->first_state};
+    double least[2] = {INFINITY, INFINITY};
+    enum orl_result result = orl_trim_model_open(&s->source, &s->first_state, &whole);
+    if (result == ORL_OK)
+        before.renderer = whole->renderer;
+    for (int i = 0; result == ORL_OK && i < TIMES_MOST; i++) {
+        double ms[2];
+        result = orl_trim_frame_times(s, &before, &after, ms);
+        least[0] = fmin(least[0], ms[0]);
+        least[1] = fmin(least[1], ms[1]);
+        s->first_ms = least[0];
+        s->ms = least[1];
+        if (s->ms <= orl_trim_slow_limit_ms(s))
+            break;
+    }
+    orl_trim_model_close(&whole);
+    s->trim->before.frame_ms = s->first_ms;
+    s->trim->after.frame_ms = s->ms;
+    return result;
+}
+
+// --- whether it is within the tolerances ---
+
+// What is confirmed: the losses, or the time of a frame, too.
+struct check {
+    bool timed;
+    bool lost, slow; // the state measured last loses too much, or its frame takes too long
+    size_t steps;    // of that state
+};
+
+// Measures the state after the first `steps` steps, whose model is left open.
+static enum orl_result measure_after(struct trim_search *s, size_t steps, struct check *check)
+{
+    const struct orl_trim_params *p = s->params;
+    const struct orl_trim_figures *before = &s->trim->before, *after = &s->trim->after;
+    const struct trim_state last = s->state;
+    enum orl_result result = ORL_OK;
+    if (steps < s->history_count) {
+        s->state = s->history[steps].state;
+        orl_trim_model_close(&s->model);
+        result = orl_trim_model_open(&s->source, &s->state, &s->model);
+    }
+    if (result == ORL_OK)
+        result = orl_trim_measure_all(s, false, &s->trim->after);
+    if (result == ORL_OK && check->timed)
+        result = time_both(s);
+    s->state = last;
+    check->steps = steps;
+    check->lost = !orl_trim_has_budget(s) &&
+                  (before->psnr_db - after->psnr_db > p->tolerance_db ||
+                   before->ssim - after->ssim > p->tolerance_ssim ||
+                   after->worst_loss_db > p->worst_db);
+    check->slow = !orl_trim_has_budget(s) && check->timed &&
+                  after->frame_ms > orl_trim_slow_limit_ms(s);
+    return result;
+}
+
+// --- putting photographs back ---
+
+// Index of the step since the last confirmation that removed this target's photograph;
+// s->history_count: none.
+static size_t removal_of(const struct trim_search *s, size_t target)
+{
+    for (size_t k = s->confirmed; k < s->history_count; k++)
+        if (s->history[k].move && s->history[k].move->part == ORL_TRIM_PHOTOGRAPH &&
+            s->history[k].move->index == target)
+            return k;
+    return s->history_count;
+}
+
+static void restore(struct trim_state *state, size_t photo)
+{
+    state->removed_count -= state->removed[photo];
+    state->removed[photo] = false;
+}
+
+// Takes one removal back; the steps after it stay.
+static void put_back(struct trim_search *s, size_t step)
+{
+    struct trim_past past = s->history[step];
+    struct orl_trim *trim = s->trim;
+    size_t photo = s->targets.views[past.move->index].photo;
+    struct orl_trim_step *undone = &trim->steps[past.step];
+    for (size_t k = step + 1; k < s->history_count; k++) {
+        struct orl_trim_step *later = &trim->steps[s->history[k].step];
+        restore(&s->history[k].state, photo);
+        later->bytes += undone->saved_bytes;
+        later->total_loss_db -= undone->loss_db;
+        later->total_loss_ssim -= undone->loss_ssim;
+    }
+    restore(&s->state, photo);
+    undone->taken = false;
+    trim->undone++;
+    free(past.state.removed);
+    memmove(&s->history[step], &s->history[step + 1],
+            (--s->history_count - step) * sizeof *s->history);
+}
+
+// The nearest photographs to a view that were removed since the last confirmation.
+static size_t nearest_removed(const struct trim_search *s, size_t view,
+                              size_t targets[PUT_BACK_TRIED])
+{
+    double distance[PUT_BACK_TRIED];
+    size_t count = 0;
+    for (size_t i = 0; i < s->targets.count; i++) {
+        double d, angle;
+        if (i == view || removal_of(s, i) == s->history_count)
+            continue;
+        orl_judges_apart(s->source.scene, s->targets.views[view].photo,
+                         s->targets.views[i].photo, &d, &angle);
+        d += angle;
+        size_t at = count < PUT_BACK_TRIED ? count : PUT_BACK_TRIED - 1;
+        if (count == PUT_BACK_TRIED && d >= distance[at])
+            continue;
+        count += count < PUT_BACK_TRIED;
+        for (; at > 0 && d < distance[at - 1]; at--) {
+            distance[at] = distance[at - 1];
+            targets[at] = targets[at - 1];
+        }
+        distance[at] = d;
+        targets[at] = i;
+    }
+    return count;
+}
+
+// Puts photographs back until the view loses no more than it may: each time the one of the nearest
+// that helps it most. Stops when none helps.
+static enum orl_result mend_view(struct trim_search *s, size_t view, bool *mended)
+{
+    enum orl_result result = ORL_OK;
+    bool helps = true;
+    while (result == ORL_OK && helps && s->lost_db[view] > s->params->worst_db) {
+        size_t targets[PUT_BACK_TRIED], best = 0;
+        size_t count = nearest_removed(s, view, targets);
+        struct trim_score most = s->now[view];
+        helps = false;
+        for (size_t i = 0; result == ORL_OK && i < count; i++) {
+            struct orl_metrics m;
+            bool *removed = &s->state.removed[s->targets.views[targets[i]].photo];
+            *removed = false;
+            result = orl_trim_measure_view(s, s->model->renderer, &s->state, view, true, &m);
+            *removed = true;
+            if (result == ORL_OK && m.psnr_db > most.db) {
+                helps = true;
+                best = targets[i];
+                most = (struct trim_score){m.psnr_db, m.ssim};
+            }
+        }
+        if (result == ORL_OK && helps) {
+            put_back(s, removal_of(s, best));
+            s->now[view] = most;
+            s->lost_db[view] = s->first_db[view] - most.db;
+            *mended = true;
+        }
+    }
+    return result;
+}
+
+// Puts back the photographs that views need which lose more than one may.
+static enum orl_result mend(struct trim_search *s, struct check *check)
+{
+    enum orl_result result = ORL_OK;
+    bool mended = true;
+    while (result == ORL_OK && mended && check->lost &&
+           s->trim->after.worst_loss_db > s->params->worst_db) {
+        mended = false;
+        for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++)
+            result = mend_view(s, i, &mended);
+        if (result == ORL_OK && mended) // other views change, too
+            result = measure_after(s, s->history_count, check);
+    }
+    return result;
+}
+
+// --- taking steps back ---
+
+// Takes all steps but the first `steps` back. The one after them breaks a tolerance; the others may
+// be tried again without it.
+static enum orl_result take_back(struct trim_search *s, size_t steps)
+{
+    while (s->history_count > steps) {
+        struct trim_past *past = &s->history[--s->history_count];
+        s->trim->steps[past->step].taken = false;
+        s->trim->undone++;
+        if (past->move)
+            past->move->dead = s->history_count == steps;
+        free(s->state.removed);
+        s->state = past->state;
+    }
+    orl_trim_model_close(&s->model);
+    return orl_trim_model_open(&s->source, &s->state, &s->model);
+}
+
+// Takes the last steps back, which promised least: as few as it takes, found by halving.
+static enum orl_result halve(struct trim_search *s, struct check *check)
+{
+    size_t kept = check->slow ? 0 : s->confirmed, too_many = s->history_count;
+    enum orl_result result = ORL_OK;
+    while (result == ORL_OK && kept + 1 < too_many) {
+        size_t middle = kept + (too_many - kept) / 2;
+        result = measure_after(s, middle, check);
+        if (check->lost || check->slow)
+            too_many = middle;
+        else
+            kept = middle;
+    }
+    if (result == ORL_OK)
+        result = take_back(s, kept);
+    return result == ORL_OK && check->steps != kept ? measure_after(s, kept, check) : result;
+}
+
+// What the steps that are kept really cost, over all training photographs, counts from now on.
+static void settle(struct trim_search *s)
+{
+    const struct orl_trim *trim = s->trim;
+    s->total_loss_db = trim->before.psnr_db - trim->after.psnr_db;
+    s->total_loss_ssim = trim->before.ssim - trim->after.ssim;
+    s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
+    s->file_bytes = (double)orl_trim_photo_file_bytes(&s->source, s->model->scene.dir,
+                                                      s->state.removed);
+    s->version++;
+    s->confirmed = s->history_count;
+    // The time of a frame is noisy, and no step may wait for it for ever.
+    for (size_t i = 0; i < s->move_count; i++)
+        s->moves[i].slow = false;
+    orl_trim_make_room(s);
+}
+
+enum orl_result orl_trim_confirm(struct trim_search *s, bool timed)
+{
+    struct check check = {.timed = timed};
+    enum orl_result result = measure_after(s, s->history_count, &check);
+    size_t steps = s->history_count;
+    if (result == ORL_OK)
+        result = mend(s, &check);
+    if (result == ORL_OK && (check.lost || check.slow) && s->history_count > 0)
+        result = halve(s, &check);
+    if (result != ORL_OK)
+        return result;
+    if (s->history_count < steps)
+        s->changed = s->version + 1;
+    settle(s);
+    return ORL_OK;
+}
