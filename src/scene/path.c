@@ -50,6 +50,18 @@ void orl_path_finish(struct orl_path *path)
     memset(path, 0, sizeof *path);
 }
 
+// Views that are computed may lie beyond all bounds though those they come from do not.
+static enum orl_result check_made(const struct orl_log *log, const struct orl_path *path)
+{
+    for (size_t i = 0; i < path->count; i++) {
+        const char *problem = orl_view_problem(&path->views[i]);
+        if (problem)
+            return orl_fail(log, ORL_ERR_DATA, "view %zu of a path between these cameras is not "
+                            "usable: %s", i, problem);
+    }
+    return ORL_OK;
+}
+
 // --- interpolation ---
 
 // Keyframes, and the seconds from each to the next one; NULL: all alike.
@@ -117,6 +129,8 @@ static enum orl_result spread_frames(const struct orl_log *log, const struct key
             pose->t[row] = -(pose->r[row][0] * centre[0] + pose->r[row][1] * centre[1] +
                              pose->r[row][2] * centre[2]);
     }
+    if (result == ORL_OK && (result = check_made(log, path)) != ORL_OK)
+        orl_path_finish(path);
     return result;
 }
 
@@ -224,6 +238,8 @@ enum orl_result orl_path_around(const struct orl_log *log, const struct orl_scen
         path->views[i].camera = scene->photos[0].view.camera;
         path->views[i].cam_from_world = orl_pose_look_at(eye, circle.middle, circle.up);
     }
+    if (result == ORL_OK && (result = check_made(log, path)) != ORL_OK)
+        orl_path_finish(path);
     return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/json.h"
+#include "core/vec3.h"
 #include "fuzz.h"
 #include "preprocess/job/exposure_list.h"
 #include "scene/colmap.h"
@@ -137,9 +138,18 @@ void fuzz_ply(const uint8_t *data, size_t size)
     orl_points_finish(&points);
 }
 
-// Reads all of points.lod, if it can be opened.
+static void use_sample(struct orl_points *points)
+{
+    for (size_t i = 0; i < points->count; i++)
+        fuzz_require(orl_point_usable(points->position[i]) && isfinite(points->radius[i]),
+                     "a sampled point can be used");
+    orl_points_finish(points);
+}
+
+// Reads all of points.lod, and a few of its points, if it can be opened.
 static size_t use_lod(void)
 {
+    enum { FEW = 1000 };
     struct orl_lod *lod;
     struct orl_points points;
     size_t count = 0;
@@ -151,11 +161,10 @@ static size_t use_lod(void)
     }
     if (orl_lod_sample(lod, SIZE_MAX, &points) == ORL_OK) {
         count = points.count;
-        for (size_t i = 0; i < count; i++)
-            fuzz_require(orl_point_usable(points.position[i]) && isfinite(points.radius[i]),
-                         "a sampled point can be used");
-        orl_points_finish(&points);
+        use_sample(&points);
     }
+    if (orl_lod_read_cloud(&fuzz_log, fuzz_path("."), FEW, &points) == ORL_OK)
+        use_sample(&points);
     orl_lod_close(&lod);
     return count;
 }
@@ -170,22 +179,21 @@ static enum orl_result write_lod(void)
     return result;
 }
 
-// Saves the levels of detail of a small cloud, in which each five bytes of the input change one: its
+// Saves the levels of detail of a cloud, in which each five bytes of the input change one: its
 // place and its value.
-static void save_changed_lod(const uint8_t *data, size_t size)
+static void save_changed_lod(size_t count, const uint8_t *data, size_t size)
 {
-    enum { COUNT = 300 };
     struct orl_points points;
     uint8_t *file;
     size_t length;
-    fuzz_require(orl_points_init(NULL, &points, COUNT) == ORL_OK, "memory");
-    for (size_t i = 0; i < COUNT; i++) {
+    fuzz_require(orl_points_init(NULL, &points, count) == ORL_OK, "memory");
+    for (size_t i = 0; i < count; i++) {
         points.position[i][0] = (float)(i % 20);
         points.position[i][1] = (float)(i / 20);
         points.radius[i] = 1;
     }
     fuzz_require(orl_points_write(&fuzz_log, fuzz_path("points.ply"), &points, false) == ORL_OK &&
-                     write_lod() == ORL_OK && use_lod() == COUNT &&
+                     write_lod() == ORL_OK && use_lod() == count &&
                      orl_file_read(&fuzz_log, fuzz_path(ORL_LOD_NAME), SIZE_MAX / 2, &file,
                                    &length) == ORL_OK,
                  "what is written can be read");
@@ -199,15 +207,18 @@ static void save_changed_lod(const uint8_t *data, size_t size)
     orl_points_finish(&points);
 }
 
-// The first byte: a PLY follows, to be divided; or changes of a file of levels.
+// The first byte: a PLY follows, to be divided; or changes of a file of levels, from 128 on of one
+// that has more than the lowest level.
 void fuzz_lod(const uint8_t *data, size_t size)
 {
+    enum { ONE_PAGE = 300, TWO_PAGES = ORL_LOD_BLOCKS * ORL_BLOCK_POINTS + 300 };
     if (size && data[0] % 2) {
         fuzz_save("points.ply", data + 1, size - 1);
         if (write_lod() == ORL_OK)
             fuzz_require(use_lod() > 0, "a cloud that was divided can be read");
     } else {
-        save_changed_lod(data + (size > 0), size - (size > 0));
+        save_changed_lod(size && data[0] >= 128 ? TWO_PAGES : ONE_PAGE, data + (size > 0),
+                         size - (size > 0));
         (void)use_lod();
     }
 }
@@ -255,18 +266,44 @@ void fuzz_stages(const uint8_t *data, size_t size)
     (void)!orl_manifest_check_unfinished(&fuzz_log, fuzz_path("."));
 }
 
+static void use_path(struct orl_path *path)
+{
+    for (size_t i = 0; i < path->count; i++)
+        fuzz_require(!orl_view_problem(&path->views[i]), "views are usable");
+    orl_path_finish(path);
+}
+
+// Walks past photographs of these views, and circles what they look at.
+static void use_as_photos(const struct orl_path *path, struct orl_scene *scene)
+{
+    struct orl_path made;
+    size_t count = scene->photo_count < path->count ? scene->photo_count : path->count;
+    for (size_t i = 0; i < count; i++)
+        scene->photos[i].view = path->views[i];
+    if (orl_path_through_photos(&fuzz_log, scene, 5, &made) == ORL_OK)
+        use_path(&made);
+    if (orl_path_around(&fuzz_log, scene, 5, &made) == ORL_OK)
+        use_path(&made);
+}
+
 static void read_path(const char *name)
 {
     struct orl_scene *scene = fuzz_scene();
-    struct orl_path path;
-    if (orl_path_read(&fuzz_log, scene, fuzz_path(name), &path) == ORL_OK)
+    struct orl_path path, circle;
+    double eye[3], first[3];
+    fuzz_require(orl_path_around(&fuzz_log, scene, 5, &circle) == ORL_OK, "a circle is made");
+    for (size_t i = 0; i < circle.count; i++) {
+        orl_pose_centre(&circle.views[i].cam_from_world, i ? eye : first);
+        double from[3] = {first[0] - 1, first[1], first[2] - 9};
+        double to[3] = {eye[0] - 1, eye[1], eye[2] - 9};
+        fuzz_require(!i || fabs(orl_dot3(from, from) - orl_dot3(to, to)) < 1e-6, "it is a circle");
+    }
+    use_path(&circle);
+    if (orl_path_read(&fuzz_log, scene, fuzz_path(name), &path) == ORL_OK) {
         fuzz_require(path.count > 0, "a path has views");
-    for (size_t i = 0; i < path.count; i++)
-        fuzz_require(orl_camera_valid(&path.views[i].camera) &&
-                         orl_pose_valid(&path.views[i].cam_from_world), "views are usable");
-    orl_path_finish(&path);
-    fuzz_require(orl_path_through_photos(&fuzz_log, scene, 5, &path) == ORL_OK, "a walk is made");
-    orl_path_finish(&path);
+        use_as_photos(&path, scene);
+        use_path(&path);
+    }
     orl_scene_destroy(&scene);
 }
 

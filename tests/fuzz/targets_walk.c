@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "fuzz.h"
+#include "io/picture.h"
 #include "walk/choices.h"
 #include "walk/content_internal.h"
 #include "walk/internal.h"
@@ -59,12 +60,30 @@ static void use_choice(const struct orl_scene *scene, const json_t *message,
     json_decref(orl_walk_choice_json(choice));
 }
 
+// The first photograph, larger than a thumbnail.
+static void save_photo(void)
+{
+    struct orl_image image;
+    fuzz_require(orl_dir_make(NULL, fuzz_path("images")) == ORL_OK &&
+                     orl_image_init(NULL, &image, 200, 40, 3, ORL_PIXEL_U8) == ORL_OK,
+                 "there is room");
+    memset(image.data, 99, orl_image_bytes(&image));
+    fuzz_require(orl_jpeg_write(NULL, fuzz_path("images/a.jpg"), &image, 50, NULL) == ORL_OK,
+                 "a photograph can be written");
+    orl_image_finish(&image);
+}
+
 static void use_path(const struct content *content, const char *text, size_t size)
 {
     struct content_file file;
     char *path = strndup(text, size);
-    if (orl_content_find(content, path, &file) == ORL_OK)
+    save_photo();
+    if (orl_content_find(content, path, &file) == ORL_OK) {
+        fuzz_require(file.type && (file.data || !file.size), "a file has a type and its bytes");
+        fuzz_require(strcmp(path, "/map.bin") != 0 || file.size == 32, "the map has both points");
         free(file.owned);
+    }
+    fuzz_require(orl_dir_remove(NULL, fuzz_path("images")) == ORL_OK, "files can be removed");
     free(path);
 }
 
@@ -91,10 +110,19 @@ static void use_message(struct content *content, struct orl_choice *choice, cons
     json_decref(root);
 }
 
+// The published site, as if it were one file.
+static struct site_table one_file(void)
+{
+    struct site_table site = {calloc(1, sizeof *site.files), 1, 1};
+    site.files[0] = (struct site_file){strdup("points/coarse.bin"), calloc(4, 1), 4};
+    return site;
+}
+
 // Serves a scene with the walk.json that is there. message: of a client; NULL: none.
 static void walk(const char *message, size_t size)
 {
     struct orl_scene *scene = fuzz_scene();
+    fuzz_require(orl_points_init(NULL, &scene->points, 2) == ORL_OK, "memory");
     struct orl_names none = {0};
     struct content content;
     struct orl_choice choice;
@@ -102,6 +130,7 @@ static void walk(const char *message, size_t size)
                  "a scene has a method");
     if (orl_content_init(&fuzz_log, scene, NULL, true, &choice, &content) == ORL_OK) {
         struct orl_view view;
+        content.site = one_file();
         if (orl_walk_settings_start(content.settings, &scene->photos[0].view.camera, &view))
             fuzz_require(!orl_view_problem(&view), "the start view is usable");
         if (message)

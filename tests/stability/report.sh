@@ -53,9 +53,7 @@ fuzzing() {
     echo "## Lines of each reader that these inputs reach"
     echo
     echo "Most of the lines that are left answer an allocation, a file or a library that fails, which"
-    echo "the injection of faults below does, or belong to functions that read no input: \`mesh.c\` also"
-    echo "makes empty meshes, \`path.c\` circles, \`content.c\` sends photographs and \`rendering.c\` draws with a"
-    echo "device; \`point_lod_levels.c\` writes levels that small clouds do not have."
+    echo "the injection of faults below does; \`rendering.c\` draws with a device."
     echo
     echo "| file | lines | reached |"
     echo "|---|--:|--:|"

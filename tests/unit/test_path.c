@@ -129,6 +129,14 @@ static void a_circle_leads_around_what_they_see(void **state)
         ring[i].view.cam_from_world = orl_pose_look_at(eyes[i], away, up);
     }
     assert_int_equal(orl_path_around(NULL, &round, 4, &path), ORL_ERR_DATA);
+    // They may meet beyond all bounds, though the cameras themselves are within.
+    for (int i = 0; i < 2; i++) {
+        const double eye[3] = {i ? 8e17 : -8e17, 0, 0}, ahead[3] = {0, 0, 4e18};
+        ring[i].view.cam_from_world = orl_pose_look_at(eye, ahead, up);
+        assert_null(orl_view_problem(&ring[i].view));
+    }
+    assert_int_equal(orl_path_around(NULL, &round, 4, &path), ORL_ERR_DATA);
+    assert_null(path.views);
 }
 
 static void keyframes_have_their_own_seconds(void **state)
