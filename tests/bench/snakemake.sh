@@ -13,9 +13,24 @@ prepare() {
     shift
     "$oriel" prepare "$photos" --out "$work/$scene" --densifier gl --quiet "$@"
 }
+# Starts Snakemake and all of its jobs as a process group of their own, whose number is $group. The
+# group ends with this script, however that ends.
+group=
+stop() {
+    [ -z "$group" ] || kill -KILL -- "-$group" 2>/dev/null || true
+    group=
+}
+trap stop EXIT
+trap 'exit 1' HUP INT TERM
+start() {
+    setsid setpriv --pdeathsig INT snakemake -s "$source/cluster/Snakefile" --cores "$(nproc)" \
+        --rerun-incomplete --config plan="$work/$1" oriel="$oriel" >>"$work/snakemake.log" 2>&1 &
+    group=$!
+}
 jobs() {
-    setsid snakemake -s "$source/cluster/Snakefile" --cores "$(nproc)" --rerun-incomplete \
-        --config plan="$work/$1" oriel="$oriel" >>"$work/snakemake.log" 2>&1
+    start "$1"
+    wait "$group"
+    group=
 }
 cd "$work"
 
@@ -30,13 +45,14 @@ cp -r a b
 prepare a "$@" --resume
 "$oriel" plan b --json --photographs 16 >plan.json
 count=$(grep -c '"name":' plan.json)
-jobs plan.json &
+start plan.json
 until [ "$(ls b.jobs 2>/dev/null | grep -vc log)" -ge $((count / 3)) ]; do
+    kill -0 "$group" # else Snakemake has failed
     sleep 0.2
 done
-group=$(pgrep -f -n "config plan=$work/plan.json" || true)
-kill -KILL -- "-$(ps -o pgid= "$group" | tr -d ' ')" || true
-wait || true
+pid=$group
+stop
+wait "$pid" || true
 done_before=$(ls b.jobs | grep -vc log)
 [ ! -e b/scene.json ]
 rm -rf .snakemake/locks # of the Snakemake that was killed
