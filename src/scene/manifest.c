@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "scene/point_lod.h"
 #include "scene/tuned_settings.h"
 
 static enum orl_result read_split(const struct orl_json_place *place, const json_t *entry,
@@ -294,7 +295,7 @@ enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, c
     return result;
 }
 
-enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
+enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, bool points,
                                   struct orl_scene *scene)
 {
     // Checking pictures takes too long here; oriel info --check does it.
@@ -309,7 +310,7 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
         return result;
     result = orl_manifest_take(log, path, root, scene);
     if (result == ORL_OK)
-        result = check_files(log, scene->dir, root, scene->lod ? without_points : read_on_opening,
+        result = check_files(log, scene->dir, root, points ? read_on_opening : without_points,
                              ORL_LOG_WARNING, &changed);
     json_decref(root);
     return result;
@@ -321,13 +322,21 @@ enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, s
     json_t *root = NULL;
     *bad = *files = 0;
     char *path = orl_path_join(log, dir, "scene.json");
-    enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
+    char *points = orl_path_join(log, dir, "points.ply");
+    char *levels = orl_path_join(log, dir, ORL_LOD_NAME);
+    enum orl_result result = path && points && levels ? orl_json_read(log, path, &root)
+                                                      : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
+        // points.ply may be removed where there are levels of detail.
+        if (orl_path_is_file(levels) && !orl_path_is_file(points))
+            json_object_del(json_object_get(root, "checksums"), "points.ply");
         *files = json_object_size(json_object_get(root, "checksums"));
         result = check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
     }
     json_decref(root);
     free(path);
+    free(points);
+    free(levels);
     return result;
 }
 

@@ -8,16 +8,17 @@
 
 #define ORL_MANIFEST_VERSION 1
 
-// Sets the fields of `scene` and its photographs that scene.json states. Warns when points.ply or
-// the sparse model does not match its checksum.
-enum orl_result orl_manifest_read(const struct orl_log *log, const char *path,
+// Sets the fields of `scene` and its photographs that scene.json states. Warns when the sparse model
+// or, where it is read (`points`), points.ply does not match its checksum.
+enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, bool points,
                                   struct orl_scene *scene) ORL_CHECK_RESULT;
 // The same without the checksums, from the manifest `root`. Messages name `path`, where its values
 // are from.
 enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, const json_t *root,
                                   struct orl_scene *scene) ORL_CHECK_RESULT;
 // Checks every file that DIR/scene.json names by checksum, and counts these files in *files. Each
-// file that is missing or changed is logged as an error and counted in *bad.
+// file that is missing or changed is logged as an error and counted in *bad, but points.ply may be
+// missing where there is points.lod.
 enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, size_t *bad,
                                    size_t *files) ORL_CHECK_RESULT;
 // Reads "room" of scene.json or cameras.json, its lowest and its highest corner; it may be missing.

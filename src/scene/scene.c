@@ -370,7 +370,7 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene, 
         (lod && (result = orl_lod_open(log, points, &scene->lod)) != ORL_OK))
         return result;
     if (folder->manifest &&
-        (result = orl_manifest_read(log, folder->manifest, scene)) != ORL_OK)
+        (result = orl_manifest_read(log, folder->manifest, points_too && !lod, scene)) != ORL_OK)
         return result;
     return points_too ? add_points(log, scene, model, points, folder->manifest != NULL) : ORL_OK;
 }

@@ -14,6 +14,8 @@ runs 2 "$oriel" lod made
 grep -q "points.ply" stderr.txt || fail "what is missing is not named"
 runs 0 "$oriel" lod made --points cloud.ply
 grep -q "pages of [0-9]* levels" stdout.txt || fail "no word of what was written"
+grep -q "points.ply" stderr.txt && fail "a warning of points.ply, which is not read"
+runs 0 "$oriel" info made --check
 # Without points.ply now.
 runs 0 "$oriel" render made --at "$name" "${all[@]}" --out paged.png
 # Of points at equal depth, which are many on walls made by hand, another one may win.

@@ -246,7 +246,7 @@ void fuzz_manifest(const uint8_t *data, size_t size)
     snprintf(manifest, sizeof manifest, "%s", fuzz_path("scene.json"));
     fuzz_save("scene.json", data, size);
     fuzz_save("points.ply", data, 0);
-    if (orl_manifest_read(&fuzz_log, manifest, scene) == ORL_OK) {
+    if (orl_manifest_read(&fuzz_log, manifest, true, scene) == ORL_OK) {
         size_t bad, files;
         (void)!orl_manifest_check(&fuzz_log, scene->dir, &bad, &files);
         json_decref(orl_manifest_ground(&scene->ground));
