@@ -10,14 +10,15 @@
 #include "preprocess/calibrate/parts.h"
 #include "preprocess/cloud/clusters.h"
 #include "preprocess/cloud/fuse.h"
+#include "preprocess/cloud/fuse_memory.h"
 #include "preprocess/densify_stage.h"
 
 // Processor time and memory with llvmpipe on a core of an AMD EPYC (docs/how/scale.md has how they
 // were measured).
 static const double PASS_S_PER_MPX = 8, FUSE_S_PER_MPX = 1.5, FINISH_S_PER_MPX = 2.5;
-static const double FUSE_BYTES_PER_PX = 34;
 static const double PART_BASE_BYTES = 140 << 20, PART_BYTES_PER_PX = 300;
-static const double FINISH_BASE_BYTES = 100 << 20, FINISH_BYTES_PER_PX = 48;
+// Of finish where clusters are fused: of a point when radii are found, and 63,000 points a megapixel.
+static const double FINISH_BASE_BYTES = 140 << 20, RADII_BYTES_PER_PX = 160 * 0.063;
 // Of calibrate: of a photograph of --quality standard, and of a pair.
 static const double FEATURES_S = 2, PAIR_S = 0.2, MAP_S = 1, FEATURES_BYTES = 1 << 20;
 static const double CALIBRATE_BYTES = 512 << 20;
@@ -41,7 +42,7 @@ struct planner {
     const char *max_vram; // MiB, NULL: no limit
     bool masks;
     int parts;
-    int fuse_size;     // photographs of a cluster at most
+    double max_ram;    // bytes; INFINITY: no limit, since the machines of the jobs are not known
     struct orl_clusters clusters; // of fusion
     bool *reads;       // owned; [part * parts + other]: has part a source in the other?
     double *pixels;    // owned; of each photograph
@@ -141,8 +142,10 @@ static enum orl_result read_scene(struct planner *p, int photographs)
     p->reads = orl_array(p->log, (size_t)p->parts * (size_t)p->parts + 1, sizeof *p->reads);
     if (!p->pixels || !p->reads)
         return ORL_ERR_MEMORY;
-    p->fuse_size = orl_fuse_cluster_size(argument(p, "--fuse-cluster"));
-    result = orl_clusters_make(p->log, &p->model, &p->photos, (size_t)p->fuse_size, &p->clusters);
+    const char *max_ram = argument(p, "--max-ram"), *asked = argument(p, "--fuse-cluster");
+    p->max_ram = max_ram ? atof(max_ram) * (1 << 20) : (double)INFINITY;
+    result = orl_fuse_clusters(p->log, &p->model, &p->photos, asked ? atoi(asked) : 0, p->max_ram,
+                               &p->clusters);
     if (result != ORL_OK)
         return result;
     for (size_t i = 0; i < count; i++) {
@@ -265,7 +268,7 @@ static json_t *fuse_command(const struct planner *p, int cluster)
 {
     json_t *list = json_pack("[s, s, s]", "oriel", "fuse", p->dir);
     const char *max_ram = argument(p, "--max-ram");
-    add_option(list, "--photographs", p->fuse_size);
+    add_option(list, "--photographs", (int)p->clusters.size);
     if (p->masks)
         add_text(list, "--masks");
     if (max_ram) {
@@ -303,14 +306,14 @@ static enum orl_result plan_cluster(struct planner *p, int cluster)
     double pixels;
     json_t *needs = json_array();
     enum orl_result result = fuse_needs(p, cluster, needs, &pixels);
-    char *path = orl_fuse_cluster_path(p->log, p->dir, (size_t)p->fuse_size, cluster, ".ply");
+    char *path = orl_fuse_cluster_path(p->log, p->dir, p->clusters.size, cluster, ".ply");
     if (result == ORL_OK && path)
         json_array_append_new(p->jobs, json_pack(
             "{s:o, s:s, s:o, s:O, s:[s+, s+, s+], s:[s], s:i, s:f, s:f, s:f, s:f}", "name",
             fuse_name(cluster), "kind", "fuse", "command", fuse_command(p, cluster), "needs",
             needs, "inputs", p->dir, "/stereo", p->dir, "/images", p->dir, "/sparse", "outputs",
             path, "threads", 1, "cpu_s", pixels * 1e-6 * FUSE_S_PER_MPX, "memory_bytes",
-            FINISH_BASE_BYTES + FUSE_BYTES_PER_PX * pixels, "read_bytes",
+            FINISH_BASE_BYTES + fmin(orl_fuse_bytes(pixels), p->max_ram), "read_bytes",
             pixels * 2 * PASS_BYTES, "written_bytes", pixels * CLOUD_BYTES));
     json_decref(needs);
     free(path);
@@ -342,12 +345,17 @@ static void plan_finish(struct planner *p)
     for (size_t i = 0; i < p->photos.count; i++)
         pixels += p->pixels[i];
     bool fuses = p->clusters.count < 2;
+    json_t *command = prepare_command(p, NULL);
+    // The clusters that are planned, whatever memory the machine of this job has.
+    if (!argument(p, "--max-ram") && !argument(p, "--fuse-cluster"))
+        add_option(command, "--fuse-cluster", p->clusters.size > 2 ? (int)p->clusters.size : 2);
     json_array_append_new(p->jobs, json_pack(
         "{s:s, s:s, s:o, s:o, s:[s+], s:[s+, s+], s:i, s:f, s:f, s:f, s:f}", "name", "finish",
-        "kind", "finish", "command", prepare_command(p, NULL), "needs", needs, "inputs", p->dir, "/stereo",
+        "kind", "finish", "command", command, "needs", needs, "inputs", p->dir, "/stereo",
         "outputs", p->dir, "/points.ply", p->dir, "/scene.json", "threads", 1, "cpu_s",
         pixels * 1e-6 * (FINISH_S_PER_MPX + (fuses ? FUSE_S_PER_MPX : 0)), "memory_bytes",
-        FINISH_BASE_BYTES + (fuses ? FINISH_BYTES_PER_PX : CLOUD_BYTES * 2.0) * pixels,
+        FINISH_BASE_BYTES + fmin(fuses ? orl_fuse_bytes(pixels) : RADII_BYTES_PER_PX * pixels,
+                                 p->max_ram),
         "read_bytes",
         pixels * 3 * PASS_BYTES, "written_bytes", pixels * CLOUD_BYTES));
 }

@@ -82,7 +82,8 @@ struct orl_prepare_params {
     enum orl_prepare_mesh mesh;
     int radius_neighbours;     // a splat's radius is the distance to its k-th neighbour, [1, 64],
     double radius_overlap;     // times this, (0, 8]; 0 each: 6 and 1
-    int fuse_cluster;          // photographs fused together at most; 0: 400
+    int fuse_cluster;          // photographs fused together at most; 0: what fits in
+                               // memory, and 400
     const char *masks_dir;     // NAME.png or NAME.EXT.png, black = ignore; NULL: none
     const char *exposures;     // CSV that overrides EXIF (exposure_list.h); NULL: none
     enum orl_until until;

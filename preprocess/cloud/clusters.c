@@ -150,6 +150,11 @@ static int compare_helpers(const void *left, const void *right)
            : a->image < b->image ? -1 : a->image > b->image;
 }
 
+size_t orl_clusters_helpers(size_t size)
+{
+    return (size + 1) / 2;
+}
+
 enum orl_result orl_clusters_photographs(const struct orl_log *log,
                                          const struct orl_clusters *clusters, int cluster,
                                          struct orl_names *names)
@@ -171,7 +176,7 @@ enum orl_result orl_clusters_photographs(const struct orl_log *log,
     }
     if (result == ORL_OK)
         qsort(helpers, count, sizeof *helpers, compare_helpers);
-    for (size_t i = 0; result == ORL_OK && i < count && i < (clusters->size + 1) / 2; i++)
+    for (size_t i = 0; result == ORL_OK && i < count && i < orl_clusters_helpers(clusters->size); i++)
         take[helpers[i].image] = true;
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
         if (take[i])

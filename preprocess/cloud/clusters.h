@@ -22,8 +22,10 @@ enum orl_result orl_clusters_make(const struct orl_log *log, const struct orl_co
                                   const struct orl_names *train, size_t size,
                                   struct orl_clusters *clusters) ORL_CHECK_RESULT;
 void orl_clusters_finish(struct orl_clusters *clusters);
-// The photographs that are fused for a cluster, in the model's order: its members, and half as many
-// others as a cluster may have members, those that show the cluster's sparse points best.
+// How many photographs that are no members help a cluster of so many members at most.
+size_t orl_clusters_helpers(size_t size);
+// The photographs that are fused for a cluster, in the model's order: its members, and of the others
+// those that show the cluster's sparse points best.
 enum orl_result orl_clusters_photographs(const struct orl_log *log,
                                          const struct orl_clusters *clusters, int cluster,
                                          struct orl_names *names) ORL_CHECK_RESULT;

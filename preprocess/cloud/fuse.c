@@ -9,21 +9,29 @@
 #include "core/file.h"
 #include "core/lock.h"
 #include "core/memory.h"
-#include "preprocess/cloud/clusters.h"
+#include "preprocess/cloud/fuse_memory.h"
 #include "preprocess/cloud/fuse_photographs.h"
 #include "preprocess/job/colmap_run.h"
 #include "scene/point_stream.h"
 
-enum { CLUSTER_SIZE = 400 }; // photographs that are fused together by default
+enum { CLUSTER_MOST = 400 }; // photographs that are fused together when nobody asks for more
 
-static int size_of(int size)
+enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_colmap_model *model,
+                                  const struct orl_names *train, int asked, double budget,
+                                  struct orl_clusters *clusters)
 {
-    return size ? size : CLUSTER_SIZE;
-}
-
-int orl_fuse_cluster_size(const char *option)
-{
-    return size_of(option ? atoi(option) : 0);
+    size_t size = (size_t)asked;
+    enum orl_result result = asked ? ORL_OK
+                                   : orl_fuse_plan_size(log, model, train, CLUSTER_MOST, budget,
+                                                        &size);
+    if (result == ORL_OK)
+        result = orl_clusters_make(log, model, train, size, clusters);
+    if (result == ORL_OK && !asked && clusters->count > 1)
+        orl_logf(log, ORL_LOG_INFO, "fuse: %zu clusters of at most %zu of the %zu photographs, and "
+                 "%zu more to help each%s", clusters->count, size, train->count,
+                 orl_clusters_helpers(size), size < CLUSTER_MOST ? ", so that they fit in memory"
+                                                                 : "");
+    return result;
 }
 
 json_t *orl_stage_fuse_settings(const struct orl_job *job)
@@ -31,11 +39,10 @@ json_t *orl_stage_fuse_settings(const struct orl_job *job)
     size_t most = 0;
     for (size_t i = 0; i < job->source_count; i++)
         most += !job->sources[i].test;
-    // One fusion of all has no "cluster" in the key, so older keys stay valid.
-    return json_pack("{s:o*}", "cluster",
-                     most > (size_t)size_of(job->params->fuse_cluster)
-                         ? json_integer(size_of(job->params->fuse_cluster))
-                         : NULL);
+    // One fusion of all has no "cluster" in the key, so older keys stay valid. A size that memory
+    // decides is not in it either: a fusion is not done again because other memory is free.
+    int size = job->params->fuse_cluster ? job->params->fuse_cluster : CLUSTER_MOST;
+    return json_pack("{s:o*}", "cluster", most > (size_t)size ? json_integer(size) : NULL);
 }
 
 static enum orl_result write_cloud(struct orl_job *job, const char *path, struct orl_points *points)
@@ -235,8 +242,8 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     if (result == ORL_OK)
         result = orl_job_train_names(job, &train);
     if (result == ORL_OK)
-        result = orl_clusters_make(job->log, model, &train,
-                                   (size_t)size_of(job->params->fuse_cluster), &clusters);
+        result = orl_fuse_clusters(job->log, model, &train, job->params->fuse_cluster,
+                                   orl_fuse_budget(job->params->max_ram_bytes), &clusters);
     if (result == ORL_OK && clusters.count > 1)
         result = fuse_clusters(job, &clusters, path, &points);
     else if (result == ORL_OK)
@@ -245,6 +252,8 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
         result = orl_job_remove(job, "stereo/fused");
     if (result == ORL_OK) {
         json_object_set_new(record, "clusters", json_integer((json_int_t)clusters.count));
+        if (clusters.count > 1)
+            json_object_set_new(record, "cluster_size", json_integer((json_int_t)clusters.size));
         json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
         json_object_set_new(record, "points", json_integer((json_int_t)points));
         orl_progress_report(job->progress, "fuse", 1, 1, NULL);
@@ -268,8 +277,8 @@ static enum orl_result fuse_one(struct orl_job *job, const struct orl_fuse_param
     if (result == ORL_OK)
         result = orl_job_train_names(job, &train);
     if (result == ORL_OK)
-        result = orl_clusters_make(job->log, model, &train, (size_t)size_of(params->size),
-                                   &clusters);
+        result = orl_fuse_clusters(job->log, model, &train, params->size,
+                                   orl_fuse_budget(params->max_ram_bytes), &clusters);
     if (result == ORL_OK && (clusters.count < 2 || clusters.count != (size_t)params->count))
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: %zu photographs are fused in %zu "
                           "cluster%s, not in %d", job->dir, train.count, clusters.count,

@@ -3,6 +3,7 @@
 #ifndef ORL_PREPROCESS_FUSE_H
 #define ORL_PREPROCESS_FUSE_H
 
+#include "preprocess/cloud/clusters.h"
 #include "preprocess/job/job.h"
 
 enum { ORL_FUSE_VERSION = 6 }; // raised when the points of the same maps change
@@ -11,15 +12,19 @@ json_t *orl_stage_fuse_settings(const struct orl_job *job);
 // Writes .oriel/fused.ply. Clouds of clusters that oriel fuse has made are used.
 enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 
-// The photographs of a cluster at most, of the option --fuse-cluster; NULL: the default.
-int orl_fuse_cluster_size(const char *option);
+// Clusters the photographs `train` of the model: at most `asked` a cluster (--fuse-cluster), or where
+// that is 0, as many as fit in `budget` bytes and no more than 400. The model must outlive the
+// clusters.
+enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_colmap_model *model,
+                                  const struct orl_names *train, int asked, double budget,
+                                  struct orl_clusters *clusters) ORL_CHECK_RESULT;
 // The file of a cluster's cloud, with another extension than .ply for what belongs to it. The caller
 // releases it with free().
 char *orl_fuse_cluster_path(const struct orl_log *log, const char *scene, size_t size, int cluster,
                             const char *extension);
 
 struct orl_fuse_params {
-    int size;             // photographs of a cluster at most; 0: the default
+    int size;             // photographs of a cluster at most; 0: what fits in memory
     int cluster, count;   // the cluster to fuse, from 0 on, of so many
     bool masks;           // SCENE/masks is respected
     size_t max_ram_bytes; // 0: half of what is free

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "preprocess/cloud/fuse_memory.h"
 #include "preprocess/job/colmap_run.h"
 #include "scene/point_radii.h"
 #include "scene/thin.h"
@@ -13,46 +14,22 @@
 // Fraction of depth by which a photograph must see past a point to call the point an outlier.
 static const float STRAY_TOLERANCE = 0.01f;
 
-// Bytes that fusion takes of each pixel beside the maps: COLMAP's marks of fused pixels, and the
-// points with the lists of their photographs.
-enum { MAP_BYTES = 24, OTHER_BYTES = 10 };
 static const double GIB = 1 << 30, CACHE_LEAST_GIB = 1.0 / 256;
-
-static double pixels_of(const struct orl_colmap_model *model, const struct orl_names *names)
-{
-    double pixels = 0;
-    for (size_t i = 0; i < model->image_count; i++) {
-        if (!orl_names_contain(names, model->images[i].name))
-            continue;
-        const struct orl_camera *camera =
-            &orl_colmap_camera_by_id(model, model->images[i].camera_id)->pinhole;
-        pixels += (double)camera->width * camera->height;
-    }
-    return pixels;
-}
-
-// Memory that fusion may take, GiB.
-static double budget_gib(const struct orl_job *job)
-{
-    uint64_t available = orl_memory_available();
-    if (job->params->max_ram_bytes)
-        return (double)job->params->max_ram_bytes / GIB;
-    return available == UINT64_MAX ? 2 : 0.5 * (double)available / GIB;
-}
 
 // Size of COLMAP's cache of maps in GiB; 0 when all maps fit. With a cache the points are the same;
 // maps are read again and again.
 static double plan_cache(const struct orl_job *job, const struct orl_colmap_model *model,
                          const struct orl_names *names)
 {
-    double budget = budget_gib(job), pixels = pixels_of(model, names);
-    double maps = MAP_BYTES * pixels / GIB, other = OTHER_BYTES * pixels / GIB;
-    if (maps + other <= budget)
+    double budget = orl_fuse_budget(job->params->max_ram_bytes) / GIB;
+    double pixels = orl_fuse_pixels(model, names), all = orl_fuse_bytes(pixels) / GIB;
+    double other = orl_fuse_bytes_beside_maps(pixels) / GIB;
+    if (all <= budget)
         return 0;
     double cache = fmax(budget - other, CACHE_LEAST_GIB);
     orl_logf(job->log, ORL_LOG_INFO,
              "fuse: all maps take %.0f MiB and %.0f may be used; reading them through a cache of "
-             "%.0f MiB, which is slower", 1024 * (maps + other), 1024 * budget, 1024 * cache);
+             "%.0f MiB, which is slower", 1024 * all, 1024 * budget, 1024 * cache);
     if (cache + other > budget)
         orl_logf(job->log, ORL_LOG_WARNING, "fuse: %.0f MiB are not enough for %.1f megapixels; it "
                  "takes about %.0f MiB; --fuse-cluster fuses fewer photographs at a time",

@@ -36,8 +36,8 @@ int cmd_fuse(int argc, char **argv)
     struct options o = {0};
     const struct arg_option table[] = {
         {"part", ARG_STRING, &o.part, "K/N", "the K-th of N clusters", 0, 0},
-        {"photographs", ARG_INT, &o.photographs, "N", "of a cluster, at most; default 400", 2,
-         100000},
+        {"photographs", ARG_INT, &o.photographs, "N",
+         "of a cluster, at most; default: what fits in memory, and 400", 2, 100000},
         {"masks", ARG_FLAG, &o.masks, NULL, "respect the scene's masks", 0, 0},
         {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
          "memory to keep to; default: half of what is free", 1, 1 << 24},

@@ -108,7 +108,7 @@ int cmd_prepare(int argc, char **argv)
         {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
          "memory that fusion and points keep to; default: half of what is free", 1, 1 << 24},
         {"fuse-cluster", ARG_INT, &o.fuse_cluster, "N",
-         "photographs fused together at most; more are fused in clusters; default 400", 2, 100000},
+         "photographs fused together at most; default: what fits in memory, and 400", 2, 100000},
         {"resume", ARG_FLAG, &o.resume, NULL, "go on with what is in SCENE", 0, 0},
         {"seed", ARG_INT, &o.seed, "N", "of random choices", 0, 2147483647},
         {0},

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "preprocess/cloud/clusters.h"
+#include "preprocess/cloud/fuse_memory.h"
 #include "test.h"
 
 enum { CAMERAS = 10, TEST = 4 };
@@ -108,12 +109,51 @@ static void points_are_kept_once(void **state)
     orl_colmap_finish(&model);
 }
 
+// A hundred photographs of 0.8 megapixels: 32 MiB of COLMAP's program, 24 bytes a pixel of 51 in its
+// cache, and 10 of each.
+static void clusters_follow_the_memory(void **state)
+{
+    enum { COUNT = 100 };
+    const double mpx = 0.8e6, cache = (32 << 20) + 24 * 51 * mpx, other = 10 * mpx;
+    struct orl_colmap_model model = {
+        .cameras = calloc(1, sizeof *model.cameras), .camera_count = 1,
+        .images = calloc(COUNT, sizeof *model.images), .image_count = COUNT};
+    struct orl_names names = {0};
+    size_t size;
+    (void)state;
+    model.cameras[0].id = 1;
+    model.cameras[0].pinhole = (struct orl_camera){1000, 800, 900, 900, 500, 400};
+    for (int i = 0; i < COUNT; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d.png", i);
+        model.images[i] = (struct orl_colmap_image){.name = strdup(name), .camera_id = 1};
+        assert_int_equal(orl_names_add(NULL, &names, name), ORL_OK);
+    }
+    assert_true(orl_fuse_pixels(&model, &names) == COUNT * mpx);
+    const struct { double bytes; size_t most, size; } expected[] = {
+        {cache + other * 100, 400, 100},     // all at once
+        {cache + other * 100, 60, 60},       // 60 and 30 helpers fit
+        {cache + other * 100 - 1, 400, 50},  // two clusters of 50 and 25 helpers
+        {cache + other * 75 - 1, 400, 34},   // three of 34 and 17
+        {cache + other * 51 - 1, 400, 25},   // four of 25 and 13
+        {other, 400, 8},                     // 13 of 8: no fewer than that
+    };
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        assert_int_equal(orl_fuse_plan_size(NULL, &model, &names, expected[i].most,
+                                            expected[i].bytes, &size), ORL_OK);
+        assert_int_equal(size, expected[i].size);
+    }
+    orl_names_finish(&names);
+    orl_colmap_finish(&model);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_photograph_and_point_has_one_cluster),
         cmocka_unit_test(neighbours_help_and_held_out_photographs_do_not),
         cmocka_unit_test(points_are_kept_once),
+        cmocka_unit_test(clusters_follow_the_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
