@@ -11,7 +11,7 @@ enum { SCENES_MAX = 64, PEERS_MAX = 16 };
 
 struct options {
     struct orl_names methods, peers;
-    const char *out, *vary;
+    const char *out, *vary, *part;
     double seconds;
     int views, max_vram_mib;
     bool quick;
@@ -88,6 +88,8 @@ static enum orl_result run(const struct terminal *terminal, const struct options
     if (!o->out)
         return orl_fail(log, ORL_ERR_ARGUMENT, "chart: --out DIR is needed");
     enum orl_result result = parse_peers(log, &o->peers, peers, &params.peer_count);
+    if (result == ORL_OK && o->part)
+        result = args_part(log, o->part, &params.part.part, &params.part.parts);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
@@ -95,8 +97,9 @@ static enum orl_result run(const struct terminal *terminal, const struct options
         result = orl_chart_run(gpu, &params, &chart);
     if (result == ORL_OK) {
         print_rows(&chart);
-        printf("\n%zu rows measured, %zu used again, %zu left out: %s/chart.html\n",
-               chart.measured, chart.reused, chart.left_out, o->out);
+        printf("%s%zu rows measured, %zu used again, %zu left out: %s/%s\n", o->part ? "" : "\n",
+               chart.measured, chart.reused, chart.left_out, o->out,
+               o->part ? "rows" : "chart.html");
     }
     orl_chart_finish(&chart);
     orl_gpu_destroy(&gpu);
@@ -120,6 +123,8 @@ int cmd_chart(int argc, char **argv)
          3600},
         {"peer", ARG_LIST, &o.peers, "NAME=DIR[,ms=..][,MIB=..]",
          "another program's pictures of the held-out views: DIR/SCENE/PHOTO.png", 0, 0},
+        {"part", ARG_STRING, &o.part, "K/N",
+         "only the K-th of N parts of the rows, kept for a run of all (oriel plan)", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

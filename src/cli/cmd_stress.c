@@ -27,7 +27,7 @@ static void print_losses(const struct orl_stress *stress)
 }
 
 static enum orl_result run(const struct terminal *terminal, const struct orl_stress_params *given,
-                           const struct arg_common *common)
+                           const char *part, const struct arg_common *common)
 {
     const struct orl_log *log = &terminal->log;
     struct orl_stress_params params = *given;
@@ -37,15 +37,17 @@ static enum orl_result run(const struct terminal *terminal, const struct orl_str
         return orl_fail(log, ORL_ERR_ARGUMENT, "stress: --out DIR is needed");
     params.progress = &terminal->progress;
     enum orl_result result =
-        orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                     .debug = common->verbose}, &gpu);
+        part ? args_part(log, part, &params.part.part, &params.part.parts) : ORL_OK;
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
     if (result == ORL_OK)
         result = orl_stress_run(gpu, &params, &stress);
     if (result == ORL_OK) {
         print_losses(&stress);
-        printf("\n%zu rows measured, %zu used again, %zu left out, %zu break an invariant: "
-               "%s/stress.html\n", stress.measured, stress.reused, stress.left_out, stress.broken,
-               params.out);
+        printf("%s%zu rows measured, %zu used again, %zu left out, %zu break an invariant: "
+               "%s/%s\n", part ? "" : "\n", stress.measured, stress.reused, stress.left_out,
+               stress.broken, params.out, part ? "rows" : "stress.html");
     }
     orl_stress_finish(&stress);
     orl_gpu_destroy(&gpu);
@@ -65,6 +67,7 @@ int cmd_stress(int argc, char **argv)
 {
     struct orl_names methods = {0}, axes = {0};
     struct orl_stress_params params = {ORL_STRESS_DEFAULTS, .methods = &methods, .axes = &axes};
+    const char *part = NULL;
     int views = (int)params.views, seed = (int)params.seed;
     const struct arg_option table[] = {
         {"out", ARG_STRING, &params.out, "DIR",
@@ -79,6 +82,8 @@ int cmd_stress(int argc, char **argv)
         {"photographs", ARG_INT, &params.photographs, "N", "of the synthetic monument; default 16",
          ORL_STRESS_PHOTOGRAPHS_MIN, 500},
         {"views", ARG_INT, &views, "N", "held-out photographs, at most; default 2", 1, 100},
+        {"part", ARG_STRING, &part, "K/N",
+         "only the K-th of N parts of the rows, kept for a run of all (oriel plan)", 0, 0},
         {"seed", ARG_INT, &seed, "N", "of everything random; default 1", 0, INT32_MAX},
         {0},
     };
@@ -97,7 +102,7 @@ int cmd_stress(int argc, char **argv)
     if (command_begin(&command, argc, argv, &common, &terminal, &params.scene, &count, &status)) {
         params.views = (size_t)views;
         params.seed = (uint32_t)seed;
-        enum orl_result result = run(&terminal, &params, &common);
+        enum orl_result result = run(&terminal, &params, part, &common);
         if (fflush(stdout) != 0 && result == ORL_OK)
             result = orl_fail(&terminal.log, ORL_ERR_IO, "standard output: cannot write");
         status = command_status(result);

@@ -147,10 +147,14 @@ static enum orl_result chart_scene(struct job *job, const char *dir)
     if (result == ORL_OK)
         result = orl_chart_make_plan(job->gpu, scene.scene, job->params, &plan);
     if (job->total == 0)
-        job->total = (double)(plan.count * job->params->scene_count);
+        job->total = (double)(plan.count * job->params->scene_count) /
+                     (job->params->part.parts ? job->params->part.parts : 1);
     for (size_t i = 0; result == ORL_OK && i < plan.count; i++)
-        result = add_config(job, &scene, &plan.items[i]);
-    for (size_t i = 0; result == ORL_OK && i < job->params->peer_count; i++)
+        if (orl_row_part_has(&job->params->part, i))
+            result = add_config(job, &scene, &plan.items[i]);
+    // Rows of peers are not kept.
+    for (size_t i = 0; result == ORL_OK && !job->params->part.parts &&
+                       i < job->params->peer_count; i++)
         result = add_peer(job, &scene, &job->params->peers[i]);
     free(plan.items);
     finish_scene(&scene);
@@ -210,7 +214,7 @@ enum orl_result orl_chart_run(struct orl_gpu *gpu, const struct orl_chart_params
         return orl_fail(job.log, ORL_ERR_MEMORY, "no memory for the chart");
     for (size_t i = 0; result == ORL_OK && i < params->scene_count; i++)
         result = chart_scene(&job, params->scenes[i]);
-    if (result == ORL_OK)
+    if (result == ORL_OK && !params->part.parts)
         result = finish_chart(&job, root);
     if (result == ORL_OK)
         orl_progress_report(params->progress, "chart", 1, 1, NULL);

@@ -4,6 +4,7 @@
 #define ORL_EVAL_CHART_H
 
 #include "core/file.h"
+#include "eval/row_store.h"
 #include "oriel/progress.h"
 #include "oriel/gpu.h"
 
@@ -29,6 +30,7 @@ struct orl_chart_params {
     bool quick;            // an overview: only the methods themselves, on two photographs at half
                            // size
     size_t max_vram_bytes; // 0: no limit
+    struct orl_row_part part; // of the rows of each scene
     const struct orl_progress *progress;
 };
 
@@ -49,7 +51,7 @@ struct orl_chart {
 };
 
 // Measures the rows that OUT lacks and writes chart.json, chart.html and the SVG figures into OUT.
-// After ORL_ERR_CANCELLED OUT keeps the finished rows.
+// After ORL_ERR_CANCELLED OUT keeps the finished rows, and after a part its rows, without a report.
 enum orl_result orl_chart_run(struct orl_gpu *gpu, const struct orl_chart_params *params,
                               struct orl_chart *chart) ORL_CHECK_RESULT;
 void orl_chart_finish(struct orl_chart *chart);

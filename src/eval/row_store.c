@@ -23,6 +23,11 @@ void orl_row_id(const char *method, const char *setting, char id[ORL_ROW_ID_MAX]
             *c = '-';
 }
 
+bool orl_row_part_has(const struct orl_row_part *part, size_t row)
+{
+    return !part->parts || row % (size_t)part->parts == (size_t)part->part;
+}
+
 const char *orl_row_text(const json_t *row, const char *key)
 {
     const char *text = json_string_value(json_object_get(row, key));

@@ -15,7 +15,6 @@
 #include "io/picture.h"
 
 enum { JPEG_QUALITY = 82 };
-static const char work_folder[] = ".work"; // of the report's folder
 static const char synth_name[] = "synth";
 
 struct job {
@@ -28,6 +27,8 @@ struct job {
     struct stress_case base;
     struct orl_choices choices;
     json_t *provenance, *rows; // rows: of the report
+    char work_folder[32];      // of the report's folder
+    size_t severities;         // so far, which parts divide
     double done, total;        // number of rows, for the progress report
 };
 
@@ -43,7 +44,7 @@ struct severity {
 
 static char *work_path(const struct job *job, const char *name)
 {
-    return orl_format(job->log, "%s/%s/%s", job->params->out, work_folder, name);
+    return orl_format(job->log, "%s/%s/%s", job->params->out, job->work_folder, name);
 }
 
 // --- one severity ---
@@ -201,7 +202,8 @@ static enum orl_result add_severity(struct job *job, const struct stress_axis *a
     snprintf(id, sizeof id, "%s-%d", unchanged ? "start" : axis->name, level);
     struct severity s = {.axis = axis, .level = level, .id = id};
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < job->choices.count; i++)
+    bool own = orl_row_part_has(&job->params->part, unchanged ? 0 : ++job->severities);
+    for (size_t i = 0; own && result == ORL_OK && i < job->choices.count; i++)
         result = add_row(job, &s, &job->choices.items[i]);
     finish_severity(&s);
     return result;
@@ -349,9 +351,9 @@ static enum orl_result run(struct job *job)
     job->stress->json = root;
     job->rows = json_object_get(root, "rows");
     result = add_axes(job, json_object_get(root, "axes"));
-    if (result == ORL_OK)
+    if (result == ORL_OK && !params->part.parts)
         result = orl_stress_analyse(job->log, root);
-    if (result == ORL_OK)
+    if (result == ORL_OK && !params->part.parts)
         result = orl_stress_write(job->log, params->out, root);
     return result;
 }
@@ -386,14 +388,15 @@ enum orl_result orl_stress_run(struct orl_gpu *gpu, const struct orl_stress_para
     memset(stress, 0, sizeof *stress);
     job.store = (struct orl_row_store){job.log, params->out,
                                        orl_path_name(whole ? whole : params->scene)};
+    snprintf(job.work_folder, sizeof job.work_folder, ".work-%d", params->part.part);
     enum orl_result result = check_axes(job.log, params->axes);
     if (result == ORL_OK)
         result = orl_dir_make(job.log, params->out);
     if (result == ORL_OK)
         result = run(&job);
-    if (result == ORL_OK)
+    if (result == ORL_OK && !params->part.parts)
         result = list_losses(job.log, stress);
-    char *work = orl_path_join(job.log, params->out, work_folder);
+    char *work = orl_path_join(job.log, params->out, job.work_folder);
     if (work && orl_dir_remove(NULL, work) != ORL_OK && result == ORL_OK)
         result = orl_fail(job.log, ORL_ERR_IO, "%s: cannot be removed", work);
     free(work);

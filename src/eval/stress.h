@@ -3,6 +3,7 @@
 #ifndef ORL_EVAL_STRESS_H
 #define ORL_EVAL_STRESS_H
 
+#include "eval/row_store.h"
 #include "oriel/gpu.h"
 #include "oriel/names.h"
 #include "oriel/progress.h"
@@ -26,6 +27,7 @@ struct orl_stress_params {
     uint32_t seed;
     bool quick;        // an overview: one view, and of each axis the first, a middle and the last
                        // severity
+    struct orl_row_part part; // of the severities of all axes
     const struct orl_progress *progress;
 };
 #define ORL_STRESS_DEFAULTS .side = 192, .photographs = 16, .views = 2, .seed = 1
@@ -49,7 +51,8 @@ struct orl_stress {
 bool orl_stress_axis_name(size_t index, const char **name, const char **title);
 
 // Measures the rows that OUT lacks and writes stress.json, stress.html and the SVG figures into
-// OUT. After ORL_ERR_CANCELLED OUT keeps the finished rows.
+// OUT. After ORL_ERR_CANCELLED OUT keeps the finished rows, and after a part its rows, without a
+// report.
 enum orl_result orl_stress_run(struct orl_gpu *gpu, const struct orl_stress_params *params,
                                struct orl_stress *stress) ORL_CHECK_RESULT;
 void orl_stress_finish(struct orl_stress *stress);

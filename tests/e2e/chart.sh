@@ -37,6 +37,23 @@ cp report/chart.json before.json
 runs 0 "${chart[@]}" --quick
 grep -q "^0 rows measured, $methods used again" stdout.txt || fail "rows were not used again"
 cmp -s before.json report/chart.json || fail "the same rows make another chart"
+
+# Two jobs at once make the rows, and a third run the same chart of them, timings aside.
+parts=("$oriel" chart ws --quiet --seconds 0 --out parts --quick)
+"${parts[@]}" --part 1/2 >first.txt &
+runs 0 "${parts[@]}" --part 2/2
+wait $! || fail "the first part fails"
+cat first.txt stdout.txt | grep -c '^[1-9][0-9]* rows measured' | grep -q 2 || fail "a part has no rows"
+[ -e parts/chart.json ] && fail "a part writes a report"
+runs 0 "${parts[@]}"
+grep -q "^0 rows measured, $methods used again" stdout.txt || fail "rows of the parts were not used"
+figures='"(scene|method|setting|photo|psnr_db|psnr_cc_db|psnr_covered_db|ssim|flip|coverage|completeness)"'
+for folder in report parts; do
+    (cd "$folder/rows/ws" && grep -E "$figures" ./*.json) >"$folder.rows"
+done
+cmp report.rows parts.rows || fail "the parts make other rows"
+runs 2 "${parts[@]}" --part 3/2
+
 rm report/pictures/ws/points/*.flip.jpg
 runs 0 "${chart[@]}" --quick
 grep -q "^1 rows measured" stdout.txt || fail "a row without its pictures was used again"
