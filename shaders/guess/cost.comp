@@ -21,6 +21,9 @@ const int AT_ONCE = 4; // planes for which the parameters of a photograph are lo
 const float DIFFER_MOST = 0.15;
 // Cost of leaving the estimate by FAR planes or more, and by fewer in proportion.
 const float PRIOR = 0.4, FAR = 4.0;
+// Cost of a plane that is nearer than the estimate by one step or more. Photographs that show the
+// sky or a black cloth agree at any depth, so their agreement before the background proves nothing.
+const float NEARER = 1.0;
 // A cell with surfaces in more than this share of the (2 AROUND + 1)^2 cells around it is closed:
 // the surfaces around a small hole know its depth better than colours do.
 const int AROUND = 4;
@@ -120,8 +123,9 @@ void main()
             i = c < asked ? chosen[list + c] : -1;
         } while (i >= 0);
         for (int n = 0; n < AT_ONCE && first + n < planes; n++) {
-            float off = abs(float(first + n) - estimate / plane_step);
-            costs[row + first + n] = cost_of(opinions[n]) + PRIOR * min(off / FAR, 1.0);
+            float off = float(first + n) - estimate / plane_step; // > 0: nearer than the estimate
+            costs[row + first + n] = cost_of(opinions[n]) + PRIOR * min(abs(off) / FAR, 1.0) +
+                                     NEARER * clamp(off, 0.0, 1.0);
         }
     }
 }

@@ -1,39 +1,40 @@
-// Depth where the surface has none: photographs agree on what is behind an opening in a wall.
+// Depth where the surface has none: photographs agree on what is behind an opening in a wall, and
+// bring nothing before it.
 #include <math.h>
 
 #include "wall_scene.h"
 
 enum { SIDE = 128, INNER = 20 };
-static const double FOCAL = 128, OPENING = 1.1, WALL_Z = 4, BEHIND_Z = 8;
+static const double FOCAL = 128, OPENING = 1.1, WALL_Z = 4, BEHIND_Z = 8, BEFORE_Z = 3;
 
 static struct orl_gpu *gpu;
 
 // Squares of random brightness, half a unit wide, in 8 bits.
-static uint8_t behind(double x, double y)
+static uint8_t squares(double x, double y)
 {
     uint32_t h = (uint32_t)(int)floor(2 * x) * 2654435761u ^ (uint32_t)(int)floor(2 * y) * 40503u;
     h = (h ^ h >> 15) * 2246822519u;
     return (uint8_t)(h >> 24);
 }
 
-// What a photograph from (eye, 0, 0) shows at a pixel: the green wall, or what is behind its
-// opening.
-static void shade(double eye, int i, int side, uint8_t rgb[3])
+// What a photograph from (eye, 0, 0) shows at a pixel: the green wall, or in its opening the
+// squares in the plane z.
+static void shade(double eye, double z, int i, int side, uint8_t rgb[3])
 {
     double x = (i % side + 0.5 - side / 2) / FOCAL, y = (i / side + 0.5 - side / 2) / FOCAL;
     bool open = fabs(eye + WALL_Z * x) < OPENING && fabs(WALL_Z * y) < OPENING;
-    uint8_t grey = behind(eye + BEHIND_Z * x, BEHIND_Z * y);
+    uint8_t grey = squares(eye + z * x, z * y);
     memcpy(rgb, open ? (const uint8_t[3]){grey, grey, grey} : green, 3);
 }
 
-static void add_true_photo(struct fixture *f, double eye)
+static void add_true_photo(struct fixture *f, double eye, double z)
 {
     enum { PHOTO_SIDE = 2 * SIDE };
     add_photo(f, look_from(eye, 0, 0, PHOTO_SIDE, FOCAL), green);
     struct orl_image image;
     assert_int_equal(orl_image_init(NULL, &image, PHOTO_SIDE, PHOTO_SIDE, 3, ORL_PIXEL_U8), ORL_OK);
     for (int i = 0; i < PHOTO_SIDE * PHOTO_SIDE; i++)
-        shade(eye, i, PHOTO_SIDE, &image.u8[3 * i]);
+        shade(eye, z, i, PHOTO_SIDE, &image.u8[3 * i]);
     repaint_photo(f, &image);
 }
 
@@ -54,15 +55,15 @@ static void make_wall(struct orl_points *points)
     points->count = kept;
 }
 
-// Mean absolute error of the picture in the middle of the opening.
-static double error_with(float depths)
+// Mean absolute error of the picture in the middle of the opening, with the squares in the plane z.
+static double error_with(float depths, double z)
 {
     struct fixture f;
     setup_empty(&f, WALL_Z);
     make_wall(&f.scene.points);
     static const double eyes[] = {-0.7, -0.4, 0.3, 0.6};
     for (size_t i = 0; i < ORL_COUNT(eyes); i++)
-        add_true_photo(&f, eyes[i]);
+        add_true_photo(&f, eyes[i], z);
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.guess_depths = depths;
     params.guess_blur = 0;
@@ -71,7 +72,7 @@ static double error_with(float depths)
     for (int y = SIDE / 2 - INNER; y < SIDE / 2 + INNER; y++)
         for (int x = SIDE / 2 - INNER; x < SIDE / 2 + INNER; x++) {
             uint8_t truth[3];
-            shade(0, y * SIDE + x, SIDE, truth);
+            shade(0, z, y * SIDE + x, SIDE, truth);
             sum += fabs(sqrt((double)color_at(&frame, x, y)[1]) -
                         pow(truth[1] / 255.0, 1.1)); // sRGB is about a power of 2.2
         }
@@ -83,10 +84,21 @@ static double error_with(float depths)
 static void photographs_tell_the_depth_behind_an_opening(void **state)
 {
     (void)state;
-    double rim = error_with(0), tried = error_with(16);
+    double rim = error_with(0, BEHIND_Z), tried = error_with(16, BEHIND_Z);
     print_message("mean error: depth of the rim %.3f, depths tried %.3f\n", rim, tried);
     assert_true(rim > 0.1);
     assert_true(tried < 0.5 * rim);
+}
+
+// The surfaces around an opening are its nearest background. Photographs that agree before it show
+// something plain, or all the same thing by chance.
+static void nothing_comes_before_the_background(void **state)
+{
+    (void)state;
+    double rim = error_with(0, BEFORE_Z), tried = error_with(16, BEFORE_Z);
+    print_message("mean error: depth of the rim %.4f, depths tried %.4f\n", rim, tried);
+    assert_true(rim > 0.05);
+    assert_float_equal(tried, rim, 0.1 * rim);
 }
 
 int main(void)
@@ -94,6 +106,7 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photographs_tell_the_depth_behind_an_opening),
+        cmocka_unit_test(nothing_comes_before_the_background),
     };
     int failed = cmocka_run_group_tests_name("guess", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);
