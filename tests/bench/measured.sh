@@ -173,16 +173,14 @@ END
     print_table "$work/accuracy.json" 'by_method(.mean.psnr_cc_db; 2)'
 }
 
-# What --adapt makes of a copy of a scene, and all methods on the scene itself. A scene that an older
-# program prepared is prepared anew as far as stages have changed since.
+# What --adapt makes of a copy of a scene, and all methods on the scene itself.
 adapted_scene() { # NAME
-    local arguments start end
-    arguments=$(scene_list | sed -n "s/^$1 //p")
+    local start end
     rm -rf "$work/adapted/$1"
     mkdir -p "$work/adapted"
     cp -r "$scenes/$1" "$work/adapted/$1"
     start=$EPOCHREALTIME
-    run "${adapt/ARGUMENTS/$arguments}" "$1" >"$work/adapted.txt"
+    run "$adapt" "$1" >"$work/adapted.txt"
     end=$EPOCHREALTIME
     run "$eval" "$1" >"$work/adapted.json"
     run "$all" "$1" >"$work/all.json"
@@ -200,7 +198,7 @@ adapted_scene() { # NAME
 }
 
 page_adapt() {
-    local adapt='oriel prepare ARGUMENTS --out WORK/adapted/NAME --max-size 768 --resume --adapt --adapt-budget 600 --quiet'
+    local adapt='oriel tune WORK/adapted/NAME --adapt --budget 600 --quiet'
     local eval='oriel eval WORK/adapted/NAME --quiet --json -'
     local all='oriel eval SCENES/NAME --method all --quiet --json -'
     local name
@@ -210,7 +208,7 @@ page_adapt() {
     head_of "Adapted scenes" "$work/adapt.json"
     cat <<'END'
 
-What `oriel prepare --adapt` chooses by training photographs, each rendered without itself, and what that gives on
+What `oriel tune --adapt` chooses by training photographs, each rendered without itself, and what that gives on
 held-out photographs, which it never reads. The best of the methods as they are, for each figure, stands beside it.
 END
     command_block "$adapt" "$eval" "$all"
