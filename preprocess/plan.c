@@ -18,7 +18,7 @@
 static const double PASS_S_PER_MPX = 8, FUSE_S_PER_MPX = 1.5, FINISH_S_PER_MPX = 2.5;
 static const double PART_BASE_BYTES = 140 << 20, PART_BYTES_PER_PX = 300;
 // Of finish where clusters are fused: of a point when radii are found, and 63,000 points a megapixel.
-static const double FINISH_BASE_BYTES = 140 << 20, RADII_BYTES_PER_PX = 160 * 0.063;
+static const double FINISH_BASE_BYTES = 100 << 20, RADII_BYTES_PER_PX = 160 * 0.063;
 // Of calibrate: of a photograph of --quality standard, and of a pair.
 static const double FEATURES_S = 2, PAIR_S = 0.2, MAP_S = 1, FEATURES_BYTES = 1 << 20;
 static const double CALIBRATE_BYTES = 512 << 20;

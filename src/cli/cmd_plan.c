@@ -8,8 +8,9 @@
 #include "preprocess/plan.h"
 
 struct options {
-    int photographs;
-    bool json;
+    int photographs, parts;
+    const char *chart, *stress, *methods;
+    bool json, quick;
 };
 
 static double number(const json_t *job, const char *key)
@@ -40,13 +41,21 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
                            const struct arg_common *common, const char *scene)
 {
     static const char *const kinds[] = {"features", "pairs", "matches", "calibrate",
-                                        "densify",  "fuse",  "finish"};
+                                        "densify",  "fuse",  "finish", "chart", "stress"};
     const struct options *o = options;
     json_t *plan;
     (void)common;
+    const struct orl_plan_report reports[] = {
+        {"chart", o->chart, o->methods, o->quick, o->parts},
+        {"stress", o->stress, o->methods, o->quick, o->parts}};
     enum orl_result result = orl_plan(&terminal->log, scene, o->photographs, &plan);
-    if (result != ORL_OK)
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(reports); i++)
+        if (reports[i].out)
+            result = orl_plan_add_report(&terminal->log, plan, &reports[i]);
+    if (result != ORL_OK) {
+        json_decref(plan);
         return result;
+    }
     const json_t *jobs = json_object_get(plan, "jobs");
     char *text = o->json ? json_dumps(plan, JSON_INDENT(1)) : NULL;
     if (o->json && !text)
@@ -64,9 +73,14 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_plan(int argc, char **argv)
 {
-    struct options o = {.photographs = 16};
+    struct options o = {.photographs = 16, .parts = 8};
     const struct arg_option table[] = {
         {"photographs", ARG_INT, &o.photographs, "N", "of a job, at most; default 16", 1, 100000},
+        {"chart", ARG_STRING, &o.chart, "DIR", "also the rows of oriel chart, into DIR", 0, 0},
+        {"stress", ARG_STRING, &o.stress, "DIR", "also the rows of oriel stress, into DIR", 0, 0},
+        {"parts", ARG_INT, &o.parts, "N", "jobs that make the rows of a report; default 8", 1, 1000},
+        {"method", ARG_STRING, &o.methods, "NAME,..", "of a report; default: all", 0, 0},
+        {"quick", ARG_FLAG, &o.quick, NULL, "an overview, of a report", 0, 0},
         {"json", ARG_FLAG, &o.json, NULL, "the graph, with each job's command, costs and files",
          0, 0},
         {0},

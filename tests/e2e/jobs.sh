@@ -110,4 +110,13 @@ run 0 fuse "$work/b" --part 1/2 --photographs 3
 says "nothing left to do"
 run 0 plan "$work/b"
 prints "is whole"
+
+# The rows of a chart as two jobs, and one that finds them all measured.
+run 0 plan "$work/b" --chart "$work/chart" --method points,airieau --quick --parts 2 --json
+cp "$work/out" "$work/rows.json"
+[ "$(grep -c '"name": "chart-000[12]"' "$work/rows.json")" = 2 ] || fail "no jobs of rows"
+jobs_in_order "$work/rows.json"
+prints "0 rows measured, 2 used again"
+[ -s "$work/chart/chart.json" ] || fail "no report of the rows"
+run 2 plan "$work" --chart "$work/chart"
 finish
