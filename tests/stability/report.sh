@@ -73,9 +73,10 @@ running() {
     echo "result, the exit status tells, and only a killed program leaves a temporary file. So too in"
     echo "\`prepare\`, from the start and resumed half-way, with a stand-in for COLMAP; afterwards"
     echo "\`--resume\` gives the bytes of a job that nothing disturbed. And in \`trim\`; afterwards the scene"
-    echo "that it reads is as it was, and the one that it makes is whole or absent. Unless the script was"
-    echo "told \`all\`, these are the first six calls of a kind and then every so many, in \`prepare\` calls 1, 3,"
-    echo "9 and so on, in \`trim\` 1, 32 and 1024."
+    echo "that it reads is as it was, and the one that it makes is whole or absent. And in \`publish\`, which"
+    echo "replaces a site; afterwards the old or the new site is whole. Unless the script was told \`all\`, these"
+    echo "are the first six calls of a kind and then every so many, in \`prepare\` calls 1, 3, 9 and so on, in"
+    echo "\`trim\` 1, 32 and 1024, in \`publish\` those around the exchange of the two sites."
     echo
     echo "| fault | times | files cut, crashes, wrong statuses |"
     echo "|---|--:|--:|"

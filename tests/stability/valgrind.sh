@@ -21,7 +21,11 @@ for folder in "$inputs"/*/; do
     fi
     count=$((count + $(find "$folder" -type f | wc -l)))
 done
-[ $# -gt 0 ] || for test in "$build"/tests/unit_test_*; do set -- "$@" "$(basename "$test")"; done
+# test_heif encodes its pictures by x265, whose assembly code valgrind cannot follow; what is decoded
+# is among the inputs above.
+[ $# -gt 0 ] || for test in "$build"/tests/unit_test_*; do
+    [ "${test##*/}" = unit_test_heif ] || set -- "$@" "${test##*/}"
+done
 for name in "$@"; do
     log=$(valgrind -q --error-exitcode=9 --track-origins=yes "$build/tests/$name" 2>&1)
     status=$?
