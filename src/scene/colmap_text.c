@@ -87,7 +87,8 @@ static enum orl_result read_observations(struct orl_text_lines *l, const struct 
         double id;
         if (!orl_text_number(l, &id))
             return orl_text_bad(l, "an observation needs x, y and a point's id");
-        int64_t index = id < 0 || id > 9e15 ? -1 : orl_colmap_point_index(model, (uint64_t)id);
+        bool whole = id >= 0 && id <= 9e15; // -1: of no point; false for NaN, too
+        int64_t index = whole ? orl_colmap_point_index(model, (uint64_t)id) : -1;
         if (index < 0)
             continue;
         enum orl_result result = orl_grow(l->log, (void **)&image->points, &capacity,
