@@ -107,7 +107,8 @@ running() {
         echo "Under AddressSanitizer and UndefinedBehaviorSanitizer, without leaks, which the unit tests"
         echo "look for, $(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$fuzz/sanitized.txt" || true) failed of" \
             "$(sed -nE 's/.*Test +#[0-9]+: e2e\/([a-z_]+) .*(Passed|\*\*\*[FTE]).*/`\1`/p' "$fuzz/sanitized.txt" |
-                sort -u | paste -sd, | sed 's/,/, /g' | fold -sw 96)."
+                sort -u | paste -sd, | sed 's/,/, /g' | fold -sw 96)" \
+            "(of $(find "$source/tests/e2e" -name '*.sh' | wc -l) scripts)."
         echo
     fi
     echo "## Uninitialized memory"
