@@ -126,7 +126,7 @@ int cmd_tune(int argc, char **argv)
          "start no trial after so long; default: none, and 120 with --adapt", 0, 1e6},
         {"views", ARG_INT, &o.views, "N",
          "photographs to compare with, at most; default 16, and 6 with --adapt", 1, 100000},
-        {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 2", 1,
+        {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 1", 1,
          16},
         {"gain", ARG_NUMBER, &o.gain_db, "DB", "a change must bring so much; default 0.01", 0, 10},
         {"json", ARG_STRING, &o.json, "FILE", "write result and trials as JSON", 0, 0},

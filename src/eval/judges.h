@@ -14,9 +14,9 @@ struct orl_judges {
     bool *skip; // owned: photographs that the current rendering does without
 };
 
+// Loads at most `most` training photographs, evenly chosen (0: all), at 1/divide of their size.
 // Where the exposure of held-out photographs cannot be guessed, that of training photographs is not
 // used, either: a rendering that knows it would gain what no held-out photograph confirms.
-// Loads at most `most` training photographs, evenly chosen (0: all), at 1/divide of their size.
 // ORL_ERR_DATA: fewer than three photographs are for training.
 enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
                                 size_t most, int divide,

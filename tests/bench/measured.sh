@@ -219,7 +219,7 @@ END
              (.adapted.psnr_db | fixed(2)), ($p.psnr_db | fixed(2)) + " `" + $p.method + "`",
              (.adapted.ssim | fixed(3)), ($s.ssim | fixed(3)) + " `" + $s.method + "`",
              (.adapt_s | fixed(0)), (.prepare_s | fixed(0))])'
-    printf '**Training photographs, each left out**, PSNR in dB and SSIM at half their size\n\n'
+    printf '**Training photographs, each left out**, PSNR in dB and SSIM, six of them\n\n'
     print_table "$work/adapt.json" '
       [.[].training[].method] as $all | ($all | reduce .[] as $m ([]; if index([$m]) then . else . + [$m] end)) as $methods
       | table(["scene"] + $methods;
