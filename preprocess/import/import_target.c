@@ -64,6 +64,12 @@ bool orl_import_is_same(const struct orl_colmap_camera *from, const struct orl_c
            from->pinhole.height == to->height;
 }
 
+// Of what distortion leaves of a picture, one side may be a few pixels.
+static int scaled_side(int side, int most, int larger)
+{
+    return (int)fmax(1, rint((double)side * most / larger));
+}
+
 struct orl_camera orl_import_target(const struct orl_colmap_camera *from, int max_size)
 {
     static const double directions[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
@@ -83,7 +89,7 @@ struct orl_camera orl_import_target(const struct orl_colmap_camera *from, int ma
     }
     int larger = to.width > to.height ? to.width : to.height;
     if (max_size && larger > max_size)
-        to = orl_camera_resized(&to, (int)lrint((double)to.width * max_size / larger),
-                                (int)lrint((double)to.height * max_size / larger));
+        to = orl_camera_resized(&to, scaled_side(to.width, max_size, larger),
+                                scaled_side(to.height, max_size, larger));
     return to;
 }
