@@ -43,12 +43,12 @@ double orl_fuse_budget(size_t max_ram_bytes)
 
 double orl_fuse_bytes(double pixels)
 {
-    return PROGRAM_BYTES + (MAP_BYTES + OTHER_BYTES) * pixels;
+    return orl_fuse_bytes_beside_maps(pixels) + MAP_BYTES * pixels;
 }
 
 double orl_fuse_bytes_beside_maps(double pixels)
 {
-    return OTHER_BYTES * pixels;
+    return PROGRAM_BYTES + OTHER_BYTES * pixels;
 }
 
 static int compare_falling(const void *left, const void *right)
@@ -65,7 +65,7 @@ static double least_bytes(const double *falling, size_t count)
         pixels += falling[i];
         maps += i < WORKING_SET ? falling[i] : 0;
     }
-    return PROGRAM_BYTES + OTHER_BYTES * pixels + MAP_BYTES * maps;
+    return orl_fuse_bytes_beside_maps(pixels) + MAP_BYTES * maps;
 }
 
 enum orl_result orl_fuse_plan_size(const struct orl_log *log, const struct orl_colmap_model *model,
