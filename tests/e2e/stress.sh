@@ -36,14 +36,9 @@ grep -q '^1 rows measured' stdout.txt || fail "a row without its picture was use
 runs 0 "$oriel" stress synth --out report --axes jpeg --method points "${small[@]}" --seed 2
 grep -q '^3 rows measured' stdout.txt || fail "rows of another seed were used"
 
-# Two jobs at once make the rows, and a third run the same report of them.
+# Rows made in parts give the same report.
 parts=("$oriel" stress synth --out parts --axes photographs,jpeg --method oriel,points "${small[@]}")
-"${parts[@]}" --part 1/2 >first.txt &
-runs 0 "${parts[@]}" --part 2/2
-wait $! || fail "the first part fails"
-cat first.txt stdout.txt | grep -c '^[1-9][0-9]* rows measured' | grep -q 2 || fail "a part has no rows"
-[ -e parts/stress.json ] && fail "a part writes a report"
-runs 0 "${parts[@]}"
+in_two_parts stress "${parts[@]}"
 grep -q '^0 rows measured, 12 used again' stdout.txt || fail "rows of the parts were not used"
 cmp before.json parts/stress.json || fail "the parts make another report"
 runs 2 "${parts[@]}" --part 3/2
