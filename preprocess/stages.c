@@ -202,14 +202,6 @@ static json_t *done_stages(const struct orl_job *job)
     return json_object_get(job->stages, "done");
 }
 
-static enum orl_result save_stages(const struct orl_job *job)
-{
-    char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = path ? orl_json_write(job->log, path, job->stages) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
-}
-
 // An unreadable or foreign file counts as empty: all stages run again.
 static json_t *read_stages(const struct orl_job *job, const char *path)
 {
@@ -346,7 +338,7 @@ static enum orl_result invalidate(const struct orl_job *job, const bool *current
     if (result == ORL_OK && changed)
         orl_logf(job->log, ORL_LOG_INFO,
                  "photographs or settings have changed: some stages are done again");
-    return result == ORL_OK ? save_stages(job) : result;
+    return result == ORL_OK ? orl_job_save_stages(job) : result;
 }
 
 static double cpu_seconds(const struct rusage *usage)
@@ -465,7 +457,7 @@ static enum orl_result redo_stage(struct orl_job *job, enum orl_stage_id id, con
         if (!old || !json_equal(old, json_object_get(record, "files")))
             drop_dependents(job, id, current);
         json_object_set(done_stages(job), stages[id].name, record);
-        result = save_stages(job);
+        result = orl_job_save_stages(job);
     }
     json_decref(record);
     return result;
@@ -526,5 +518,5 @@ enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
     json_t *arguments = orl_prepare_arguments(job->log, job->params);
     if (!arguments || json_object_set_new(job->stages, "arguments", arguments) != 0)
         return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the arguments");
-    return save_stages(job);
+    return orl_job_save_stages(job);
 }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/lock.h"
 #include "core/memory.h"
 #include "preprocess/cloud/fuse_memory.h"
@@ -24,14 +25,35 @@ enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_co
     enum orl_result result = asked ? ORL_OK
                                    : orl_fuse_plan_size(log, model, train, CLUSTER_MOST, budget,
                                                         &size);
-    if (result == ORL_OK)
-        result = orl_clusters_make(log, model, train, size, clusters);
-    if (result == ORL_OK && !asked && clusters->count > 1)
-        orl_logf(log, ORL_LOG_INFO, "fuse: %zu clusters of at most %zu of the %zu photographs, and "
-                 "%zu more to help each%s", clusters->count, size, train->count,
-                 orl_clusters_helpers(size), size < CLUSTER_MOST ? ", so that they fit in memory"
-                                                                 : "");
-    return result;
+    return result == ORL_OK ? orl_clusters_make(log, model, train, size, clusters) : result;
+}
+
+// The size that an earlier run with these photographs and settings has chosen; 0: none.
+static size_t chosen_before(const struct orl_job *job)
+{
+    const json_t *chosen = json_object_get(job->stages, "fusion");
+    const char *key = orl_json_text(chosen, "key");
+    json_int_t size = json_integer_value(json_object_get(chosen, "cluster_size"));
+    bool same = key && strcmp(key, job->keys[ORL_STAGE_FUSE]) == 0;
+    return same && size > 0 && size <= CLUSTER_MOST ? (size_t)size : 0;
+}
+
+enum orl_result orl_fuse_choose(struct orl_job *job, const struct orl_colmap_model *model,
+                                const struct orl_names *train, size_t *size)
+{
+    size_t max_ram = job->params->max_ram_bytes;
+    *size = max_ram ? 0 : chosen_before(job);
+    if (*size)
+        return ORL_OK;
+    enum orl_result result = orl_fuse_plan_size(job->log, model, train, CLUSTER_MOST,
+                                                orl_fuse_budget(max_ram), size);
+    if (result != ORL_OK)
+        return result;
+    json_t *chosen = json_pack("{s:s, s:I}", "key", job->keys[ORL_STAGE_FUSE], "cluster_size",
+                               (json_int_t)*size);
+    if (json_object_set_new(job->stages, "fusion", chosen) != 0)
+        return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the stages");
+    return orl_job_save_stages(job);
 }
 
 json_t *orl_stage_fuse_settings(const struct orl_job *job)
@@ -229,6 +251,22 @@ static enum orl_result fuse_all(struct orl_job *job, const struct orl_colmap_mod
     return result;
 }
 
+// The clusters of --fuse-cluster, or those that fit in memory.
+static enum orl_result make_clusters(struct orl_job *job, const struct orl_colmap_model *model,
+                                     const struct orl_names *train, struct orl_clusters *clusters)
+{
+    size_t size = (size_t)job->params->fuse_cluster;
+    enum orl_result result = size ? ORL_OK : orl_fuse_choose(job, model, train, &size);
+    if (result == ORL_OK)
+        result = orl_clusters_make(job->log, model, train, size, clusters);
+    if (result == ORL_OK && !job->params->fuse_cluster && clusters->count > 1)
+        orl_logf(job->log, ORL_LOG_INFO, "fuse: %zu clusters of at most %zu of the %zu "
+                 "photographs, and %zu more to help each%s", clusters->count, size, train->count,
+                 orl_clusters_helpers(size), size < CLUSTER_MOST ? ", so that they fit in memory"
+                                                                 : "");
+    return result;
+}
+
 enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
 {
     uint64_t points = 0;
@@ -242,8 +280,7 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     if (result == ORL_OK)
         result = orl_job_train_names(job, &train);
     if (result == ORL_OK)
-        result = orl_fuse_clusters(job->log, model, &train, job->params->fuse_cluster,
-                                   orl_fuse_budget(job->params->max_ram_bytes), &clusters);
+        result = make_clusters(job, model, &train, &clusters);
     if (result == ORL_OK && clusters.count > 1)
         result = fuse_clusters(job, &clusters, path, &points);
     else if (result == ORL_OK)

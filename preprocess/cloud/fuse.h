@@ -18,6 +18,13 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record) ORL_CHECK_RE
 enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_colmap_model *model,
                                   const struct orl_names *train, int asked, double budget,
                                   struct orl_clusters *clusters) ORL_CHECK_RESULT;
+// How many photographs are fused together at most where --fuse-cluster does not say: as many as fit
+// in memory (--max-ram, or half of what is free) and no more than 400. The choice is kept in
+// .oriel/stages.json. A later run without --max-ram makes the same choice while photographs and
+// settings are the same, whatever memory is free then: it uses the clusters that are fused already,
+// and gives the same points as a run that was not interrupted.
+enum orl_result orl_fuse_choose(struct orl_job *job, const struct orl_colmap_model *model,
+                                const struct orl_names *train, size_t *size) ORL_CHECK_RESULT;
 // The file of a cluster's cloud, with another extension than .ply for what belongs to it. The caller
 // releases it with free().
 char *orl_fuse_cluster_path(const struct orl_log *log, const char *scene, size_t size, int cluster,

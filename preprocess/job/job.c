@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/lock.h"
 #include "core/memory.h"
 #include "oriel/scene.h"
@@ -251,6 +252,14 @@ enum orl_result orl_job_link(const struct orl_job *job, const char *target, cons
     if (result == ORL_OK)
         result = orl_file_write(job->log, path, data, size);
     free(data);
+    return result;
+}
+
+enum orl_result orl_job_save_stages(const struct orl_job *job)
+{
+    char *path = orl_job_path(job, ".oriel/stages.json");
+    enum orl_result result = path ? orl_json_write(job->log, path, job->stages) : ORL_ERR_MEMORY;
+    free(path);
     return result;
 }
 

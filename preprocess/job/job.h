@@ -114,6 +114,8 @@ enum orl_result orl_job_link(const struct orl_job *job, const char *target,
                              const char *path) ORL_CHECK_RESULT;
 enum orl_result orl_job_remove(const struct orl_job *job, const char *name) ORL_CHECK_RESULT;
 bool orl_job_has(const struct orl_job *job, const char *name);
+// Writes job->stages.
+enum orl_result orl_job_save_stages(const struct orl_job *job) ORL_CHECK_RESULT;
 // Writes one name per line.
 enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,
                                    const struct orl_names *names) ORL_CHECK_RESULT;

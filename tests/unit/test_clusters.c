@@ -2,7 +2,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "core/json.h"
 #include "preprocess/cloud/clusters.h"
+#include "preprocess/cloud/fuse.h"
 #include "preprocess/cloud/fuse_memory.h"
 #include "test.h"
 
@@ -109,26 +111,34 @@ static void points_are_kept_once(void **state)
     orl_colmap_finish(&model);
 }
 
-// A hundred photographs of 0.8 megapixels: 32 MiB of COLMAP's program, 24 bytes a pixel of 51 in its
-// cache, and 10 of each.
-static void clusters_follow_the_memory(void **state)
+// A hundred photographs of 0.8 megapixels.
+enum { COUNT = 100, PIXELS = 1000 * 800 };
+
+static void make_hundred(struct orl_colmap_model *model, struct orl_names *names)
 {
-    enum { COUNT = 100 };
-    const double mpx = 0.8e6, cache = (32 << 20) + 24 * 51 * mpx, other = 10 * mpx;
-    struct orl_colmap_model model = {
-        .cameras = calloc(1, sizeof *model.cameras), .camera_count = 1,
-        .images = calloc(COUNT, sizeof *model.images), .image_count = COUNT};
-    struct orl_names names = {0};
-    size_t size;
-    (void)state;
-    model.cameras[0].id = 1;
-    model.cameras[0].pinhole = (struct orl_camera){1000, 800, 900, 900, 500, 400};
+    *model = (struct orl_colmap_model){
+        .cameras = calloc(1, sizeof *model->cameras), .camera_count = 1,
+        .images = calloc(COUNT, sizeof *model->images), .image_count = COUNT};
+    *names = (struct orl_names){0};
+    model->cameras[0].id = 1;
+    model->cameras[0].pinhole = (struct orl_camera){1000, 800, 900, 900, 500, 400};
     for (int i = 0; i < COUNT; i++) {
         char name[16];
         snprintf(name, sizeof name, "%d.png", i);
-        model.images[i] = (struct orl_colmap_image){.name = strdup(name), .camera_id = 1};
-        assert_int_equal(orl_names_add(NULL, &names, name), ORL_OK);
+        model->images[i] = (struct orl_colmap_image){.name = strdup(name), .camera_id = 1};
+        assert_int_equal(orl_names_add(NULL, names, name), ORL_OK);
     }
+}
+
+// 32 MiB of COLMAP's program, 24 bytes a pixel of 51 photographs in its cache, and 10 of each.
+static void clusters_follow_the_memory(void **state)
+{
+    const double mpx = PIXELS, cache = (32 << 20) + 24 * 51 * mpx, other = 10 * mpx;
+    struct orl_colmap_model model;
+    struct orl_names names;
+    size_t size;
+    (void)state;
+    make_hundred(&model, &names);
     assert_true(orl_fuse_pixels(&model, &names) == COUNT * mpx);
     const struct { double bytes; size_t most, size; } expected[] = {
         {cache + other * 100, 400, 100},     // all at once
@@ -147,6 +157,57 @@ static void clusters_follow_the_memory(void **state)
     orl_colmap_finish(&model);
 }
 
+// The size that a run of the job chooses with `max_ram_bytes` (0: not given).
+static size_t choose(struct orl_job *job, size_t max_ram_bytes)
+{
+    struct orl_prepare_params params = {.max_ram_bytes = max_ram_bytes};
+    struct orl_colmap_model model;
+    struct orl_names names;
+    size_t size = 0;
+    make_hundred(&model, &names);
+    job->params = &params;
+    assert_int_equal(orl_fuse_choose(job, &model, &names, &size), ORL_OK);
+    job->params = NULL;
+    orl_names_finish(&names);
+    orl_colmap_finish(&model);
+    return size;
+}
+
+// Whatever memory is free in a run that goes on, its clusters are those of the run before.
+static void a_run_that_goes_on_keeps_its_clusters(void **state)
+{
+    const size_t little = (size_t)10 * PIXELS;
+    char *dir = test_dir_make(), *work = test_path(dir, ".oriel");
+    char *records = test_path(work, "stages.json");
+    struct orl_job job = {.dir = dir, .lock_fd = -1, .stages = json_object(), .keys = {
+        [ORL_STAGE_FUSE] = "these photographs"}};
+    (void)state;
+    assert_int_equal(orl_dir_make(NULL, work), ORL_OK);
+    size_t all = choose(&job, (size_t)1 << 40);
+    assert_int_equal(all, COUNT);
+    assert_int_equal(choose(&job, little), 8); // --max-ram asks for another choice
+    // The next run reads the records from the file.
+    json_decref(job.stages);
+    assert_int_equal(orl_json_read(NULL, records, &job.stages), ORL_OK);
+    assert_int_equal(choose(&job, 0), 8);
+    // Other photographs or settings, and records that were changed: nothing is kept. The choice is
+    // that of the memory that is free, whose least is 8.
+    static const struct { const char *key; int size; } bad[] = {
+        {"these photographs", 0}, {"these photographs", -3}, {"these photographs", 401},
+        {"others", 5}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        json_object_set_new(job.stages, "fusion", json_pack("{s:s, s:i}", "key", bad[i].key,
+                                                            "cluster_size", bad[i].size));
+        size_t size = choose(&job, 0);
+        assert_true(size >= 8 && size <= COUNT);
+        assert_int_equal(choose(&job, 0), size);
+    }
+    json_decref(job.stages);
+    free(records);
+    free(work);
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -154,6 +215,7 @@ int main(void)
         cmocka_unit_test(neighbours_help_and_held_out_photographs_do_not),
         cmocka_unit_test(points_are_kept_once),
         cmocka_unit_test(clusters_follow_the_memory),
+        cmocka_unit_test(a_run_that_goes_on_keeps_its_clusters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
