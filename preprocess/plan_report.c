@@ -68,17 +68,26 @@ static enum orl_result add_job(const struct orl_log *log, json_t *plan, json_t *
     return ORL_OK;
 }
 
+static bool has_job(const json_t *plan, const char *name)
+{
+    size_t i;
+    const json_t *job;
+    json_array_foreach(json_object_get(plan, "jobs"), i, job)
+        if (strcmp(orl_json_text(job, "name"), name) == 0)
+            return true;
+    return false;
+}
+
 enum orl_result orl_plan_add_report(const struct orl_log *log, json_t *plan,
                                     const struct orl_plan_report *report)
 {
-    json_t *jobs = json_object_get(plan, "jobs");
-    size_t before = json_array_size(jobs);
     const char *scene = orl_json_text(plan, "scene");
     // A scene whose jobs end with its calibration cannot be drawn after them.
-    if (before && strcmp(orl_json_text(json_array_get(jobs, before - 1), "kind"), "calibrate") == 0)
+    if (has_job(plan, "calibrate"))
         return orl_fail(log, ORL_ERR_DATA, "%s: the rows of a report are planned once the scene is "
                         "calibrated", scene);
-    json_t *whole = before ? json_pack("[s]", "finish") : json_array(), *parts = json_array();
+    json_t *whole = has_job(plan, "finish") ? json_pack("[s]", "finish") : json_array();
+    json_t *parts = json_array();
     char *out = absolute(log, report->out), *rows = out ? orl_format(log, "%s/rows", out) : NULL;
     enum orl_result result = rows ? ORL_OK : ORL_ERR_MEMORY;
     double cpu_s = (strcmp(report->kind, "chart") == 0 ? CHART_S : STRESS_S)[report->quick];

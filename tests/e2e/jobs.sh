@@ -119,4 +119,8 @@ jobs_in_order "$work/rows.json"
 prints "0 rows measured, 2 used again"
 [ -s "$work/chart/chart.json" ] || fail "no report of the rows"
 run 2 plan "$work" --chart "$work/chart"
+# The rows of two reports: none waits for a job that is not in the plan of a whole scene.
+run 0 plan "$work/b" --chart "$work/chart" --stress "$work/stress" --quick --parts 2 --json
+grep -q '"name": "stress-0002"' "$work/out" || fail "no jobs of the rows of stress"
+grep -q '"finish"' "$work/out" && fail "rows wait for a job that is not planned"
 finish
