@@ -24,6 +24,14 @@ jobs_in_order() {
     done <"$work/commands"
 }
 
+# jobs PLAN [OPTION]..: runs its jobs with Snakemake.
+jobs() {
+    local plan=$1
+    shift
+    (cd "$work" && XDG_CACHE_HOME=$work/cache snakemake -s "$source/cluster/Snakefile" \
+        --cores 4 --config plan="$plan" oriel="$work/oriel" "$@") >"$work/out" 2>"$work/err"
+}
+
 # Calibration: features in three parts, one of which is killed and goes on; pairs; matches.
 run 2 plan "$work"
 says "nothing to plan yet"
@@ -85,13 +93,9 @@ mkdir "$work/count.\$\$"
 exec "$oriel" "\$@"
 END
     chmod +x "$work/oriel"
-    jobs() {
-        (cd "$work" && XDG_CACHE_HOME=$work/cache snakemake -s "$source/cluster/Snakefile" \
-            --cores 4 --config plan=plan.json oriel="$work/oriel" "$@") >"$work/out" 2>"$work/err"
-    }
-    jobs && fail "a job that was killed is no failure"
+    jobs plan.json && fail "a job that was killed is no failure"
     [ -e "$work/b/scene.json" ] && fail "a scene that is not whole has a manifest"
-    jobs --rerun-incomplete || fail "the jobs do not go on: $(tail -n 5 "$work/err")"
+    jobs plan.json --rerun-incomplete || fail "the jobs do not go on: $(tail -n 5 "$work/err")"
 else
     jobs_in_order "$work/plan.json"
 fi
@@ -118,6 +122,12 @@ cp "$work/out" "$work/rows.json"
 jobs_in_order "$work/rows.json"
 prints "0 rows measured, 2 used again"
 [ -s "$work/chart/chart.json" ] || fail "no report of the rows"
+if command -v snakemake >/dev/null; then
+    jobs rows.json || fail "no rows with Snakemake: $(tail -n 5 "$work/err")"
+    grep -q "0 rows measured, 2 used again" "$work/chart/jobs/chart.log" || fail "other rows"
+    jobs rows.json -n
+    prints "Nothing to be done"
+fi
 run 2 plan "$work" --chart "$work/chart"
 # The rows of two reports: none waits for a job that is not in the plan of a whole scene.
 run 0 plan "$work/b" --chart "$work/chart" --stress "$work/stress" --quick --parts 2 --json
