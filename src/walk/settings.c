@@ -27,20 +27,47 @@ static bool is_one_of(const char *name, const char *const *names)
     return false;
 }
 
+static bool read_between(const json_t *json, const char *key, double least, double most,
+                         double *value)
+{
+    const json_t *number = json_object_get(json, key);
+    *value = json_number_value(number);
+    return json_is_number(number) && *value > least && *value < most;
+}
+
+// The frame of a view, in units of its height: {"aspect", "fx", "x", "y"}, the last two the offset
+// of the principal point from the middle. The camera's height and fy stay.
+static bool read_frame(const json_t *json, struct orl_camera *camera)
+{
+    double aspect, fx, x, y, height = camera->height;
+    if (!read_between(json, "aspect", 0.1, 10, &aspect) ||
+        !read_between(json, "fx", 0.05, 50, &fx) || !read_between(json, "x", -2, 2, &x) ||
+        !read_between(json, "y", -2, 2, &y))
+        return false;
+    camera->width = (int)ceil(aspect * height);
+    camera->fx = fx * height;
+    camera->cx = 0.5 * camera->width + x * height;
+    camera->cy = (0.5 + y) * height;
+    return true;
+}
+
 static bool read_view(const json_t *json, const struct orl_camera *camera, struct orl_view *view)
 {
     double rows[3][4];
+    const json_t *frame = json_object_get(json, "frame");
     double fov = json_number_value(json_object_get(json, "fov_y_deg"));
     if (!orl_json_rows(json_object_get(json, "cam_from_world"), 3, 4, &rows[0][0]) ||
         !(fov > 1 && fov < 170))
         return false;
     view->camera = *camera;
     view->camera.fx = view->camera.fy = 0.5 * camera->height / tan(0.5 * fov * pi / 180);
+    view->camera.cx = 0.5 * camera->width;
+    view->camera.cy = 0.5 * camera->height;
     for (int i = 0; i < 3; i++) {
         memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
         view->cam_from_world.t[i] = rows[i][3];
     }
-    return orl_pose_valid(&view->cam_from_world);
+    return orl_pose_valid(&view->cam_from_world) && (!frame || read_frame(frame, &view->camera));
 }
 
 static bool is_view(const json_t *json)
@@ -94,7 +121,7 @@ enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *w
     } rows[] = {
         {"title", "a text of at most 500 bytes", is_line},
         {"attribution", "a text of at most 500 bytes", is_line},
-        {"start", "a view: \"cam_from_world\" and \"fov_y_deg\"", is_view},
+        {"start", "a view: \"cam_from_world\", \"fov_y_deg\" and possibly \"frame\"", is_view},
         {"modes", "a list of \"walk\", \"fly\" and \"orbit\"", are_modes},
         {"notes", "a list of at most 200 annotations, each with \"title\" and \"position\"",
          are_notes},

@@ -15,6 +15,7 @@ static enum orl_result check(const char *text)
     return result;
 }
 
+#define FRAME(frame) "{\"start\": {" POSE ", \"fov_y_deg\": 90, \"frame\": " frame "}}"
 #define POSE "\"cam_from_world\": [[1,0,0,1],[0,1,0,2],[0,0,1,3]]"
 
 static void test_what_is_allowed(void **state)
@@ -35,6 +36,8 @@ static void test_what_is_refused(void **state)
         "{\"modes\": \"walk\"}", "{\"start\": {}}", "{\"start\": {" POSE "}}",
         "{\"start\": {" POSE ", \"fov_y_deg\": 180}}",
         "{\"start\": {\"cam_from_world\": [[2,0,0,1],[0,1,0,2],[0,0,1,3]], \"fov_y_deg\": 60}}",
+        FRAME("1"), FRAME("{\"aspect\": 1.5, \"fx\": 1, \"x\": 0}"),
+        FRAME("{\"aspect\": 1e9, \"fx\": 1, \"x\": 0, \"y\": 0}"),
         "{\"notes\": {}}", "{\"notes\": [{\"title\": \"a\"}]}",
         "{\"notes\": [{\"title\": \"a\", \"position\": [1,2]}]}",
         "{\"notes\": [{\"position\": [1,2,3]}]}",
@@ -61,11 +64,28 @@ static void test_round_trip(void **state)
     struct orl_view view;
     assert_true(orl_walk_settings_start(read, &camera, &view));
     assert_float_equal(view.camera.fy, 10, 1e-9); // half the height at 90 degrees
-    assert_float_equal(view.camera.cx, 19, 0);
+    assert_float_equal(view.camera.cx, 20, 0); // in the middle
     assert_float_equal(view.cam_from_world.t[2], 3, 0);
     json_decref(settings);
     json_decref(read);
     test_dir_remove(dir);
+}
+
+static void test_frame_of_a_view(void **state)
+{
+    (void)state;
+    json_t *settings = json_loads(
+        FRAME("{\"aspect\": 1.5, \"fx\": 0.75, \"x\": -0.25, \"y\": 0.1}"), 0, NULL);
+    const struct orl_camera camera = {.width = 40, .height = 20, .fx = 1, .fy = 1, .cx = 19, .cy = 9};
+    struct orl_view view;
+    assert_int_equal(orl_walk_settings_check(NULL, "test", settings), ORL_OK);
+    assert_true(orl_walk_settings_start(settings, &camera, &view));
+    assert_int_equal(view.camera.width, 30);
+    assert_float_equal(view.camera.fx, 15, 1e-9);
+    assert_float_equal(view.camera.fy, 10, 1e-9);
+    assert_float_equal(view.camera.cx, 10, 1e-9); // 15 - 0.25 * 20
+    assert_float_equal(view.camera.cy, 12, 1e-9);
+    json_decref(settings);
 }
 
 int main(void)
@@ -74,6 +94,7 @@ int main(void)
         cmocka_unit_test(test_what_is_allowed),
         cmocka_unit_test(test_what_is_refused),
         cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_frame_of_a_view),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -391,6 +391,10 @@ class Page(unittest.TestCase):
 
     def test_address_keeps_the_view(self):
         self.browser.drag((150, 70), (130, 60))
+        self.browser.js("""
+            const nav = oriel.navigator, {eye, r, frame} = nav.view;
+            nav.setView({eye, r, frame: {...frame, aspect: 0.8, fx: 1.1 * frame.fy, x: 0.1, y: -0.05}});
+            oriel.wake();""")
         self.browser.settle()
         before, address = self.view(), self.browser.address()
         self.assertIn("#v=", address)
@@ -398,11 +402,13 @@ class Page(unittest.TestCase):
         now = self.view()
         for a, b in zip(before["eye"] + before["r"], now["eye"] + now["r"]):
             self.assertAlmostEqual(a, b, places=4)
+        for key, value in before["frame"].items():
+            self.assertAlmostEqual(now["frame"][key], value, places=4)
 
     def test_bad_addresses_start_at_home(self):
         self.reopen(self.address + "#v=a,b,c,d,e,f,g,h")
         self.assertEqual(self.browser.js("return oriel.navigator.at.number"), self.manifest["start"])
-        for hash_ in ("#v=1,2,3", "#p=999", "#v=0,0,0,0,0,0,0,1", "#mode=x"):
+        for hash_ in ("#v=1,2,3", "#p=999", "#v=0,0,0,0,0,0,0,1", "#v=0,0,0,0,0,0,1,1,1,1,0,9", "#mode=x"):
             self.browser.js("history.replaceState(null, '', arguments[0]); oriel.readAddress()", hash_)
             self.assertEqual(self.browser.js("return oriel.navigator.at.number"), self.manifest["start"])
 

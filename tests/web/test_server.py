@@ -384,12 +384,15 @@ class Page(unittest.TestCase):
             self.assertAlmostEqual(x, 180, delta=1.5)
             self.assertAlmostEqual(y, 120, delta=1.5)
             browser.js("return oriel.notes.change({start: oriel.notes.settings.notes[0].view})")
-            home = browser.js("return oriel.navigator.view.eye")
+            home = browser.js("return oriel.navigator.view")
             browser.driver.get("about:blank")
             browser.open(walk.address)
             self.assertEqual(browser.js("return document.querySelectorAll('.mark').length"), 1)
-            for a, b in zip(home, browser.js("return oriel.navigator.home.eye")):
+            begins = browser.js("return oriel.navigator.home")
+            for a, b in zip(home["eye"], begins["eye"]):
                 self.assertAlmostEqual(a, b, places=5)
+            for key, value in home["frame"].items():
+                self.assertAlmostEqual(begins["frame"][key], value, places=5)
             os.remove(f"{SCENE}/walk.json")
             self.assertEqual(browser.errors(), [])
         finally:

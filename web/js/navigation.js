@@ -2,7 +2,7 @@
 import {add, clamp, distance, dot, length, mix, multiply, normalize, rotate, rotateBack, rotation,
         scale, sub} from "oriel/math.js";
 import {nearestPhoto} from "oriel/photos.js";
-import {forwardOf, mixViews, photoView, rightOf, upOf, viewFromKey} from "oriel/view.js";
+import {forwardOf, mixViews, photoView, rightOf, upOf, viewFromSaved} from "oriel/view.js";
 
 const SPEED = 0.35;          // of the scene's distance, a second
 const FASTER = 3;
@@ -33,7 +33,7 @@ export class Navigator {
         this.calm = calm;
         this.pivotAt = pivotAt;
         const first = photoView(photos[manifest.start]), settings = manifest.walk || {};
-        const start = settings.start ? viewFromKey(settings.start, {...first.frame, x: 0, y: 0}) : null;
+        const start = settings.start ? viewFromSaved(settings.start, first) : null;
         this.home = start || first;
         this.homePhoto = start ? null : photos[manifest.start];
         this.modes = MODES.filter(mode => !settings.modes || settings.modes.includes(mode));

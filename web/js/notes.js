@@ -3,10 +3,11 @@
 import {MODES} from "oriel/navigation.js";
 import {text} from "oriel/strings.js";
 import {button, byId, make} from "oriel/ui.js";
-import {project, viewFromKey, viewToKey} from "oriel/view.js";
+import {project, viewFromSaved, viewToSaved} from "oriel/view.js";
 
 export class Notes {
-    // seen(point): false where a surface is before it; settings: manifest.walk; pick(x, y): a promise of the point under a CSS pixel, null: none;
+    // seen(point): false where a surface is before it; settings: manifest.walk;
+    // pick(x, y): a promise of the point under a CSS pixel, null: none;
     // save(settings): a promise of whether they were saved; null: nothing can be changed
     constructor(navigator, settings, {canvas, seen, pick, save, wake})
     {
@@ -64,7 +65,7 @@ export class Notes {
                                   ...(note.text || "").split("\n").map(line => make("p", {textContent: line})),
                                   close);
         this.card.hidden = false;
-        const view = note.view && viewFromKey(note.view, this.navigator.home.frame);
+        const view = note.view && viewFromSaved(note.view, this.navigator.home);
         if (view)
             this.navigator.flyTo(view);
         this.opened = this.marks[i];
@@ -105,7 +106,7 @@ export class Notes {
             make("div", {className: "row"}, button(t.placeMiddle, () => this.place(window.innerWidth / 2, window.innerHeight / 2)),
                  button(t.place, () => this.startPlacing())), this.list,
             make("h2", {textContent: t.walk}), line(t.siteTitle, "title"), line(t.attribution, "attribution"),
-            button(t.start, () => this.change({start: viewToKey(this.navigator.view)})),
+            button(t.start, () => this.change({start: viewToSaved(this.navigator.view)})),
             make("fieldset", {}, make("legend", {textContent: t.modes}),
                  ...this.modeInputs.map(input => make("label", {}, input, text.actions[input.value]))),
             this.said);
@@ -130,7 +131,7 @@ export class Notes {
             return;
         }
         const note = {title: this.title.value || text.notes.one, text: this.words.value, position,
-                      view: viewToKey(view)};
+                      view: viewToSaved(view)};
         this.title.value = this.words.value = "";
         this.change({notes: [...this.settings.notes, note]});
     }

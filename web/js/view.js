@@ -60,7 +60,7 @@ export function rayOf(camera, x, y)
     return normalize(rotateBack(camera.r, [(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1]));
 }
 
-// --- in files: keyframes of src/scene/path.c ---
+// --- in files: keyframes of src/scene/path.c, views of walk.json ---
 
 export function viewToKey({r, eye, frame})
 {
@@ -79,24 +79,41 @@ export function viewFromKey(key, frame)
             frame: {...frame, fx: fy * frame.fx / frame.fy, fy}};
 }
 
+// A key with the whole frame, so that a view at a photograph stays that photograph's.
+export function viewToSaved(view)
+{
+    const {aspect, fx, x, y} = view.frame;
+    return {...viewToKey(view), frame: {aspect, fx, x, y}};
+}
+
+// null unless it is one; without a frame of its own it has that of `home`, centred.
+export function viewFromSaved(saved, home)
+{
+    const view = viewFromKey(saved, {...home.frame, x: 0, y: 0});
+    return view && saved.frame ? {...view, frame: {...saved.frame, fy: view.frame.fy}} : view;
+}
+
 // --- in the address ---
 
 const digits = x => String(Number(x.toPrecision(6)));
+const PLACE_NUMBERS = 8; // eye, rotation, focal length; the rest of the frame may follow
 
-export function viewToText(view)
+export function viewToText({eye, r, frame})
 {
-    return [...view.eye, ...quatFromRotation(view.r), view.frame.fy].map(digits).join(",");
+    return [...eye, ...quatFromRotation(r), frame.fy, frame.fx, frame.aspect, frame.x, frame.y].map(digits).join(",");
 }
 
-// null unless it is one; the frame is that of `home`, its focal length aside.
+// null unless it is one; without the rest of the frame it is that of `home`, centred.
 export function viewFromText(text, home)
 {
-    const n = text.split(",").map(Number);
-    if (n.length !== 8 || !n.every(Number.isFinite) || !(n[7] > 0.05 && n[7] < 50))
+    const n = text.split(",").map(Number), [fy, ...rest] = n.slice(PLACE_NUMBERS - 1);
+    if (!n.every(Number.isFinite) || !(fy > 0.05 && fy < 50) || (rest.length !== 0 && rest.length !== 4))
         return null;
-    if (!(Math.hypot(...n.slice(3, 7)) > 0.1))
+    const [fx, aspect, x, y] = rest.length ? rest : [fy, home.frame.aspect, 0, 0];
+    if (!(fx > 0.05 && fx < 50 && aspect > 0.1 && aspect < 10 && Math.abs(x) < 2 && Math.abs(y) < 2))
         return null;
     const q = n.slice(3, 7), size = Math.hypot(...q);
-    return {eye: n.slice(0, 3), r: rotationFromQuat(q.map(x => x / size)),
-            frame: {...home.frame, fx: n[7], fy: n[7], x: 0, y: 0}};
+    if (!(size > 0.1))
+        return null;
+    return {eye: n.slice(0, 3), r: rotationFromQuat(q.map(x => x / size)), frame: {aspect, fx, fy, x, y}};
 }
