@@ -73,8 +73,8 @@ static void print_summary(const struct options *o, const struct orl_trim *trim)
            a->psnr_db - b->psnr_db, b->worst_loss_db,
            trim->complete ? "" : "; the budget ended the search");
     if (trim->undone)
-        printf("%zu steps were taken back, because all photographs together lost too much\n",
-               trim->undone);
+        printf("%zu steps were taken back, because all photographs together lost too much or a "
+               "frame was slower than the whole scene's\n", trim->undone);
 }
 
 // --- the job ---
@@ -152,7 +152,8 @@ int cmd_trim(int argc, char **argv)
         {"views", ARG_INT, &o.views, "N", "photographs that judge each step; default 6", 2, 64},
         {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 1", 1,
          16},
-        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS", "try nothing new after so long", 0, 1e6},
+        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS",
+         "try nothing new after so long, by the clock", 0, 1e6},
         {"explain", ARG_FLAG, &o.explain, NULL, "print what each part of the model buys", 0, 0},
         {"random", ARG_FLAG, &o.random, NULL, "also measure random removal", 0, 0},
         {"json", ARG_STRING, &o.json, "FILE", "write figures and steps as JSON", 0, 0},

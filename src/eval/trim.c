@@ -19,19 +19,24 @@ const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
 enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
 // Least gain of a tuned option, as a share of the tolerance.
 static const double tuned_gain = 0.1;
+// After this share of the time, a model whose frame takes too long is only made faster: otherwise
+// what made it slower would have to be taken back.
+static const double time_for_all = 0.8;
 
 // --- the search ---
 
-static bool out_of_time(const struct trim_search *s)
+// Whether this share of the time that the search may take is gone.
+static bool is_spent(const struct trim_search *s, double share)
 {
-    return s->params->budget_s > 0 && orl_time_s() - s->start_s >= s->params->budget_s;
+    return s->params->budget_s > 0 &&
+           orl_time_s() - s->start_s >= share * s->params->budget_s;
 }
 
 static bool within_budget(const struct trim_search *s)
 {
     const struct orl_trim_params *p = s->params;
     return orl_trim_has_budget(s) && (!p->max_bytes || s->bytes <= (double)p->max_bytes) &&
-           (!(p->max_frame_ms > 0) || s->ms <= p->max_frame_ms);
+           (!(p->max_frame_ms > 0) || s->first_ms * s->slower <= p->max_frame_ms);
 }
 
 // All training photographs confirm other steps before photographs are removed. What removals lose is
@@ -48,15 +53,17 @@ static enum orl_result search(struct trim_search *s)
     double done = 0;
     s->trim->complete = true;
     while (result == ORL_OK && !within_budget(s)) {
+        s->options_only = !orl_trim_has_budget(s) && is_spent(s, time_for_all) &&
+                          s->slower > orl_trim_slow_limit(s);
         struct trim_move *move = orl_trim_best_move(s, NULL);
-        if (!move)
+        if (!move && !s->options_only)
             break;
-        if (out_of_time(s)) {
+        if (!move || is_spent(s, 1)) {
             s->trim->complete = false;
             break;
         }
         if (is_due(s, move)) {
-            result = orl_trim_confirm(s, false);
+            result = orl_trim_confirm(s, TRIM_CONFIRM_LOSSES);
             continue;
         }
         // Most moves are tried once, some a few times.
@@ -68,22 +75,26 @@ static enum orl_result search(struct trim_search *s)
     if (result == ORL_OK && orl_trim_has_budget(s) && !within_budget(s) && s->trim->complete)
         result = orl_fail(s->source.log, ORL_ERR_DATA,
                           "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
-                          "than is allowed", s->source.scene->dir, s->bytes / (1 << 20), s->ms);
+                          "than is allowed", s->source.scene->dir, s->bytes / (1 << 20),
+                          s->first_ms * s->slower);
     return result;
 }
 
 // The judges are few, so that steps may cost less than they said: the search goes on with what is
 // left of the tolerance, as long as it finds more to leave out. It also goes on without steps that
-// were taken back.
+// were taken back. Those that make a frame too slow are taken back only when the search finds
+// nothing any more that makes it faster.
 static enum orl_result search_and_confirm(struct trim_search *s)
 {
     enum orl_result result = ORL_OK;
-    for (size_t ended = SIZE_MAX; result == ORL_OK && s->version != ended;) {
+    for (size_t ended = SIZE_MAX; result == ORL_OK;) {
         result = search(s);
-        if (result != ORL_OK || s->version == ended)
+        bool found = s->version != ended;
+        bool last = orl_trim_has_budget(s) || !s->trim->complete;
+        if (result != ORL_OK || !(found || s->slow))
             break;
-        result = orl_trim_confirm(s, true);
-        if (orl_trim_has_budget(s) || !s->trim->complete)
+        result = orl_trim_confirm(s, found && !last ? TRIM_CONFIRM_TIMED : TRIM_CONFIRM_LAST);
+        if (last)
             break;
         ended = s->version;
     }
@@ -174,14 +185,13 @@ static enum orl_result start(struct trim_search *s)
         result = orl_trim_model_open(source, &s->state, &s->model);
     if (result == ORL_OK)
         result = orl_trim_measure_all(s, true, &s->trim->before);
-    const struct trim_drawn whole = {s->model ? s->model->renderer : NULL, &s->state};
-    double ms[2];
     if (result == ORL_OK)
-        result = orl_trim_frame_times(s, &whole, NULL, ms);
+        result = orl_trim_time_first(s);
     if (result != ORL_OK)
         return result;
     s->bytes = s->first_bytes = orl_trim_model_bytes(s, s->model, &s->state);
-    s->ms = s->first_ms = s->trim->before.frame_ms = ms[0];
+    s->slower = 1;
+    s->trim->before.frame_ms = s->first_ms;
     s->file_bytes = (double)orl_trim_photo_file_bytes(source, source->scene->dir, NULL);
     s->first_file_bytes = s->file_bytes = fmax(s->file_bytes, 1);
     return ORL_OK;

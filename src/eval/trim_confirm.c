@@ -9,8 +9,6 @@
 
 // Photographs that may be put back for a view, the nearest ones; further ones show less of it.
 enum { PUT_BACK_TRIED = 6 };
-// Frames that seem too slow are timed again so many times: other programs disturb the first times.
-enum { TIMES_MOST = 3 };
 
 // --- measuring ---
 
@@ -48,40 +46,19 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
     return result;
 }
 
-// Times frames of the whole scene and of the trimmed one in turns.
-static enum orl_result time_both(struct trim_search *s)
-{
-    struct trim_model *whole = NULL;
-    const struct trim_drawn after = {s->model->renderer, &s->state};
-    struct trim_drawn before = {NULL, &s->first_state};
-    double least[2] = {INFINITY, INFINITY};
-    enum orl_result result = orl_trim_model_open(&s->source, &s->first_state, &whole);
-    if (result == ORL_OK)
-        before.renderer = whole->renderer;
-    for (int i = 0; result == ORL_OK && i < TIMES_MOST; i++) {
-        double ms[2];
-        result = orl_trim_frame_times(s, &before, &after, ms);
-        least[0] = fmin(least[0], ms[0]);
-        least[1] = fmin(least[1], ms[1]);
-        s->first_ms = least[0];
-        s->ms = least[1];
-        if (s->ms <= orl_trim_slow_limit_ms(s))
-            break;
-    }
-    orl_trim_model_close(&whole);
-    s->trim->before.frame_ms = s->first_ms;
-    s->trim->after.frame_ms = s->ms;
-    return result;
-}
-
 // --- whether it is within the tolerances ---
 
-// What is confirmed: the losses, or the time of a frame, too.
 struct check {
-    bool timed;
+    enum trim_confirmation kind;
     bool lost, slow; // the state measured last loses too much, or its frame takes too long
     size_t steps;    // of that state
 };
+
+// Whether steps have to be taken back.
+static bool is_broken(const struct check *check)
+{
+    return check->lost || (check->slow && check->kind == TRIM_CONFIRM_LAST);
+}
 
 // Measures the state after the first `steps` steps, whose model is left open.
 static enum orl_result measure_after(struct trim_search *s, size_t steps, struct check *check)
@@ -97,16 +74,14 @@ static enum orl_result measure_after(struct trim_search *s, size_t steps, struct
     }
     if (result == ORL_OK)
         result = orl_trim_measure_all(s, false, &s->trim->after);
-    if (result == ORL_OK && check->timed)
-        result = time_both(s);
+    if (result == ORL_OK && check->kind != TRIM_CONFIRM_LOSSES)
+        result = orl_trim_time_whole(s, &check->slow);
     s->state = last;
     check->steps = steps;
     check->lost = !orl_trim_has_budget(s) &&
                   (before->psnr_db - after->psnr_db > p->tolerance_db ||
                    before->ssim - after->ssim > p->tolerance_ssim ||
                    after->worst_loss_db > p->worst_db);
-    check->slow = !orl_trim_has_budget(s) && check->timed &&
-                  after->frame_ms > orl_trim_slow_limit_ms(s);
     return result;
 }
 
@@ -241,6 +216,7 @@ static enum orl_result take_back(struct trim_search *s, size_t steps)
             past->move->dead = s->history_count == steps;
         free(s->state.removed);
         s->state = past->state;
+        s->slower = past->slower;
     }
     orl_trim_model_close(&s->model);
     return orl_trim_model_open(&s->source, &s->state, &s->model);
@@ -249,12 +225,13 @@ static enum orl_result take_back(struct trim_search *s, size_t steps)
 // Takes the last steps back, which promised least: as few as it takes, found by halving.
 static enum orl_result halve(struct trim_search *s, struct check *check)
 {
-    size_t kept = check->slow ? 0 : s->confirmed, too_many = s->history_count;
+    bool slow = check->slow && check->kind == TRIM_CONFIRM_LAST;
+    size_t kept = slow ? 0 : s->confirmed, too_many = s->history_count;
     enum orl_result result = ORL_OK;
     while (result == ORL_OK && kept + 1 < too_many) {
         size_t middle = kept + (too_many - kept) / 2;
         result = measure_after(s, middle, check);
-        if (check->lost || check->slow)
+        if (is_broken(check))
             too_many = middle;
         else
             kept = middle;
@@ -265,9 +242,12 @@ static enum orl_result halve(struct trim_search *s, struct check *check)
 }
 
 // What the steps that are kept really cost, over all training photographs, counts from now on.
-static void settle(struct trim_search *s)
+static void settle(struct trim_search *s, const struct check *check)
 {
     const struct orl_trim *trim = s->trim;
+    if (check->kind != TRIM_CONFIRM_LOSSES)
+        s->slower = trim->after.frame_ms / trim->before.frame_ms;
+    s->slow = check->slow && check->kind == TRIM_CONFIRM_TIMED;
     s->total_loss_db = trim->before.psnr_db - trim->after.psnr_db;
     s->total_loss_ssim = trim->before.ssim - trim->after.ssim;
     s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
@@ -275,25 +255,25 @@ static void settle(struct trim_search *s)
                                                       s->state.removed);
     s->version++;
     s->confirmed = s->history_count;
-    // The time of a frame is noisy, and no step may wait for it for ever.
+    // What steps wait for was estimated step by step: they may be measured again.
     for (size_t i = 0; i < s->move_count; i++)
         s->moves[i].slow = false;
     orl_trim_make_room(s);
 }
 
-enum orl_result orl_trim_confirm(struct trim_search *s, bool timed)
+enum orl_result orl_trim_confirm(struct trim_search *s, enum trim_confirmation kind)
 {
-    struct check check = {.timed = timed};
+    struct check check = {.kind = kind};
     enum orl_result result = measure_after(s, s->history_count, &check);
     size_t steps = s->history_count;
     if (result == ORL_OK)
         result = mend(s, &check);
-    if (result == ORL_OK && (check.lost || check.slow) && s->history_count > 0)
+    if (result == ORL_OK && is_broken(&check) && s->history_count > 0)
         result = halve(s, &check);
     if (result != ORL_OK)
         return result;
     if (s->history_count < steps)
         s->changed = s->version + 1;
-    settle(s);
+    settle(s, &check);
     return ORL_OK;
 }

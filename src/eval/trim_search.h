@@ -13,7 +13,9 @@ struct trim_score {
 
 // What was measured of a step.
 struct trim_measured {
-    double loss_db, loss_ssim, ms;
+    double loss_db, loss_ssim;
+    double slower;        // the time of a frame is multiplied by this
+    bool slow;            // a frame would take longer than it may on the way
     double total_loss_db; // before the step
     double between_db;   // of a photograph: the greatest change of views beside it
     double beside_db;    // and their mean, as a share of all targets
@@ -30,8 +32,7 @@ struct trim_move {
     bool tried;
     bool dead;    // it cannot be taken any more: it saves nothing, or has been taken
     bool blocked; // it loses too much or takes too long, unless other steps gain
-    bool slow;    // it is blocked by the time of a frame alone,
-    double slower; // which the step multiplies by this
+    bool slow;    // it is blocked by the time of a frame alone
     size_t version;   // of the search's state that it was measured in
     struct trim_measured measured;
 };
@@ -39,6 +40,7 @@ struct trim_move {
 // A step that was taken: the state before it, which is owned.
 struct trim_past {
     struct trim_state state;
+    double slower; // of that state
     size_t step; // index of the report's step
     struct trim_move *move; // that led from this state; NULL: tuned options
 };
@@ -59,7 +61,10 @@ struct trim_search {
     struct trim_model *model;  // of `state`
     size_t version;            // counts the steps taken, and their confirmations
     size_t changed;            // the version since which all views have changed
-    double bytes, file_bytes, ms, total_loss_db, total_loss_ssim; // of `state`
+    double bytes, file_bytes, total_loss_db, total_loss_ssim; // of `state`
+    double slower; // the time of its frame, as a multiple of the whole scene's
+    bool slow;     // all that was confirmed last is clearly slower than the whole scene
+    bool options_only; // nothing but cheaper options of the method is tried
     double first_bytes, first_file_bytes, first_ms;
     struct trim_move *moves; // owned
     size_t move_count;
@@ -87,16 +92,6 @@ enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer
                                       const struct trim_state *state, size_t view,
                                       bool brief,
                                       struct orl_metrics *metrics) ORL_CHECK_RESULT;
-// A frame that takes longer is slower than the whole scene's.
-double orl_trim_slow_limit_ms(const struct trim_search *s);
-// The least of a few frames of each, in ms: see orl_trim_run. They are drawn in turns, since other
-// programs then slow both alike; b may be NULL.
-struct trim_drawn {
-    struct orl_renderer *renderer;
-    const struct trim_state *state;
-};
-enum orl_result orl_trim_frame_times(struct trim_search *s, const struct trim_drawn *a,
-                                     const struct trim_drawn *b, double ms[2]) ORL_CHECK_RESULT;
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
                             const struct trim_state *state);
 // Measures a move, and takes it when it is allowed and no other promises more. The search must not
@@ -113,14 +108,38 @@ struct trim_move *orl_trim_best_move(const struct trim_search *s, const struct t
 // Steps that were blocked may be possible again: what was lost, or the time of a frame, has changed.
 void orl_trim_make_room(struct trim_search *s);
 
+// --- trim_time.c ---
+
+struct trim_drawn {
+    struct orl_renderer *renderer;
+    const struct trim_state *state;
+};
+// In the end a frame may take so many times as long as the whole scene's, and on the way.
+double orl_trim_slow_limit(const struct trim_search *s);
+double orl_trim_slow_limit_on_way(const struct trim_search *s);
+// Times frames of the whole scene, which the search begins with: first_ms.
+enum orl_result orl_trim_time_first(struct trim_search *s) ORL_CHECK_RESULT;
+// Compares frames of a step on trial with those of the model so far: the measured `slower` and
+// `slow`.
+enum orl_result orl_trim_time_trial(struct trim_search *s, const struct trim_drawn *trial,
+                                    struct trim_measured *m) ORL_CHECK_RESULT;
+// Compares frames of the state, whose model is open, with those of the whole scene, for the report.
+// slow: they are clearly slower than they may be in the end.
+enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow) ORL_CHECK_RESULT;
+
 // --- trim_confirm.c ---
+
+// What is confirmed, and what steps are taken back for: losses alone; losses, but the time of a
+// frame is measured too; both.
+enum trim_confirmation { TRIM_CONFIRM_LOSSES, TRIM_CONFIRM_TIMED, TRIM_CONFIRM_LAST };
 
 // Measures all targets. `first`: the whole scene, with which later states are compared.
 enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
                                      struct orl_trim_figures *figures) ORL_CHECK_RESULT;
 // Measures all targets and takes back what breaks a tolerance. The search goes on with the measured
-// losses. timed: a frame must not be slower than the whole scene's, either.
-enum orl_result orl_trim_confirm(struct trim_search *s, bool timed) ORL_CHECK_RESULT;
+// losses and time.
+enum orl_result orl_trim_confirm(struct trim_search *s,
+                                 enum trim_confirmation kind) ORL_CHECK_RESULT;
 
 // --- trim_random.c ---
 

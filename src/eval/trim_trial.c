@@ -5,20 +5,11 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/process.h"
 #include "eval/trim_search.h"
 
-enum { FRAMES_TIMED = 3 };
 // Losses below this are noise. Time and files decide between steps that save as many bytes on the
 // device: a time is measured with noise, and a pass that goes would use up the tolerance.
 static const double least_loss_db = 0.002, weight_of_time = 0.03, weight_of_files = 0.03;
-// Smaller differences of a frame's time are noise: a share of it, and milliseconds, more of them
-// where the frame is drawn by the processor, which other programs share.
-static const double least_time = 0.03, least_ms = 0.5, least_software_ms = 4;
-// In the end no frame may be slower than the whole scene's by more than a share and milliseconds of
-// it. On the way it may, by a larger share: smaller models tend to be faster, and while a frame
-// takes too long, time weighs as much as bytes.
-static const double slower_most = 0.02, slower_ms = 1, slower_software_ms = 8, slower_on_way = 0.12;
 // Views beside a photograph that goes may change by as much as renderings there are wrong anyway.
 static const double between_most_db = 3;
 // A step is taken when no other promises more than its own gain divided by this.
@@ -36,33 +27,6 @@ struct trial {
 };
 
 // --- figures of a state ---
-
-static enum orl_result time_frame(struct trim_search *s, const struct trim_drawn *drawn, double *ms)
-{
-    bool software = orl_gpu_caps(s->source.gpu)->software;
-    struct orl_render_params render = drawn->state->render;
-    const struct orl_view *view = &s->targets.views[orl_trim_judge(s, 0, s->judge_count)].view;
-    render.leave_out |= ORL_LAYER_NORMAL;
-    double start = software ? orl_cpu_time_s() : orl_time_s();
-    enum orl_result result =
-        orl_renderer_draw(drawn->renderer, view, &render, drawn->state->removed, NULL);
-    double end = software ? orl_cpu_time_s() : orl_time_s();
-    *ms = fmin(*ms, 1e3 * (end - start));
-    return result;
-}
-
-enum orl_result orl_trim_frame_times(struct trim_search *s, const struct trim_drawn *a,
-                                     const struct trim_drawn *b, double ms[2])
-{
-    enum orl_result result = ORL_OK;
-    ms[0] = ms[1] = INFINITY;
-    for (int i = 0; result == ORL_OK && i < FRAMES_TIMED; i++) {
-        result = time_frame(s, a, &ms[0]);
-        if (result == ORL_OK && b)
-            result = time_frame(s, b, &ms[1]);
-    }
-    return result;
-}
 
 enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
                                       const struct trim_state *state, size_t view,
@@ -223,18 +187,6 @@ bool orl_trim_has_budget(const struct trim_search *s)
     return s->params->max_bytes || s->params->max_frame_ms > 0;
 }
 
-double orl_trim_slow_limit_ms(const struct trim_search *s)
-{
-    double least = orl_gpu_caps(s->source.gpu)->software ? slower_software_ms : slower_ms;
-    return s->first_ms + fmax(least, slower_most * s->first_ms);
-}
-
-static bool is_slow(const struct trim_search *s, double ms)
-{
-    double most = fmax(orl_trim_slow_limit_ms(s), (1 + slower_on_way) * s->first_ms);
-    return !orl_trim_has_budget(s) && ms > fmax(most, s->ms);
-}
-
 static bool is_good(const struct trim_search *s, const struct trial *t)
 {
     const struct trim_measured *m = &t->move->measured;
@@ -251,24 +203,10 @@ static bool is_good(const struct trim_search *s, const struct trial *t)
 
 // --- measuring it ---
 
-static double noise_ms(const struct trim_search *s)
+static enum orl_result measure_time(struct trim_search *s, const struct trial *t)
 {
-    double least = orl_gpu_caps(s->source.gpu)->software ? least_software_ms : least_ms;
-    return fmax(least, least_time * s->ms);
-}
-
-// The time of a frame after the step: that before it, times how much longer it takes.
-static enum orl_result measure_time(struct trim_search *s, const struct trial *t, double *ms)
-{
-    double both[2];
-    const struct trim_drawn before = {s->model->renderer, &s->state};
-    const struct trim_drawn after = {t->own ? t->own->renderer : s->model->renderer, &t->state};
-    enum orl_result result = orl_trim_frame_times(s, &before, &after, both);
-    if (result != ORL_OK)
-        return result;
-    *ms = s->ms * both[1] / both[0];
-    *ms = fabs(*ms - s->ms) < noise_ms(s) ? s->ms : *ms;
-    return ORL_OK;
+    const struct trim_drawn trial = {t->own ? t->own->renderer : s->model->renderer, &t->state};
+    return orl_trim_time_trial(s, &trial, &t->move->measured);
 }
 
 // Measures m->views. The losses are sums.
@@ -352,13 +290,14 @@ static enum orl_result measure(struct trim_search *s, struct trial *t)
         is_local(t) ? measure_local(s, t) : measure_global(s, t, s->judge_count);
     if (result == ORL_OK && !is_local(t) && is_doubtful(s, t))
         result = measure_global(s, t, s->targets.count);
-    m->ms = s->ms;
+    m->slower = 1;
+    m->slow = false;
     m->total_loss_db = s->total_loss_db;
     // The first time it says what the part of the model buys; later, a step that loses too much is
     // not timed.
     if (result == ORL_OK && !is_local(t) && t->move->part != ORL_TRIM_QUALITY &&
         (!t->move->tried || is_good(s, t)))
-        result = measure_time(s, t, &m->ms);
+        result = measure_time(s, t);
     t->move->version = s->version;
     return result;
 }
@@ -378,7 +317,7 @@ static double weighed_loss(const struct trim_search *s, const struct trim_measur
 // Whether the model, or a step, waits for a frame that takes less time.
 static bool waits_for_time(const struct trim_search *s)
 {
-    if (!orl_trim_has_budget(s) && s->ms > orl_trim_slow_limit_ms(s))
+    if (!orl_trim_has_budget(s) && s->slower > orl_trim_slow_limit(s))
         return true;
     for (size_t i = 0; i < s->move_count; i++)
         if (s->moves[i].slow && !s->moves[i].dead)
@@ -391,7 +330,7 @@ static double gain_of(const struct trim_search *s, const struct trial *t)
 {
     double bytes = (s->bytes - t->bytes) / s->first_bytes;
     double files = (s->file_bytes - t->file_bytes) / s->first_file_bytes;
-    double time = fmax(s->ms - t->move->measured.ms, 0) / s->first_ms;
+    double time = s->slower * fmax(1 - t->move->measured.slower, 0);
     if (s->params->max_frame_ms > 0 && !s->params->max_bytes)
         return time;
     return bytes + weight_of_files * files + (waits_for_time(s) ? 1 : weight_of_time) * time;
@@ -419,7 +358,9 @@ struct trim_move *orl_trim_best_move(const struct trim_search *s, const struct t
     struct trim_move *best = NULL;
     for (size_t i = 0; i < s->move_count; i++) {
         struct trim_move *m = &s->moves[i];
-        if (m != except && !m->dead && !m->blocked && (!best || promises_more(s, m, best)))
+        bool open = !m->dead && !m->blocked &&
+                    (!s->options_only || m->part == ORL_TRIM_OPTION);
+        if (m != except && open && (!best || promises_more(s, m, best)))
             best = m;
     }
     return best;
@@ -431,6 +372,7 @@ static enum orl_result note_step(struct trim_search *s, const struct trial *t, b
 {
     struct orl_trim *trim = s->trim;
     const struct trim_measured *m = &t->move->measured;
+    double ms = s->first_ms * s->slower;
     enum orl_result result = orl_grow(s->source.log, (void **)&trim->steps, &trim->step_capacity,
                                       trim->step_count + 1, sizeof *trim->steps);
     if (result != ORL_OK)
@@ -439,8 +381,8 @@ static enum orl_result note_step(struct trim_search *s, const struct trial *t, b
     *step = (struct orl_trim_step){
         .part = t->move->part, .loss_db = m->loss_db, .loss_ssim = m->loss_ssim,
         .saved_bytes = s->bytes - t->bytes,
-        .saved_ms = s->ms - m->ms, .saved_file_bytes = s->file_bytes - t->file_bytes,
-        .first = !t->move->tried, .taken = taken, .bytes = t->bytes, .ms = m->ms,
+        .saved_ms = ms * (1 - m->slower), .saved_file_bytes = s->file_bytes - t->file_bytes,
+        .first = !t->move->tried, .taken = taken, .bytes = t->bytes, .ms = ms * m->slower,
         .total_loss_db = s->total_loss_db + m->loss_db,
         .total_loss_ssim = s->total_loss_ssim + m->loss_ssim};
     memcpy(step->what, t->what, sizeof step->what);
@@ -455,7 +397,9 @@ static enum orl_result take(struct trim_search *s, struct trial *t)
                                       s->history_count + 1, sizeof *s->history);
     if (result != ORL_OK)
         return result;
-    s->history[s->history_count++] = (struct trim_past){s->state, s->trim->step_count - 1, t->move};
+    s->history[s->history_count++] = (struct trim_past){.state = s->state, .slower = s->slower,
+                                                        .step = s->trim->step_count - 1,
+                                                        .move = t->move};
     for (size_t i = 0; i < s->targets.count; i++) {
         struct trim_score after;
         s->lost_db[i] += view_loss(s, t, i, &after);
@@ -465,7 +409,7 @@ static enum orl_result take(struct trim_search *s, struct trial *t)
     s->total_loss_ssim += t->move->measured.loss_ssim;
     s->bytes = t->bytes;
     s->file_bytes = t->file_bytes;
-    s->ms = t->move->measured.ms;
+    s->slower *= t->move->measured.slower;
     s->state = t->state;
     t->state.removed = NULL;
     if (t->own) {
@@ -494,7 +438,9 @@ void orl_trim_make_room(struct trim_search *s)
 {
     for (size_t i = 0; i < s->move_count; i++) {
         struct trim_move *m = &s->moves[i];
-        bool fits = m->slow ? !is_slow(s, s->ms * m->slower) : m->blocked && may_fit(s, m);
+        double slower = s->slower * m->measured.slower;
+        bool fits = m->slow ? slower <= orl_trim_slow_limit_on_way(s)
+                            : m->blocked && may_fit(s, m);
         m->blocked &= !fits;
         m->slow &= !fits;
     }
@@ -515,7 +461,7 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
         return result;
     }
     double gain = gain_of(s, &t);
-    bool slow = is_slow(s, move->measured.ms), good = gain > 0 && is_good(s, &t);
+    bool slow = move->measured.slow, good = gain > 0 && is_good(s, &t);
     double loss = weighed_loss(s, &move->measured);
     move->ratio = gain / fmax(loss, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
@@ -528,7 +474,6 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
         result = note_step(s, &t, taken);
     move->tried = true;
     move->dead = gain <= 0;
-    move->slower = move->measured.ms / s->ms;
     move->slow = good && slow;
     move->blocked = !good || slow;
     if (result == ORL_OK && taken) {
@@ -556,10 +501,9 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
     t.state.render = *render;
     if (result == ORL_OK)
         result = measure_global(s, &t, s->targets.count);
-    m->ms = s->ms;
     if (result == ORL_OK)
-        result = measure_time(s, &t, &m->ms);
-    bool taken = m->loss_db < 0 && is_good(s, &t) && !is_slow(s, m->ms);
+        result = measure_time(s, &t);
+    bool taken = m->loss_db < 0 && is_good(s, &t) && !m->slow;
     if (result == ORL_OK)
         result = note_step(s, &t, taken);
     if (result == ORL_OK && taken)

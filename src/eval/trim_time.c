@@ -1,0 +1,123 @@
+// How long frames take: with a step on trial beside the model so far, and of the trimmed scene
+// beside the whole one. Only ratios of frames drawn in turns decide, since other programs on the
+// machine change all times.
+#include <math.h>
+
+#include "core/process.h"
+#include "eval/pair_timing.h"
+#include "eval/timing.h"
+#include "eval/trim_search.h"
+
+enum { FRAMES_FIRST = 5, ROUNDS_OF_TRIAL = 12, ROUNDS_OF_WHOLE = 64 };
+// In the end no frame may be slower than the whole scene's by more than this share, or so many
+// milliseconds, which no one sees. On the way it may, by a larger share: smaller models tend to be
+// faster, and while a frame takes too long, time weighs as much as bytes.
+static const double slower_most = 0.02, slower_ms = 0.5, slower_software_ms = 4,
+                    slower_on_way = 0.12;
+// Standard error of a trial's ratio that is asked for, if as many rounds are enough for it.
+static const double trial_error = 0.03;
+// A difference within so many standard errors counts as none.
+static const double same_errors = 2;
+
+// Two models whose frames are timed in turns. Each round has the view of another judge.
+struct pair {
+    struct trim_search *s;
+    struct trim_drawn drawn[2];
+    size_t frames;
+};
+
+static enum orl_result time_frame(struct trim_search *s, const struct trim_drawn *drawn,
+                                  size_t judge, double *ms)
+{
+    bool software = orl_gpu_caps(s->source.gpu)->software;
+    struct orl_render_params render = drawn->state->render;
+    size_t target = orl_trim_judge(s, judge % s->judge_count, s->judge_count);
+    if (orl_progress_cancelled(s->params->progress))
+        return ORL_ERR_CANCELLED;
+    render.leave_out |= ORL_LAYER_NORMAL;
+    double start = software ? orl_cpu_time_s() : orl_time_s();
+    enum orl_result result = orl_renderer_draw(drawn->renderer, &s->targets.views[target].view,
+                                               &render, drawn->state->removed, NULL);
+    double end = software ? orl_cpu_time_s() : orl_time_s();
+    *ms = 1e3 * (end - start);
+    return result;
+}
+
+static enum orl_result time_one(void *priv, bool second, double *ms)
+{
+    struct pair *pair = priv;
+    return time_frame(pair->s, &pair->drawn[second], pair->frames++ / 2, ms);
+}
+
+static enum orl_result compare(struct pair *pair, double limit, double error, size_t rounds_most,
+                               struct orl_pair_timing *timing)
+{
+    const struct orl_pair_timing_params params = {.time = time_one, .priv = pair, .limit = limit,
+                                                  .error = error, .rounds_most = rounds_most};
+    enum orl_result result = orl_pair_timing_take(&params, timing);
+    if (result == ORL_OK)
+        orl_logf(pair->s->source.log, ORL_LOG_DEBUG,
+                 "frames take %.3f times as long (standard error %.1f %%, limit %.3f), %zu rounds",
+                 timing->ratio, 100 * timing->error, limit, timing->rounds);
+    return result;
+}
+
+double orl_trim_slow_limit(const struct trim_search *s)
+{
+    double least = orl_gpu_caps(s->source.gpu)->software ? slower_software_ms : slower_ms;
+    return 1 + fmax(slower_most, least / s->first_ms);
+}
+
+double orl_trim_slow_limit_on_way(const struct trim_search *s)
+{
+    return fmax(fmax(orl_trim_slow_limit(s), 1 + slower_on_way), s->slower);
+}
+
+enum orl_result orl_trim_time_first(struct trim_search *s)
+{
+    double ms[FRAMES_FIRST];
+    const struct trim_drawn drawn = {s->model->renderer, &s->state};
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < FRAMES_FIRST; i++)
+        result = time_frame(s, &drawn, i, &ms[i]);
+    if (result == ORL_OK)
+        s->first_ms = orl_median(ms, FRAMES_FIRST);
+    return result;
+}
+
+enum orl_result orl_trim_time_trial(struct trim_search *s, const struct trim_drawn *trial,
+                                    struct trim_measured *m)
+{
+    struct orl_pair_timing timing;
+    struct pair pair = {s, {{s->model->renderer, &s->state}, *trial}, 0};
+    double limit = orl_trim_slow_limit_on_way(s) / s->slower;
+    enum orl_result result = compare(&pair, limit, trial_error, ROUNDS_OF_TRIAL, &timing);
+    if (result != ORL_OK)
+        return result;
+    bool same = fabs(log(timing.ratio)) <= same_errors * timing.error;
+    m->slower = same ? 1 : timing.ratio;
+    m->slow = !orl_trim_has_budget(s) && orl_pair_timing_above(&timing, limit);
+    return ORL_OK;
+}
+
+enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow)
+{
+    struct trim_model *whole = NULL;
+    struct orl_pair_timing timing = {0};
+    double first[2], limit = orl_trim_slow_limit(s);
+    enum orl_result result = orl_trim_model_open(&s->source, &s->first_state, &whole);
+    struct pair pair = {s, {{NULL, &s->first_state}, {s->model->renderer, &s->state}}, 0};
+    if (result == ORL_OK)
+        pair.drawn[0].renderer = whole->renderer;
+    for (int i = 0; result == ORL_OK && i < 2; i++) // the first frame makes what the others use
+        result = time_frame(s, &pair.drawn[i], 0, &first[i]);
+    if (result == ORL_OK)
+        result = compare(&pair, limit, 0, ROUNDS_OF_WHOLE, &timing);
+    orl_trim_model_close(&whole);
+    if (result != ORL_OK)
+        return result;
+    s->trim->before.frame_ms = timing.ms;
+    s->trim->after.frame_ms = timing.ratio * timing.ms;
+    *slow = !orl_trim_has_budget(s) && orl_pair_timing_above(&timing, limit);
+    return ORL_OK;
+}
