@@ -17,7 +17,8 @@ enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photo
 struct orl_plan_report {
     const char *kind;    // the command: "chart" or "stress"
     const char *out;     // the report's folder
-    const char *methods; // NULL: all
+    const char *const *words; // options of the command that decide which rows there are, and how
+    size_t word_count;        // they are measured: the parts and the whole have the same
     bool quick;
     int parts;
 };

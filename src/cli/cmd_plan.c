@@ -5,13 +5,48 @@
 
 #include "cli/commands.h"
 #include "core/json.h"
+#include "eval/stress.h"
 #include "preprocess/plan.h"
 
 struct options {
     int photographs, parts;
-    const char *chart, *stress, *methods;
+    const char *chart, *stress, *methods, *vary, *axes;
+    int views, side, seed, max_vram_mib; // -1: not given
+    double seconds;
     bool json, quick;
 };
+
+enum { WORDS_MAX = 12 };
+
+// What is passed on to the commands of a report.
+struct words {
+    const char *items[WORDS_MAX];
+    size_t count;
+    char numbers[WORDS_MAX][24]; // their texts
+};
+
+static void add_text(struct words *words, const char *option, const char *value)
+{
+    if (!value)
+        return;
+    words->items[words->count++] = option;
+    words->items[words->count++] = value;
+}
+
+static void add_number(struct words *words, const char *option, double value)
+{
+    char *text = words->numbers[words->count];
+    if (value < 0)
+        return;
+    snprintf(text, sizeof words->numbers[0], "%.10g", value);
+    add_text(words, option, text);
+}
+
+static void add_common(const struct options *o, struct words *words)
+{
+    add_text(words, "--method", o->methods);
+    add_number(words, "--views", o->views);
+}
 
 static double number(const json_t *job, const char *key)
 {
@@ -45,9 +80,18 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     const struct options *o = options;
     json_t *plan;
     (void)common;
+    struct words chart = {0}, stress = {0};
+    add_common(o, &chart);
+    add_text(&chart, "--vary", o->vary);
+    add_number(&chart, "--seconds", o->seconds);
+    add_number(&chart, "--max-vram", o->max_vram_mib);
+    add_common(o, &stress);
+    add_text(&stress, "--axes", o->axes);
+    add_number(&stress, "--size", o->side);
+    add_number(&stress, "--seed", o->seed);
     const struct orl_plan_report reports[] = {
-        {"chart", o->chart, o->methods, o->quick, o->parts},
-        {"stress", o->stress, o->methods, o->quick, o->parts}};
+        {"chart", o->chart, chart.items, chart.count, o->quick, o->parts},
+        {"stress", o->stress, stress.items, stress.count, o->quick, o->parts}};
     enum orl_result result = orl_plan(&terminal->log, scene, o->photographs, &plan);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(reports); i++)
         if (reports[i].out)
@@ -73,7 +117,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_plan(int argc, char **argv)
 {
-    struct options o = {.photographs = 16, .parts = 8};
+    struct options o = {.photographs = 16, .parts = 8, .views = -1, .side = -1, .seed = -1,
+                        .max_vram_mib = -1, .seconds = -1};
     const struct arg_option table[] = {
         {"photographs", ARG_INT, &o.photographs, "N", "of a job, at most; default 16", 1, 100000},
         {"chart", ARG_STRING, &o.chart, "DIR", "also the rows of oriel chart, into DIR", 0, 0},
@@ -81,6 +126,14 @@ int cmd_plan(int argc, char **argv)
         {"parts", ARG_INT, &o.parts, "N", "jobs that make the rows of a report; default 8", 1, 1000},
         {"method", ARG_STRING, &o.methods, "NAME,..", "of a report; default: all", 0, 0},
         {"quick", ARG_FLAG, &o.quick, NULL, "an overview, of a report", 0, 0},
+        {"views", ARG_INT, &o.views, "N", "held-out photographs, of a report", 1, 100},
+        {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "of oriel chart", 0, 0},
+        {"seconds", ARG_NUMBER, &o.seconds, "S", "of timed frames, of oriel chart", 0, 3600},
+        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "of oriel chart", 1, 1 << 20},
+        {"axes", ARG_STRING, &o.axes, "NAME,..", "of oriel stress", 0, 0},
+        {"size", ARG_INT, &o.side, "PX", "of oriel stress", ORL_STRESS_SIDE_MIN,
+         ORL_STRESS_SIDE_MAX},
+        {"seed", ARG_INT, &o.seed, "N", "of oriel stress", 0, INT32_MAX},
         {"json", ARG_FLAG, &o.json, NULL, "the graph, with each job's command, costs and files",
          0, 0},
         {0},
