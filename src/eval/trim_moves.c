@@ -183,11 +183,12 @@ enum orl_result orl_trim_plan(struct trim_search *s)
         find_nearest(s, i);
     bool all = !s->params->settings_only;
     s->source.rewritable = all && is_rewritable(s->source.log, s->source.scene);
+    // They are tried in this order: first what saves most, since the time may end.
     add_move(s, ORL_TRIM_DEPTH, 0);
-    if (all)
-        add_move(s, ORL_TRIM_POINTS, 0);
     for (size_t i = ORL_TEXTURES_BC7; i < ORL_TEXTURES_COUNT; i++)
         add_move(s, ORL_TRIM_TEXTURES, i);
+    if (all)
+        add_move(s, ORL_TRIM_POINTS, 0);
     if (s->source.rewritable) {
         add_move(s, ORL_TRIM_RESOLUTION, 0);
         add_move(s, ORL_TRIM_QUALITY, 0);

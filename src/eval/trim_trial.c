@@ -466,9 +466,10 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     move->ratio = gain / fmax(loss, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
     // What loses nothing need not be compared, except photographs, which stand in for each other.
+    // Nor is there time to compare options that end what makes a frame too slow.
     bool lossless = loss <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH;
     bool taken = good && !slow &&
-                 (!other || lossless || comes_later(s, other) != comes_later(s, move) ||
+                 (!other || lossless || s->options_only || comes_later(s, other) != comes_later(s, move) ||
                   good_enough * other->ratio <= move->ratio);
     if (taken || !move->tried)
         result = note_step(s, &t, taken);
