@@ -6,6 +6,10 @@
 #include "proxy/octahedron.glsl"
 #include "proxy/surfel.glsl"
 
+// A splat this large, as a share of the picture's height, that is nearer than any photograph was to
+// a surface, is a stray that the viewer has come upon: no surface is known so coarsely.
+const float STRAY_SHARE = 1.0 / 16.0;
+
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rg32ui, binding = 0) readonly uniform uimageBuffer positions; // proxy/point.glsl
 layout(r32ui, binding = 1) readonly uniform uimageBuffer attributes;
@@ -67,6 +71,8 @@ surfel splat(ivec2 at, int point)
     vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
     float radius = point_radius(imageLoad(attributes, point).x, corner.w) * splat_scale *
                    radius_factor(block);
+    bool stray = p.z < near && radius * focal.y > STRAY_SHARE * float(view_size.y) * p.z;
+    radius = stray ? 0.0 : radius;
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
 }

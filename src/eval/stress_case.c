@@ -78,6 +78,7 @@ static enum orl_result copy_scene(const struct orl_log *log, const struct orl_sc
     }
     to->frame = from->frame;
     to->photo_distance = from->photo_distance;
+    to->near_distance = from->near_distance;
     to->ground = from->ground;
     enum orl_result result = orl_points_init(log, &to->points, from->points.count);
     for (size_t i = 0; result == ORL_OK && i < from->points.count; i++)

@@ -376,6 +376,7 @@ enum orl_result orl_stress_make_scene(struct orl_gpu *gpu, const struct orl_stre
         }
     }
     c->scene.photo_distance = scene->photo_distance;
+    c->scene.near_distance = scene->near_distance;
     c->scene.ground = scene->ground;
     if (result == ORL_OK)
         result = thin_points(log, &scene->points, &c->scene.points);

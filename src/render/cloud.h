@@ -21,6 +21,7 @@ struct cloud {
     struct point_chunk *chunks;
     size_t chunk_count;
     struct cloud_pages *pages; // what the one chunk holds (cloud_pages.h); NULL: all points
+    float near;                // of struct orl_scene
 };
 
 // Sorts the points and uploads them. Points with a value that is not finite are omitted.

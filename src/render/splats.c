@@ -21,6 +21,8 @@ static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene
         free(cloud);
         cloud = NULL;
     }
+    if (cloud)
+        cloud->near = (float)scene->near_distance;
     *state = cloud;
     return result;
 }
@@ -150,10 +152,11 @@ static enum orl_result resize(struct orl_gpu *gpu, const void *state, int width,
 }
 
 // params: NULL if nothing is drawn.
-static struct splat_block splat_params(const struct orl_view *view,
+static struct splat_block splat_params(const struct cloud *cloud, const struct orl_view *view,
                                        const struct orl_render_params *params)
 {
-    struct splat_block block = {.view_size = {view->camera.width, view->camera.height}};
+    struct splat_block block = {.view_size = {view->camera.width, view->camera.height},
+                                .near = cloud->near};
     double eye[3];
     if (params) {
         block.splat_scale = params->splat_scale;
@@ -321,7 +324,7 @@ static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *
                  struct surface *surface)
 {
     struct splat_target *t = target;
-    struct splat_block block = splat_params(view, params);
+    struct splat_block block = splat_params(state, view, params);
     int least_support = (int)params->min_support;
     const struct orl_tex *depth = least_support > 0 ? t->pushed_depth : t->depth;
     orl_pass_begin(gpu, "splat");
@@ -340,7 +343,7 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
 {
     const struct cloud *cloud = state;
     const struct splat_target *t = target;
-    struct splat_block block = splat_params(view, NULL);
+    struct splat_block block = splat_params(cloud, view, NULL);
     const char *defines = !into->only_unpainted ? NULL : into->seeds ? "UNDER\nFINISHED" : "UNDER";
     for (size_t i = 0; i < cloud->chunk_count; i++) {
         const struct point_chunk *chunk = &cloud->chunks[i];

@@ -139,12 +139,13 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double median(double *values, size_t count)
+// Sorts the values. share: of them that are smaller, [0, 1); 0 without any.
+static double quantile(double *values, size_t count, double share)
 {
     if (!count)
         return 0;
     qsort(values, count, sizeof *values, compare_doubles);
-    return values[count / 2];
+    return values[(size_t)(share * (double)count)];
 }
 
 static double distance(const double a[3], const double b[3])
@@ -153,8 +154,17 @@ static double distance(const double a[3], const double b[3])
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
+// Sorts what one photograph sees, and lowers *near to a quarter of the distance beyond which all but
+// a twentieth of it lies: few things that a photograph sees may be strays.
+static void lower_near(double *values, size_t count, double *near)
+{
+    double nearest = 0.25 * quantile(values, count, 0.05);
+    if (nearest > 0 && (*near == 0 || nearest < *near))
+        *near = nearest;
+}
+
 // For scenes without sparse observations: distances to some of the points in the picture.
-static size_t sample_distances(const struct orl_scene *scene, double *values, size_t per_photo)
+static size_t sample_distances(struct orl_scene *scene, double *values, size_t per_photo)
 {
     size_t count = 0, step = scene->points.count / per_photo + 1;
     for (size_t i = 0; i < scene->photo_count; i++) {
@@ -162,6 +172,7 @@ static size_t sample_distances(const struct orl_scene *scene, double *values, si
             continue;
         const struct orl_view *view = &scene->photos[i].view;
         double centre[3];
+        size_t first = count;
         orl_pose_centre(&view->cam_from_world, centre);
         for (size_t p = 0; p < scene->points.count; p += step) {
             const float *at = scene->points.position[p];
@@ -171,6 +182,7 @@ static size_t sample_distances(const struct orl_scene *scene, double *values, si
                 pixel[0] < view->camera.width && pixel[1] < view->camera.height)
                 values[count++] = distance(centre, world);
         }
+        lower_near(values + first, count - first, &scene->near_distance);
     }
     return count;
 }
@@ -195,8 +207,8 @@ static size_t middle_distances(const struct orl_scene *scene, double *values)
     return count;
 }
 
-static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_scene *scene,
-                                          const struct orl_colmap_model *model)
+static enum orl_result set_distances(const struct orl_log *log, struct orl_scene *scene,
+                                     const struct orl_colmap_model *model)
 {
     enum { SAMPLES = 1024 };
     size_t total = 0, count = 0;
@@ -209,15 +221,17 @@ static enum orl_result set_photo_distance(const struct orl_log *log, struct orl_
         if (scene->photos[i].test) // photographs and model images have equal indices
             continue;
         double centre[3];
+        size_t first = count;
         orl_pose_centre(&model->images[i].cam_from_world, centre);
         for (size_t p = 0; p < model->images[i].point_count; p++)
             values[count++] = distance(centre, model->points[model->images[i].points[p]].position);
+        lower_near(values + first, count - first, &scene->near_distance);
     }
     if (!count)
         count = sample_distances(scene, values, SAMPLES);
     if (!count)
         count = middle_distances(scene, values);
-    scene->photo_distance = count ? median(values, count) : 1;
+    scene->photo_distance = count ? quantile(values, count, 0.5) : 1;
     free(values);
     return ORL_OK;
 }
@@ -350,7 +364,7 @@ static enum orl_result add_points(const struct orl_log *log, struct orl_scene *s
                                                          &scene->points)
                                         : read_points(log, scene, path, may_be_empty);
     if (result == ORL_OK)
-        result = set_photo_distance(log, scene, model);
+        result = set_distances(log, scene, model);
     if (result == ORL_OK && !scene->ground.known)
         result = orl_ground_find(log, scene, &scene->ground);
     return result;

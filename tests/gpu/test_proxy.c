@@ -41,8 +41,9 @@ static void read_order(const struct proxy *proxy, struct drawn *out)
         out->listed[i] = attributes[i] & 0xffffff;
 }
 
-static void draw(const struct point *list, size_t count, const struct orl_view *view,
-                 struct drawn *out)
+// near: of struct orl_scene
+static void draw_near(const struct point *list, size_t count, const struct orl_view *view,
+                      double near, struct drawn *out)
 {
     struct orl_points points;
     assert_int_equal(orl_points_init(NULL, &points, count), ORL_OK);
@@ -53,7 +54,7 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
         points.color[i][1] = (uint8_t)(i >> 8);
         points.radius[i] = list[i].radius;
     }
-    const struct orl_scene scene = {.points = points};
+    const struct orl_scene scene = {.points = points, .near_distance = near};
     const struct orl_render_params params = {.splat_scale = 1};
     struct proxy proxy;
     struct surface surface;
@@ -76,6 +77,12 @@ static void draw(const struct point *list, size_t count, const struct orl_view *
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     orl_proxy_finish(gpu, &proxy);
     orl_points_finish(&points);
+}
+
+static void draw(const struct point *list, size_t count, const struct orl_view *view,
+                 struct drawn *out)
+{
+    draw_near(list, count, view, 0, out);
 }
 
 static int at(int x, int y)
@@ -122,6 +129,22 @@ static void behind_and_outside_are_not_drawn(void **state)
     draw(p, ORL_COUNT(p), &view, &d);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_int_equal(d.index[i], UINT32_MAX);
+}
+
+// Discs of 3 and 2 pixels, more and less than a sixteenth of 40, near and far.
+static void large_splats_near_the_viewer_are_strays(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    struct point p[] = {seen_at(5.5, 5.5, 1, 3.0 / 40), seen_at(15.5, 5.5, 1, 2.0 / 40),
+                        seen_at(5.5, 25.5, 4, 4 * 3.0 / 40)};
+    static struct drawn d;
+    draw_near(p, ORL_COUNT(p), &view, 2, &d);
+    assert_float_equal(d.depth[at(5, 5)], 0, 0);
+    assert_float_equal(d.depth[at(15, 5)], 1, 1e-5);
+    assert_float_equal(d.depth[at(5, 25)], 4, 1e-4);
+    draw_near(p, ORL_COUNT(p), &view, 0.5, &d);
+    assert_float_equal(d.depth[at(5, 5)], 1, 1e-5);
 }
 
 static void nearest_wins_and_ties_go_to_the_lowest_index(void **state)
@@ -293,6 +316,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_point_lands_in_its_pixel),
         cmocka_unit_test(behind_and_outside_are_not_drawn),
+        cmocka_unit_test(large_splats_near_the_viewer_are_strays),
         cmocka_unit_test(nearest_wins_and_ties_go_to_the_lowest_index),
         cmocka_unit_test(the_camera_pose_is_cam_from_world),
         cmocka_unit_test(a_disc_fills_its_projection),

@@ -88,6 +88,7 @@ static void opens_a_plain_workspace(void **state)
     assert_float_equal(scene->photos[1].gain[1], 1, 0);
     // Distances seen: a to 3 and 8, b to 5.
     assert_float_equal(scene->photo_distance, 5, 1e-9);
+    assert_float_equal(scene->near_distance, 0.75, 1e-9); // a quarter of 3
     assert_int_equal(scene->points.count, 25); // without the one in mid-air
     assert_float_equal(scene->points.radius[12], sqrt(0.02), 1e-6); // the sixth neighbour
     assert_float_equal(scene->points.normal[0][2], -1, 1e-6);   // towards the photographs

@@ -130,6 +130,7 @@ export class Renderer {
         this.camera = camera;
         this.values = {view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
                        front_layer: Math.max(o.front_layer, 1e-9), typical: this.manifest.distance,
+                       near: this.manifest.near || 0,
                        ground: this.groundAlongRays(camera)};
         this.splat(camera, o);
         this.pullPush();

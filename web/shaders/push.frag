@@ -5,7 +5,6 @@
 
 uniform sampler2D coarse_a;
 uniform highp usampler2D coarse_b;
-uniform vec4 view_focal;
 #ifdef LAST
 layout(location = 0) out float depth_out; // 0: none
 layout(location = 1) out vec4 normal_out; // half of it and a half; a: 1 on a splat
