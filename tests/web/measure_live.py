@@ -36,10 +36,10 @@ def orthonormal(r):
 def request(photos, at, number, size, rest):
     """The view between two photographs of the tour; at: in photographs."""
     i, share = int(at), at - int(at)
-    (r0, eye0), (r1, eye1) = view_of(photos[i]), view_of(photos[min(i + 1, len(photos) - 1)])
+    a, b = photos[i], photos[min(i + 1, len(photos) - 1)]
+    (r0, eye0), (r1, eye1) = view_of(a), view_of(b)
     mix = lambda a, b: [(1 - share) * x + share * y for x, y in zip(a, b)]
-    scale = size[0] / photos[i]["width"]
-    focal = photos[i]["fx"] * scale
+    focal = size[0] * mix([a["fx"] / a["width"]], [b["fx"] / b["width"]])[0]
     return {"number": number, "size": size, "focal": [focal, focal, size[0] / 2, size[1] / 2],
             "r": orthonormal(mix(r0, r1)), "eye": mix(eye0, eye1), "layer": "color", "rest": rest,
             "quality": QUALITY_STILL if rest else QUALITY_MOVING}
