@@ -112,6 +112,11 @@
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
         "How many depths are tried where only a guessed depth is known. One at which " \
         "photographs agree clearly better replaces the guess. With 0 none are tried.") \
+    NUMBER(own_place, 0, 0, 0.5, "share of the way to the next photograph", "paint=tiled", \
+        ORL_NO_TRIES, \
+        "How near a photograph's own place a view takes on that photograph, in full at the " \
+        "place itself. It is for pictures at rest: in a path it would flash up. With 0 none " \
+        "does.") \
     NUMBER(unknown_trust, 0.5f, 0, 1, "share", "visibility=soft sample=radiance", \
         ORL_TRIES(0, 0.02, 0.05, 0.15, 0.5), \
         "How far a photograph is trusted that has no depth where the surface would be.") \

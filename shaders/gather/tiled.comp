@@ -63,6 +63,9 @@ void insert(sight s, inout ranking r)
 // Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
 const float GUESS_SURE_LEAST = 0.1;
 
+// How much of its penalty a photograph loses at its own place: nearly all, so that it paints alone.
+const float OWN_PREFERENCE = 0.999;
+
 void consider(int i, photo shot, spot s, inout ranking r)
 {
     vec2 pixel;
@@ -83,6 +86,11 @@ void consider(int i, photo shot, spot s, inout ranking r)
     z = backdrop ? s.p.z : z;
     sees = backdrop ? 1.0 : sees;
     penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
+#endif
+#ifdef OWN_PLACE
+    // At its own place a photograph shows what the view shows, whatever its depth is.
+    sees = mix(sees, 1.0, shot.offset.z);
+    penalty *= 1.0 - OWN_PREFERENCE * shot.offset.z;
 #endif
     float sure = sees * photo_border(shot, pixel, is_guess(s));
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);

@@ -79,8 +79,10 @@ struct photo_data {
     VEC4(noise);         // of radiance: shot and read noise variance; z: 1 if rounded to 8 bits;
                          // w: penalty on guessed depth for another colour of light
     VEC4(selected);      // x: weight by the selection
+    VEC4(offset);        // xy, of a frame that packs photographs: from a pixel of the photograph to
+                         // its place in the packed texture; z: 1 where the view is at the
+                         // photograph's own place, falling to 0
     // Of a frame that packs photographs:
-    VEC4(offset);        // xy: from a pixel of the photograph to its place in the packed texture
     VEC4(region);        // places that may be read: least x, y and largest x, y
 };
 #endif

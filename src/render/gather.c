@@ -96,6 +96,29 @@ static float tint_of(const float gain[3])
     return fmaxf(sqrtf(square) - usual, 0);
 }
 
+static double distance(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+// 1 where the view is at the photograph's own place, falling smoothly to 0 within params->own_place
+// of the way to the nearest other photograph of the frame.
+static float nearness(const struct frame *frame, size_t index)
+{
+    const struct orl_photo *photos = frame->photos->scene->photos;
+    double eye[3], own[3], other[3], nearest = INFINITY;
+    orl_pose_centre(&frame->view->cam_from_world, eye);
+    orl_pose_centre(&photos[index].view.cam_from_world, own);
+    for (size_t i = 0; i < frame->chosen_count; i++) {
+        orl_pose_centre(&photos[frame->chosen[i]].view.cam_from_world, other);
+        if (frame->chosen[i] != index)
+            nearest = fmin(nearest, distance(own, other));
+    }
+    double limit = (double)frame->params->own_place * nearest;
+    double near = limit > 0 && isfinite(limit) ? fmax(1 - distance(own, eye) / limit, 0) : 0;
+    return (float)(near * near * (3 - 2 * near));
+}
+
 static void describe_photo(const struct frame *frame, size_t index, struct photo_data *data)
 {
     const struct photos *photos = frame->photos;
@@ -119,6 +142,7 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
     data->gain[3] = frame->packs ? 0 : (float)state->slot;
     if (frame->packs)
         orl_packing_describe(photos->packing, index, data);
+    data->offset[2] = frame->params->own_place > 0 ? nearness(frame, index) : 0;
     if (!frame->radiance)
         return;
     for (int c = 0; c < 3; c++)

@@ -44,9 +44,9 @@ static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatc
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs per pixel is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%s%sKEPT %d",
-             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "", guess_defines(frame),
-             kept);
+    snprintf(defines, sizeof defines, "%s%s%sKEPT %d",
+             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
+             frame->params->own_place > 0 ? "OWN_PLACE 1\n" : "", guess_defines(frame), kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};

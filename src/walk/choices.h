@@ -21,7 +21,8 @@ enum orl_result orl_walk_choice_read(const struct orl_scene *scene, const json_t
                                      struct orl_choice *choice,
                                      char problem[WALK_PROBLEM_BYTES]) ORL_CHECK_RESULT;
 // The parameters of frames while the view moves: what costs most is left out, as far as the row of
-// the method "oriel-fast" says. The depth of photographs stays the same.
+// the method "oriel-fast" says, and a photograph's own place means nothing. The depth of
+// photographs stays the same.
 struct orl_render_params orl_walk_moving_params(const struct orl_render_params *params);
 
 #endif

@@ -130,6 +130,29 @@ static void both_sides_have_one_penalty(void **state)
     teardown(&f);
 }
 
+// PSNR of the covered pixels of a view beside the first photograph, dB.
+static double likeness(struct fixture *f, struct orl_view view,
+                       const struct orl_render_params *params)
+{
+    struct orl_frame frame = draw(gpu, f, view, params, 0);
+    struct orl_image srgb, photo;
+    char *path = orl_scene_photo_path(NULL, &f->scene, 0);
+    assert_int_equal(orl_tone_srgb(NULL, &frame.color, &srgb), ORL_OK);
+    assert_int_equal(orl_picture_read(NULL, path, 3, &photo), ORL_OK);
+    double squares = 0, count = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        double off = (double)srgb.u8[i] - photo.u8[i];
+        squares += frame.coverage.f32[i / 3] > 0 ? off * off : 0;
+        count += frame.coverage.f32[i / 3] > 0;
+    }
+    assert_true(count > 2 * SIDE * SIDE);
+    free(path);
+    orl_image_finish(&srgb);
+    orl_image_finish(&photo);
+    orl_frame_finish(&frame);
+    return 10 * log10(255 * 255 * count / squares);
+}
+
 // Airieau 2012, section 4: where the lines of sight are a photograph's own, the picture is that
 // photograph.
 static void at_its_own_place_a_photograph_shows(void **state)
@@ -141,23 +164,29 @@ static void at_its_own_place_a_photograph_shows(void **state)
     for (int i = 0; i < 5; i++)
         add_noise_photo(&f, look_from(0.3 * i, 0, -0.6 * i, SIDE, 40), (uint32_t)i);
     struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
-    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
-    struct orl_image srgb, photo;
-    char *path = orl_scene_photo_path(NULL, &f.scene, 0);
-    assert_int_equal(orl_tone_srgb(NULL, &frame.color, &srgb), ORL_OK);
-    assert_int_equal(orl_picture_read(NULL, path, 3, &photo), ORL_OK);
-    double squares = 0, count = 0;
-    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
-        double off = (double)srgb.u8[i] - photo.u8[i];
-        squares += frame.coverage.f32[i / 3] > 0 ? off * off : 0;
-        count += frame.coverage.f32[i / 3] > 0;
-    }
-    assert_true(count > 2 * SIDE * SIDE);
-    assert_true(10 * log10(255 * 255 * count / squares) > 45);
-    free(path);
-    orl_image_finish(&srgb);
-    orl_image_finish(&photo);
-    orl_frame_finish(&frame);
+    assert_true(likeness(&f, view, &params) > 45);
+    teardown(&f);
+}
+
+// Method oriel blends there, unless it is told not to.
+static void oriel_shows_a_photograph_near_its_own_place_alone(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    for (int i = 0; i < 5; i++)
+        add_noise_photo(&f, look_from(0.3 * i, 0, -0.6 * i, SIDE, 40), (uint32_t)i);
+    struct orl_render_params blends = orl_method_find(NULL, "oriel")->params, shows = blends;
+    blends.antialias = shows.antialias = ORL_ANTIALIAS_OFF;
+    blends.own_place = 0;
+    blends.border_px = shows.border_px = 0;
+    shows.own_place = 0.1f;
+    struct orl_view at = look_from(0, 0, 0, SIDE, 40), near = look_from(0.02, 0, 0, SIDE, 40);
+    assert_true(likeness(&f, at, &shows) > likeness(&f, at, &blends) + 10);
+    // The next photograph is 0.67 away: full effect at 0, a part of it at 0.02, none at 0.07.
+    assert_true(likeness(&f, near, &shows) > likeness(&f, near, &blends) + 0.1);
+    struct orl_view away = look_from(0.07, 0, 0, SIDE, 40);
+    assert_float_equal(likeness(&f, away, &shows), likeness(&f, away, &blends), 0.01);
     teardown(&f);
 }
 
@@ -255,6 +284,7 @@ int main(void)
         cmocka_unit_test(turns_change_nothing),
         cmocka_unit_test(both_sides_have_one_penalty),
         cmocka_unit_test(at_its_own_place_a_photograph_shows),
+        cmocka_unit_test(oriel_shows_a_photograph_near_its_own_place_alone),
         cmocka_unit_test(without_depth_a_photograph_is_rejected),
         cmocka_unit_test(every_method_gives_radiance),
         cmocka_unit_test(every_slot_paints),
