@@ -1,5 +1,6 @@
 #include "scene/thin.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "core/memory.h"
@@ -67,6 +68,25 @@ enum orl_result orl_points_add_thin(const struct orl_log *log, const struct orl_
     return result;
 }
 
+// How much the depth of a point's tangent plane changes within a pixel, as a fraction of it. The
+// plane n . p = d has depth d / (n . ray), and a pixel changes the ray by 1 / focal length. Angles
+// so flat that normals say little about them count as MOST_SLOPE.
+static double slope_of(const struct orl_view *view, const float position[3], const float normal[3])
+{
+    static const double MOST_SLOPE = 0.1;
+    double n[3] = {0}, p[3], across, facing;
+    for (int i = 0; i < 3; i++) {
+        p[i] = view->cam_from_world.t[i];
+        for (int k = 0; k < 3; k++) {
+            n[i] += view->cam_from_world.r[i][k] * (double)normal[k];
+            p[i] += view->cam_from_world.r[i][k] * (double)position[k];
+        }
+    }
+    across = fabs(n[0]) / view->camera.fx + fabs(n[1]) / view->camera.fy;
+    facing = fabs(n[0] * p[0] + n[1] * p[1] + n[2] * p[2]) / fabs(p[2]);
+    return across < MOST_SLOPE * facing ? across / facing : across > 0 ? MOST_SLOPE : 0;
+}
+
 void orl_points_count_seen_past(const struct orl_points *points, const struct orl_view *view,
                                 const struct orl_image *depth, float tolerance,
                                 uint16_t *seen_past)
@@ -81,7 +101,9 @@ void orl_points_count_seen_past(const struct orl_points *points, const struct or
             !(pixel[1] >= 0) || !(pixel[0] < depth->width) || !(pixel[1] < depth->height))
             continue;
         size_t at = (size_t)pixel[1] * (size_t)depth->width + (size_t)pixel[0];
-        if ((double)depth->f32[at] > z * (1 + (double)tolerance) && seen_past[i] < UINT16_MAX)
+        double behind = (double)depth->f32[at] / z - 1 - (double)tolerance;
+        if (behind > 0 && behind > slope_of(&scaled, p, points->normal[i]) &&
+            seen_past[i] < UINT16_MAX)
             seen_past[i]++;
     }
 }

@@ -23,7 +23,8 @@ enum orl_result orl_points_add_thin(const struct orl_log *log, const struct orl_
 
 // Counts free-space violations: adds one to seen_past[i] for each point that lies in front of the
 // surface that this photograph sees, by more than `tolerance`, a fraction of depth, at the point's
-// pixel. `depth` is z, 0: none, of any size with the view's aspect ratio.
+// pixel, and by more than the depth of the point's own surface changes within a pixel. `depth` is z,
+// 0: none, of any size with the view's aspect ratio.
 void orl_points_count_seen_past(const struct orl_points *points, const struct orl_view *view,
                                 const struct orl_image *depth, float tolerance,
                                 uint16_t *seen_past);

@@ -145,6 +145,33 @@ static void reads_visibility(void **state)
     test_file_remove(dir, path);
 }
 
+static void allows_for_flat_angles(void **state)
+{
+    (void)state;
+    // The wall is seen 10 % farther than the points, whose surfaces face the photograph, or lie at
+    // such an angle that their depth changes by 20 % (but no more than 10 % counts) or by 5 % a pixel.
+    const struct orl_view view = {{.width = 4, .height = 4, .fx = 10, .fy = 10, .cx = 2, .cy = 2},
+                                  {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+    static const float normals[][3] = {{0, 0, -1}, {2, 0, 1}, {1, 0, 2}, {0, 0, 0}};
+    static const bool past[] = {true, false, true, true};
+    struct orl_image depth;
+    struct orl_points points;
+    uint16_t seen_past[4] = {0};
+    assert_int_equal(orl_image_init(NULL, &depth, 4, 4, 1, ORL_PIXEL_F32), ORL_OK);
+    for (int i = 0; i < 16; i++)
+        depth.f32[i] = 11;
+    line_up(&points, 4, 0, 1, 2);
+    for (int i = 0; i < 4; i++) {
+        memcpy(points.position[i], (float[]){0, 0, 10}, sizeof points.position[i]);
+        memcpy(points.normal[i], normals[i], sizeof normals[i]);
+    }
+    orl_points_count_seen_past(&points, &view, &depth, 0.01f, seen_past);
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(seen_past[i], past[i]);
+    orl_image_finish(&depth);
+    orl_points_finish(&points);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -152,6 +179,7 @@ int main(void)
         cmocka_unit_test(drops_points_beyond_the_world),
         cmocka_unit_test(takes_what_there_is),
         cmocka_unit_test(finds_strays),
+        cmocka_unit_test(allows_for_flat_angles),
         cmocka_unit_test(reads_visibility),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
