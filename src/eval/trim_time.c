@@ -11,7 +11,7 @@
 enum { FRAMES_FIRST = 5, ROUNDS_OF_TRIAL = 12, ROUNDS_OF_WHOLE = 64 };
 // In the end no frame may be slower than the whole scene's by more than this share, or so many
 // milliseconds, which no one sees. On the way it may, by as much as compressed textures take on a
-// software renderer: while a frame takes too long, time weighs as much as bytes.
+// software renderer.
 static const double slower_most = 0.02, slower_ms = 0.5, slower_software_ms = 8,
                     slower_on_way = 0.3;
 // Standard error of a trial's ratio that is asked for, if as many rounds are enough for it.

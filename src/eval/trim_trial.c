@@ -10,6 +10,9 @@
 // Losses below this are noise. Time and files decide between steps that save as many bytes on the
 // device: a time is measured with noise, and a pass that goes would use up the tolerance.
 static const double least_loss_db = 0.002, weight_of_time = 0.03, weight_of_files = 0.03;
+// The weight of time while a frame takes too long. What saves time at next to no loss is taken at
+// once; what costs more comes after what makes the model smaller, which mostly makes it faster.
+static const double weight_of_waiting = 0.3;
 // Views beside a photograph that goes may change by as much as renderings there are wrong anyway.
 static const double between_most_db = 3;
 // A step is taken when no other promises more than its own gain divided by this.
@@ -333,7 +336,8 @@ static double gain_of(const struct trim_search *s, const struct trial *t)
     double time = s->slower * fmax(1 - t->move->measured.slower, 0);
     if (s->params->max_frame_ms > 0 && !s->params->max_bytes)
         return time;
-    return bytes + weight_of_files * files + (waits_for_time(s) ? 1 : weight_of_time) * time;
+    double weight = waits_for_time(s) ? weight_of_waiting : weight_of_time;
+    return bytes + weight_of_files * files + weight * time;
 }
 
 // Smaller files and passes that go would use up the tolerance: they come when nothing else makes
