@@ -13,6 +13,13 @@ for arguments in 'info ws --json' 'info ws' 'version' '--help' 'render --help'; 
     [ $? -eq 1 ] && grep -q 'cannot write all of it' stderr.txt ||
         fail "lost output of $arguments goes unnoticed"
 done
+# Nor is it a death: a pager that was left is told of like a full disk.
+exec {gone}> >(exit)
+wait $!
+"$oriel" info ws >&$gone 2>stderr.txt
+[ $? -eq 1 ] && grep -q 'cannot write all of it' stderr.txt ||
+    fail "a reader that went away ends the program"
+exec {gone}>&-
 runs 0 "$oriel" info ws --json
 
 # Links and devices are written to, not replaced.

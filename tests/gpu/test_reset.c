@@ -1,4 +1,5 @@
 // A device that is reset, or out of memory.
+#include <epoxy/egl.h>
 #include <string.h>
 
 #include "wall_scene.h"
@@ -101,12 +102,47 @@ static void too_little_memory_is_an_error_with_advice(void **state)
     orl_gpu_destroy(&gpu);
 }
 
+static PFNEGLCREATECONTEXTPROC real_create;
+static int asked;        // pairs of the two below in the first context that is asked for
+static bool grants_none; // a driver that knows neither
+
+static EGLContext EGLAPIENTRY count_and_create(EGLDisplay display, EGLConfig config,
+                                               EGLContext share, const EGLint *attribs)
+{
+    int found = 0;
+    for (const EGLint *pair = attribs; *pair != EGL_NONE; pair += 2)
+        found += (pair[0] == EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY &&
+                  pair[1] == EGL_LOSE_CONTEXT_ON_RESET) ||
+                 (pair[0] == EGL_CONTEXT_OPENGL_ROBUST_ACCESS && pair[1] == EGL_TRUE);
+    if (asked < 0)
+        asked = found;
+    return grants_none && found ? EGL_NO_CONTEXT : real_create(display, config, share, attribs);
+}
+
+// A reset is told only to a context that asked for it, and some drivers do not tell.
+static void resets_are_asked_for(void **state)
+{
+    (void)state;
+    real_create = epoxy_eglCreateContext;
+    epoxy_eglCreateContext = count_and_create;
+    for (int i = 0; i < 2; i++) {
+        asked = -1;
+        grants_none = i == 1;
+        gpu = device();
+        assert_int_equal(asked, 2);
+        assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+        orl_gpu_destroy(&gpu);
+    }
+    epoxy_eglCreateContext = real_create;
+}
+
 int main(void)
 {
     gpu = gpu_test_device(); // or exit 77
     orl_gpu_destroy(&gpu);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_reset_gives_no_frame),
+        cmocka_unit_test(resets_are_asked_for),
         cmocka_unit_test(too_little_memory_is_an_error_with_advice),
     };
     return cmocka_run_group_tests_name("reset", tests, NULL, NULL);

@@ -5,8 +5,10 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/random.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/sysmacros.h>
 #include <time.h>
 #include <unistd.h>
@@ -16,6 +18,16 @@
 #include "core/text.h"
 
 static char *dir;
+static const unsigned long long *guessed; // what somebody knows of the next temporary name
+
+// Stands in for the kernel's.
+ssize_t getrandom(void *to, size_t size, unsigned flags)
+{
+    if (!guessed || size != sizeof *guessed)
+        return syscall(SYS_getrandom, to, size, flags);
+    memcpy(to, guessed, size);
+    return (ssize_t)size;
+}
 
 static int set_up(void **state)
 {
@@ -153,6 +165,30 @@ static void temporary_names_differ(void **state)
     free(path);
 }
 
+// Somebody who writes to the same folder and foresees the name puts a link there.
+static void temporary_files_are_never_there_before(void **state)
+{
+    (void)state;
+    static const unsigned long long number = 0x5ca1ab1e;
+    char *path = test_path(dir, "frame.exr"), *victim = test_path(dir, "victim");
+    char *trap = test_path(dir, ".oriel-part-000000005ca1ab1e-frame.exr");
+    assert_int_equal(orl_file_write(NULL, victim, "precious", 8), ORL_OK);
+    assert_int_equal(symlink("victim", trap), 0);
+    guessed = &number;
+    assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_ERR_IO);
+    assert_int_equal(unlink(trap), 0);
+    assert_int_equal(link(victim, trap), 0);
+    assert_int_equal(orl_file_write(NULL, path, "x", 1), ORL_ERR_IO);
+    guessed = NULL;
+    test_expect_text(victim, "precious");
+    assert_int_equal(unlink(trap), 0);
+    assert_int_equal(unlink(victim), 0);
+    assert_int_equal(test_count_entries(dir), 0);
+    free(path);
+    free(victim);
+    free(trap);
+}
+
 static void the_longest_names_work(void **state)
 {
     (void)state;
@@ -249,6 +285,7 @@ int main(void)
         cmocka_unit_test(fifos_are_not_read),
         cmocka_unit_test(permissions_are_kept),
         cmocka_unit_test(temporary_names_differ),
+        cmocka_unit_test(temporary_files_are_never_there_before),
         cmocka_unit_test(the_longest_names_work),
         cmocka_unit_test(a_cut_write_leaves_nothing),
         cmocka_unit_test(sweeping),
