@@ -40,8 +40,7 @@ struct session {
     unsigned waits_since;
     uint8_t *frame; // owned, with LWS_PRE bytes of room before it; NULL: no frame to send
     size_t frame_size;
-    char *message;      // owned: the part that has arrived
-    size_t message_size, message_room;
+    struct walk_message message;
     json_t *reply;      // owned: an object to send; NULL: none
     bool asks_site;     // waits for the published site's data
     // A request for a file.
@@ -182,7 +181,7 @@ static void remove_session(struct server *server, struct session *session)
     if (server->renders_for == session)
         server->renders_for = NULL;
     free(session->frame);
-    free(session->message);
+    free(session->message.text);
     json_decref(session->reply);
     *session = (struct session){0};
 }
@@ -282,7 +281,8 @@ static bool take_site_request(const struct server *server, struct session *sessi
 // name, "set": options} or {"site": true}. Returns false for a message that is none of these.
 static bool take_command(struct server *server, struct session *session)
 {
-    json_t *root = json_loadb(session->message, session->message_size, JSON_REJECT_DUPLICATES, NULL);
+    json_t *root = json_loadb(session->message.text, session->message.size,
+                              JSON_REJECT_DUPLICATES, NULL);
     json_t *settings = json_object_get(root, "save");
     bool known = settings && server->content.edits;
     if (json_is_true(json_object_get(root, "site"))) {
@@ -301,33 +301,23 @@ static bool take_command(struct server *server, struct session *session)
     return known;
 }
 
-static bool add_part(const struct server *server, struct session *session, const char *data,
-                     size_t size)
-{
-    if (orl_grow(server->log, (void **)&session->message, &session->message_room,
-                 session->message_size + size, 1) != ORL_OK)
-        return false;
-    memcpy(session->message + session->message_size, data, size);
-    session->message_size += size;
-    return true;
-}
-
 // A newer request for a frame replaces an older one for which no frame has been drawn.
 static int take_message(struct server *server, struct lws *wsi, struct session *session,
                         const char *data, size_t size)
 {
     if (lws_frame_is_binary(wsi))
         return close_for(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE);
-    if (size > MESSAGE_MOST - session->message_size)
+    if (size > MESSAGE_MOST - session->message.size)
         return close_for(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE);
-    if (!add_part(server, session, data, size))
+    if (orl_walk_message_add(server->log, &session->message, data, size) != ORL_OK)
         return -1;
     if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi) > 0)
         return 0;
     struct walk_request request;
-    bool asks = orl_walk_request_read(session->message, session->message_size, &request);
+    bool asks = orl_walk_request_read(session->message.text, session->message.size,
+                                      &request);
     bool valid = asks || take_command(server, session);
-    session->message_size = 0;
+    session->message.size = 0;
     if (!valid)
         return close_for(wsi, LWS_CLOSE_STATUS_INVALID_PAYLOAD);
     if (!asks)

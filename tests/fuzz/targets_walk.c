@@ -119,7 +119,7 @@ static struct site_table one_file(void)
 }
 
 // Serves a scene with the walk.json that is there. message: of a client; NULL: none.
-static void walk(const char *message, size_t size)
+static void walk(const struct walk_message *message)
 {
     struct orl_scene *scene = fuzz_scene();
     fuzz_require(orl_points_init(NULL, &scene->points, 2) == ORL_OK, "memory");
@@ -134,7 +134,7 @@ static void walk(const char *message, size_t size)
         if (orl_walk_settings_start(content.settings, &scene->photos[0].view.camera, &view))
             fuzz_require(!orl_view_problem(&view), "the start view is usable");
         if (message)
-            use_message(&content, &choice, message, size);
+            use_message(&content, &choice, message->text, message->size);
         orl_content_finish(&content);
     }
     orl_scene_destroy(&scene);
@@ -142,12 +142,19 @@ static void walk(const char *message, size_t size)
 
 void fuzz_walk_message(const uint8_t *data, size_t size)
 {
+    // It arrives in two parts, of which either may be empty.
+    struct walk_message message = {0};
+    const char *text = (const char *)data;
     unlink(fuzz_path("walk.json"));
-    walk((const char *)data, size);
+    fuzz_require(orl_walk_message_add(&fuzz_log, &message, text, size / 2) == ORL_OK &&
+                     orl_walk_message_add(&fuzz_log, &message, text + size / 2, size - size / 2) ==
+                         ORL_OK && message.size == size, "a message is put together");
+    walk(&message);
+    free(message.text);
 }
 
 void fuzz_walk_settings(const uint8_t *data, size_t size)
 {
     fuzz_save("walk.json", data, size);
-    walk(NULL, 0);
+    walk(NULL);
 }
