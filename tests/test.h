@@ -76,7 +76,7 @@ static inline size_t test_count_entries(const char *dir)
 // in place of 16 and what caches cost. A limit in seconds would depend on the machine and its load.
 static inline void test_grows_in_proportion(double (*take)(int count))
 {
-    enum { FEW = 10000, TIMES = 16 };
+    enum { FEW = 5000, TIMES = 16 };
     double few = take(FEW), many = take(TIMES * FEW);
     if (many > 5 * TIMES * few)
         fail_msg("%d take %.3f s, %d take %.3f s", FEW, few, TIMES * FEW, many);

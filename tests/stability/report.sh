@@ -1,43 +1,79 @@
 #!/usr/bin/env bash
 # Writes docs/measured/robustness.md: fuzzes every reader, injects every fault, soaks, counts.
-# usage: tests/stability/report.sh BUILD SECONDS|keep|there [all|keep|there]
-# SECONDS of fuzzing for each reader, 0: only the inputs that there are; keep: leave what the page
-# says of fuzzing. all: every call fails in turn, which takes hours, instead of the first ones of a
-# kind and then ever fewer; keep: leave what the page says of faults, frames and valgrind. there: from
-# what lies in FUZZ_DIR, of the same commands run one by one at COMMIT. BUILD is a build folder with the program
-# and tests. Inputs tried add up over the runs of tests/fuzz/run.sh in build-fuzz. SOAK_FRAMES and SOAK_ROUNDS: 10000 and 1000.
-# THREADS_BUILD and SANITIZE_BUILD, where given: build folders with -DORL_SANITIZE_THREADS=ON and with
-# -DORL_SANITIZE=ON, for the programs with threads and the tests of the whole program.
-set -eu -o pipefail
-[ $# -ge 2 ] || { sed -n '2,13s/^# *//p' "$0"; exit 2; }
-source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1") seconds=$2 all=${3:-}
+# usage: tests/stability/report.sh BUILD [STEP]..
+# BUILD: a build folder with the program and tests. STEP: what to run now, each a section of the page
+# that names its commit; without any, all of them. A step that is not named keeps its section, or
+# gets a new one of what an earlier run left in FUZZ_DIR (build-fuzz).
+#   fuzz       every reader for FUZZ_SECONDS (3; 0: only the inputs that there are); inputs tried add
+#              up over the runs of tests/fuzz/run.sh
+#   faults     the first calls of a kind and then ever fewer, or with FAULTS=all every call in turn,
+#              which takes hours
+#   soak       SOAK_FRAMES (10000) frames and SOAK_ROUNDS (1000) openings
+#   threads    what has threads; THREADS_BUILD: configured with -DORL_SANITIZE_THREADS=ON
+#   sanitized  the tests of the whole program; SANITIZE_BUILD: configured with -DORL_SANITIZE=ON
+#   valgrind   every stored input and the unit tests
+set -u -o pipefail
+[ $# -ge 1 ] || { sed -n '3,15s/^# *//p' "$0"; exit 2; }
+source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1")
 fuzz=${FUZZ_DIR:-$source/build-fuzz} page=$source/docs/measured/robustness.md
-commit=${COMMIT:-$(git -C "$source" rev-parse --short HEAD)}
+shift
+[ $# -gt 0 ] || set -- fuzz faults soak threads sanitized valgrind
 status=0
-mkdir -p "$source/docs/measured" "$fuzz/failures"
-[[ $seconds =~ keep|there ]] || "$source/tests/fuzz/run.sh" "$seconds" || status=1
-if [[ ! $all =~ keep|there ]]; then
-    : >"$fuzz/injected.txt"
-    for script in inject inject_prepare inject_publish inject_trim; do
-        "$source/tests/stability/$script.sh" "$build/oriel" "$source" "$build/tests/libinject.so" \
-            $all 2>&1 | tee -a "$fuzz/injected.txt" || status=1
-    done
-    "$source/tests/stability/soak.sh" "$build/oriel" "$source" "$build/tests/soak" \
-        "${SOAK_FRAMES:-10000}" "${SOAK_ROUNDS:-1000}" 2>&1 | tee "$fuzz/soaked.txt" || status=1
-    "$source/tests/stability/valgrind.sh" "$build" "$source" | tee "$fuzz/valgrind.txt" || status=1
-    [ -z "${THREADS_BUILD:-}" ] || "$source/tests/stability/threads.sh" "$THREADS_BUILD" "$source" |
-        tee "$fuzz/threads.txt" || status=1
-    [ -z "${SANITIZE_BUILD:-}" ] || ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "$SANITIZE_BUILD" \
-        -L e2e --output-on-failure | tee "$fuzz/sanitized.txt" || status=1
-fi
+mkdir -p "$fuzz/failures"
 
-failures() { find "$fuzz/failures" -type f | wc -l; }
+# begin STEP: forgets what an earlier run found, and notes the commit that this one tries.
+begin() {
+    : >"$fuzz/$1.txt"
+    git -C "$source" rev-parse --short HEAD >"$fuzz/$1.commit"
+}
 
-fuzzing() {
+run_step() {
+    local script
+    case $1 in
+    fuzz)
+        git -C "$source" rev-parse --short HEAD >>"$fuzz/fuzz.commit" # inputs add up, commits too
+        "$source/tests/fuzz/run.sh" "${FUZZ_SECONDS:-3}"
+        ;;
+    faults)
+        begin faults
+        for script in inject inject_prepare inject_publish inject_trim; do
+            "$source/tests/stability/$script.sh" "$build/oriel" "$source" \
+                "$build/tests/libinject.so" "${FAULTS:-}" 2>&1 | tee -a "$fuzz/faults.txt" || status=1
+        done
+        ;;
+    soak)
+        begin soak
+        "$source/tests/stability/soak.sh" "$build/oriel" "$source" "$build/tests/soak" \
+            "${SOAK_FRAMES:-10000}" "${SOAK_ROUNDS:-1000}" 2>&1 | tee "$fuzz/soak.txt"
+        ;;
+    threads)
+        begin threads
+        "$source/tests/stability/threads.sh" "${THREADS_BUILD:?}" "$source" | tee "$fuzz/threads.txt"
+        ;;
+    sanitized)
+        begin sanitized
+        ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "${SANITIZE_BUILD:?}" -L e2e \
+            --output-on-failure | tee "$fuzz/sanitized.txt"
+        ;;
+    valgrind)
+        begin valgrind
+        "$source/tests/stability/valgrind.sh" "$build" "$source" | tee "$fuzz/valgrind.txt"
+        ;;
+    *) echo "no step $1" >&2 && false ;;
+    esac || status=1
+}
+
+at_commit() {
+    sort -u "$fuzz/$1.commit" | paste -sd, | sed 's/,/, /g; s/.*/At commit &./'
+    echo
+}
+
+fuzz_section() {
+    local name inputs time left
     echo "## Inputs tried"
     echo
-    echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited, at commit"
-    echo "$commit."
+    at_commit fuzz
+    echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
     echo
     echo "| reader | inputs tried | seconds of processor time | failures left |"
     echo "|---|--:|--:|--:|"
@@ -48,9 +84,9 @@ fuzzing() {
     done
     awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | ", n, s, s / 3600 }' \
         "$fuzz/tried.txt"
-    echo "$(failures) |"
+    echo "$(find "$fuzz/failures" -type f | wc -l) |"
     echo
-    echo "## Lines of each reader that these inputs reach"
+    echo "### Lines of each reader that these inputs reach"
     echo
     echo "Most of the lines that are left answer an allocation, a file or a library that fails, which"
     echo "the injection of faults below does; \`rendering.c\` draws with a device."
@@ -58,15 +94,13 @@ fuzzing() {
     echo "| file | lines | reached |"
     echo "|---|--:|--:|"
     awk '{ printf "| `%s` | %d | %.0f %% |\n", $3, $5, 100 * $4 / ($5 ? $5 : 1) }' "$fuzz/lines.txt"
-    echo
 }
 
-# Faults, frames and valgrind.
-running() {
+faults_section() {
+    local kind times
     echo "## Faults injected"
     echo
-    echo "At commit $commit."
-    echo
+    at_commit faults
     echo "A call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
     echo "(PNG, EXR), \`hdr\`, \`synth\` and \`lod\`. Or the power fails there, or at the end (\`end\`): what"
     echo "was not synced then is empty or zeros. Afterwards a final name holds what it held before or the whole"
@@ -80,62 +114,79 @@ running() {
     echo
     echo "| fault | times | files cut, crashes, wrong statuses |"
     echo "|---|--:|--:|"
-    sed -n 's/^injected: \(.*\) \([0-9]*\)$/\1|\2/p' "$fuzz/injected.txt" | while IFS='|' read -r kind times; do
-        echo "| $kind | $times | $(grep -c "^FAILED.*: $kind: call " "$fuzz/injected.txt" || true) |"
-    done
-    echo
+    sed -n 's/^injected: \(.*\) \([0-9]*\)$/\1|\2/p' "$fuzz/faults.txt" |
+        while IFS='|' read -r kind times; do
+            echo "| $kind | $times | $(grep -c "^FAILED.*: $kind: call " "$fuzz/faults.txt") |"
+        done
+}
+
+soak_section() {
     echo "## Soaked"
     echo
+    at_commit soak
     echo "Random views of a small scene by all methods in turn, then the scene opened, drawn once and"
     echo "closed again and again, the device too every twentieth time. Every pixel must be finite, no"
     echo "buffer or texture may stay, and resident memory may grow by 16 MiB at most."
     echo
     echo "| what | growth of memory after the first fifth, KiB |"
     echo "|---|--:|"
-    sed -n 's/^soaked: \(.*\), memory \([-+0-9]*\) KiB.*/| \1 | \2 |/p' "$fuzz/soaked.txt"
-    echo
-    if [ -e "$fuzz/threads.txt" ]; then
-        echo "## Threads"
-        echo
-        echo "Under ThreadSanitizer: $(sed -n 's/^threads: //p' "$fuzz/threads.txt")," \
-            "$(grep -c ^FAILED "$fuzz/threads.txt" || true) with a race."
-        echo
-    fi
-    if [ -e "$fuzz/sanitized.txt" ]; then
-        echo "## The whole program under sanitizers"
-        echo
-        echo "Under AddressSanitizer and UndefinedBehaviorSanitizer, without leaks, which the unit tests"
-        echo "look for, $(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$fuzz/sanitized.txt" || true) failed of" \
-            "$(sed -nE 's/.*Test +#[0-9]+: e2e\/([a-z_]+) .*(Passed|\*\*\*[FTE]).*/`\1`/p' "$fuzz/sanitized.txt" |
-                sort -u | paste -sd, | sed 's/,/, /g' | fold -sw 96)" \
-            "(of $(find "$source/tests/e2e" -name '*.sh' | wc -l) scripts)."
-        echo
-    fi
-    echo "## Uninitialized memory"
-    echo
-    echo "The stored inputs of every reader and the unit tests under valgrind:"
-    echo "$(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"), $(grep -c ^FAILED "$fuzz/valgrind.txt" || true) of them with an error."
-    echo
+    sed -n 's/^soaked: \(.*\), memory \([-+0-9]*\) KiB.*/| \1 | \2 |/p' "$fuzz/soak.txt"
 }
 
+threads_section() {
+    echo "## Threads"
+    echo
+    at_commit threads
+    echo "Under ThreadSanitizer: $(sed -n 's/^threads: //p' "$fuzz/threads.txt")," \
+        "$(grep -c ^FAILED "$fuzz/threads.txt") with a race."
+}
+
+sanitized_section() {
+    echo "## The whole program under sanitizers"
+    echo
+    at_commit sanitized
+    echo "Under AddressSanitizer and UndefinedBehaviorSanitizer, without leaks, which the unit tests"
+    echo "look for, $(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$fuzz/sanitized.txt") failed of" \
+        "$(sed -nE 's/.*Test +#[0-9]+: e2e\/([a-z_]+) .*(Passed|\*\*\*[FTE]).*/`\1`/p' "$fuzz/sanitized.txt" |
+            sort -u | paste -sd, | sed 's/,/, /g' | fold -sw 96)" \
+        "(of $(find "$source/tests/e2e" -name '*.sh' | wc -l) scripts)."
+}
+
+valgrind_section() {
+    echo "## Uninitialized memory"
+    echo
+    at_commit valgrind
+    echo "The stored inputs of every reader and the unit tests under valgrind:"
+    echo "$(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"), $(grep -c ^FAILED "$fuzz/valgrind.txt") of them with an error."
+}
+
+# section STEP HEADING: of what lies in FUZZ_DIR, else as the page has it.
+section() {
+    if [ -s "$fuzz/$1.commit" ]; then
+        "$1_section"
+        echo
+    else
+        awk -v heading="## $2" '/^## / { inside = $0 == heading } inside' "$page"
+    fi
+}
+
+for step in "$@"; do
+    run_step "$step"
+done
 {
     cat <<'END'
 # Robustness: what was tried, and what failed
 
-Made by `tests/stability/report.sh BUILD SECONDS`. SECURITY.md says what Oriel promises; the inputs
-and checks below are in `tests/fuzz` and `tests/stability`.
+Made by `tests/stability/report.sh BUILD [STEP]..`. SECURITY.md says what Oriel promises; the inputs
+and checks below are in `tests/fuzz` and `tests/stability`. Each section names the commits that it tried.
 
 END
-    if [ "$seconds" = keep ]; then
-        sed -n '/^## Inputs tried/,/^## Faults/{/^## Faults/!p}' "$page"
-    else
-        fuzzing
-    fi
-    if [ "$all" = keep ]; then
-        sed -n '/^## Faults injected/,/^## Found/{/^## Found/!p}' "$page"
-    else
-        running
-    fi
+    section fuzz "Inputs tried"
+    section faults "Faults injected"
+    section soak "Soaked"
+    section threads "Threads"
+    section sanitized "The whole program under sanitizers"
+    section valgrind "Uninitialized memory"
     echo "## Found, mended, and kept as tests"
     echo
     echo "| what was wrong | test |"
