@@ -67,12 +67,12 @@ static bool read_view(const json_t *json, const struct orl_camera *camera, struc
         memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
         view->cam_from_world.t[i] = rows[i][3];
     }
-    return orl_pose_valid(&view->cam_from_world) && (!frame || read_frame(frame, &view->camera));
+    return (!frame || read_frame(frame, &view->camera)) && !orl_view_problem(view);
 }
 
 static bool is_view(const json_t *json)
 {
-    const struct orl_camera any = {.width = 2, .height = 2, .fx = 1, .fy = 1, .cx = 1, .cy = 1};
+    const struct orl_camera any = {.width = 1000, .height = 1000}; // large: little is rounded
     struct orl_view view;
     return read_view(json, &any, &view);
 }
@@ -180,5 +180,9 @@ bool orl_walk_settings_start(const json_t *settings, const struct orl_camera *ca
                              struct orl_view *view)
 {
     const json_t *start = json_object_get(settings, "start");
-    return start && read_view(start, camera, view);
+    struct orl_view read;
+    if (!start || !read_view(start, camera, &read))
+        return false;
+    *view = read;
+    return true;
 }

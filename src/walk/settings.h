@@ -16,7 +16,8 @@ enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct o
 // Writes settings that have been checked, atomically.
 enum orl_result orl_walk_settings_write(const struct orl_log *log, const struct orl_scene *scene,
                                         const json_t *settings) ORL_CHECK_RESULT;
-// The start view with this camera's size and principal point. Returns false if none is set.
+// The start view with this camera's size and principal point. Returns false, and leaves the view as
+// it is, if none is set or such a camera cannot have it.
 bool orl_walk_settings_start(const json_t *settings, const struct orl_camera *camera,
                              struct orl_view *view);
 

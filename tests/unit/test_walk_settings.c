@@ -88,6 +88,24 @@ static void test_frame_of_a_view(void **state)
     json_decref(settings);
 }
 
+// Limits of each number alone still allow views that no camera has.
+static void test_frames_of_no_camera(void **state)
+{
+    (void)state;
+    json_t *settings = json_loads(
+        FRAME("{\"aspect\": 0.11, \"fx\": 1, \"x\": 1.9, \"y\": 0}"), 0, NULL);
+    assert_int_equal(orl_walk_settings_check(NULL, "test", settings), ORL_ERR_FORMAT);
+    json_decref(settings);
+    // Nine times as wide as a high photograph is wider than a picture may be.
+    settings = json_loads(FRAME("{\"aspect\": 9, \"fx\": 1, \"x\": 0, \"y\": 0}"), 0, NULL);
+    const struct orl_camera high = {.width = 20, .height = 60000, .fx = 9, .fy = 9};
+    struct orl_view view = {.camera = high};
+    assert_int_equal(orl_walk_settings_check(NULL, "test", settings), ORL_OK);
+    assert_false(orl_walk_settings_start(settings, &view.camera, &view));
+    assert_memory_equal(&view.camera, &high, sizeof high);
+    json_decref(settings);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -95,6 +113,7 @@ int main(void)
         cmocka_unit_test(test_what_is_refused),
         cmocka_unit_test(test_round_trip),
         cmocka_unit_test(test_frame_of_a_view),
+        cmocka_unit_test(test_frames_of_no_camera),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
