@@ -52,6 +52,7 @@ json_t *orl_prepare_arguments(const struct orl_log *log, const struct orl_prepar
     add(list, "--densifier", json_string(orl_densifier_names[p->densifier]));
     add(list, "--keep", json_string(orl_keep_names[p->keep]));
     add(list, "--mesh", json_string(orl_prepare_mesh_names[p->mesh]));
+    add(list, "--adapt", json_string(orl_adapt_effort_names[p->adapt]));
     add(list, "--leave-out", json_string(orl_leave_out_names[p->leave_out]));
     add(list, "--seed", json_sprintf("%u", p->seed));
     add_number(list, "--fps", p->fps);
@@ -61,6 +62,7 @@ json_t *orl_prepare_arguments(const struct orl_log *log, const struct orl_prepar
     add_number(list, "--radius-neighbours", p->radius_neighbours);
     add_number(list, "--radius-overlap", p->radius_overlap);
     add_number(list, "--fuse-cluster", p->fuse_cluster);
+    add_number(list, "--adapt-budget", p->adapt_budget_s);
     add_number(list, "--max-vram", (double)(p->max_vram_bytes >> 20));
     add_number(list, "--max-ram", (double)(p->max_ram_bytes >> 20));
     add_path(list, "--masks", p->masks_dir);

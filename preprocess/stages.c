@@ -19,6 +19,7 @@
 #include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
 #include "preprocess/densify/densify.h"
+#include "preprocess/adapt_stage.h"
 #include "preprocess/arguments.h"
 #include "preprocess/densify_stage.h"
 #include "preprocess/expose/expose.h"
@@ -102,6 +103,11 @@ static bool is_mesh_wanted(const struct orl_job *job)
     return job->params->mesh != ORL_MESH_NONE;
 }
 
+static bool is_adapt_wanted(const struct orl_job *job)
+{
+    return job->params->adapt != ORL_ADAPT_NONE;
+}
+
 static json_t *no_settings(const struct orl_job *job)
 {
     (void)job;
@@ -148,6 +154,8 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 3, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
                           "photographs", true, NULL},
+    [ORL_STAGE_ADAPT] = {"adapt", 1, ORL_STAGE_EXPOSE, orl_stage_adapt_settings, orl_stage_adapt,
+                         {0}, "render", true, is_adapt_wanted},
 };
 
 static bool is_wanted(const struct orl_job *job, int id)

@@ -42,6 +42,11 @@ enum orl_until { ORL_UNTIL_END, ORL_UNTIL_COLLECT, ORL_UNTIL_UNDISTORT };
 // delaunay: from the sparse points and what sees them; needs a COLMAP built with CGAL.
 enum orl_prepare_mesh { ORL_MESH_NONE, ORL_MESH_POISSON, ORL_MESH_DELAUNAY };
 
+// How the finished scene will be drawn: as its method is (none), or with what training photographs
+// find better, each rendered from the others. short: a few changes that measured well, in less than
+// a tenth of the time of prepare. long: among all methods and options.
+enum orl_adapt_effort { ORL_ADAPT_NONE, ORL_ADAPT_SHORT, ORL_ADAPT_LONG };
+
 // Which photographs that are named as doubtful are left out. blurred: much less sharp than most.
 // duplicates: same picture as another, re-encoded, or of a camera that stood still.
 enum orl_leave_out {
@@ -59,6 +64,7 @@ extern const char *const orl_mapper_names[];
 extern const char *const orl_densifier_names[];
 extern const char *const orl_keep_names[];
 extern const char *const orl_prepare_mesh_names[];
+extern const char *const orl_adapt_effort_names[];
 extern const char *const orl_leave_out_names[];
 extern const char *const orl_until_names[];
 
@@ -80,6 +86,8 @@ struct orl_prepare_params {
     enum orl_densifier densifier;
     enum orl_keep keep;
     enum orl_prepare_mesh mesh;
+    enum orl_adapt_effort adapt;
+    double adapt_budget_s;     // of the long one, but for the comparison of methods
     int radius_neighbours;     // a splat's radius is the distance to its k-th neighbour, [1, 64],
     double radius_overlap;     // times this, (0, 8]; 0 each: 6 and 1
     int fuse_cluster;          // photographs fused together at most; 0: what fits in

@@ -25,6 +25,7 @@ enum orl_stage_id {
     ORL_STAGE_BACKDROP,
     ORL_STAGE_MESH,
     ORL_STAGE_EXPOSE,
+    ORL_STAGE_ADAPT,
     ORL_STAGE_COUNT
 };
 

@@ -1,7 +1,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/adapt_scene.h"
 #include "cli/commands.h"
 #include "cli/summary.h"
 #include "oriel/prepare.h"
@@ -11,13 +10,14 @@ enum { INPUTS_MAX = 4096 };
 struct options {
     const char *out, *masks, *exposures;
     struct arg_enum quality, sharing, matching, mapper, densifier, keep, mesh, leave_out, until;
+    struct arg_enum adapt;
     double fps;
     int frames;
     int test_every, max_size, seed, max_vram_mib, max_ram_mib;
     struct orl_names test_list;
     double adapt_s, radius_overlap;
     int radius_neighbours, fuse_cluster;
-    bool resume, adapt;
+    bool resume;
 };
 
 static enum orl_result prepare(const struct terminal *terminal, const struct options *o,
@@ -34,6 +34,7 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
         .densifier = (enum orl_densifier)o->densifier.value,
         .keep = (enum orl_keep)o->keep.value, .mesh = (enum orl_prepare_mesh)o->mesh.value,
         .leave_out = (enum orl_leave_out)o->leave_out.value, .fps = o->fps, .frames = o->frames,
+        .adapt = (enum orl_adapt_effort)o->adapt.value, .adapt_budget_s = o->adapt_s,
         .radius_neighbours = o->radius_neighbours, .radius_overlap = o->radius_overlap,
         .fuse_cluster = o->fuse_cluster, .until = (enum orl_until)o->until.value,
         .resume = o->resume, .seed = (uint32_t)o->seed,
@@ -44,9 +45,6 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
     if (o->test_every && o->test_list.count)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
                         "prepare: --test-every and --test-list exclude each other");
-    if (o->adapt && o->until.value != ORL_UNTIL_END)
-        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
-                        "prepare: --adapt needs a whole scene: without --until");
     if (o->fps > 0 && o->frames)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
                         "prepare: --fps and --frames exclude each other");
@@ -64,7 +62,7 @@ int cmd_prepare(int argc, char **argv)
                         .mesh = {orl_prepare_mesh_names, ORL_MESH_NONE},
                         .leave_out = {orl_leave_out_names, ORL_LEAVE_OUT_NONE},
                         .until = {orl_until_names, ORL_UNTIL_END}, .seed = 1,
-                        .adapt_s = ADAPT_BUDGET_S};
+                        .adapt = {orl_adapt_effort_names, ORL_ADAPT_SHORT}, .adapt_s = 120};
     const struct arg_option options[] = {
         {"out", ARG_STRING, &o.out, "SCENE", "the scene folder to make", 0, 0},
         {"fps", ARG_NUMBER, &o.fps, "N", "frames taken of a second of video; default 2", 0.001,
@@ -102,9 +100,11 @@ int cmd_prepare(int argc, char **argv)
          1 << 20},
         {"until", ARG_ENUM, &o.until, "STAGE",
          "stop before features or stereo, which oriel plan divides into jobs", 0, 0},
-        {"adapt", ARG_FLAG, &o.adapt, NULL,
-         "find the method and the options that suit the scene, as its defaults", 0, 0},
-        {"adapt-budget", ARG_NUMBER, &o.adapt_s, "SECONDS", "of --adapt; default 120", 0, 1e6},
+        {"adapt", ARG_ENUM, &o.adapt, "EFFORT",
+         "find what suits the scene, as its defaults: among a few changes, or all methods and "
+         "options", 0, 0},
+        {"adapt-budget", ARG_NUMBER, &o.adapt_s, "SECONDS", "of --adapt long; default 120", 0,
+         1e6},
         {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
          "memory that fusion and points keep to; default: half of what is free", 1, 1 << 24},
         {"fuse-cluster", ARG_INT, &o.fuse_cluster, "N",
@@ -125,9 +125,6 @@ int cmd_prepare(int argc, char **argv)
     int status;
     if (command_begin(&command, argc, argv, &common, &terminal, inputs, &input_count, &status)) {
         enum orl_result result = prepare(&terminal, &o, &common, inputs, input_count);
-        if (result == ORL_OK && o.adapt && o.until.value == ORL_UNTIL_END)
-            result = adapt_scene(&terminal, &common, o.out, ADAPT_VIEWS, ADAPT_DIVIDE,
-                                 o.adapt_s);
         terminal_finish(&terminal);
         if (result == ORL_OK && o.until.value == ORL_UNTIL_END)
             result = summary_print(&terminal.log, o.out);

@@ -1,19 +1,20 @@
 // oriel tune: fits a method's options to a scene's training photographs.
 #include <stdio.h>
 
-#include "cli/adapt_scene.h"
 #include "cli/commands.h"
-#include "eval/choice.h"
+#include "eval/adapt.h"
 #include "eval/tune_json.h"
+#include "oriel/prepare_params.h"
 
-enum { VIEWS = 16 };
+enum { VIEWS = 16, ADAPT_BUDGET_S = 120 };
 
 struct options {
     const char *method, *json;
     struct orl_names settings, keys;
     int size_divide, views, max_vram_mib;
     double budget_s, gain_db;
-    bool apply, fresh, adapt;
+    struct arg_enum adapt;
+    bool apply, fresh;
 };
 
 static void print_trial(void *priv, const struct orl_tune_trial *trial)
@@ -50,23 +51,48 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
     return result;
 }
 
-// All methods, as prepare --adapt compares them.
+// As the stage adapt of prepare does.
 static enum orl_result adapt(const struct terminal *terminal, const struct options *o,
                              const struct arg_common *common, const char *dir)
 {
+    const struct orl_log *log = &terminal->log;
     if (o->method || o->settings.count || o->keys.count || o->fresh || o->json)
-        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
-                        "tune: --adapt chooses the method and its options itself: without --method, "
-                        "--set, --only, --fresh and --json");
-    return adapt_scene(terminal, common, dir, (size_t)(o->views ? o->views : ADAPT_VIEWS),
-                       o->size_divide, o->budget_s > 0 ? o->budget_s : ADAPT_BUDGET_S);
+        return orl_fail(log, ORL_ERR_ARGUMENT,
+                        "tune: --adapt chooses the method and its options itself: without "
+                        "--method, --set, --only, --fresh and --json");
+    struct orl_scene *scene = NULL;
+    struct orl_gpu *gpu = NULL;
+    struct orl_adapt found = {0};
+    const struct orl_adapt_params params = {
+        .search = o->adapt.value == ORL_ADAPT_LONG,
+        .views = (size_t)(o->views ? o->views : ORL_ADAPT_VIEWS), .size_divide = o->size_divide,
+        .budget_s = o->budget_s > 0 ? o->budget_s : ADAPT_BUDGET_S,
+        .progress = &terminal->progress};
+    enum orl_result result = orl_scene_open(log, dir, &scene);
+    if (result == ORL_OK)
+        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
+                                                              .debug = common->verbose}, &gpu);
+    if (result == ORL_OK)
+        result = orl_adapt_run(gpu, scene, &params, &found);
+    if (result == ORL_OK)
+        result = orl_adapt_store(log, dir, &found);
+    for (size_t i = 0; result == ORL_OK && i < found.row_count; i++)
+        printf("%-14s %7.2f dB %7.4f%s\n", found.rows[i].method->name, found.rows[i].psnr_db,
+               found.rows[i].ssim, i == found.chosen ? "  chosen" : "");
+    if (result == ORL_OK)
+        printf("%-14s %7.2f dB %7.4f\n%-14s %7.2f dB %7.4f%s\n", "plain", found.plain_db,
+               found.plain_ssim, "adapted", found.tuned_db, found.tuned_ssim,
+               found.complete ? "" : "  (the budget ran out)");
+    orl_gpu_destroy(&gpu);
+    orl_scene_destroy(&scene);
+    return result;
 }
 
 static enum orl_result run(const struct terminal *terminal, const void *options,
                            const struct arg_common *common, const char *dir)
 {
     const struct options *o = options;
-    if (o->adapt)
+    if (o->adapt.value != ORL_ADAPT_NONE)
         return adapt(terminal, o, common, dir);
     const struct orl_log *log = &terminal->log;
     struct orl_scene *scene = NULL;
@@ -109,7 +135,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_tune(int argc, char **argv)
 {
-    struct options o = {.size_divide = ADAPT_DIVIDE, .gain_db = 0.01};
+    struct options o = {.size_divide = 1, .gain_db = 0.01,
+                        .adapt = {orl_adapt_effort_names, ORL_ADAPT_NONE}};
     const struct arg_option table[] = {
         {"method", ARG_STRING, &o.method, "NAME", "a method; default: the scene's, or the first", 0,
          0},
@@ -120,10 +147,10 @@ int cmd_tune(int argc, char **argv)
          "keep the result in scene.json: render, eval and others use it", 0, 0},
         {"fresh", ARG_FLAG, &o.fresh, NULL, "start from the method's values, not the scene's", 0,
          0},
-        {"adapt", ARG_FLAG, &o.adapt, NULL,
-         "choose among all methods, too, and keep the result, as prepare --adapt does", 0, 0},
+        {"adapt", ARG_ENUM, &o.adapt, "EFFORT",
+         "choose the method, too, and keep the result, as prepare --adapt does", 0, 0},
         {"budget", ARG_NUMBER, &o.budget_s, "SECONDS",
-         "start no trial after so long; default: none, and 120 with --adapt", 0, 1e6},
+         "start no trial after so long; default: none, and 120 with --adapt long", 0, 1e6},
         {"views", ARG_INT, &o.views, "N",
          "photographs to compare with, at most; default 16, and 6 with --adapt", 1, 100000},
         {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 1", 1,
@@ -134,7 +161,7 @@ int cmd_tune(int argc, char **argv)
         {0},
     };
     const struct arg_command command = {
-        "tune", "SCENE [--method NAME] [--apply | --adapt]",
+        "tune", "SCENE [--method NAME] [--apply | --adapt short|long]",
         "Finds the values of a method's options with which training photographs come out best,\n"
         "each rendered from the others. Held-out photographs take no part.", table, 1, 1};
     int status = command_main(&command, argc, argv, run, &o);

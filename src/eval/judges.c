@@ -47,7 +47,7 @@ enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scen
     memset(judges, 0, sizeof *judges);
     for (size_t i = 0; i < scene->photo_count; i++)
         train += !scene->photos[i].test;
-    if (train < 3)
+    if (train < ORL_JUDGES_TRAIN_MIN)
         return orl_fail(log, ORL_ERR_DATA,
                         "%s: %zu photographs that are not held out; three are needed, to render "
                         "one from two others", scene->dir, train);

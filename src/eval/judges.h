@@ -6,6 +6,9 @@
 #include "eval/heldout.h"
 #include "eval/metrics.h"
 
+// Training photographs that a scene needs, to render one from two others.
+enum { ORL_JUDGES_TRAIN_MIN = 3 };
+
 struct orl_judges {
     struct orl_scene scene; // shares all but `photos`, whose gains are those that judge
     struct orl_photo *photos;  // owned
@@ -17,7 +20,7 @@ struct orl_judges {
 // Loads at most `most` training photographs, evenly chosen (0: all), at 1/divide of their size.
 // Where the exposure of held-out photographs cannot be guessed, that of training photographs is not
 // used, either: a rendering that knows it would gain what no held-out photograph confirms.
-// ORL_ERR_DATA: fewer than three photographs are for training.
+// ORL_ERR_DATA: fewer than ORL_JUDGES_TRAIN_MIN photographs are for training.
 enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
                                 size_t most, int divide,
                                 struct orl_judges *judges) ORL_CHECK_RESULT;

@@ -173,7 +173,24 @@ END
     print_table "$work/accuracy.json" 'by_method(.mean.psnr_cc_db; 2)'
 }
 
-# What --adapt makes of a copy of a scene, and all methods on the scene itself.
+# What prepare found of a scene, and the scene with it and without.
+prepared_scene() { # NAME
+    rm -rf "$work/plain/$1"
+    mkdir -p "$work/plain"
+    cp -r "$scenes/$1" "$work/plain/$1"
+    jq 'del(.tuned, .render)' "$scenes/$1/scene.json" >"$work/plain/$1/scene.json"
+    run "$plain" "$1" >"$work/plain.json"
+    run "$prepared" "$1" >"$work/prepared.json"
+    jq -n --arg scene "$1" --slurpfile manifest "$scenes/$1/scene.json" \
+        --slurpfile plain "$work/plain.json" --slurpfile prepared "$work/prepared.json" '
+        def mean: if type == "array" then .[0] else . end | .mean;
+        $manifest[0] | select(.stages.adapt.psnr_db) | {scene: $scene, adapt: .stages.adapt,
+         others_s: ([.stages | del(.adapt) | .[].cpu_s // 0] | add), method: .render.method,
+         settings: .tuned[.render.method].settings, plain: ($plain[0] | mean),
+         prepared: ($prepared[0] | mean)}'
+}
+
+# What the long search makes of a copy of a scene, and all methods on the scene itself.
 adapted_scene() { # NAME
     local start end
     rm -rf "$work/adapted/$1"
@@ -193,23 +210,46 @@ adapted_scene() { # NAME
          prepare_s: ([$manifest[0].stages[].wall_s] | add), method: $manifest[0].render.method,
          settings: $manifest[0].tuned[$manifest[0].render.method].settings,
          adapted: ($adapted[0] | list[0].mean), all: ($all[0] | list | map({method} + .mean)),
-         training: [$training | split("\n")[] | [splits(" +")] | select(.[2] == "dB")
+         training: [$training | split("\n")[] | [splits(" +")] | select(.[2] == "dB" and .[0] != "plain")
                     | {method: .[0], psnr_db: (.[1] | tonumber), ssim: (.[3] | tonumber)}]}'
 }
 
 page_adapt() {
-    local adapt='oriel tune WORK/adapted/NAME --adapt --budget 600 --quiet'
+    local plain='oriel eval WORK/plain/NAME --quiet --json -'
+    local prepared='oriel eval SCENES/NAME --quiet --json -'
+    local adapt='oriel tune WORK/adapted/NAME --adapt long --budget 600 --quiet'
     local eval='oriel eval WORK/adapted/NAME --quiet --json -'
     local all='oriel eval SCENES/NAME --method all --quiet --json -'
     local name
+    for name in $(scene_names); do
+        prepared_scene "$name"
+    done | jq -s . >"$work/prepared_all.json"
     for name in $(scene_names); do
         adapted_scene "$name"
     done | jq -s . >"$work/adapt.json"
     head_of "Adapted scenes" "$work/adapt.json"
     cat <<'END'
 
-What `oriel tune --adapt` chooses by training photographs, each rendered without itself, and what that gives on
-held-out photographs, which it never reads. The best of the methods as they are, for each figure, stands beside it.
+What `oriel prepare` and `oriel tune --adapt long` choose by training photographs, each rendered without itself, and
+what that gives on held-out photographs, which they never read.
+
+## By default
+
+What the stage `adapt` found, PSNR in dB and SSIM before and after, and its share of the processor time of `prepare`.
+WORK/plain has the scenes without it.
+END
+    command_block "$plain" "$prepared"
+    print_table "$work/prepared_all.json" '
+      def figures(p; s): (p | fixed(2)) + ", " + (s | fixed(4));
+      table(["scene", "found", "training, before", "after", "held out, before", "after", "adapt, s", "share of prepare"];
+        .[] | [.scene, "`" + .method + "`" + ([.settings // {} | to_entries[] | " `\(.key)=\(.value)`"] | add // ""),
+             figures(.adapt.plain_psnr_db; .adapt.plain_ssim), figures(.adapt.psnr_db; .adapt.ssim),
+             figures(.plain.psnr_db; .plain.ssim), figures(.prepared.psnr_db; .prepared.ssim),
+             (.adapt.cpu_s | fixed(1)), (100 * .adapt.cpu_s / (.others_s + .adapt.cpu_s) | fixed(1)) + " %"])'
+    cat <<'END'
+## The long search
+
+The best of the methods as they are, for each figure, stands beside it.
 END
     command_block "$adapt" "$eval" "$all"
     print_table "$work/adapt.json" '

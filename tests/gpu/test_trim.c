@@ -339,11 +339,13 @@ static void adapting_stores_the_best_method(void **state)
     struct orl_scene *scene;
     struct orl_choice choice;
     const struct orl_names none = {0};
-    const struct orl_adapt_params params = {.views = 3, .size_divide = 1, .budget_s = 1};
+    const struct orl_adapt_params params = {.search = true, .views = 3, .size_divide = 1,
+                                            .budget_s = 1};
     setup_twins(&f);
     save_scene(&f);
     assert_int_equal(orl_scene_open(NULL, f.dir, &scene), ORL_OK);
     assert_int_equal(orl_adapt_run(gpu, scene, &params, &adapt), ORL_OK);
+    assert_int_equal(orl_adapt_store(NULL, f.dir, &adapt), ORL_OK);
     orl_scene_destroy(&scene);
     assert_true(adapt.row_count >= 3);
     const struct orl_adapt_row *best = &adapt.rows[adapt.chosen];
