@@ -92,6 +92,10 @@
         "nearest splat alone counts.") \
     NUMBER(splat_scale, 1, 0.01, 16, "", "proxy=splats", ORL_TRIES(0.7, 1, 1.4), \
         "Multiplies the radii of the splats. Larger splats close more holes and fatten edges.") \
+    NUMBER(reconstructions, 1, 1, 9, "pictures", "proxy=splats", ORL_NO_TRIES, \
+        "A frame is the mean of so many pictures, which differ in the size of the splats and by " \
+        "parts of a pixel: what depends on these alone is chance. Time grows with their number. " \
+        "Radiance takes one.") \
     NUMBER(silhouette, 0, 0, 4, "pixels", "paint=tiled", ORL_TRIES(0, 1, 2, 3), \
         "How far the depth from splats may reach past a silhouette. Where photographs agree " \
         "far better on what is behind, that depth is removed. With 0 none is.") \

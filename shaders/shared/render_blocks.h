@@ -155,8 +155,7 @@ ORL_BLOCK(image_block)
     VEC4(ground);       // dot(xyz, ray) is the ground's inverse depth; w: the least one used
     FLOAT(depth_scale); // a typical depth of the scene
     INT(layers);        // compose: 1: a pixel's weight is alpha, and it lies over what is behind
-    FLOAT(unused_1);
-    FLOAT(unused_2);
+    IVEC2(pictures);    // mean: index of the picture, number of them
 };
 #endif
 

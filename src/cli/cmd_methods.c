@@ -1,5 +1,6 @@
 // oriel methods: lists the rendering methods and their options.
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/commands.h"
@@ -22,9 +23,11 @@ static void print_option(const struct orl_render_option *option,
 {
     char value[ORL_OPTION_NAME_BYTES], name[ORL_OPTION_NAME_BYTES], allowed[256] = "";
     orl_render_option_print(option, params, value, sizeof value);
-    if (option->kind == ORL_OPTION_NUMBER)
+    if (option->kind == ORL_OPTION_NUMBER) {
+        snprintf(value, sizeof value, "%.6g", atof(value)); // without digits that a float lacks
         snprintf(allowed, sizeof allowed, "%g to %g%s%s", option->least, option->most,
                  option->unit[0] ? " " : "", option->unit);
+    }
     for (size_t i = 0; option->kind != ORL_OPTION_NUMBER && orl_render_option_name(option, i, name);
          i++) {
         size_t used = strlen(allowed);

@@ -78,6 +78,12 @@ static enum orl_result add_method(struct job *job, const struct orl_method *meth
     return fatal ? result : ORL_OK;
 }
 
+// A frame that is the mean of several is for stills: what a scene is shown with must be fast.
+static bool is_for_stills(const struct orl_method *method)
+{
+    return method->params.reconstructions > 1;
+}
+
 static enum orl_result compare_methods(struct job *job)
 {
     struct orl_adapt *adapt = job->adapt;
@@ -88,7 +94,8 @@ static enum orl_result compare_methods(struct job *job)
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         orl_progress_report(job->params->progress, "methods", (double)i, (double)count,
                             orl_methods[i].name);
-        result = add_method(job, &orl_methods[i]);
+        if (!is_for_stills(&orl_methods[i]))
+            result = add_method(job, &orl_methods[i]);
     }
     if (result == ORL_OK && !adapt->row_count)
         result = orl_fail(job->log, ORL_ERR_DATA, "%s: no method can draw this scene",
@@ -144,7 +151,7 @@ static enum orl_result borrow_option(struct job *job, const struct orl_render_op
             orl_render_option_print(option, &other->params, before, sizeof before);
             known = known || strcmp(value, before) == 0;
         }
-        if (!known && left_s(job) > 0)
+        if (!known && !is_for_stills(m) && left_s(job) > 0)
             result = try_value(job, option, value);
     }
     return result;

@@ -49,6 +49,7 @@ struct frame {
     size_t room_absent;        // photographs that a progressive frame's room lacks
     struct orl_tex *states[2]; // RGBA32F, state of a combination between sweeps, and output of
                                // a filter; else NULL
+    struct orl_tex *mean;      // RGBA32F, reconstructions.h; NULL: there is one alone
 };
 
 // Number of work groups that cover width x height pixels.

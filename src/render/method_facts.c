@@ -38,14 +38,16 @@ void orl_method_cost(const struct orl_method *method, char *text, size_t size)
     const struct orl_render_params *p = &method->params;
     const struct painter *painter = orl_painter_of(p);
     bool maps = strcmp(p->visibility, "none") != 0 && strcmp(p->visibility, "facing") != 0;
-    char photographs[64];
+    char photographs[64], times[32] = "";
+    if (p->reconstructions > 1)
+        snprintf(times, sizeof times, ", %d times", (int)p->reconstructions);
     if (painter == &orl_paint_points) {
         snprintf(text, size, "no photograph");
     } else if (painter == &orl_paint_billboards) {
         snprintf(text, size, "for each voxel 2 photographs; which see it, once for each hull");
     } else {
         name_photographs(p, photographs);
-        snprintf(text, size, "for each pixel %s%s%s", photographs,
+        snprintf(text, size, "for each pixel %s%s%s%s", photographs, times,
                  orl_combine_of(p)->sweeps == 2 ? ", read twice" : "",
                  maps ? "; a depth map of each" : "");
     }

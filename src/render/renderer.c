@@ -15,6 +15,7 @@
 #include "render/progressive.h"
 #include "render/proxy.h"
 #include "render/read_back.h"
+#include "render/reconstructions.h"
 #include "render/room.h"
 #include "render/soften.h"
 
@@ -32,7 +33,7 @@ struct orl_renderer {
     struct edges edges;
     struct guess guess;
     struct gather gather;
-    struct orl_tex *picture, *trusted, *room, *states[2]; // textures of struct frame
+    struct orl_tex *picture, *trusted, *room, *states[2], *mean; // textures of struct frame
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
     struct orl_image staging; // for read_back.h
@@ -135,6 +136,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_tex_destroy(r->gpu, &r->room);
     orl_tex_destroy(r->gpu, &r->states[0]);
     orl_tex_destroy(r->gpu, &r->states[1]);
+    orl_tex_destroy(r->gpu, &r->mean);
     free(r->chosen);
     free(r->selected);
     free(r);
@@ -182,6 +184,7 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
         {"room", orl_frame_shows_room(frame), GL_RGBA32F, &r->room},
         {"combination", states > 0, GL_RGBA32F, &r->states[0]},
         {"combination", states > 1, GL_RGBA32F, &r->states[1]},
+        {"mean of pictures", orl_reconstruction_count(frame) > 1, GL_RGBA32F, &r->mean},
     };
     enum orl_result result = orl_fill_resize(r->gpu, &r->fill, width, height);
     if (result == ORL_OK)
@@ -196,14 +199,17 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
     return result;
 }
 
-static enum orl_result draw(struct frame *frame, bool normals)
+// Draws the surface that the view sees. `params`: the frame's, or those of one reconstruction.
+static enum orl_result draw_surface(struct frame *frame, const struct orl_render_params *params)
+{
+    return orl_proxy_draw(frame->gpu, frame->proxy, frame->view, params, frame->normals,
+                          &frame->proxy->view_target, &frame->surface);
+}
+
+static enum orl_result draw_picture(struct frame *frame, const struct orl_render_params *params)
 {
     const struct painter *painter = orl_painter_of(frame->params);
-    frame->normals = normals || orl_progressive_underpaints(frame) ||
-                     (painter->reads_normals && painter->reads_normals(frame));
-    enum orl_result result =
-        orl_proxy_draw(frame->gpu, frame->proxy, frame->view, frame->params, frame->normals,
-                       &frame->proxy->view_target, &frame->surface);
+    enum orl_result result = draw_surface(frame, params);
     if (result != ORL_OK)
         return result;
     if (orl_frame_guesses(frame) && painter != &orl_paint_points)
@@ -221,6 +227,32 @@ static enum orl_result draw(struct frame *frame, bool normals)
         pass->run(frame);
         orl_pass_end(frame->gpu);
     }
+    return result;
+}
+
+static enum orl_result draw(struct frame *frame, bool normals)
+{
+    const struct painter *painter = orl_painter_of(frame->params);
+    int count = orl_reconstruction_count(frame), done = 0;
+    enum orl_result result = ORL_OK;
+    const struct orl_view *whole = frame->view;
+    frame->normals = normals || orl_progressive_underpaints(frame) ||
+                     (painter->reads_normals && painter->reads_normals(frame));
+    for (; result == ORL_OK && done < count; done++) {
+        struct orl_render_params params = *frame->params;
+        struct orl_view view = *whole;
+        orl_reconstruction_vary(done, count, &params, &view.camera);
+        frame->view = &view;
+        result = draw_picture(frame, &params);
+        frame->view = whole;
+        // A frame that lacks photographs is soon drawn again.
+        if (frame->progressive && frame->progressive->missing > 0)
+            break;
+        if (result == ORL_OK && count > 1)
+            orl_reconstruction_add(frame, done, count);
+    }
+    if (result == ORL_OK && done > 1) // what is read back beside the picture is the scene's own
+        result = draw_surface(frame, frame->params);
     return result;
 }
 
@@ -286,6 +318,7 @@ static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
     frame->picture = r->picture;
     frame->trusted = r->trusted;
     frame->room = r->room;
+    frame->mean = r->mean;
     memcpy(frame->states, r->states, sizeof frame->states);
     return result;
 }

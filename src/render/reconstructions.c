@@ -1,0 +1,45 @@
+#include "render/reconstructions.h"
+
+#include <math.h>
+
+#include "shared/render_blocks.h"
+
+// The largest splats are so many times as large as the scene's own, the smallest as much smaller.
+static const float most_scale = 1.75f;
+// So far to each side the pictures lie: enough for another grid, and too little to blur.
+static const double shift_px = 0.17;
+
+int orl_reconstruction_count(const struct frame *frame)
+{
+    bool splats = frame->proxy->kind == &orl_proxy_splats;
+    return splats && !frame->radiance ? (int)lrintf(frame->params->reconstructions) : 1;
+}
+
+void orl_reconstruction_vary(int index, int count, struct orl_render_params *params,
+                             struct orl_camera *camera)
+{
+    static const double corners[4][2] = {{1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+    if (index == 0)
+        return;
+    // The exponents of 1 2 3 4 of 5 are -1/2 1/2 -1 1, so that the mean size is the frame's.
+    int steps = (index + 1) / 2 * (index % 2 ? -1 : 1), most = count / 2;
+    params->splat_scale *= powf(most_scale, (float)steps / (float)most);
+    camera->cx += shift_px * corners[(index - 1) % 4][0];
+    camera->cy += shift_px * corners[(index - 1) % 4][1];
+}
+
+void orl_reconstruction_add(const struct frame *frame, int index, int count)
+{
+    const char *defines = frame->finishes ? "FINISHED" : NULL;
+    struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
+                                .pictures = {index, count}};
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(frame->gpu, "fill/mean.comp", NULL, defines),
+        .params = &block, .params_size = sizeof block,
+        .images = {{frame->picture, 0, GL_READ_WRITE}, {frame->mean, 0, GL_READ_WRITE}},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT};
+    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
+    orl_pass_begin(frame->gpu, "mean");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
+}
