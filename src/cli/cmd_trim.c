@@ -108,8 +108,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         .tolerance_ssim = o->tolerance_ssim, .worst_db = o->worst_db,
         .max_bytes = (size_t)(o->max_mib * MIB), .max_frame_ms = o->max_frame_ms,
         .views = (size_t)o->views, .size_divide = o->size_divide, .budget_s = o->budget_s,
-        .tune = !o->keep_options, .random = o->random, .on_step = common->quiet ? NULL : print_step,
-        .progress = &terminal->progress};
+        .explain = o->explain, .tune = !o->keep_options, .random = o->random,
+        .on_step = common->quiet ? NULL : print_step, .progress = &terminal->progress};
     if (result == ORL_OK && !common->quiet)
         printf("%-36s %8s %8s %9s %9s\n", "step", "loss dB", "all dB", "MiB", "frame ms");
     if (result == ORL_OK)

@@ -19,6 +19,8 @@ const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
 enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
 // Least gain of a tuned option, as a share of the tolerance.
 static const double tuned_gain = 0.1;
+// Share of the time that tuning may take.
+static const double tuned_time = 0.2;
 // After this share of the time, a model whose frame takes too long is only made faster: otherwise
 // what made it slower would have to be taken back.
 static const double time_for_all = 0.8;
@@ -70,7 +72,8 @@ static enum orl_result search(struct trim_search *s)
         double total = fmax(2.0 * (double)s->move_count, done + 1);
         orl_progress_report(s->params->progress, "trim", done++, total,
                             orl_trim_part_names[move->part]);
-        result = orl_trim_try(s, move);
+        bool group = move->part == ORL_TRIM_PHOTOGRAPH && orl_trim_has_group(s);
+        result = group ? orl_trim_try_group(s) : orl_trim_try(s, move);
     }
     if (result == ORL_OK && orl_trim_has_budget(s) && !within_budget(s) && s->trim->complete)
         result = orl_fail(s->source.log, ORL_ERR_DATA,
@@ -205,7 +208,7 @@ static enum orl_result tune(struct trim_search *s)
     const struct orl_tune_params params = {
         .method = p->start->method->name, .start = &s->state.render,
         .size_divide = TUNED_DIVIDE * p->size_divide, .views = TUNED_VIEWS,
-        .gain_db = tuned_gain * p->tolerance_db, .budget_s = 0.3 * p->budget_s,
+        .gain_db = tuned_gain * p->tolerance_db, .budget_s = tuned_time * p->budget_s,
         .progress = p->progress};
     enum orl_result result =
         orl_tune_run(s->source.gpu, s->model->renderer, s->source.scene, &params, &tune);

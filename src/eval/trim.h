@@ -65,6 +65,7 @@ struct orl_trim_params {
     size_t views;         // photographs that judge what changes all views, evenly chosen
     int size_divide;      // pictures are compared at 1/n of the photographs' size
     double budget_s;      // no new trial starts after this time; 0: no limit
+    bool explain;         // also times steps that make no frame slower: what they buy
     bool tune;            // tunes the method's options first, which may make room for other steps
     bool random;          // also measures random removal
     bool settings_only;   // only what scene.json can state: nothing is removed, no folder is made

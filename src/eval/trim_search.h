@@ -97,16 +97,31 @@ double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model
 // Measures a move, and takes it when it is allowed and no other promises more. The search must not
 // be within its budget yet.
 enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move) ORL_CHECK_RESULT;
-// Takes other options for the method if all targets together do not lose by it. Nothing may have
+// Takes other options for the method if the targets together (of many, some) do not lose by it. Nothing may have
 // been taken before.
 enum orl_result orl_trim_take_options(struct trim_search *s,
                                       const struct orl_render_params *render) ORL_CHECK_RESULT;
 bool orl_trim_has_budget(const struct trim_search *s);
+// What changes beside a photograph that goes: between_db and beside_db of `m`, with the photographs
+// of `state` removed. stays: more than it may.
+enum orl_result orl_trim_measure_between(struct trim_search *s, size_t target,
+                                         const struct trim_state *state, struct trim_measured *m,
+                                         bool *stays) ORL_CHECK_RESULT;
+// Takes a step whose losses are known.
+enum orl_result orl_trim_take_measured(struct trim_search *s,
+                                       struct trim_move *move) ORL_CHECK_RESULT;
 // The move that promises most, other than `except`; NULL: none is left.
 struct trim_move *orl_trim_best_move(const struct trim_search *s, const struct trim_move *except);
 
 // Steps that were blocked may be possible again: what was lost, or the time of a frame, has changed.
 void orl_trim_make_room(struct trim_search *s);
+
+// --- trim_photos.c ---
+
+// Whether so many photographs can be tried that they are removed in groups.
+bool orl_trim_has_group(const struct trim_search *s);
+// Removes a group of photographs, as far as the tolerances allow.
+enum orl_result orl_trim_try_group(struct trim_search *s) ORL_CHECK_RESULT;
 
 // --- trim_time.c ---
 

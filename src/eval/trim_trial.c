@@ -19,6 +19,8 @@ static const double between_most_db = 3;
 static const double good_enough = 0.8;
 // A step that lost too much is tried again when steps have gained this share of the tolerance.
 static const double least_room = 0.1;
+// Tuned options are chosen by six photographs: these many judge them at most.
+enum { TUNED_JUDGES = 32 };
 
 // A step on trial.
 struct trial {
@@ -118,21 +120,21 @@ static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *v
 // How far a view half way to a neighbour changes when photographs go, in dB of PSNR: their squared
 // difference adds to the squared error that a rendering there has anyway, which is taken to be that
 // of the photograph's own view.
-static enum orl_result between_loss(struct trim_search *s, const struct trial *t, size_t other,
-                                    double *loss_db)
+static enum orl_result between_loss(struct trim_search *s, const struct trim_state *state,
+                                    size_t target, size_t other, double *loss_db)
 {
-    const struct orl_heldout *at = &s->targets.views[t->move->index];
+    const struct orl_heldout *at = &s->targets.views[target];
     const struct orl_view view =
         orl_view_interpolate(&at->view, &s->targets.views[other].view, 0.5);
     struct orl_image with = {0}, without = {0};
     enum orl_result result =
         draw_srgb(s, &view, &s->state, s->first_state.removed, &with);
     if (result == ORL_OK)
-        result = draw_srgb(s, &view, &t->state, t->state.removed, &without);
+        result = draw_srgb(s, &view, state, state->removed, &without);
     if (result == ORL_OK) {
         double change_db = orl_metrics_psnr_db(&with, &without);
         *loss_db =
-            10 * log10(1 + pow(10, 0.1 * (s->first_db[t->move->index] - change_db)));
+            10 * log10(1 + pow(10, 0.1 * (s->first_db[target] - change_db)));
     }
     orl_image_finish(&with);
     orl_image_finish(&without);
@@ -141,18 +143,19 @@ static enum orl_result between_loss(struct trim_search *s, const struct trial *t
 
 // No training photograph judges the place of a photograph that goes: that it is left out there is a
 // matter of course. The views beside it do, compared with renderings from all photographs.
-static enum orl_result measure_between(struct trim_search *s, const struct trial *t)
+enum orl_result orl_trim_measure_between(struct trim_search *s, size_t target,
+                                         const struct trim_state *state, struct trim_measured *m,
+                                         bool *stays)
 {
-    struct trim_measured *m = &t->move->measured;
     size_t count = s->near_count < TRIM_BETWEEN ? s->near_count : TRIM_BETWEEN;
     enum orl_result result = ORL_OK;
     m->between_db = m->beside_db = 0;
-    bool stays = false; // whatever the other views say
-    for (size_t i = 0; result == ORL_OK && i < count && !stays; i++) {
+    *stays = false; // whatever the other views say
+    for (size_t i = 0; result == ORL_OK && i < count && !*stays; i++) {
         double loss = 0;
-        result = between_loss(s, t, s->nearest[t->move->index][i], &loss);
+        result = between_loss(s, state, target, s->nearest[target][i], &loss);
         m->between_db = fmax(m->between_db, loss);
-        stays = loss > between_most_db && !orl_trim_has_budget(s);
+        *stays = loss > between_most_db && !orl_trim_has_budget(s);
         m->beside_db += loss / (double)(count * s->targets.count);
     }
     return result;
@@ -244,8 +247,8 @@ static enum orl_result measure_global(struct trim_search *s, const struct trial 
 static enum orl_result measure_local(struct trim_search *s, const struct trial *t)
 {
     struct trim_measured *m = &t->move->measured;
-    enum orl_result result = measure_between(s, t);
-    bool stays = m->between_db > between_most_db && !orl_trim_has_budget(s);
+    bool stays = false;
+    enum orl_result result = orl_trim_measure_between(s, t->move->index, &t->state, m, &stays);
     m->view_count = stays ? 0 : s->near_count;
     for (size_t i = 0; i < m->view_count; i++)
         m->views[i] = s->nearest[t->move->index][i];
@@ -284,6 +287,19 @@ static bool is_measured(const struct trim_search *s, const struct trial *t)
     return same;
 }
 
+// Whether frames have to be drawn to know what the step does to their time. Fewer points, smaller
+// maps and smaller photographs make no frame slower, and files are not drawn; photographs go one by
+// one, each with too little effect to be seen. What all steps together save is timed with the whole.
+static bool is_timed(const struct trim_search *s, const struct trial *t)
+{
+    enum orl_trim_part part = t->move->part;
+    if (part == ORL_TRIM_PHOTOGRAPH || part == ORL_TRIM_QUALITY)
+        return false;
+    bool asked = s->params->max_frame_ms > 0 || (s->params->explain && !t->move->tried);
+    bool changes = part == ORL_TRIM_TEXTURES || part == ORL_TRIM_OPTION;
+    return asked || (changes && (!t->move->tried || is_good(s, t)));
+}
+
 static enum orl_result measure(struct trim_search *s, struct trial *t)
 {
     struct trim_measured *m = &t->move->measured;
@@ -296,10 +312,7 @@ static enum orl_result measure(struct trim_search *s, struct trial *t)
     m->slower = 1;
     m->slow = false;
     m->total_loss_db = s->total_loss_db;
-    // The first time it says what the part of the model buys; later, a step that loses too much is
-    // not timed.
-    if (result == ORL_OK && !is_local(t) && t->move->part != ORL_TRIM_QUALITY &&
-        (!t->move->tried || is_good(s, t)))
+    if (result == ORL_OK && is_timed(s, t))
         result = measure_time(s, t);
     t->move->version = s->version;
     return result;
@@ -494,6 +507,19 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     return result;
 }
 
+enum orl_result orl_trim_take_measured(struct trim_search *s, struct trim_move *move)
+{
+    struct trial t;
+    enum orl_result result = begin(s, move, &t);
+    if (result == ORL_OK)
+        result = note_step(s, &t, true);
+    if (result == ORL_OK)
+        result = take(s, &t);
+    move->tried = move->dead = true;
+    end(&t);
+    return result;
+}
+
 enum orl_result orl_trim_take_options(struct trim_search *s,
                                       const struct orl_render_params *render)
 {
@@ -505,10 +531,13 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
         orl_trim_state_copy(s->source.log, &s->state, s->source.scene->photo_count, &t.state);
     t.state.render = *render;
     if (result == ORL_OK)
-        result = measure_global(s, &t, s->targets.count);
-    if (result == ORL_OK)
+        result = measure_global(s, &t, s->targets.count < TUNED_JUDGES ? s->targets.count
+                                                                       : TUNED_JUDGES);
+    bool better = m->loss_db < 0 && is_good(s, &t);
+    m->slower = 1;
+    if (result == ORL_OK && better)
         result = measure_time(s, &t);
-    bool taken = m->loss_db < 0 && is_good(s, &t) && !m->slow;
+    bool taken = better && !m->slow;
     if (result == ORL_OK)
         result = note_step(s, &t, taken);
     if (result == ORL_OK && taken)

@@ -132,27 +132,36 @@ static bool is_taken(const struct orl_trim *trim, const char *what)
     return false;
 }
 
-// A striped wall, seen by photographs side by side of which the last repeats the first.
-static void setup_twins(struct fixture *f)
+static void setup_wall(struct fixture *f)
 {
-    enum { PHOTOS = 5 };
     setup_empty(f, 4);
     assert_int_equal(orl_points_init(NULL, &f->scene.points, WALL * WALL), ORL_OK);
     set_square(&f->scene.points, 0, WALL, 8, 0, 4, red);
-    for (size_t k = 0; k < PHOTOS; k++) {
-        double x = k + 1 < PHOTOS ? 0.8 * (double)k - 1.2 : -1.2;
-        struct orl_image image;
-        add_photo(f, look_from(x, 0, 0, SIDE, SIDE), red);
-        assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
-        for (int i = 0; i < SIDE * SIDE; i++) {
-            double wall_x = x + 4 * (i % SIDE + 0.5 - SIDE / 2.0) / SIDE;
-            double wall_y = 4 * (i / SIDE + 0.5 - SIDE / 2.0) / SIDE;
-            for (int c = 0; c < 3; c++)
-                image.u8[3 * i + c] =
-                    (uint8_t)(128 + 60 * sin(2 * wall_x + c) + 50 * sin(3 * wall_y - c));
-        }
-        repaint_photo(f, &image);
+}
+
+// A photograph of the wall, on which there are stripes, from (x, 0, 0).
+static void add_striped(struct fixture *f, double x)
+{
+    struct orl_image image;
+    add_photo(f, look_from(x, 0, 0, SIDE, SIDE), red);
+    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        double wall_x = x + 4 * (i % SIDE + 0.5 - SIDE / 2.0) / SIDE;
+        double wall_y = 4 * (i / SIDE + 0.5 - SIDE / 2.0) / SIDE;
+        for (int c = 0; c < 3; c++)
+            image.u8[3 * i + c] =
+                (uint8_t)(128 + 60 * sin(2 * wall_x + c) + 50 * sin(3 * wall_y - c));
     }
+    repaint_photo(f, &image);
+}
+
+// Photographs side by side, of which the last repeats the first.
+static void setup_twins(struct fixture *f)
+{
+    enum { PHOTOS = 5 };
+    setup_wall(f);
+    for (size_t k = 0; k < PHOTOS; k++)
+        add_striped(f, k + 1 < PHOTOS ? 0.8 * (double)k - 1.2 : -1.2);
 }
 
 // Runs on a scene in memory, as `prepare --adapt` does, or writes a scene from one on disk.
@@ -330,6 +339,42 @@ static void a_photograph_that_repeats_another_goes(void **state)
     teardown(&f);
 }
 
+// Where photographs stand close to each other, most of them go, in groups, within the tolerances.
+static void many_photographs_go_in_groups(void **state)
+{
+    (void)state;
+    enum { PHOTOS = 40 };
+    struct fixture f;
+    struct orl_trim result;
+    struct orl_scene *whole;
+    size_t removed = 0;
+    setup_wall(&f);
+    for (size_t k = 0; k < PHOTOS; k++)
+        add_striped(&f, 0.1 * (double)k - 2);
+    save_scene(&f);
+    char *out = orl_path_join(NULL, f.dir, "../trimmed-row");
+    assert_int_equal(orl_dir_remove(NULL, out), ORL_OK);
+    assert_int_equal(orl_scene_open(NULL, f.dir, &whole), ORL_OK);
+    const struct orl_choice start = {.method = orl_method_find(NULL, "airieau"),
+                                     .params = orl_method_find(NULL, "airieau")->params};
+    const struct orl_trim_params params = {.start = &start, .out = out, .tolerance_db = 0.1,
+                                           .tolerance_ssim = 0.01, .worst_db = 0.5, .views = 4,
+                                           .size_divide = 1};
+    assert_int_equal(orl_trim_run(gpu, whole, &params, &result), ORL_OK);
+    for (size_t i = 0; i < result.step_count; i++)
+        removed += result.steps[i].taken && result.steps[i].part == ORL_TRIM_PHOTOGRAPH;
+    assert_int_equal(result.after.photographs, PHOTOS - removed);
+    assert_true(removed >= PHOTOS / 4);
+    assert_true(result.before.psnr_db - result.after.psnr_db <= 0.1);
+    assert_true(result.before.ssim - result.after.ssim <= 0.01);
+    assert_true(result.after.worst_loss_db <= 0.5);
+    orl_scene_destroy(&whole);
+    orl_trim_finish(&result);
+    assert_int_equal(orl_dir_remove(NULL, out), ORL_OK);
+    free(out);
+    teardown(&f);
+}
+
 // The scene then states the method that was best, and is drawn by it.
 static void adapting_stores_the_best_method(void **state)
 {
@@ -394,6 +439,7 @@ int main(void)
         cmocka_unit_test(the_tolerance_is_kept),
         cmocka_unit_test(the_tolerance_of_ssim_is_kept),
         cmocka_unit_test(a_photograph_that_repeats_another_goes),
+        cmocka_unit_test(many_photographs_go_in_groups),
         cmocka_unit_test(adapting_stores_the_best_method),
         cmocka_unit_test(held_out_photographs_never_steer),
     };
