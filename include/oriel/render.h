@@ -85,6 +85,9 @@ void orl_render_option_print(const struct orl_render_option *option,
 struct orl_method {
     const char *name, *description, *source;
     struct orl_render_params params;
+    // The method that this one is a variant of: without values of its own in scene.json it takes
+    // that one's, but for the options in which the two differ. NULL: none.
+    const char *variant_of;
 };
 // All methods, terminated by a NULL name. The first is the default.
 extern const struct orl_method orl_methods[];
@@ -111,8 +114,8 @@ enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_rend
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params) ORL_CHECK_RESULT;
 
-// The method's parameters as they suit the scene: with the values that scene.json has for it, and
-// with the mesh as the proxy if the scene has no points. ORL_ERR_FORMAT if
+// The method's parameters as they suit the scene: with the values that scene.json has for it
+// or for the method that it is a variant of, and with the mesh as the proxy if the scene has no points. ORL_ERR_FORMAT if
 // the scene has settings that are unknown to this program.
 enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
                                         const struct orl_scene *scene,

@@ -35,7 +35,7 @@ const struct orl_method orl_methods[] = {
      "Buehler 2001's penalty, weights of our own",
      {DEFAULTS TILED REFINED}},
     {"oriel-high", "the mean of five pictures of oriel, for stills and video", "as oriel",
-     {DEFAULTS TILED REFINED, .candidates = 8, .reconstructions = 5}},
+     {DEFAULTS TILED REFINED, .candidates = 8, .reconstructions = 5}, .variant_of = "oriel"},
     {"oriel-fast", "oriel from two photographs a pixel, of three, sampled bilinearly", "as oriel",
      {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .min_support = 8, .candidates = 3,
       .photos_per_pixel = 2}},
@@ -226,17 +226,47 @@ static void suit_scene(const struct orl_scene *scene, struct orl_render_params *
         params->fill = ORL_FILL_COLOR;
 }
 
+static bool has_tuned(const struct orl_scene *scene, const struct orl_method *method)
+{
+    for (size_t i = 0; i < scene->tuned_count; i++)
+        if (strcmp(scene->tuned[i].method, method->name) == 0)
+            return true;
+    return false;
+}
+
+// The method whose values in scene.json this one takes.
+static const struct orl_method *tuned_method(const struct orl_scene *scene,
+                                             const struct orl_method *method)
+{
+    return !method->variant_of || has_tuned(scene, method)
+               ? method
+               : orl_method_find(NULL, method->variant_of);
+}
+
+// True if a method has another value for the option than the method that it is a variant of.
+static bool differs(const char *key, const struct orl_method *a, const struct orl_method *b)
+{
+    char own[ORL_OPTION_NAME_BYTES], other[ORL_OPTION_NAME_BYTES];
+    const struct orl_render_option *option = orl_render_option_find(key);
+    if (!option)
+        return false; // which setting it reports
+    orl_render_option_print(option, &a->params, own, sizeof own);
+    orl_render_option_print(option, &b->params, other, sizeof other);
+    return strcmp(own, other) != 0;
+}
+
 enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
                                         const struct orl_scene *scene,
                                         struct orl_render_params *params)
 {
     enum orl_result result = ORL_OK;
+    const struct orl_method *source = tuned_method(scene, method);
     *params = method->params;
     suit_scene(scene, params);
     for (size_t i = 0; result == ORL_OK && i < scene->tuned_count; i++) {
         const struct orl_tuned *tuned = &scene->tuned[i];
         char assignment[160];
-        if (strcmp(tuned->method, method->name) != 0)
+        if (strcmp(tuned->method, source->name) != 0 || differs(tuned->key, method, source))
             continue;
         if (tuned->name)
             snprintf(assignment, sizeof assignment, "%s=%s", tuned->key, tuned->name);
@@ -246,7 +276,7 @@ enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct 
         if (result != ORL_OK)
             result = orl_fail(log, ORL_ERR_FORMAT,
                               "%s/scene.json: \"tuned\" of %s does not fit this program; run "
-                              "oriel tune again", scene->dir, method->name);
+                              "oriel tune again", scene->dir, source->name);
     }
     return result;
 }

@@ -114,6 +114,27 @@ static void scenes_without_points_use_their_mesh(void **state)
     assert_string_equal(params.proxy, "splats");
 }
 
+// A variant takes what was found for its base, but not in what makes it a variant, and not if
+// something was found for itself.
+static void variants_take_the_settings_of_their_base(void **state)
+{
+    (void)state;
+    const struct orl_method *high = orl_method_find(NULL, "oriel-high");
+    struct orl_tuned tuned[] = {{(char *)"oriel", (char *)"guess_depths", 16, NULL},
+                                {(char *)"oriel", (char *)"candidates", 4, NULL},
+                                {(char *)"oriel-high", (char *)"border_px", 2, NULL}};
+    struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
+                              .tuned_count = 2};
+    struct orl_render_params params;
+    assert_int_equal(orl_render_params_tuned(NULL, high, &scene, &params), ORL_OK);
+    assert_float_equal(params.guess_depths, 16, 0);
+    assert_float_equal(params.candidates, high->params.candidates, 0);
+    scene.tuned_count = 3;
+    assert_int_equal(orl_render_params_tuned(NULL, high, &scene, &params), ORL_OK);
+    assert_float_equal(params.guess_depths, 0, 0);
+    assert_float_equal(params.border_px, 2, 0);
+}
+
 static void scenes_settings_are_used(void **state)
 {
     (void)state;
@@ -151,6 +172,7 @@ int main(void)
         cmocka_unit_test(choices_must_go_together),
         cmocka_unit_test(scenes_without_points_use_their_mesh),
         cmocka_unit_test(scenes_settings_are_used),
+        cmocka_unit_test(variants_take_the_settings_of_their_base),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
