@@ -114,9 +114,9 @@ enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_rend
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params) ORL_CHECK_RESULT;
 
-// The method's parameters as they suit the scene: with the values that scene.json has for it
-// or for the method that it is a variant of, and with the mesh as the proxy if the scene has no points. ORL_ERR_FORMAT if
-// the scene has settings that are unknown to this program.
+// The method's parameters as they suit the scene: with the values that scene.json has for it or for
+// the method that it is a variant of, and with the mesh as the proxy if the scene has no points.
+// ORL_ERR_FORMAT if the scene has settings that are unknown to this program.
 enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
                                         const struct orl_scene *scene,
                                         struct orl_render_params *params) ORL_CHECK_RESULT;
