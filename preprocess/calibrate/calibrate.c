@@ -29,6 +29,7 @@ struct candidate {
     char *path; // owned; its folder, below WORK; NULL: there is none
     struct orl_colmap_model model;
     bool bent;  // has it a camera whose distortion turns back on itself?
+    int features; // of struct calibration: those that it was made from
 };
 
 struct calibration {
@@ -40,6 +41,7 @@ struct calibration {
     enum orl_mapper mapper;
     bool straight;       // distortion is taken to be none from now on
     int tries;           // mapper runs, for folder names
+    int features;        // counts the databases: a new one has other features and numbers
 };
 
 // --- the mapper ---
@@ -62,7 +64,7 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
 // be read does not count: the mapper may have left it half-written.
 static enum orl_result consider(struct calibration *c, const char *path)
 {
-    struct candidate candidate = {0};
+    struct candidate candidate = {.features = c->features};
     enum orl_result result = orl_colmap_read(c->job->log, path, &candidate.model);
     if (result != ORL_OK)
         return result;
@@ -181,8 +183,9 @@ static enum orl_result set_mark(const struct calibration *c, bool matched)
     return result;
 }
 
-static enum orl_result restart_database(const struct calibration *c)
+static enum orl_result restart_database(struct calibration *c)
 {
+    c->features++;
     static const char *const names[] = {"database.db", "database.db-wal", "database.db-shm"};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(names); i++) {
@@ -224,10 +227,11 @@ static enum orl_result go_on_mapping(struct calibration *c, bool loose)
     return result;
 }
 
-// The poses of the model found are good: photographs with fewer matches may join it.
+// The poses of the model found are good: photographs with fewer matches may join it. The mapper goes
+// on only with a model of the features that are in the database.
 static enum orl_result join_more(struct calibration *c)
 {
-    if (registered(c) < 3 || all(c))
+    if (registered(c) < 3 || all(c) || c->best.features != c->features)
         return ORL_OK;
     say(c, "letting photographs with fewer matches join");
     return go_on_mapping(c, true);

@@ -57,6 +57,13 @@ prints "5 used, 4 registered (3 train, 1 held out)"
 run 0 info "$work/s"
 prints "left out     3.png: cannot be placed"
 
+# So few can be placed that other features are tried: no model of the former ones goes on with them.
+photos "$work/lonely" 5.png 6.png 7.png
+cp "$work/p"/* "$work/lonely/"
+DOUBLE_ALONE="3.png 4.png 5.png 6.png 7.png" run 0 prepare "$work/lonely" --out "$work/other"
+says "trying affine-shape features"
+prints "8 used, 3 registered"
+
 # All but one of those that remain are held out.
 DOUBLE_ALONE=3.png run 2 prepare "$work/p" --out "$work/few" --test-list 0,1,2
 says "of the photographs that are not held out only 1 could be placed"
