@@ -3,6 +3,7 @@
 // shadow test allows, so that it covers what is behind an outline and not the surface beside it.
 #define BLOCK_FATTEN
 #include "shared/hull_blocks.h"
+#include "proxy/kept.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D depth;
@@ -10,9 +11,10 @@ layout(r32f, binding = 1) writeonly uniform image2D fattened;
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= size.x || at.y >= size.y)
+    ivec2 to = ivec2(gl_GlobalInvocationID.xy);
+    if (to.x >= kept_size.x || to.y >= kept_size.y)
         return;
+    ivec2 at = drawn_texel(to, drawn_size, kept_size);
     float here = imageLoad(depth, at).r, line = 1e30;
     int reach = int(floor(radius));
     for (int y = -reach; y <= reach; y++)
@@ -22,5 +24,5 @@ void main()
             line = min(line, reaches ? found * line_offset : 1e30);
         }
     float nearest = min(here > 0.0 ? here : 1e30, line);
-    imageStore(fattened, at, vec4(nearest < 1e30 ? nearest : 0.0));
+    imageStore(fattened, to, vec4(nearest < 1e30 ? nearest : 0.0));
 }

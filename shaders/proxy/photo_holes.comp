@@ -2,8 +2,9 @@
 // Points clearly behind the rim of a hole are occluded in the hole as well. A pixel is in a hole
 // unless half of the eight directions, side by side, have no depth: sky beside a building is no
 // hole.
-#define BLOCK_IMAGE
+#define BLOCK_HOLES
 #include "shared/render_blocks.h"
+#include "proxy/kept.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D depth;
@@ -14,15 +15,16 @@ const int REACH_SHARE = 24; // reach: the picture's longer side divided by this
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= image_size.x || at.y >= image_size.y)
+    ivec2 to = ivec2(gl_GlobalInvocationID.xy);
+    if (to.x >= kept_size.x || to.y >= kept_size.y)
         return;
+    ivec2 at = drawn_texel(to, drawn_size, kept_size);
     float here = imageLoad(depth, at).r;
     if (here > 0.0) {
-        imageStore(guessed, at, vec4(here));
+        imageStore(guessed, to, vec4(here));
         return;
     }
-    int reach = max(image_size.x, image_size.y) / REACH_SHARE;
+    int reach = max(drawn_size.x, drawn_size.y) / REACH_SHARE;
     float sum = 0.0, total = 0.0; // weighted inverse depth, weights
     int empty = 0, longest = 0, first = 0;
     for (int k = 0; k < DIRECTIONS; k++) {
@@ -43,5 +45,5 @@ void main()
     }
     // A run of empty directions may continue from the last direction to the first.
     bool hole = total > 0.0 && max(longest, empty + first) < DIRECTIONS / 2;
-    imageStore(guessed, at, vec4(hole ? -total / sum : 0.0));
+    imageStore(guessed, to, vec4(hole ? -total / sum : 0.0));
 }

@@ -58,9 +58,12 @@ ORL_BLOCK(billboard_block)
 #if defined(__STDC_VERSION__) || defined(BLOCK_FATTEN)
 ORL_BLOCK(fatten_block)
 {
-    IVEC2(size);        // pixels
-    FLOAT(radius);      // of the lines, pixels
+    IVEC2(drawn_size);  // of the depth map that is read, pixels
+    IVEC2(kept_size);   // of the one that is written
+    FLOAT(radius);      // of the lines, pixels that are read
     FLOAT(line_offset); // factor on their depth
+    FLOAT(unused0);
+    FLOAT(unused1);
 };
 #endif
 

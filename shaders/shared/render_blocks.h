@@ -144,6 +144,15 @@ ORL_BLOCK(gather_block)
 #define GUESS_BLUR_MOST 0.012 // largest blur, fraction of the picture's longer side
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 
+// Estimates in the holes of a photograph's depth map.
+#if defined(__STDC_VERSION__) || defined(BLOCK_HOLES)
+ORL_BLOCK(holes_block)
+{
+    IVEC2(drawn_size); // of the depth map that is read, pixels
+    IVEC2(kept_size);  // of the one that is written
+};
+#endif
+
 // Image-space hole filling and the final composition.
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)
 ORL_BLOCK(image_block)

@@ -239,6 +239,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         struct photo_state *state = &photos->states[i];
         state->color_camera = camera_of(&scene->photos[i], photos->divide);
         state->depth_camera = depth_camera_of(&state->color_camera, scene->defaults.depth_divide);
+        state->drawn_camera = depth_camera_of(&state->color_camera, 1);
     }
     photos->color_params = color_params(photos, &size, false);
     photos->depth_params = (struct orl_tex_params){
@@ -474,9 +475,10 @@ struct orl_camera orl_photos_depth_camera(const struct photo_state *state, int d
                       : *c;
 }
 
-// Writes a depth map into a slot by a program of a parameter block.
-static void write_depth(const struct frame *frame, const struct surface *surface, int slot,
-                        const char *file, const void *block, size_t size)
+// Writes a depth map of kept[] pixels into a slot by a program of a parameter block.
+static void write_depth(const struct frame *frame, const struct surface *surface,
+                        const int kept[2], int slot, const char *file, const void *block,
+                        size_t size)
 {
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, file, NULL, NULL),
                              .params = block, .params_size = size,
@@ -484,25 +486,29 @@ static void write_depth(const struct frame *frame, const struct surface *surface
                                         {frame->photos->depth, 0, GL_WRITE_ONLY}},
                              .image_layers = {[1] = slot + 1},
                              .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups(surface->width, surface->height, d.groups);
+    orl_pixel_groups(kept[0], kept[1], d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
 // The depth that a photograph sees, with estimated depth in the holes.
-static void fill_holes(const struct frame *frame, const struct surface *surface, int slot)
+static void fill_holes(const struct frame *frame, const struct surface *surface,
+                       const int kept[2], int slot)
 {
-    struct image_block block = {.image_size = {surface->width, surface->height}};
-    write_depth(frame, surface, slot, "proxy/photo_holes.comp", &block, sizeof block);
+    struct holes_block block = {.drawn_size = {surface->width, surface->height},
+                                .kept_size = {kept[0], kept[1]}};
+    write_depth(frame, surface, kept, slot, "proxy/photo_holes.comp", &block, sizeof block);
 }
 
 // The same as a shadow map with fat outlines.
-static void fatten(const struct frame *frame, const struct surface *surface, int slot)
+static void fatten(const struct frame *frame, const struct surface *surface, const int kept[2],
+                   int slot)
 {
     // Twice what the shadow test allows.
-    struct fatten_block block = {.size = {surface->width, surface->height},
+    struct fatten_block block = {.drawn_size = {surface->width, surface->height},
+                                 .kept_size = {kept[0], kept[1]},
                                  .radius = frame->params->fatten_px,
                                  .line_offset = 1 + 2 * frame->params->depth_tolerance};
-    write_depth(frame, surface, slot, "proxy/fatten.comp", &block, sizeof block);
+    write_depth(frame, surface, kept, slot, "proxy/fatten.comp", &block, sizeof block);
 }
 
 static bool has_shadow_maps(const struct frame *frame)
@@ -521,7 +527,10 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, i
 {
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[index];
-    struct orl_view view = {.camera = orl_photos_depth_camera(state, divide),
+    const struct orl_camera camera = orl_photos_depth_camera(state, divide);
+    const int kept[2] = {camera.width, camera.height};
+    // Splats and their holes want pixels: a map that is kept smaller is made from a whole one.
+    struct orl_view view = {.camera = divide > 1 ? camera : state->drawn_camera,
                             .cam_from_world = photos->scene->photos[index].view.cam_from_world};
     struct surface surface;
     void **target = divide > 1 ? &frame->proxy->coarse_target : &frame->proxy->photo_target;
@@ -534,9 +543,9 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, i
     if (result != ORL_OK)
         return result;
     if (has_shadow_maps(frame))
-        fatten(frame, &surface, state->slot);
+        fatten(frame, &surface, kept, state->slot);
     else
-        fill_holes(frame, &surface, state->slot);
+        fill_holes(frame, &surface, kept, state->slot);
     state->depth_key = frame->depth_key;
     state->depth_divide = divide;
     return ORL_OK;

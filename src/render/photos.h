@@ -18,6 +18,7 @@ struct photo_state {
     float white;  // of radiance: scale of its colours on the device
     bool rounded; // its values were rounded to 8 bits
     struct orl_camera color_camera, depth_camera; // at the resident size, pixels of level 0
+    struct orl_camera drawn_camera; // of the depth map that the resident one is picked from
 };
 
 struct photos {
