@@ -1,5 +1,6 @@
 // All training photographs have the last word on the steps that were taken. Where they lose more
-// than the judges said, photographs that a view needs come back, or the last steps are taken back.
+// than the judges said, photographs that a view needs come back, or steps are taken back that give
+// much for few bytes (trim_repair.c).
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,36 +49,19 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
 
 // --- whether it is within the tolerances ---
 
-struct check {
-    enum trim_confirmation kind;
-    bool lost, slow; // the state measured last loses too much, or its frame takes too long
-    size_t steps;    // of that state
-};
-
 // Whether steps have to be taken back.
-static bool is_broken(const struct check *check)
+static bool is_broken(const struct trim_check *check)
 {
     return check->lost || (check->slow && check->kind == TRIM_CONFIRM_LAST);
 }
 
-// Measures the state after the first `steps` steps, whose model is left open.
-static enum orl_result measure_after(struct trim_search *s, size_t steps, struct check *check)
+enum orl_result orl_trim_check(struct trim_search *s, struct trim_check *check)
 {
     const struct orl_trim_params *p = s->params;
     const struct orl_trim_figures *before = &s->trim->before, *after = &s->trim->after;
-    const struct trim_state last = s->state;
-    enum orl_result result = ORL_OK;
-    if (steps < s->history_count) {
-        s->state = s->history[steps].state;
-        orl_trim_model_close(&s->model);
-        result = orl_trim_model_open(&s->source, &s->state, &s->model);
-    }
-    if (result == ORL_OK)
-        result = orl_trim_measure_all(s, false, &s->trim->after);
+    enum orl_result result = orl_trim_measure_all(s, false, &s->trim->after);
     if (result == ORL_OK && check->kind != TRIM_CONFIRM_LOSSES)
         result = orl_trim_time_whole(s, &check->slow);
-    s->state = last;
-    check->steps = steps;
     check->lost = !orl_trim_has_budget(s) &&
                   (before->psnr_db - after->psnr_db > p->tolerance_db ||
                    before->ssim - after->ssim > p->tolerance_ssim ||
@@ -96,34 +80,6 @@ static size_t removal_of(const struct trim_search *s, size_t target)
             s->history[k].move->index == target)
             return k;
     return s->history_count;
-}
-
-static void restore(struct trim_state *state, size_t photo)
-{
-    state->removed_count -= state->removed[photo];
-    state->removed[photo] = false;
-}
-
-// Takes one removal back; the steps after it stay.
-static void put_back(struct trim_search *s, size_t step)
-{
-    struct trim_past past = s->history[step];
-    struct orl_trim *trim = s->trim;
-    size_t photo = s->targets.views[past.move->index].photo;
-    struct orl_trim_step *undone = &trim->steps[past.step];
-    for (size_t k = step + 1; k < s->history_count; k++) {
-        struct orl_trim_step *later = &trim->steps[s->history[k].step];
-        restore(&s->history[k].state, photo);
-        later->bytes += undone->saved_bytes;
-        later->total_loss_db -= undone->loss_db;
-        later->total_loss_ssim -= undone->loss_ssim;
-    }
-    restore(&s->state, photo);
-    undone->taken = false;
-    trim->undone++;
-    free(past.state.removed);
-    memmove(&s->history[step], &s->history[step + 1],
-            (--s->history_count - step) * sizeof *s->history);
 }
 
 // The nearest photographs to a view that were removed since the last confirmation.
@@ -176,8 +132,9 @@ static enum orl_result mend_view(struct trim_search *s, size_t view, bool *mende
                 most = (struct trim_score){m.psnr_db, m.ssim};
             }
         }
+        if (result == ORL_OK && helps)
+            result = orl_trim_undo(s, removal_of(s, best));
         if (result == ORL_OK && helps) {
-            put_back(s, removal_of(s, best));
             s->now[view] = most;
             s->lost_db[view] = s->first_db[view] - most.db;
             *mended = true;
@@ -187,7 +144,7 @@ static enum orl_result mend_view(struct trim_search *s, size_t view, bool *mende
 }
 
 // Puts back the photographs that views need which lose more than one may.
-static enum orl_result mend(struct trim_search *s, struct check *check)
+static enum orl_result mend(struct trim_search *s, struct trim_check *check)
 {
     enum orl_result result = ORL_OK;
     bool mended = true;
@@ -197,52 +154,15 @@ static enum orl_result mend(struct trim_search *s, struct check *check)
         for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++)
             result = mend_view(s, i, &mended);
         if (result == ORL_OK && mended) // other views change, too
-            result = measure_after(s, s->history_count, check);
+            result = orl_trim_check(s, check);
     }
     return result;
 }
 
-// --- taking steps back ---
-
-// Takes all steps but the first `steps` back. The one after them breaks a tolerance; the others may
-// be tried again without it.
-static enum orl_result take_back(struct trim_search *s, size_t steps)
-{
-    while (s->history_count > steps) {
-        struct trim_past *past = &s->history[--s->history_count];
-        s->trim->steps[past->step].taken = false;
-        s->trim->undone++;
-        if (past->move)
-            past->move->dead = s->history_count == steps;
-        free(s->state.removed);
-        s->state = past->state;
-        s->slower = past->slower;
-    }
-    orl_trim_model_close(&s->model);
-    return orl_trim_model_open(&s->source, &s->state, &s->model);
-}
-
-// Takes the last steps back, which promised least: as few as it takes, found by halving.
-static enum orl_result halve(struct trim_search *s, struct check *check)
-{
-    bool slow = check->slow && check->kind == TRIM_CONFIRM_LAST;
-    size_t kept = slow ? 0 : s->confirmed, too_many = s->history_count;
-    enum orl_result result = ORL_OK;
-    while (result == ORL_OK && kept + 1 < too_many) {
-        size_t middle = kept + (too_many - kept) / 2;
-        result = measure_after(s, middle, check);
-        if (is_broken(check))
-            too_many = middle;
-        else
-            kept = middle;
-    }
-    if (result == ORL_OK)
-        result = take_back(s, kept);
-    return result == ORL_OK && check->steps != kept ? measure_after(s, kept, check) : result;
-}
+// --- the whole ---
 
 // What the steps that are kept really cost, over all training photographs, counts from now on.
-static void settle(struct trim_search *s, const struct check *check)
+static void settle(struct trim_search *s, const struct trim_check *check)
 {
     const struct orl_trim *trim = s->trim;
     if (check->kind != TRIM_CONFIRM_LOSSES)
@@ -263,13 +183,16 @@ static void settle(struct trim_search *s, const struct check *check)
 
 enum orl_result orl_trim_confirm(struct trim_search *s, enum trim_confirmation kind)
 {
-    struct check check = {.kind = kind};
-    enum orl_result result = measure_after(s, s->history_count, &check);
+    struct trim_check check = {.kind = kind};
+    enum orl_result result = orl_trim_check(s, &check);
     size_t steps = s->history_count;
     if (result == ORL_OK)
         result = mend(s, &check);
-    if (result == ORL_OK && is_broken(&check) && s->history_count > 0)
-        result = halve(s, &check);
+    while (result == ORL_OK && is_broken(&check) && s->history_count > 0) {
+        result = orl_trim_repair(s, &check);
+        if (result == ORL_OK)
+            result = orl_trim_check(s, &check);
+    }
     if (result != ORL_OK)
         return result;
     if (s->history_count < steps)

@@ -72,6 +72,17 @@ bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *m
     }
 }
 
+bool orl_trim_redraws_depth(const struct trim_move *move)
+{
+    char key[64];
+    if (move->part != ORL_TRIM_OPTION)
+        return false;
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(cheaper[move->index], "="),
+             cheaper[move->index]);
+    const struct orl_render_option *option = orl_render_option_find(key);
+    return option && strstr(option->readers, "proxy=");
+}
+
 void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
                     struct trim_state *state, char what[96])
 {
@@ -142,16 +153,17 @@ static void find_nearest(struct trim_search *s, size_t target)
     }
 }
 
-// What a photograph is taken to cost before it is tried, as a share of the tolerance. To try all
-// photographs takes longest, and less in a model that other steps have made smaller: steps that
-// promise more come first.
-static const double photo_cost = 0.25;
+// What a photograph or an option is taken to cost before it is tried, as a share of the tolerance,
+// and what an option is taken to save. To try all of them takes longest, and less in a model that
+// other steps have made smaller: steps that promise more come first.
+static const double untried_cost = 0.25, option_gain = 0.05;
 
 static void add_move(struct trim_search *s, enum orl_trim_part part, size_t index)
 {
     struct trim_move move = {.part = part, .index = index, .ratio = INFINITY};
-    if (part == ORL_TRIM_PHOTOGRAPH && s->params->tolerance_db > 0)
-        move.ratio = 1 / ((double)s->targets.count * photo_cost * s->params->tolerance_db);
+    double gain = part == ORL_TRIM_PHOTOGRAPH ? 1 / (double)s->targets.count : option_gain;
+    if ((part == ORL_TRIM_PHOTOGRAPH || part == ORL_TRIM_OPTION) && s->params->tolerance_db > 0)
+        move.ratio = gain / (untried_cost * s->params->tolerance_db);
     if (orl_trim_is_possible(s, &move))
         s->moves[s->move_count++] = move;
 }

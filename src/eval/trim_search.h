@@ -81,6 +81,8 @@ enum orl_result orl_trim_plan(struct trim_search *s) ORL_CHECK_RESULT;
 // The i-th of `count` targets, evenly chosen.
 size_t orl_trim_judge(const struct trim_search *s, size_t i, size_t count);
 bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *move);
+// Whether the step changes the splats, so that the photographs' depth maps are drawn anew.
+bool orl_trim_redraws_depth(const struct trim_move *move);
 // Takes the move's next step in `state`, and describes it.
 void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
                     struct trim_state *state, char what[96]);
@@ -155,6 +157,25 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
 // losses and time.
 enum orl_result orl_trim_confirm(struct trim_search *s,
                                  enum trim_confirmation kind) ORL_CHECK_RESULT;
+
+// What all targets say of the state.
+struct trim_check {
+    enum trim_confirmation kind;
+    bool lost, slow; // it loses more than it may, or its frame takes too long
+};
+// Measures the state, whose model is open, by all targets.
+enum orl_result orl_trim_check(struct trim_search *s,
+                               struct trim_check *check) ORL_CHECK_RESULT;
+
+// --- trim_repair.c ---
+
+// Takes one step of the history back; those after it stay. Its move can not be taken again. The
+// model stays as it was.
+enum orl_result orl_trim_undo(struct trim_search *s, size_t step) ORL_CHECK_RESULT;
+// Takes back what brings the state, which breaks a tolerance, nearest to it for what it saves. The
+// model is that of the new state.
+enum orl_result orl_trim_repair(struct trim_search *s,
+                                const struct trim_check *check) ORL_CHECK_RESULT;
 
 // --- trim_random.c ---
 

@@ -55,7 +55,8 @@ double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model
 
 static enum orl_result begin(struct trim_search *s, struct trim_move *move, struct trial *t)
 {
-    bool shares = move->part == ORL_TRIM_PHOTOGRAPH || move->part == ORL_TRIM_OPTION;
+    bool shares = move->part == ORL_TRIM_PHOTOGRAPH ||
+                  (move->part == ORL_TRIM_OPTION && !orl_trim_redraws_depth(move));
     *t = (struct trial){.move = move};
     enum orl_result result =
         orl_trim_state_copy(s->source.log, &s->state, s->source.scene->photo_count, &t->state);
@@ -193,18 +194,24 @@ bool orl_trim_has_budget(const struct trim_search *s)
     return s->params->max_bytes || s->params->max_frame_ms > 0;
 }
 
+// The most that a training photograph has lost after the step.
+static double worst_loss(const struct trim_search *s, const struct trial *t)
+{
+    double worst = -INFINITY;
+    struct trim_score after;
+    for (size_t i = 0; i < s->targets.count; i++)
+        worst = fmax(worst, s->lost_db[i] + view_loss(s, t, i, &after));
+    return worst;
+}
+
 static bool is_good(const struct trim_search *s, const struct trial *t)
 {
     const struct trim_measured *m = &t->move->measured;
-    double worst = -INFINITY;
-    struct trim_score after;
     if (orl_trim_has_budget(s))
         return true;
-    for (size_t i = 0; i < s->targets.count; i++)
-        worst = fmax(worst, s->lost_db[i] + view_loss(s, t, i, &after));
     return s->total_loss_db + m->loss_db <= s->params->tolerance_db &&
            s->total_loss_ssim + m->loss_ssim <= s->params->tolerance_ssim &&
-           worst <= s->params->worst_db && m->between_db <= between_most_db;
+           worst_loss(s, t) <= s->params->worst_db && m->between_db <= between_most_db;
 }
 
 // --- measuring it ---
@@ -290,6 +297,7 @@ static bool is_measured(const struct trim_search *s, const struct trial *t)
 // Whether frames have to be drawn to know what the step does to their time. Fewer points, smaller
 // maps and smaller photographs make no frame slower, and files are not drawn; photographs go one by
 // one, each with too little effect to be seen. What all steps together save is timed with the whole.
+// Nor is what loses too much to be taken.
 static bool is_timed(const struct trim_search *s, const struct trial *t)
 {
     enum orl_trim_part part = t->move->part;
@@ -297,7 +305,7 @@ static bool is_timed(const struct trim_search *s, const struct trial *t)
         return false;
     bool asked = s->params->max_frame_ms > 0 || (s->params->explain && !t->move->tried);
     bool changes = part == ORL_TRIM_TEXTURES || part == ORL_TRIM_OPTION;
-    return asked || (changes && (!t->move->tried || is_good(s, t)));
+    return asked || (changes && is_good(s, t));
 }
 
 static enum orl_result measure(struct trim_search *s, struct trial *t)
@@ -480,6 +488,9 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     double gain = gain_of(s, &t);
     bool slow = move->measured.slow, good = gain > 0 && is_good(s, &t);
     double loss = weighed_loss(s, &move->measured);
+    orl_logf(s->source.log, ORL_LOG_DEBUG, "%s: %.3f dB, SSIM %.4f of %zu photographs, worst "
+             "%.3f dB in all, gain %.3f", t.what, move->measured.loss_db, move->measured.loss_ssim,
+             move->measured.view_count, worst_loss(s, &t), gain);
     move->ratio = gain / fmax(loss, least_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
     // What loses nothing need not be compared, except photographs, which stand in for each other.
@@ -491,7 +502,7 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     if (taken || !move->tried)
         result = note_step(s, &t, taken);
     move->tried = true;
-    move->dead = gain <= 0;
+    move->dead = gain <= 0 && is_good(s, &t); // what loses too much was not timed
     move->slow = good && slow;
     move->blocked = !good || slow;
     if (result == ORL_OK && taken) {

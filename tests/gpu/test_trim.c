@@ -7,6 +7,7 @@
 #include "eval/judges.h"
 #include "eval/trim.h"
 #include "eval/trim_points.h"
+#include "eval/trim_search.h"
 #include "scene/colmap.h"
 #include "scene/manifest.h"
 #include "wall_scene.h"
@@ -230,6 +231,74 @@ static void the_tolerance_of_ssim_is_kept(void **state)
     teardown(&f);
 }
 
+// A step taken by hand, which saves 10 bytes and loses 0.1 dB.
+static void take_by_hand(struct trim_search *s, struct trim_move *move)
+{
+    struct orl_trim *t = s->trim;
+    struct orl_trim_step *step = &t->steps[t->step_count];
+    struct trim_past *past = &s->history[s->history_count++];
+    *past = (struct trim_past){.slower = s->slower, .step = t->step_count++, .move = move};
+    past->state = s->state;
+    assert_int_equal(orl_trim_state_copy(NULL, &past->state, s->source.scene->photo_count,
+                                         &s->state), ORL_OK);
+    orl_trim_apply(s, move, &s->state, step->what);
+    s->slower *= move->measured.slower;
+    s->bytes -= 10;
+    s->total_loss_db += 0.1;
+    *step = (struct orl_trim_step){.saved_bytes = 10, .loss_db = 0.1, .taken = true,
+                                   .bytes = s->bytes, .total_loss_db = s->total_loss_db};
+}
+
+// Of a history one step is taken back, of a part with levels the last one. The later ones stay.
+static void one_step_of_many_is_taken_back(void **state)
+{
+    (void)state;
+    enum { STEPS = 5 };
+    struct fixture f;
+    setup_twins(&f);
+    struct orl_heldout views[5] = {{.photo = 0}, {.photo = 1}, {.photo = 2}, {.photo = 3},
+                                   {.photo = 4}};
+    struct orl_trim_step steps[STEPS] = {0};
+    struct trim_past history[STEPS] = {0};
+    struct orl_trim report = {.steps = steps};
+    struct trim_search s = {.source = {.gpu = gpu, .scene = &f.scene}, .trim = &report,
+                            .targets = {.views = views, .count = 5}, .history = history,
+                            .slower = 1, .bytes = 100};
+    struct trim_move depth = {.part = ORL_TRIM_DEPTH, .measured.slower = 1};
+    struct trim_move textures = {.part = ORL_TRIM_TEXTURES, .index = ORL_TEXTURES_YCC,
+                                 .measured.slower = 1.2};
+    struct trim_move photo = {.part = ORL_TRIM_PHOTOGRAPH, .index = 3, .measured.slower = 0.5};
+    struct trim_move points = {.part = ORL_TRIM_POINTS, .measured.slower = 1};
+    struct trim_move *taken[STEPS] = {&depth, &textures, &depth, &photo, &points};
+    s.state.removed = calloc(5, sizeof *s.state.removed);
+    for (size_t i = 0; i < STEPS; i++)
+        take_by_hand(&s, taken[i]);
+    assert_int_equal(orl_trim_undo(&s, 1), ORL_OK); // the textures
+    assert_int_equal(s.history_count, STEPS - 1);
+    assert_int_equal(s.state.textures, ORL_TEXTURES_AUTO);
+    assert_int_equal(s.state.depth, 2);
+    assert_int_equal(s.state.points, 1);
+    assert_true(s.state.removed[3] && s.state.removed_count == 1);
+    assert_true(textures.dead && !depth.dead && !photo.dead);
+    assert_float_equal(s.slower, 0.5, 1e-9);
+    assert_float_equal(steps[4].bytes, 60, 1e-9);
+    assert_float_equal(steps[4].total_loss_db, 0.4, 1e-9);
+    assert_false(steps[1].taken);
+    assert_int_equal(orl_trim_undo(&s, 2), ORL_OK); // the photograph
+    assert_int_equal(orl_trim_undo(&s, 1), ORL_OK); // the second level of depth
+    assert_int_equal(s.state.depth, 1);
+    assert_int_equal(s.state.points, 1);
+    assert_true(!s.state.removed[3] && s.state.removed_count == 0);
+    assert_int_equal(history[1].state.depth, 1);
+    assert_int_equal(history[1].state.points, 0);
+    assert_float_equal(s.slower, 1, 1e-9);
+    assert_int_equal(report.undone, 3);
+    for (size_t i = 0; i < s.history_count; i++)
+        free(history[i].state.removed);
+    free(s.state.removed);
+    teardown(&f);
+}
+
 // Writes what makes the fixture's folder a scene.
 static void save_scene(const struct fixture *f)
 {
@@ -438,6 +507,7 @@ int main(void)
         cmocka_unit_test(a_budget_that_cannot_be_kept_is_refused),
         cmocka_unit_test(the_tolerance_is_kept),
         cmocka_unit_test(the_tolerance_of_ssim_is_kept),
+        cmocka_unit_test(one_step_of_many_is_taken_back),
         cmocka_unit_test(a_photograph_that_repeats_another_goes),
         cmocka_unit_test(many_photographs_go_in_groups),
         cmocka_unit_test(adapting_stores_the_best_method),
