@@ -10,7 +10,7 @@
 
 struct options {
     int photographs, parts;
-    const char *chart, *stress, *methods, *vary, *axes;
+    const char *chart, *stress, *methods, *vary, *peers, *axes;
     int views, side, seed, max_vram_mib; // -1: not given
     double seconds;
     bool json, quick;
@@ -84,6 +84,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     add_common(o, &chart);
     add_text(&chart, "--vary", o->vary);
     add_number(&chart, "--seconds", o->seconds);
+    add_text(&chart, "--peer", o->peers);
     add_number(&chart, "--max-vram", o->max_vram_mib);
     add_common(o, &stress);
     add_text(&stress, "--axes", o->axes);
@@ -129,6 +130,7 @@ int cmd_plan(int argc, char **argv)
         {"views", ARG_INT, &o.views, "N", "held-out photographs, of a report", 1, 100},
         {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "of oriel chart", 0, 0},
         {"seconds", ARG_NUMBER, &o.seconds, "S", "of timed frames, of oriel chart", 0, 3600},
+        {"peer", ARG_STRING, &o.peers, "NAME=DIR[,ms=..][,MIB=..]", "of oriel chart", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "of oriel chart", 1, 1 << 20},
         {"axes", ARG_STRING, &o.axes, "NAME,..", "of oriel stress", 0, 0},
         {"size", ARG_INT, &o.side, "PX", "of oriel stress", ORL_STRESS_SIDE_MIN,

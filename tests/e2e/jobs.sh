@@ -131,13 +131,14 @@ fi
 run 2 plan "$work" --chart "$work/chart"
 # The rows of two reports: none waits for a job that is not in the plan of a whole scene.
 run 0 plan "$work/b" --chart "$work/chart" --stress "$work/stress" --quick --parts 2 --json \
-    --views 3 --seconds 0.5 --vary sampling=nearest,bilinear --axes points,pose --seed 0
+    --views 3 --seconds 0.5 --vary sampling=nearest,bilinear --axes points,pose --seed 0 \
+    --peer other=pictures,ms=12
 grep -q '"name": "stress-0002"' "$work/out" || fail "no jobs of the rows of stress"
 grep -q '"finish"' "$work/out" && fail "rows wait for a job that is not planned"
 # What decides which rows there are is passed on: to two parts and the whole, of one or both
 # reports.
 for option in views:3:6 seconds:0.5:3 vary:sampling=nearest,bilinear:3 axes:points,pose:3 \
-    seed:0:3; do
+    seed:0:3 peer:other=pictures,ms=12:3; do
     IFS=: read -r key value count <<<"$option"
     [ "$(grep -A 1 "\"--$key\"" "$work/out" | grep -c "\"$value\"")" = "$count" ] ||
         fail "--$key is not passed on"
