@@ -61,6 +61,11 @@ enum orl_result orl_proxy_update(const struct frame *frame)
     return result;
 }
 
+void orl_proxy_free_photo_target(struct orl_gpu *gpu, struct proxy *proxy)
+{
+    proxy->kind->free_target(gpu, &proxy->photo_target);
+}
+
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
 {
     if (!proxy->kind)

@@ -87,6 +87,8 @@ enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *sc
                                  const struct proxy_kind *kind, size_t most_bytes,
                                  struct proxy *proxy);
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
+// Frees what photographs' depth maps are drawn into, until the next one is drawn.
+void orl_proxy_free_photo_target(struct orl_gpu *gpu, struct proxy *proxy);
 // Brings the frame's proxy up to date, before its key is asked for.
 enum orl_result orl_proxy_update(const struct frame *frame);
 // Draws into *target, one of the proxy's own targets, which is resized to the view.

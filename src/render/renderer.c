@@ -348,6 +348,9 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
         result = orl_ahead_create(&frame, r->expected, &next);
     if (result == ORL_OK)
         result = finish_frame(r, &frame, out && !(params->leave_out & ORL_LAYER_NORMAL), next, out);
+    // Where small maps are kept to save memory, they are picked from ones that take more than all.
+    if (r->scene->defaults.depth_divide > 1)
+        orl_proxy_free_photo_target(r->gpu, proxy);
     r->expected = -1;
     orl_ahead_destroy(r->gpu, &r->ahead);
     r->ahead = next;

@@ -171,6 +171,31 @@ static void the_scene_says_how_photographs_are_kept(void **state)
     teardown(&f);
 }
 
+// Depth maps kept at half the size show the same wall, and nothing is left of the whole ones that
+// they are picked from: the one target is the picture's.
+static void small_depth_maps_are_picked(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_row(&f, 3);
+    struct orl_renderer *full = renderer_of(&f, &(struct orl_renderer_params){0});
+    struct orl_frame plain = draw_at(full, 0.7);
+    size_t whole = bytes_of("photograph depth"), targets = bytes_of("proxy depth");
+    orl_renderer_destroy(&full);
+    f.scene.defaults.depth_divide = 2;
+    f.scene.defaults.depth_half = true;
+    struct orl_renderer *small = renderer_of(&f, &(struct orl_renderer_params){0});
+    struct orl_frame frame = draw_at(small, 0.7);
+    assert_int_equal(8 * bytes_of("photograph depth"), whole);
+    assert_int_equal(2 * bytes_of("proxy depth"), targets);
+    orl_renderer_destroy(&small);
+    assert_true(largest_difference(&plain, &frame) < 1e-3f);
+    orl_frame_finish(&plain);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+
 // `auto` compresses before it halves.
 static void short_of_memory_compresses_first(void **state)
 {
@@ -332,6 +357,7 @@ int main(void)
         cmocka_unit_test(ycc_shows_like_colours_in_a_fifth),
         cmocka_unit_test(ycc_keeps_luma_and_chroma),
         cmocka_unit_test(the_scene_says_how_photographs_are_kept),
+        cmocka_unit_test(small_depth_maps_are_picked),
         cmocka_unit_test(short_of_memory_compresses_first),
         cmocka_unit_test(bc7_keeps_texels_along_a_line),
         cmocka_unit_test(photographs_are_loaded_as_the_viewer_moves),
