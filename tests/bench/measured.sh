@@ -582,7 +582,7 @@ page_memory() {
 }
 
 page_trim() {
-    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 4 --budget 500 --random --quiet --json WORK/trimmed/NAME.json --plots WORK/trimmed/NAME'
+    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 8 --budget 900 --random --quiet --json WORK/trimmed/NAME.json --plots WORK/trimmed/NAME'
     local name
     mkdir -p "$work/trimmed"
     for name in $(scene_names fountain herz sakharov monument); do
