@@ -127,9 +127,10 @@
     NUMBER(distance_floor, 0.03f, 9e-7, 1, "fraction of viewing distance", "weight=airieau", \
         ORL_TRIES(0.01, 0.03, 0.1, 0.3), \
         "Keeps Airieau's difference of distances away from zero.") \
-    NUMBER(border_px, 8, 0, 1024, "pixels of the photograph", "paint=gather paint=tiled", \
-        ORL_TRIES(4, 8, 16, 48), \
-        "Photographs fade out over this width at their border; with 0 they do not.") \
+    NUMBER(border_px, 2, 0, 1024, "pixels of the photograph", "paint=gather paint=tiled", \
+        ORL_TRIES(1, 2, 4, 8, 16), \
+        "Photographs fade out over this width at their border where others show the same; with 0 " \
+        "they do not.") \
     NUMBER(points_per_pixel, 4, 0, 64, "points", "proxy=splats", ORL_NO_TRIES, \
         "Where more points than this fall into a pixel, splats are thinned and enlarged. With " \
         "0 all are drawn.") \

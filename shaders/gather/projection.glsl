@@ -27,14 +27,18 @@ bool photo_project(photo shot, vec3 p, out vec2 pixel, out float z)
 
 // Factor on the border width for estimated depth, where a sky of another day or a displaced object
 // would otherwise end in a visible line.
-const float GUESS_BORDERS = 4.0;
+const float GUESS_BORDERS = 16.0;
 
-// Weight that falls from 1 to 0 towards the photograph's border; 1 throughout if border_px is 0.
+// What is left of a photograph's weight at its border: enough to paint what no other photograph shows.
+const float BORDER_LEAST = 1e-3;
+
+// Weight that falls from 1 to BORDER_LEAST towards the photograph's border; 1 throughout if border_px
+// is 0.
 float photo_border(photo shot, vec2 pixel, bool guessed)
 {
     vec2 border = min(pixel, shot.size.xy - pixel) - 0.5;
     float width = max(guessed ? GUESS_BORDERS * border_px : border_px, 0.5);
-    return border_px > 0.0 ? clamp(min(border.x, border.y) / width, 0.0, 1.0) : 1.0;
+    return border_px > 0.0 ? clamp(min(border.x, border.y) / width, BORDER_LEAST, 1.0) : 1.0;
 }
 
 // Mip level at which the photograph has the view's resolution.

@@ -93,7 +93,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     penalty *= 1.0 - OWN_PREFERENCE * shot.offset.z;
 #endif
     float sure = sees * photo_border(shot, pixel, is_guess(s));
-    bool paints = i >= 0 && s.p.z > 0.0 && inside && sure > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);
 }
 

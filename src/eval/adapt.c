@@ -237,14 +237,13 @@ enum step_condition { ALWAYS, AFTER_GAIN, AFTER_NO_GAIN }; // what the step befo
 struct step {
     enum step_condition condition;
     const char *method;      // NULL: the one so far
-    const char *settings[3]; // KEY=VALUE
+    const char *settings[2]; // KEY=VALUE
 };
 
 // In the order of what they gained on the training photographs of measured scenes.
 static const struct step steps[] = {
     {ALWAYS, NULL, {"guess_depths=16"}}, // scenes with bare backgrounds
-    {AFTER_GAIN, NULL, {"photos_per_pixel=2", "guess_sharpness=4", "border_px=0"}},
-    {ALWAYS, NULL, {"border_px=0"}},           // few photographs, which end where others begin
+    {AFTER_GAIN, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}},
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
     {AFTER_NO_GAIN, NULL, {"depth_tolerance=0.04"}},
     {ALWAYS, NULL, {"surface_seeds=1"}},

@@ -285,7 +285,7 @@ static void guesses_fade_out_from_afar(void **state)
     add_photo(&f, look_from(3, 0, 0, 128, 12), red);
     add_photo(&f, look_from(3, 0, 0, 48, 12), green);
     struct orl_render_params params = best();
-    params.border_px = 8;
+    params.border_px = 2;
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, 48, 12), &params, 0);
     const float *c = color_at(&frame, 44, 24); // of (6.8, 0, 4), the green one's pixel 35.5
     double weight = pow(12.0 / 32, (double)params.guess_sharpness);
