@@ -18,6 +18,7 @@
 #include "preprocess/cloud/ground.h"
 #include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
+#include "preprocess/cloud/sky.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/adapt_stage.h"
 #include "preprocess/arguments.h"
@@ -150,6 +151,8 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                           "ground", true, NULL},
     [ORL_STAGE_BACKDROP] = {"backdrop", 1, ORL_STAGE_RADII, no_settings, orl_stage_backdrop, {0},
                             "backdrop", true, NULL},
+    [ORL_STAGE_SKY] = {"sky", 1, ORL_STAGE_RADII, no_settings, orl_stage_sky, {0}, "skies", true,
+                       NULL},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, mesh_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 3, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},

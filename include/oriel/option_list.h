@@ -105,6 +105,13 @@
         ORL_TRIES(0, 0.03, 0.06, 0.12, 0.25), \
         "How far colours may lie from their place where depth is guessed and photographs " \
         "differ. They are blurred as far. With 0 they are not.") \
+    NUMBER(guess_blur_most, 0.012f, 0, 0.25, "share of the longer side", "paint=tiled", \
+        ORL_TRIES(0.006, 0.012, 0.025, 0.05), \
+        "The largest blur where depth is guessed.") \
+    NUMBER(plain_sky, 0, 0, 1, "share", "paint=tiled", ORL_TRIES(0, 0.5, 1), \
+        "How far the sky of a view is a plain one, in the mean colour of the photographs' skies. " \
+        "Where they are of different days, clouds of one of them are wrong for any other. " \
+        "Radiance keeps the photographs' skies.") \
     NUMBER(tint_penalty, 0, 0, 16, "radians per stop", "paint=tiled", \
         ORL_TRIES(0, 0.5, 1, 2), \
         "Where depth is guessed, photographs whose white balance differs from the scene's count " \

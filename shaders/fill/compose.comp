@@ -34,8 +34,7 @@ layout(binding = 0) uniform sampler2D guesses;
 // than none. Only pixels of estimated depth are mixed: colour on known depth is in its place.
 vec3 softened(ivec2 at, vec3 sharp, float blur)
 {
-    float most = log2(GUESS_BLUR_MOST * float(max(image_size.x, image_size.y)));
-    blur = clamp(blur, 0.0, max(most, 0.0));
+    blur = clamp(blur, 0.0, log2(max(blur_most, 1.0)));
     vec2 where = (vec2(at) + 0.5) / vec2((image_size + 1) / 2 * 2);
     vec4 around = textureLod(guesses, where, max(blur - 1.0, 0.0));
     // The weight may vanish where a driver's mipmaps omit an isolated pixel.

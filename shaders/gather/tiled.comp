@@ -8,6 +8,7 @@
 #include "shared/pixel.glsl"
 #include <visibility>
 
+// SKY: the view has a plain sky.
 // KEPT: most photographs that a pixel may blend, opt.photos_per_pixel.
 // One invocation handles 2x2 pixels, so that it loads the parameters of a photograph once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -19,11 +20,15 @@ layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
 #include "gather/unfinished.glsl"
+#ifdef SKY
+#include "gather/sky.glsl"
+#endif
 
 // A pixel's surface point.
 struct spot {
     vec3 p;      // z 0: no surface
-    float guess; // 1: on estimated background depth, else 0; no bool: docs/develop/shaders.md
+    float guess; // 1: on estimated background depth, 2: and open to the sky, else 0; no bool:
+                 // docs/develop/shaders.md
 };
 
 bool is_guess(spot s)
@@ -134,7 +139,14 @@ vec4 blend(spot s, ranking r, out float blur)
     }
     apart.y = max(apart.y, 1e-30);
     blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
-    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
+    sum = sum.a > 0.0 ? sum / sum.a : vec4(0.0);
+#ifdef SKY
+    vec2 votes = vec2(0.0);
+    for (int k = 0; k < KEPT; k++)
+        votes += sky_vote(photo_at(r.best[k].index), samples[k].rgb) * min(10.0 * samples[k].a, 1.0);
+    sum.rgb = mix(sum.rgb, plain_sky.rgb, s.guess > 1.0 ? sky_share(s.p, votes) : 0.0);
+#endif
+    return sum;
 }
 
 void main()
@@ -149,6 +161,9 @@ void main()
         float stored = imageLoad(view_depth, at).r; // 0 outside
         spots[k] = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
                         stored < 0.0 ? 1.0 : 0.0);
+#ifdef SKY
+        spots[k].guess *= open_to_sky(at) ? 2.0 : 1.0;
+#endif
         rankings[k].next = NOT_SEEN;
         for (int n = 0; n < KEPT; n++)
             rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);

@@ -8,6 +8,7 @@
 #include "eval/trim.h"
 #include "eval/tune.h"
 #include "eval/verdict.h"
+#include "scene/sky.h"
 #include "scene/tuned_settings.h"
 
 // Of the time that is left after the methods are compared, tuning may take this share.
@@ -232,16 +233,20 @@ static enum orl_result search(struct job *job)
 
 // --- the few steps ---
 
-enum step_condition { ALWAYS, AFTER_GAIN, AFTER_NO_GAIN }; // what the step before must have brought
+// What the scene must be, or the step before must have brought.
+enum step_condition { ALWAYS, SKIES_DIFFER, AFTER_GAIN, AFTER_NO_GAIN };
 
 struct step {
     enum step_condition condition;
     const char *method;      // NULL: the one so far
-    const char *settings[2]; // KEY=VALUE
+    const char *settings[4]; // KEY=VALUE
 };
 
 // In the order of what they gained on the training photographs of measured scenes.
 static const struct step steps[] = {
+    // Photographs of different days, of which the mean is nearer to another day than any is.
+    {SKIES_DIFFER, NULL,
+     {"plain_sky=1", "guess_sharpness=0.5", "guess_blur=0.25", "guess_blur_most=0.05"}},
     {ALWAYS, NULL, {"guess_depths=16"}}, // scenes with bare backgrounds
     {AFTER_GAIN, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}},
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
@@ -336,6 +341,20 @@ static enum orl_result try_step(struct job *job, const struct step *step, bool *
     return result;
 }
 
+static bool is_for(const struct job *job, enum step_condition condition, bool taken)
+{
+    switch (condition) {
+    case SKIES_DIFFER:
+        return orl_skies_differ(job->scene);
+    case AFTER_GAIN:
+        return taken;
+    case AFTER_NO_GAIN:
+        return !taken;
+    default:
+        return true;
+    }
+}
+
 static enum orl_result take_steps(struct job *job)
 {
     struct orl_adapt *adapt = job->adapt;
@@ -350,7 +369,7 @@ static enum orl_result take_steps(struct job *job)
     adapt->plain_ssim = job->verdict.ssim;
     adapt->complete = true;
     for (size_t i = 0; result == ORL_OK && adapt->complete && i < ORL_COUNT(steps); i++) {
-        if (steps[i].condition != ALWAYS && taken != (steps[i].condition == AFTER_GAIN))
+        if (!is_for(job, steps[i].condition, taken))
             continue;
         adapt->complete = job->renderings + count <= most; // what begins must be able to end
         if (adapt->complete)

@@ -9,6 +9,7 @@
 #include "render/packing.h"
 #include "render/photos.h"
 #include "render/progressive.h"
+#include "render/sky.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 _Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
@@ -53,6 +54,7 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
     orl_buf_destroy(gpu, &gather->unfinished);
+    orl_buf_destroy(gpu, &gather->sky_columns);
     free(gather->list);
     free(gather->options);
     memset(gather, 0, sizeof *gather);
@@ -143,6 +145,7 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
     if (frame->packs)
         orl_packing_describe(photos->packing, index, data);
     data->offset[2] = frame->params->own_place > 0 ? nearness(frame, index) : 0;
+    orl_sky_describe_photo(frame, photo, data);
     if (!frame->radiance)
         return;
     for (int c = 0; c < 3; c++)
@@ -196,6 +199,8 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
     };
     orl_set_focal(&frame->view->camera, block.view_focal);
     orl_frame_ground(frame, block.ground);
+    if (orl_sky_applies(frame))
+        orl_sky_describe(frame, &block);
     copy_options(params, &block.opt);
     return block;
 }

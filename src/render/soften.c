@@ -7,20 +7,27 @@ void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
     orl_tex_destroy(gpu, &soften->guesses);
 }
 
-enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
-                                  int height)
+float orl_soften_most(const struct orl_render_params *params, int width, int height)
+{
+    return params->guess_blur_most * (float)(width > height ? width : height);
+}
+
+enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften,
+                                  const struct orl_render_params *render, int width, int height)
 {
     const struct orl_tex *old = soften->guesses;
     struct orl_tex_params params = {.width = (width + 1) / 2, .height = (height + 1) / 2,
                                     .levels = 1, .linear = true, .format = GL_RGBA32F,
                                     .tag = "guesses"};
-    if (old && old->params.width == params.width && old->params.height == params.height)
-        return ORL_OK;
-    orl_tex_destroy(gpu, &soften->guesses);
     // A texel of the coarsest level is as large as the largest blur, or as the whole picture.
     int longer = width > height ? width : height;
-    while (1 << params.levels < GUESS_BLUR_MOST * longer && longer >> (params.levels + 1) > 0)
+    float most = orl_soften_most(render, width, height);
+    while ((float)(1 << params.levels) < most && longer >> (params.levels + 1) > 0)
         params.levels++;
+    if (old && old->params.width == params.width && old->params.height == params.height &&
+        old->params.levels == params.levels)
+        return ORL_OK;
+    orl_tex_destroy(gpu, &soften->guesses);
     return orl_tex_create(gpu, &params, &soften->guesses);
 }
 

@@ -9,6 +9,7 @@
 #include "render/guess.h"
 #include "render/photos.h"
 #include "render/progressive.h"
+#include "render/sky.h"
 #include "render/soften.h"
 
 // Makes room for the lists of photographs of each tile and of unfinished work groups.
@@ -40,13 +41,14 @@ static const char *guess_defines(const struct frame *frame)
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
 static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
 {
-    char defines[64];
+    char defines[96];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs per pixel is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%s%s%sKEPT %d",
+    snprintf(defines, sizeof defines, "%s%s%s%sKEPT %d",
              frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
-             frame->params->own_place > 0 ? "OWN_PLACE 1\n" : "", guess_defines(frame), kept);
+             frame->params->own_place > 0 ? "OWN_PLACE 1\n" : "",
+             orl_sky_applies(frame) ? "SKY 1\n" : "", guess_defines(frame), kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
@@ -93,8 +95,11 @@ static enum orl_result paint_chosen(const struct frame *frame)
         orl_guess_depth(frame, &d, &block);
     if (block.reach > 0)
         orl_edges_cut(frame, &d);
-    gather_tiles(frame, block.kept, d);
-    return ORL_OK;
+    if (orl_sky_applies(frame))
+        result = orl_sky_find(frame, &d);
+    if (result == ORL_OK)
+        gather_tiles(frame, block.kept, d);
+    return result;
 }
 
 static enum orl_result paint(struct frame *frame)
