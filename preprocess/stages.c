@@ -18,7 +18,7 @@
 #include "preprocess/cloud/ground.h"
 #include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
-#include "preprocess/cloud/sky.h"
+#include "preprocess/cloud/sky_stage.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/adapt_stage.h"
 #include "preprocess/arguments.h"

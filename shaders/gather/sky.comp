@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
 
-const int STRAY = 100; // of so many pixels of a column, one may be a stray point
+const int STRAY = 400; // of so many pixels of a column, one may be a stray point
 
 void main()
 {

@@ -8,8 +8,8 @@
 #include "core/memory.h"
 #include "render/packing.h"
 #include "render/photos.h"
+#include "render/plain_sky.h"
 #include "render/progressive.h"
-#include "render/sky.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 _Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");

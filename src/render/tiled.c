@@ -8,8 +8,8 @@
 #include "render/gather.h"
 #include "render/guess.h"
 #include "render/photos.h"
+#include "render/plain_sky.h"
 #include "render/progressive.h"
-#include "render/sky.h"
 #include "render/soften.h"
 
 // Makes room for the lists of photographs of each tile and of unfinished work groups.

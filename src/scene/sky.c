@@ -63,7 +63,8 @@ void orl_scene_upwards(const struct orl_scene *scene, double up[3])
 
 // --- colours ---
 
-// Skies of one day differ by up to 0.07, and those of an Internet collection by 0.16.
+// Root mean square, square roots of light. Skies of one day differ by up to 0.08, those of an Internet
+// collection by 0.15 (docs/measured/guess.md).
 static const double DIFFERENT = 0.1;
 enum { SKIES_LEAST = 3 }; // fewer do not tell how days differ
 

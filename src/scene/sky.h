@@ -15,8 +15,8 @@ void orl_sky_of_photo(const struct orl_photo *photo, const float gain[3], float 
 // the mean is 0.
 size_t orl_skies_mean(const struct orl_scene *scene, const bool *skip, bool aligned,
                       float root[3]);
-// Whether the photographs' skies are of different days: root mean square of their distances to the
-// mean, in square roots of light.
+// Whether the photographs' skies are of different days, by how far they are from their mean at the
+// scene's exposure.
 bool orl_skies_differ(const struct orl_scene *scene);
 
 #endif

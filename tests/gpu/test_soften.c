@@ -28,21 +28,28 @@ static void add_striped(struct fixture *f, struct orl_view view, int wall_end, i
     repaint_photo(f, &image);
 }
 
-// A view of the wall's right end from x = 0, painted by one photograph from `x`.
-static struct orl_frame from_aside_with(double x, float guess_blur, bool radiance)
+// A view of the wall's right end from x = 0, painted by one photograph from `x` with stripes of `width`
+// pixels.
+static struct orl_frame see_stripes(double x, int width, const struct orl_render_params *params,
+                                    bool radiance)
 {
     struct fixture f;
     setup(&f, false);
     struct orl_view photo = look_from(x, 0, 0, 2 * SIDE, FOCAL);
     // As radiance, white would be light without an upper bound.
-    add_striped(&f, photo, SIDE + (int)lrint((3 - x) / 4 * FOCAL), 2, radiance ? GREY : 255);
+    add_striped(&f, photo, SIDE + (int)lrint((3 - x) / 4 * FOCAL), width, radiance ? GREY : 255);
+    struct orl_renderer_params kind = {.radiance = radiance};
+    struct orl_frame frame = draw_by(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), params, &kind);
+    teardown(&f);
+    return frame;
+}
+
+static struct orl_frame from_aside_with(double x, float guess_blur, bool radiance)
+{
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.guess_blur = guess_blur;
     params.antialias = ORL_ANTIALIAS_OFF;
-    struct orl_renderer_params kind = {.radiance = radiance};
-    struct orl_frame frame = draw_by(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, &kind);
-    teardown(&f);
-    return frame;
+    return see_stripes(x, 2, &params, radiance);
 }
 
 static struct orl_frame from_aside(double x, float guess_blur)
@@ -50,15 +57,38 @@ static struct orl_frame from_aside(double x, float guess_blur)
     return from_aside_with(x, guess_blur, false);
 }
 
-// Between brightest and darkest blue of a row, from 16 pixels behind the wall's end on.
-static double contrast(const struct orl_frame *frame)
+// Between brightest and darkest blue of 64 pixels of a row.
+static double contrast_from(const struct orl_frame *frame, int first)
 {
     float least = INFINITY, most = -INFINITY;
-    for (int x = WALL_END + 16; x < WALL_END + 80; x++) {
+    for (int x = first; x < first + 64; x++) {
         least = fminf(least, color_at(frame, x, SIDE / 2)[2]);
         most = fmaxf(most, color_at(frame, x, SIDE / 2)[2]);
     }
     return most - least;
+}
+
+static double contrast(const struct orl_frame *frame)
+{
+    return contrast_from(frame, WALL_END + 16);
+}
+
+// A wider blur needs guesses all around: beside the wall it stays as it is.
+static void only_open_guesses_blur_wider(void **state)
+{
+    (void)state;
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    params.guess_blur = 1;
+    params.antialias = ORL_ANTIALIAS_OFF;
+    struct orl_frame usual = see_stripes(-3, 8, &params, false);
+    params.guess_blur_most = 0.1f;
+    struct orl_frame wide = see_stripes(-3, 8, &params, false);
+    assert_true(contrast_from(&usual, WALL_END + 80) > 0.8);
+    assert_true(contrast_from(&wide, WALL_END + 80) < 0.6);
+    const float *beside = color_at(&wide, WALL_END, SIDE / 2);
+    assert_float_equal(beside[2], color_at(&usual, WALL_END, SIDE / 2)[2], 0.1);
+    orl_frame_finish(&usual);
+    orl_frame_finish(&wide);
 }
 
 static void guesses_from_aside_blur(void **state)
@@ -148,6 +178,7 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(guesses_from_aside_blur),
+        cmocka_unit_test(only_open_guesses_blur_wider),
         cmocka_unit_test(radiance_blurs_alike),
         cmocka_unit_test(surfaces_stay_sharp_and_do_not_run),
         cmocka_unit_test(a_photograph_from_here_stays_sharp),

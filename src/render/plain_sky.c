@@ -1,4 +1,4 @@
-#include "render/sky.h"
+#include "render/plain_sky.h"
 
 #include <math.h>
 #include <string.h>

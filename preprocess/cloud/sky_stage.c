@@ -1,4 +1,4 @@
-#include "preprocess/cloud/sky.h"
+#include "preprocess/cloud/sky_stage.h"
 
 #include <math.h>
 #include <stdlib.h>

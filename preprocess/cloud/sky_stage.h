@@ -1,6 +1,6 @@
 // The skies that photographs show.
-#ifndef ORL_PREPROCESS_SKY_H
-#define ORL_PREPROCESS_SKY_H
+#ifndef ORL_PREPROCESS_SKY_STAGE_H
+#define ORL_PREPROCESS_SKY_STAGE_H
 
 #include "preprocess/job/job.h"
 #include "oriel/scene.h"

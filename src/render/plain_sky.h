@@ -1,6 +1,6 @@
 // Private to src/render: the plain sky of views of a scene whose photographs are of different days.
-#ifndef ORL_RENDER_SKY_H
-#define ORL_RENDER_SKY_H
+#ifndef ORL_RENDER_PLAIN_SKY_H
+#define ORL_RENDER_PLAIN_SKY_H
 
 #include "render/frame.h"
 #include "render/method.h"
