@@ -1,5 +1,30 @@
 // Reads the pyramid of hole filling, whose finest level has half the picture's size. The including
 // file defines FILL_LEVEL as the name of the level's image.
+// FAR: the values are depths, weighted as SEED_DEPTH of fill_seed.comp does.
+#ifdef FAR
+// Weights that differ by many powers of ten would let the farther value win as far as its bilinear
+// weight reaches, and there end in a line. So values are interpolated with the fourth roots of their
+// weights. The weight itself is interpolated likewise, and keeps its scale.
+vec4 fill_soft(vec4 value)
+{
+    return value.a > 0.0 ? value * (sqrt(sqrt(value.a)) / value.a) : vec4(0.0);
+}
+
+vec4 fill_hard(vec4 value)
+{
+    return value * (value.a * value.a * value.a);
+}
+#else
+vec4 fill_soft(vec4 value)
+{
+    return value;
+}
+
+vec4 fill_hard(vec4 value)
+{
+    return value;
+}
+#endif
 
 // Bilinear values for the 2x2 finer pixels of a pixel, as in the push of Gortler 1996. All four
 // are computed at once, since they share their reads.
@@ -10,10 +35,13 @@ void fill_finer(ivec2 parent, out vec4 finer[4])
     for (int x = 0; x < 3; x++) {
         vec4 column[3];
         for (int y = 0; y < 3; y++)
-            column[y] = imageLoad(FILL_LEVEL, clamp(parent + ivec2(x, y) - 1, ivec2(0), last));
+            column[y] = fill_soft(
+                imageLoad(FILL_LEVEL, clamp(parent + ivec2(x, y) - 1, ivec2(0), last)));
         upper[x] = 0.75 * column[1] + 0.25 * column[0];
         lower[x] = 0.75 * column[1] + 0.25 * column[2];
     }
-    finer = vec4[4](0.75 * upper[1] + 0.25 * upper[0], 0.75 * upper[1] + 0.25 * upper[2],
-                    0.75 * lower[1] + 0.25 * lower[0], 0.75 * lower[1] + 0.25 * lower[2]);
+    finer = vec4[4](fill_hard(0.75 * upper[1] + 0.25 * upper[0]),
+                    fill_hard(0.75 * upper[1] + 0.25 * upper[2]),
+                    fill_hard(0.75 * lower[1] + 0.25 * lower[0]),
+                    fill_hard(0.75 * lower[1] + 0.25 * lower[2]));
 }

@@ -9,6 +9,7 @@ layout(rgba32f, binding = 0) readonly uniform image2D filled;
 layout(r32f, binding = 1) uniform image2D depth;
 
 #define FILL_LEVEL filled
+#define FAR
 #include "fill/fill.glsl"
 
 // Inverse depth of the ground; 0: the ray misses the ground.

@@ -1,5 +1,6 @@
 // Fills pixels without a value bilinearly from the coarser level (Gortler 1996, push). One
 // invocation handles 2x2 pixels.
+// FAR: the values are depths; see fill.glsl.
 // PARTLY: a value of a weight below 1 gets the rest from the coarser level.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"

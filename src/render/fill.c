@@ -96,7 +96,7 @@ void orl_fill_depth(const struct frame *frame)
     orl_frame_ground(frame, block->ground);
     orl_pass_begin(frame->gpu, "fill");
     seed(frame, "SEED_DEPTH", depth, GL_WRITE_ONLY);
-    spread(frame, NULL);
+    spread(frame, "FAR");
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
     orl_pass_end(frame->gpu);
 }

@@ -101,12 +101,47 @@ static void nothing_comes_before_the_background(void **state)
     assert_float_equal(tried, rim, 0.1 * rim);
 }
 
+// A near plate in the middle and a far wall on the right, beside and above which a photograph from
+// aside shows a ramp of grey. The depth there is a guess. It may change anywhere, but not in a line,
+// as where a block of the pyramid ends that spreads it: the ramp moves on from pixel to pixel.
+static void guesses_change_without_a_line(void **state)
+{
+    (void)state;
+    enum { POINTS = 64, WIDE = 512, VIEW = 256, ROWS = 64 }; // the plate begins at row 89
+    struct fixture f;
+    setup_empty(&f, WALL_Z);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, 2 * POINTS * POINTS), ORL_OK);
+    set_square(&f.scene.points, 0, POINTS, 2.4, -0.6, (float)WALL_Z, green);
+    set_square(&f.scene.points, POINTS * POINTS, POINTS, 40, 50, (float)(10 * WALL_Z), green);
+    add_photo(&f, look_from(1, 0, 0, WIDE, FOCAL), green);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, WIDE, WIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < 3 * WIDE * WIDE; i++)
+        image.u8[i] = (uint8_t)(i / 3 % WIDE / 2);
+    repaint_photo(&f, &image);
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    params.guess_blur = 0;
+    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, VIEW, FOCAL), &params, 0);
+    double most = 0;
+    for (int y = 0; y < ROWS; y++)
+        for (int x = 0; x + 1 < VIEW; x++) {
+            double here = pow((double)color_at(&frame, x, y)[1], 1 / 2.2);
+            double next = pow((double)color_at(&frame, x + 1, y)[1], 1 / 2.2);
+            most = fmax(most, fabs(next - here));
+        }
+    orl_frame_finish(&frame);
+    teardown(&f);
+    print_message("largest step: %.1f of 255\n", 255 * most);
+    assert_true(most < 6.0 / 255); // a jump between the two depths: 14
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photographs_tell_the_depth_behind_an_opening),
         cmocka_unit_test(nothing_comes_before_the_background),
+        cmocka_unit_test(guesses_change_without_a_line),
     };
     int failed = cmocka_run_group_tests_name("guess", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

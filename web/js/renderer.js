@@ -33,7 +33,8 @@ function makePrograms(device, sources)
         push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}),
         support: screen("support.frag"), seedDepth: screen("fill_seed_depth.frag"),
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
-        fillDepth: screen("fill_depth.frag"), depthUnpack: screen("depth_unpack.frag"),
+        fillPushFar: screen("fill_push.frag", {FAR: 1}),
+        fillDepth: screen("fill_depth.frag", {FAR: 1}), depthUnpack: screen("depth_unpack.frag"),
         choose: screen("choose.frag", {TILE}), vote: screen("silhouette_vote.frag", {TILE}),
         cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
@@ -135,7 +136,7 @@ export class Renderer {
         this.splat(camera, o);
         this.pullPush();
         const pointsOnly = LAYERS[layer] === "points" || this.photos.ready.length === 0;
-        this.fillIn(f.fillDepth, this.programs.seedDepth,
+        this.fillIn(f.fillDepth, this.programs.seedDepth, this.programs.fillPushFar,
                     {known: this.supported, typical: this.values.typical}, f.fillDepth.pulled[0], 1);
         this.device.pass(this.programs.fillDepth, f.depth,
                          {...this.values, known: this.supported,
@@ -219,7 +220,7 @@ export class Renderer {
     }
 
     // Gortler's pull and push from seeds: pyramid.pushed[0] is filled everywhere if anything is known.
-    fillIn(pyramid, seed, values, seeds, factor)
+    fillIn(pyramid, seed, push, values, seeds, factor)
     {
         const {device, programs} = this, {pulled, pushed} = pyramid, top = pulled.length - 1;
         device.pass(seed, seeds, values);
@@ -227,7 +228,7 @@ export class Renderer {
             device.pass(programs.fillPull, pulled[i], {fine: pulled[i - 1].textures[0], factor});
         let above = pulled[top].textures[0];
         for (let i = top - 1; i >= 0; i--) {
-            device.pass(programs.fillPush, pushed[i], {fine: pulled[i].textures[0], coarse: above});
+            device.pass(push, pushed[i], {fine: pulled[i].textures[0], coarse: above});
             above = pushed[i].textures[0];
         }
         if (top === 0)
@@ -264,7 +265,8 @@ export class Renderer {
         const gl = this.device.gl, f = this.frame;
         const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
                         normals: this.normals, points_only: pointsOnly};
-        this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, 0.25);
+        this.fillIn(f.fillColor, this.programs.seedColor, this.programs.fillPush, colors, f.seeds,
+                    0.25);
         gl.bindTexture(gl.TEXTURE_2D, f.guesses.id);
         gl.generateMipmap(gl.TEXTURE_2D);
         this.device.pass(this.programs.compose, f.composed,
