@@ -7,7 +7,7 @@
 #include "shared/srgb.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(r32ui, binding = 0) readonly uniform uimageBuffer attributes; // proxy/point.glsl
+layout(r8ui, binding = 0) readonly uniform uimageBuffer colors; // three of each point: sRGB
 layout(r32ui, binding = 1) readonly uniform uimage2D splat_index;
 layout(rgba16f, binding = 2) readonly uniform image2D normal; // w: 1 if the splat is in front
 #ifdef FINISHED
@@ -37,8 +37,10 @@ vec4 splat_color(ivec2 at)
     uint point = imageLoad(splat_index, at).x - uint(first_point);
     if (point >= uint(point_count) || imageLoad(normal, at).w < 0.5 || !is_free(at))
         return vec4(0.0);
-    vec3 color = point_color(imageLoad(attributes, int(point)).x);
-    return vec4(srgb_decode(color), 1.0);
+    int first = 3 * int(point);
+    uvec3 color = uvec3(imageLoad(colors, first).x, imageLoad(colors, first + 1).x,
+                        imageLoad(colors, first + 2).x);
+    return vec4(srgb_decode(vec3(color) / 255.0), 1.0);
 }
 
 void main()

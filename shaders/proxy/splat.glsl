@@ -32,7 +32,7 @@ bool splat_pixel(vec3 p, out vec2 pixel)
 }
 
 #ifdef SPLAT_LIST
-layout(rg32ui, binding = 0) readonly uniform uimageBuffer positions; // proxy/point.glsl
+layout(rg32ui, binding = 0) readonly uniform uimageBuffer points; // proxy/point.glsl
 layout(r32ui, binding = 1) readonly uniform uimageBuffer items;      // from splat_cull.comp
 layout(r32ui, binding = 2) readonly uniform uimageBuffer draw_arguments;
 layout(binding = 0) uniform samplerBuffer blocks; // ORL_BLOCK_VEC4S each
@@ -56,7 +56,7 @@ ivec2 splat_listed_point(int k)
 // the view's parameters are loaded once for all points of an invocation.
 vec3 splat_listed_position(ivec2 listed)
 {
-    uvec2 code = imageLoad(positions, max(listed.x, 0)).xy;
+    uvec2 code = imageLoad(points, max(listed.x, 0)).xy;
     vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * max(listed.y, 0) + 3);
     vec3 p = splat_camera_position(code, corner);
     return listed.x < 0 || !point_exists(code) ? vec3(0.0, 0.0, -1.0) : p;

@@ -11,25 +11,24 @@
 const float STRAY_SHARE = 1.0 / 16.0;
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(rg32ui, binding = 0) readonly uniform uimageBuffer positions; // proxy/point.glsl
-layout(r32ui, binding = 1) readonly uniform uimageBuffer attributes;
+layout(rg32ui, binding = 0) readonly uniform uimageBuffer points; // proxy/point.glsl
 layout(binding = 0) uniform samplerBuffer blocks; // ORL_BLOCK_VEC4S each
-layout(r32ui, binding = 2) readonly uniform uimage2D splat_index;
-layout(r32ui, binding = 3) readonly uniform uimage2D splat_layer;
+layout(r32ui, binding = 1) readonly uniform uimage2D splat_index;
+layout(r32ui, binding = 2) readonly uniform uimage2D splat_layer;
 #ifdef NORMALS
-layout(rg32ui, binding = 4) writeonly uniform uimage2D splats; // surfel_pack_own
+layout(rg32ui, binding = 3) writeonly uniform uimage2D splats; // surfel_pack_own
 #else
-layout(r32f, binding = 4) writeonly uniform image2D splats; // surfel_own_depth
+layout(r32f, binding = 3) writeonly uniform image2D splats; // surfel_own_depth
 #endif
-layout(rgba32f, binding = 5) writeonly uniform image2D coarse_a;
-layout(rg32ui, binding = 6) writeonly uniform uimage2D coarse_b;
+layout(rgba32f, binding = 4) writeonly uniform image2D coarse_a;
+layout(rg32ui, binding = 5) writeonly uniform uimage2D coarse_b;
 #ifdef CHUNKS
-layout(rgba32ui, binding = 7) uniform uimage2D won; // surfels of this and earlier chunks
+layout(rgba32ui, binding = 6) uniform uimage2D won; // surfels of this and earlier chunks
 layout(std430, binding = 2) readonly buffer block_enlarged {
     float enlarged[]; // factor on the radii of each block
 };
 #else
-layout(r32f, binding = 7) readonly uniform imageBuffer block_enlarged;
+layout(r32f, binding = 6) readonly uniform imageBuffer block_enlarged;
 #endif
 
 float radius_factor(int block)
@@ -59,7 +58,7 @@ int block_of(int point)
 surfel splat(ivec2 at, int point)
 {
     int block = block_of(point);
-    uvec2 code = imageLoad(positions, point).xy;
+    uvec2 code = imageLoad(points, point).xy;
     vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * block + 3);
     vec3 p = splat_camera_position(code, corner);
     vec2 pixel;
@@ -69,8 +68,7 @@ surfel splat(ivec2 at, int point)
     float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
     p *= 1.0 + behind * front_layer;
     vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
-    float radius = point_radius(imageLoad(attributes, point).x, corner.w) * splat_scale *
-                   radius_factor(block);
+    float radius = point_radius(code, corner.w) * splat_scale * radius_factor(block);
     bool stray = p.z < near && radius * focal.y > STRAY_SHARE * float(view_size.y) * p.z;
     radius = stray ? 0.0 : radius;
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,

@@ -19,28 +19,34 @@ enum {
 // A chunk in host memory. Points are stored part by part: the first parts of all blocks, then the
 // second parts, and so on. When blocks are thinned, the points that are read are contiguous.
 struct host_chunk {
-    uint32_t (*positions)[2];
-    uint32_t *attributes;
+    uint32_t (*points)[2];
     float (*blocks)[ORL_BLOCK_VEC4S][4];
     size_t block_count;
 };
 
+struct buffer {
+    const char *tag;
+    size_t size;
+    const void *data;
+    struct orl_buf **buf;
+    GLenum format;
+    struct orl_tex **texels;
+};
+
+static enum orl_result make_buffer(struct orl_gpu *gpu, const struct buffer *b)
+{
+    enum orl_result result =
+        orl_buf_create(gpu, ORL_OWNER_POINTS, b->tag, b->size, b->data, b->buf);
+    return result == ORL_OK ? orl_tex_view_buffer(gpu, *b->buf, b->format, b->texels) : result;
+}
+
 static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk,
                                     const struct host_chunk *host)
 {
-    size_t blocks = host->block_count, points = blocks * BLOCK;
-    const struct {
-        const char *tag;
-        size_t size;
-        const void *data;
-        struct orl_buf **buf;
-        GLenum format;
-        struct orl_tex **texels;
-    } rows[] = {
-        {"point positions", points * 8, host->positions, &chunk->positions, GL_RG32UI,
-         &chunk->position_texels},
-        {"point attributes", points * 4, host->attributes, &chunk->attributes, GL_R32UI,
-         &chunk->attribute_texels},
+    size_t blocks = host->block_count;
+    const struct buffer rows[] = {
+        {"points", blocks * BLOCK * 8, host->points, &chunk->points, GL_RG32UI,
+         &chunk->point_texels},
         {"point blocks", blocks * sizeof *host->blocks, host->blocks, &chunk->blocks, GL_RGBA32F,
          &chunk->block_texels},
         {"point block enlargement", blocks * 4, NULL, &chunk->enlarged, GL_R32F,
@@ -49,13 +55,18 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
         {"point list arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
     };
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
-        result = orl_buf_create(gpu, ORL_OWNER_POINTS, rows[i].tag, rows[i].size, rows[i].data,
-                                rows[i].buf);
-        if (result == ORL_OK)
-            result = orl_tex_view_buffer(gpu, *rows[i].buf, rows[i].format, rows[i].texels);
-    }
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++)
+        result = make_buffer(gpu, &rows[i]);
     return result;
+}
+
+// data: sRGB of each point of the chunk.
+static enum orl_result make_colors(struct orl_gpu *gpu, struct point_chunk *chunk,
+                                   uint8_t (*data)[3])
+{
+    const struct buffer row = {"point colours", (size_t)chunk->count * sizeof *data, data,
+                               &chunk->colors, GL_R8UI, &chunk->color_texels};
+    return make_buffer(gpu, &row);
 }
 
 // Where point i of a block is stored in its chunk.
@@ -72,8 +83,7 @@ static void fill_block(const struct orl_points *points, const uint32_t *order, s
     orl_point_block_make(points, order, &block);
     for (size_t i = 0; i < BLOCK; i++) {
         size_t to = place_in_chunk(i, at, host->block_count);
-        memcpy(host->positions[to], block.codes[i].position, sizeof block.codes[i].position);
-        host->attributes[to] = block.codes[i].attributes;
+        memcpy(host->points[to], block.codes[i].geometry, sizeof block.codes[i].geometry);
     }
     memcpy(host->blocks[at], block.texels, sizeof block.texels);
 }
@@ -83,18 +93,33 @@ static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct host_chunk host = {.block_count = (size_t)chunk->block_count};
-    host.positions = orl_array(log, host.block_count * BLOCK, sizeof *host.positions);
-    host.attributes = orl_array(log, host.block_count * BLOCK, sizeof *host.attributes);
+    host.points = orl_array(log, host.block_count * BLOCK, sizeof *host.points);
     host.blocks = orl_array(log, host.block_count, sizeof *host.blocks);
-    enum orl_result result =
-        host.positions && host.attributes && host.blocks ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = host.points && host.blocks ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t b = 0; result == ORL_OK && b < host.block_count; b++)
         fill_block(points, order + b * BLOCK, b, &host);
     if (result == ORL_OK)
         result = make_buffers(gpu, chunk, &host);
-    free(host.positions);
-    free(host.attributes);
+    free(host.points);
     free(host.blocks);
+    return result;
+}
+
+// order: of the chunk's points.
+static enum orl_result upload_colors(struct orl_gpu *gpu, const struct orl_points *points,
+                                     const uint32_t *order, struct point_chunk *chunk)
+{
+    size_t count = (size_t)chunk->count;
+    uint8_t (*colors)[3] = orl_array(orl_gpu_log(gpu), count, sizeof *colors);
+    if (!colors)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        size_t to = place_in_chunk(i % BLOCK, i / BLOCK, (size_t)chunk->block_count);
+        if (order[i] != UINT32_MAX)
+            memcpy(colors[to], points->color[order[i]], sizeof *colors);
+    }
+    enum orl_result result = make_colors(gpu, chunk, colors);
+    free(colors);
     return result;
 }
 
@@ -110,7 +135,7 @@ static enum orl_result find_order(const struct orl_log *log, const struct orl_po
 
 size_t orl_cloud_chunk_points(const struct orl_gpu *gpu)
 {
-    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / BLOCK * BLOCK;
+    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / 3 / BLOCK * BLOCK; // of colours
     return most < CHUNK_POINTS ? most : CHUNK_POINTS;
 }
 
@@ -141,7 +166,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
                                struct cloud *cloud)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    memset(cloud, 0, sizeof *cloud);
+    *cloud = (struct cloud){.points = points};
     if (points->count > INT32_MAX - BLOCK)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
     size_t most = orl_cloud_chunk_points(gpu);
@@ -167,6 +192,22 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     return result;
 }
 
+enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud)
+{
+    uint32_t *order = NULL;
+    size_t count = 0;
+    if (cloud->chunks[cloud->chunk_count - 1].color_texels)
+        return ORL_OK;
+    enum orl_result result = find_order(orl_gpu_log(gpu), cloud->points, &order, &count);
+    for (size_t i = 0; result == ORL_OK && i < cloud->chunk_count; i++) {
+        struct point_chunk *chunk = &cloud->chunks[i];
+        if (!chunk->color_texels) // the memory may have ended before
+            result = upload_colors(gpu, cloud->points, order + chunk->first, chunk);
+    }
+    free(order);
+    return result;
+}
+
 enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
                                       struct cloud *cloud)
 {
@@ -176,17 +217,18 @@ enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
     cloud->chunk_count = 1;
     chunk->block_count = (int)block_count;
     chunk->count = chunk->block_count * BLOCK;
-    return make_buffers(gpu, chunk, &(struct host_chunk){.block_count = block_count});
+    enum orl_result result =
+        make_buffers(gpu, chunk, &(struct host_chunk){.block_count = block_count});
+    return result == ORL_OK ? make_colors(gpu, chunk, NULL) : result;
 }
 
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
 {
     for (size_t i = 0; i < cloud->chunk_count; i++) {
         struct point_chunk *c = &cloud->chunks[i];
-        struct orl_tex **const views[] = {&c->position_texels, &c->attribute_texels,
-                                          &c->block_texels, &c->enlarged_texels, &c->item_texels,
-                                          &c->arg_texels};
-        struct orl_buf **const bufs[] = {&c->positions, &c->attributes, &c->blocks, &c->enlarged,
+        struct orl_tex **const views[] = {&c->point_texels, &c->color_texels, &c->block_texels,
+                                          &c->enlarged_texels, &c->item_texels, &c->arg_texels};
+        struct orl_buf **const bufs[] = {&c->points, &c->colors, &c->blocks, &c->enlarged,
                                          &c->items, &c->args};
         for (size_t k = 0; k < ORL_COUNT(views); k++)
             orl_tex_destroy(gpu, views[k]);

@@ -8,10 +8,10 @@
 // A part of the points, small enough that no buffer exceeds the device's limits. It consists of
 // blocks of ORL_BLOCK_POINTS points that are close together. Each buffer has a view as texels.
 struct point_chunk {
-    struct orl_buf *positions, *attributes, *blocks, *enlarged, *items, *args;
-    struct orl_tex *position_texels;  // RG32UI: struct point_code's position
-    struct orl_tex *attribute_texels; // R32UI: its attributes
-    struct orl_tex *block_texels;     // RGBA32F, ORL_BLOCK_VEC4S per block: see there
+    struct orl_buf *points, *colors, *blocks, *enlarged, *items, *args;
+    struct orl_tex *point_texels; // RG32UI: struct point_code's geometry
+    struct orl_tex *color_texels; // R8UI, three for each point; NULL until they are asked for
+    struct orl_tex *block_texels; // RGBA32F, ORL_BLOCK_VEC4S per block: see there
     // Results of the last cull: floats, then 32-bit words.
     struct orl_tex *enlarged_texels, *item_texels, *arg_texels;
     int first, count, block_count;    // count: includes the padding to whole blocks
@@ -20,14 +20,18 @@ struct point_chunk {
 struct cloud {
     struct point_chunk *chunks;
     size_t chunk_count;
+    const struct orl_points *points; // the scene's
     struct cloud_pages *pages; // what the one chunk holds (cloud_pages.h); NULL: all points
     float near;                // of struct orl_scene
 };
 
-// Sorts the points and uploads them. Points with a value that is not finite are omitted.
+// Sorts the points and uploads them without their colours. Points with a value that is not finite
+// are omitted. The points live as long as the cloud.
 enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct cloud *cloud);
-// Makes one chunk of this many blocks without a point.
+// Uploads the colours, unless they are there.
+enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud) ORL_CHECK_RESULT;
+// Makes one chunk of this many blocks without a point, with room for colours.
 enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
                                       struct cloud *cloud) ORL_CHECK_RESULT;
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);

@@ -207,10 +207,10 @@ static void upload(const struct cloud_pages *p, const struct point_chunk *chunk,
 {
     for (size_t part = 0; part < ORL_LOD_PARTS; part++) {
         size_t item = part * (size_t)chunk->block_count + at * ORL_LOD_BLOCKS;
-        orl_buf_write(chunk->positions, item * sizeof p->data->positions[0][0],
-                      sizeof p->data->positions[part], p->data->positions[part]);
-        orl_buf_write(chunk->attributes, item * sizeof p->data->attributes[0][0],
-                      sizeof p->data->attributes[part], p->data->attributes[part]);
+        orl_buf_write(chunk->points, item * sizeof p->data->geometry[0][0],
+                      sizeof p->data->geometry[part], p->data->geometry[part]);
+        orl_buf_write(chunk->colors, item * sizeof p->data->colors[0][0],
+                      sizeof p->data->colors[part], p->data->colors[part]);
     }
 }
 

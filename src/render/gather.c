@@ -384,9 +384,7 @@ static enum orl_result paint_gather(struct frame *frame)
         result = orl_progressive_admit(frame, reads_depth(frame));
     for (int sweep = 0; result == ORL_OK && sweep < sweeps; sweep++)
         result = sweep_over(frame, sweep);
-    if (result == ORL_OK)
-        orl_progressive_underpaint(frame);
-    return result;
+    return result == ORL_OK ? orl_progressive_underpaint(frame) : result;
 }
 
 const struct painter orl_paint_gather = {
@@ -396,13 +394,12 @@ const struct painter orl_paint_gather = {
 
 static enum orl_result paint_points(struct frame *frame)
 {
-    const struct proxy *proxy = frame->proxy;
     orl_pass_begin(frame->gpu, "gather");
     orl_gather_clear(frame);
     const struct paint_into into = {.picture = frame->picture};
-    proxy->kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, &into);
+    enum orl_result result = orl_proxy_color(frame, &into);
     orl_pass_end(frame->gpu);
-    return ORL_OK;
+    return result;
 }
 
 // Splats show where they are in front, as the normal's w tells.

@@ -248,15 +248,16 @@ bool orl_progressive_underpaints(const struct frame *frame)
     return frame->progressive && (photos->were_absent || !photos->loader);
 }
 
-void orl_progressive_underpaint(const struct frame *frame)
+enum orl_result orl_progressive_underpaint(const struct frame *frame)
 {
     const struct proxy *proxy = frame->proxy;
     if (!frame->progressive || !frame->photos->were_absent || !proxy->kind->color ||
         !frame->normals)
-        return;
+        return ORL_OK;
     orl_pass_begin(frame->gpu, "gather");
     const struct paint_into into = {frame->picture,
                                     frame->finishes ? frame->fill->level[0] : NULL, true};
-    proxy->kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, &into);
+    enum orl_result result = orl_proxy_color(frame, &into);
     orl_pass_end(frame->gpu);
+    return result;
 }

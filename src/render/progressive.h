@@ -13,6 +13,6 @@ enum orl_result orl_progressive_admit(struct frame *frame, bool depth) ORL_CHECK
 bool orl_progressive_underpaints(const struct frame *frame);
 // Gives pixels that no photograph has painted the colours of the proxy, if photographs are absent.
 // Does nothing in the first frame of which that is so: without normals, the proxy has no colours.
-void orl_progressive_underpaint(const struct frame *frame);
+enum orl_result orl_progressive_underpaint(const struct frame *frame) ORL_CHECK_RESULT;
 
 #endif

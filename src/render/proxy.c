@@ -92,6 +92,17 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
     return result;
 }
 
+enum orl_result orl_proxy_color(const struct frame *frame, const struct paint_into *into)
+{
+    const struct proxy *proxy = frame->proxy;
+    const struct proxy_kind *kind = proxy->kind;
+    enum orl_result result =
+        kind->bring_colors ? kind->bring_colors(frame->gpu, proxy->state) : ORL_OK;
+    if (result == ORL_OK)
+        kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, into);
+    return result;
+}
+
 // True if this option belongs to the proxy.
 static bool is_read_by(const struct orl_render_option *option, const struct proxy_kind *kind)
 {

@@ -49,6 +49,8 @@ struct proxy_kind {
     void (*draw)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
                  const struct orl_render_params *params, bool normals, void *target,
                  struct surface *surface);
+    // Brings to the device what `color` reads. NULL: it is there.
+    enum orl_result (*bring_colors)(struct orl_gpu *gpu, void *state);
     // Writes the proxy's own colours, linear with weight 1, where its primitives are visible in a
     // target that was drawn with normals. NULL: it has no colours.
     void (*color)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
@@ -96,6 +98,9 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
                                const struct orl_view *view,
                                const struct orl_render_params *params, bool normals,
                                void **target, struct surface *surface);
+// Writes the colours of the proxy's kind, which has some, where the view's surface is visible.
+enum orl_result orl_proxy_color(const struct frame *frame,
+                                const struct paint_into *into) ORL_CHECK_RESULT;
 // A hash of everything that determines a surface of this proxy. Equal keys mean equal surfaces.
 uint64_t orl_proxy_key(const struct proxy *proxy, const struct orl_render_params *params);
 

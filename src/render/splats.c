@@ -190,7 +190,7 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
             struct orl_dispatch d = {.prog = passes[pass], .params = block,
                                      .params_size = sizeof *block,
                                      .textures = {chunk->block_texels},
-                                     .images = {{chunk->position_texels, 0, GL_READ_ONLY},
+                                     .images = {{chunk->point_texels, 0, GL_READ_ONLY},
                                                 {chunk->item_texels, 0, GL_READ_ONLY},
                                                 {chunk->arg_texels, 0, GL_READ_ONLY},
                                                 {t->splat_depth, 0, GL_READ_WRITE},
@@ -217,8 +217,7 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         struct orl_dispatch d = {.prog = prog, .params = block, .params_size = sizeof *block,
                                  .bufs = {[2] = {.buf = chunk->enlarged}},
                                  .textures = {chunk->block_texels},
-                                 .images = {{chunk->position_texels, 0, GL_READ_ONLY},
-                                            {chunk->attribute_texels, 0, GL_READ_ONLY},
+                                 .images = {{chunk->point_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},
                                             {t->splat_layer, 0, GL_READ_ONLY},
                                             {normals ? t->splats : depth, 0, GL_WRITE_ONLY},
@@ -227,7 +226,7 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
                                             {chunk->enlarged_texels, 0, GL_READ_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
         if (chunks)
-            d.images[7] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
+            d.images[6] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
         orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }
@@ -338,6 +337,11 @@ static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *
                                 .normal = t->normal};
 }
 
+static enum orl_result bring_colors(struct orl_gpu *gpu, void *state)
+{
+    return orl_cloud_bring_colors(gpu, state);
+}
+
 static void color(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
                   const void *target, const struct paint_into *into)
 {
@@ -352,7 +356,7 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
         struct orl_dispatch d = {
             .prog = orl_prog_get(gpu, "proxy/points_color.comp", NULL, defines),
             .params = &block, .params_size = sizeof block,
-            .images = {{chunk->attribute_texels, 0, GL_READ_ONLY},
+            .images = {{chunk->color_texels, 0, GL_READ_ONLY},
                        {t->splat_index, 0, GL_READ_ONLY},
                        {t->normal, 0, GL_READ_ONLY},
                        {into->picture, 0, into->only_unpainted ? GL_READ_WRITE : GL_WRITE_ONLY},
@@ -366,5 +370,6 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
 
 const struct proxy_kind orl_proxy_splats = {
     .name = "splats", .create = create, .vertices = vertices, .destroy = destroy, .resize = resize,
-    .free_target = free_target, .target_bytes = target_bytes, .bring = bring, .draw = draw, .color = color,
+    .free_target = free_target, .target_bytes = target_bytes, .bring = bring, .draw = draw,
+    .bring_colors = bring_colors, .color = color,
 };

@@ -115,9 +115,7 @@ static enum orl_result paint(struct frame *frame)
         result = orl_photos_require(frame, frame->chosen[i], true);
     if (result == ORL_OK)
         result = paint_chosen(frame);
-    if (result == ORL_OK)
-        orl_progressive_underpaint(frame);
-    return result;
+    return result == ORL_OK ? orl_progressive_underpaint(frame) : result;
 }
 
 const struct painter orl_paint_tiled = {

@@ -249,7 +249,7 @@ void orl_point_block_make(const struct orl_points *points, const uint32_t *order
             continue;
         block->codes[i] = orl_point_encode(&frame, points->position[from], points->normal[from],
                                            points->color[from], points->radius[from]);
-        orl_point_decode_position(&frame, block->codes[i].position, positions[i]);
+        orl_point_decode_position(&frame, block->codes[i].geometry, positions[i]);
     }
     describe_block(positions, points, order, count, &frame, block->texels);
 }

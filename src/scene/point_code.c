@@ -2,15 +2,19 @@
 
 #include <math.h>
 
-// A code of 65535 marks a point that is not there.
-static const float most_code = 65534;
 enum {
+    POSITION_BITS = 13,
+    MOST_CODE = (1 << POSITION_BITS) - 1,
+    // Of the second word; the first has x, y and the low bits of z.
+    RADIUS_AT = 3 * POSITION_BITS - 32,
+    THERE_AT = RADIUS_AT + 8,
+    NORMAL_AT = THERE_AT + 1,
     RADIUS_CODES = 255,   // of radii above 0
     CODES_PER_OCTAVE = 16 // radii are rounded by 2.2 % at most
 };
-static const float least_steps = 8; // see orl_point_range_is_precise
+static const float least_steps = 16; // see orl_point_range_is_precise
 
-const struct point_code orl_point_code_none = {{UINT32_MAX, UINT32_MAX}, UINT32_MAX};
+const struct point_code orl_point_code_none = {{0}, {0}, 0};
 
 // --- the frame of a block ---
 
@@ -43,7 +47,7 @@ static float extent_step(const struct point_range *range)
     float extent = 0;
     for (int k = 0; k < 3; k++)
         extent = fmaxf(extent, range->high[k] - range->low[k]);
-    return extent / most_code;
+    return extent / MOST_CODE;
 }
 
 bool orl_point_range_is_precise(const struct point_range *range)
@@ -71,7 +75,7 @@ struct point_frame orl_point_frame(const struct point_range *range)
 static uint32_t steps_from(float origin, float value, float step)
 {
     double code = step > 0 ? ((double)value - (double)origin) / (double)step : 0;
-    return (uint32_t)lrint(fmin(fmax(code, 0), (double)most_code));
+    return (uint32_t)lrint(fmin(fmax(code, 0), MOST_CODE));
 }
 
 static uint32_t radius_code(float radius, float step)
@@ -108,24 +112,28 @@ struct point_code orl_point_encode(const struct point_frame *frame, const float 
     for (int k = 0; k < 3; k++)
         q[k] = steps_from(frame->origin[k], position[k], frame->step);
     return (struct point_code){
-        {q[0] | q[1] << 16, q[2] | (uint32_t)orl_octahedron_bytes(normal) << 16},
-        (uint32_t)color[0] | (uint32_t)color[1] << 8 | (uint32_t)color[2] << 16 |
-            radius_code(radius, frame->step) << 24};
+        .geometry = {q[0] | q[1] << POSITION_BITS | q[2] << 2 * POSITION_BITS,
+                     q[2] >> (32 - 2 * POSITION_BITS) |
+                         radius_code(radius, frame->step) << RADIUS_AT | 1u << THERE_AT |
+                         (uint32_t)orl_octahedron_bytes(normal) << NORMAL_AT},
+        .color = {color[0], color[1], color[2]}};
 }
 
-bool orl_point_decode_position(const struct point_frame *frame, const uint32_t code[2],
+bool orl_point_decode_position(const struct point_frame *frame, const uint32_t geometry[2],
                                float position[3])
 {
-    const uint32_t q[3] = {code[0] & 0xffff, code[0] >> 16, code[1] & 0xffff};
+    const uint32_t q[3] = {
+        geometry[0] & MOST_CODE, geometry[0] >> POSITION_BITS & MOST_CODE,
+        (geometry[0] >> 2 * POSITION_BITS | geometry[1] << (32 - 2 * POSITION_BITS)) & MOST_CODE};
     for (int k = 0; k < 3; k++)
         position[k] = frame->origin[k] + frame->step * (float)q[k];
-    return q[0] <= (uint32_t)most_code;
+    return geometry[1] >> THERE_AT & 1;
 }
 
-void orl_point_decode_normal(const uint32_t code[2], float normal[3])
+void orl_point_decode_normal(const uint32_t geometry[2], float normal[3])
 {
-    float x = fmaxf((float)(int8_t)(code[1] >> 16) / 127, -1);
-    float y = fmaxf((float)(int8_t)(code[1] >> 24) / 127, -1);
+    float x = fmaxf((float)(int8_t)(geometry[1] >> NORMAL_AT) / 127, -1);
+    float y = fmaxf((float)(int8_t)(geometry[1] >> (NORMAL_AT + 8)) / 127, -1);
     float z = 1 - fabsf(x) - fabsf(y), fold = fmaxf(-z, 0);
     x += x >= 0 ? -fold : fold;
     y += y >= 0 ? -fold : fold;
@@ -133,8 +141,8 @@ void orl_point_decode_normal(const uint32_t code[2], float normal[3])
     normal[0] = x / length, normal[1] = y / length, normal[2] = z / length;
 }
 
-float orl_point_decode_radius(const struct point_frame *frame, uint32_t attributes)
+float orl_point_decode_radius(const struct point_frame *frame, const uint32_t geometry[2])
 {
-    uint32_t code = attributes >> 24;
+    uint32_t code = geometry[1] >> RADIUS_AT & 0xff;
     return code ? frame->step * radius_steps((int)code) : 0;
 }

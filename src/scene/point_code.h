@@ -1,5 +1,6 @@
-// Private: how points are stored on the device, in 12 bytes. Positions are whole numbers of steps
-// from the corner of their block. shaders/proxy/point.glsl decodes them.
+// Private: how points are stored on the device: their geometry in 8 bytes, their colours apart, since
+// only the method `points` reads them and a walk while photographs are loaded. Positions are whole
+// numbers of steps from the corner of their block. shaders/proxy/point.glsl decodes them.
 #ifndef ORL_SCENE_POINT_CODE_H
 #define ORL_SCENE_POINT_CODE_H
 
@@ -19,14 +20,17 @@ struct point_range {
 };
 struct point_range orl_point_range_none(void);
 void orl_point_range_add(struct point_range *range, const float position[3], float radius);
-// True if a frame for these points resolves positions to an eighth of the least radius, so that
+// True if a frame for these points resolves positions to a sixteenth of the least radius, so that
 // storage makes no difference to a picture. False: they are better stored as several blocks.
 bool orl_point_range_is_precise(const struct point_range *range);
 struct point_frame orl_point_frame(const struct point_range *range);
 
 struct point_code {
-    uint32_t position[2]; // x, y; z and the normal (two signed bytes, octahedral), low half first
-    uint32_t attributes;  // red, green, blue, radius: a byte each, red lowest
+    // 0: no point. From the lowest bit on: x, y and z, 13 bits each; the radius, 8; a bit that is
+    // set; the normal, two signed bytes in octahedral form.
+    uint32_t geometry[2];
+    uint8_t color[3]; // sRGB
+    uint8_t unused;   // 0
 };
 // Decodes as a point that is never drawn.
 extern const struct point_code orl_point_code_none;
@@ -35,11 +39,11 @@ extern const struct point_code orl_point_code_none;
 struct point_code orl_point_encode(const struct point_frame *frame, const float position[3],
                                    const float normal[3], const uint8_t color[3], float radius);
 // False: no point.
-bool orl_point_decode_position(const struct point_frame *frame, const uint32_t code[2],
+bool orl_point_decode_position(const struct point_frame *frame, const uint32_t geometry[2],
                                float position[3]);
 // Unit length; of a point without a normal, +z.
-void orl_point_decode_normal(const uint32_t code[2], float normal[3]);
-float orl_point_decode_radius(const struct point_frame *frame, uint32_t attributes);
+void orl_point_decode_normal(const uint32_t geometry[2], float normal[3]);
+float orl_point_decode_radius(const struct point_frame *frame, const uint32_t geometry[2]);
 // Encodes a direction as shaders/proxy/octahedron.glsl, in two signed bytes: x in the low byte.
 uint16_t orl_octahedron_bytes(const float normal[3]);
 

@@ -178,16 +178,14 @@ static void take_block(const struct orl_lod_data *data, size_t b, struct orl_poi
     const float *corner = data->blocks[b][3];
     const struct point_frame frame = {{corner[0], corner[1], corner[2]}, corner[3]};
     for (size_t i = 0; i < (size_t)data->blocks[b][1][3]; i++) {
-        const uint32_t *code = data->positions[i / ORL_ITEM_POINTS][b][i % ORL_ITEM_POINTS];
-        uint32_t attributes = data->attributes[i / ORL_ITEM_POINTS][b][i % ORL_ITEM_POINTS];
-        size_t to = points->count;
-        if (!orl_point_decode_position(&frame, code, points->position[to]) ||
+        size_t part = i / ORL_ITEM_POINTS, at = i % ORL_ITEM_POINTS, to = points->count;
+        const uint32_t *geometry = data->geometry[part][b][at];
+        if (!orl_point_decode_position(&frame, geometry, points->position[to]) ||
             !orl_point_usable(points->position[to]))
             continue;
-        orl_point_decode_normal(code, points->normal[to]);
-        points->radius[to] = orl_point_decode_radius(&frame, attributes);
-        for (int k = 0; k < 3; k++)
-            points->color[to][k] = (uint8_t)(attributes >> 8 * k);
+        orl_point_decode_normal(geometry, points->normal[to]);
+        points->radius[to] = orl_point_decode_radius(&frame, geometry);
+        memcpy(points->color[to], data->colors[part][b][at], sizeof points->color[to]);
         points->count++;
     }
 }

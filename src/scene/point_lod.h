@@ -25,8 +25,8 @@ enum {
 // A page as it is stored. Its points are ordered by part: the first parts of all blocks come first.
 struct orl_lod_data {
     float blocks[ORL_LOD_BLOCKS][ORL_BLOCK_VEC4S][4]; // all 0: no block
-    uint32_t positions[ORL_LOD_PARTS][ORL_LOD_BLOCKS][ORL_ITEM_POINTS][2];
-    uint32_t attributes[ORL_LOD_PARTS][ORL_LOD_BLOCKS][ORL_ITEM_POINTS];
+    uint32_t geometry[ORL_LOD_PARTS][ORL_LOD_BLOCKS][ORL_ITEM_POINTS][2]; // of struct point_code
+    uint8_t colors[ORL_LOD_PARTS][ORL_LOD_BLOCKS][ORL_ITEM_POINTS][3];
 };
 
 // What is known of a page without reading it.

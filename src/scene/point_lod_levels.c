@@ -153,9 +153,9 @@ static void put_block(const struct point_block *block, struct level *level)
     memcpy(page->blocks[b], block->texels, sizeof block->texels);
     for (size_t i = 0; i < ORL_BLOCK_POINTS; i++) {
         size_t part = i / ORL_ITEM_POINTS, at = i % ORL_ITEM_POINTS;
-        memcpy(page->positions[part][b][at], block->codes[i].position,
-               sizeof block->codes[i].position);
-        page->attributes[part][b][at] = block->codes[i].attributes;
+        memcpy(page->geometry[part][b][at], block->codes[i].geometry,
+               sizeof block->codes[i].geometry);
+        memcpy(page->colors[part][b][at], block->codes[i].color, sizeof block->codes[i].color);
     }
 }
 
@@ -170,12 +170,11 @@ static void take_point(const struct point_block *child, int i, struct orl_points
     const struct point_code *code = &child->codes[i];
     size_t to = taken->count;
     if ((float)i >= count ||
-        !orl_point_decode_position(&frame, code->position, taken->position[to]))
+        !orl_point_decode_position(&frame, code->geometry, taken->position[to]))
         return;
-    orl_point_decode_normal(code->position, taken->normal[to]);
-    taken->radius[to] = orl_point_decode_radius(&frame, code->attributes) * sqrtf(count / drawn);
-    for (int k = 0; k < 3; k++)
-        taken->color[to][k] = (uint8_t)(code->attributes >> 8 * k);
+    orl_point_decode_normal(code->geometry, taken->normal[to]);
+    taken->radius[to] = orl_point_decode_radius(&frame, code->geometry) * sqrtf(count / drawn);
+    memcpy(taken->color[to], code->color, sizeof code->color);
     taken->count++;
 }
 

@@ -32,13 +32,15 @@ struct drawn {
 
 static void read_order(const struct proxy *proxy, struct drawn *out)
 {
-    static uint32_t attributes[POINTS_MAX];
-    const struct cloud *cloud = proxy->state;
+    static uint8_t colors[POINTS_MAX][3];
+    struct cloud *cloud = proxy->state;
     const struct point_chunk *chunk = &cloud->chunks[0];
     assert_true(chunk->count <= POINTS_MAX);
-    orl_buf_read(chunk->attributes, 0, (size_t)chunk->count * sizeof *attributes, attributes);
+    assert_null(chunk->colors); // until they are asked for
+    assert_int_equal(orl_cloud_bring_colors(gpu, cloud), ORL_OK);
+    orl_buf_read(chunk->colors, 0, (size_t)chunk->count * sizeof *colors, colors);
     for (int i = 0; i < chunk->count; i++)
-        out->listed[i] = attributes[i] & 0xffffff;
+        out->listed[i] = (uint32_t)colors[i][0] | (uint32_t)colors[i][1] << 8;
 }
 
 // near: of struct orl_scene

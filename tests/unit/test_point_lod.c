@@ -75,9 +75,9 @@ static void all_points_come_back(void **state)
         long x = lrintf(p[0]), y = lrintf(p[1]);
         assert_in_range(x, 0, ROW - 1);
         assert_in_range(y, 0, ROW - 1);
-        assert_float_equal(p[0], x, 0.01);
-        assert_float_equal(p[1], y, 0.01);
-        assert_float_equal(p[2], 2, 0.01);
+        assert_float_equal(p[0], x, 0.75 / 32); // half of the largest step
+        assert_float_equal(p[1], y, 0.75 / 32);
+        assert_float_equal(p[2], 2, 0.75 / 32);
         assert_float_equal(points.normal[i][2], -1, 1e-3);
         assert_float_equal(points.radius[i], 0.75, 0.02);
         assert_int_equal(points.color[i][0], x / 2);
