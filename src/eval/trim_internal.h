@@ -7,7 +7,7 @@
 #include "eval/trim_points.h"
 
 // Levels of the parts, from the whole scene on.
-enum { TRIM_POINT_LEVELS = 13, TRIM_SCALE_LEVELS = 4, TRIM_QUALITY_LEVELS = 4,
+enum { TRIM_POINT_LEVELS = 25, TRIM_SCALE_LEVELS = 4, TRIM_QUALITY_LEVELS = 4,
        TRIM_DEPTH_LEVELS = 5 };
 extern const double orl_trim_point_shares[TRIM_POINT_LEVELS];
 extern const double orl_trim_scales[TRIM_SCALE_LEVELS];

@@ -11,7 +11,8 @@
 #include "io/picture.h"
 
 const double orl_trim_point_shares[TRIM_POINT_LEVELS] = {
-    1, 0.8, 0.65, 0.5, 0.4, 0.32, 0.25, 0.2, 0.16, 0.125, 0.1, 0.08, 0.0625};
+    1,    0.9,  0.8, 0.72, 0.65,  0.57, 0.5, 0.45, 0.4,  0.36, 0.32, 0.28, 0.25,
+    0.22, 0.2, 0.18, 0.16, 0.14, 0.125, 0.11, 0.1, 0.09, 0.08, 0.07, 0.0625};
 const double orl_trim_scales[TRIM_SCALE_LEVELS] = {1, 0.875, 0.75, 0.5};
 const int orl_trim_qualities[TRIM_QUALITY_LEVELS] = {0, 95, 90, 80};
 // Quality of photographs that are made smaller and would otherwise stay as they are.

@@ -56,7 +56,8 @@ bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *m
     const struct trim_state *state = &s->state;
     switch (move->part) {
     case ORL_TRIM_POINTS:
-        return state->points + 1 < TRIM_POINT_LEVELS && s->source.scene->points.count > 0;
+        return state->points + move->index < TRIM_POINT_LEVELS &&
+               s->source.scene->points.count > 0;
     case ORL_TRIM_PHOTOGRAPH:
         return s->targets.count - state->removed_count > TRAIN_LEAST;
     case ORL_TRIM_TEXTURES:
@@ -92,7 +93,8 @@ void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
     enum { SIZE = 96 };
     switch (move->part) {
     case ORL_TRIM_POINTS:
-        snprintf(what, SIZE, "points %.3g %%", 100 * orl_trim_point_shares[++state->points]);
+        state->points += move->index;
+        snprintf(what, SIZE, "points %.3g %%", 100 * orl_trim_point_shares[state->points]);
         break;
     case ORL_TRIM_PHOTOGRAPH:
         photo = s->targets.views[move->index].photo;
@@ -154,15 +156,19 @@ static void find_nearest(struct trim_search *s, size_t target)
 }
 
 // What a photograph or an option is taken to cost before it is tried, as a share of the tolerance,
-// and what an option is taken to save. To try all of them takes longest, and less in a model that
-// other steps have made smaller: steps that promise more come first.
+// and what an option or a small step is taken to save. To try all of them takes longest, and less in
+// a model that other steps have made smaller: steps that promise more come first.
 static const double untried_cost = 0.25, option_gain = 0.05;
+// Levels of points that are taken at once, and where they lose too much.
+enum { POINT_STEP = 2, SMALL_POINT_STEP = 1 };
 
 static void add_move(struct trim_search *s, enum orl_trim_part part, size_t index)
 {
     struct trim_move move = {.part = part, .index = index, .ratio = INFINITY};
     double gain = part == ORL_TRIM_PHOTOGRAPH ? 1 / (double)s->targets.count : option_gain;
-    if ((part == ORL_TRIM_PHOTOGRAPH || part == ORL_TRIM_OPTION) && s->params->tolerance_db > 0)
+    bool late = part == ORL_TRIM_PHOTOGRAPH || part == ORL_TRIM_OPTION ||
+                (part == ORL_TRIM_POINTS && index == SMALL_POINT_STEP);
+    if (late && s->params->tolerance_db > 0)
         move.ratio = gain / (untried_cost * s->params->tolerance_db);
     if (orl_trim_is_possible(s, &move))
         s->moves[s->move_count++] = move;
@@ -199,8 +205,10 @@ enum orl_result orl_trim_plan(struct trim_search *s)
     add_move(s, ORL_TRIM_DEPTH, 0);
     for (size_t i = ORL_TEXTURES_BC7; i < ORL_TEXTURES_COUNT; i++)
         add_move(s, ORL_TRIM_TEXTURES, i);
-    if (all)
-        add_move(s, ORL_TRIM_POINTS, 0);
+    if (all) {
+        add_move(s, ORL_TRIM_POINTS, POINT_STEP);
+        add_move(s, ORL_TRIM_POINTS, SMALL_POINT_STEP);
+    }
     if (s->source.rewritable) {
         add_move(s, ORL_TRIM_RESOLUTION, 0);
         add_move(s, ORL_TRIM_QUALITY, 0);

@@ -27,7 +27,8 @@ struct trim_measured {
 // A kind of step that can be taken next.
 struct trim_move {
     enum orl_trim_part part;
-    size_t index;     // of a photograph, of a row of options, or a kind of textures
+    size_t index;     // of a photograph, of a row of options, a kind of textures, or levels of
+                      // points that are taken at once
     double ratio;     // what it promises: saved shares per dB; INFINITY: not known yet
     bool tried;
     bool dead;    // it cannot be taken any more: it saves nothing, or has been taken

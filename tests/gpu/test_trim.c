@@ -268,7 +268,7 @@ static void one_step_of_many_is_taken_back(void **state)
     struct trim_move textures = {.part = ORL_TRIM_TEXTURES, .index = ORL_TEXTURES_YCC,
                                  .measured.slower = 1.2};
     struct trim_move photo = {.part = ORL_TRIM_PHOTOGRAPH, .index = 3, .measured.slower = 0.5};
-    struct trim_move points = {.part = ORL_TRIM_POINTS, .measured.slower = 1};
+    struct trim_move points = {.part = ORL_TRIM_POINTS, .index = 1, .measured.slower = 1};
     struct trim_move *taken[STEPS] = {&depth, &textures, &depth, &photo, &points};
     s.state.removed = calloc(5, sizeof *s.state.removed);
     for (size_t i = 0; i < STEPS; i++)
