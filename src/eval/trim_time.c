@@ -8,7 +8,7 @@
 #include "eval/timing.h"
 #include "eval/trim_search.h"
 
-enum { FRAMES_FIRST = 5, ROUNDS_OF_TRIAL = 8, ROUNDS_OF_WHOLE = 64 };
+enum { FRAMES_FIRST = 5, ROUNDS_OF_TRIAL = 24, ROUNDS_OF_WHOLE = 64 };
 // In the end no frame may be slower than the whole scene's by more than this share, or so many
 // milliseconds, which no one sees. On the way it may, by as much as compressed textures take on a
 // software renderer.
@@ -16,7 +16,7 @@ static const double slower_most = 0.02, slower_ms = 0.5, slower_software_ms = 8,
                     slower_on_way = 0.3;
 // Standard error of a trial's ratio that is asked for, if as many rounds are enough for it: in the
 // end both models are timed more closely.
-static const double trial_error = 0.05;
+static const double trial_error = 0.025;
 // A difference within so many standard errors counts as none.
 static const double same_errors = 2;
 
