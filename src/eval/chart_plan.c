@@ -25,12 +25,13 @@ static enum orl_result add(const struct orl_log *log, struct chart_plan *plan,
     return result;
 }
 
-// True when each pixel of this method uses a few chosen photographs. Only then do the settings
-// above matter.
+// True when each pixel of this method uses a few chosen photographs: only then do the settings
+// above matter. What draws several pictures with the settings of another method trades them as that
+// one does, in a multiple of the time.
 static bool chooses_photographs(const struct orl_render_params *render)
 {
     const struct orl_render_option *option = orl_render_option_find("candidates");
-    return option && orl_render_option_read(option, render);
+    return option && orl_render_option_read(option, render) && !(render->reconstructions > 1);
 }
 
 // True when the plan has the configuration already. The user's own values are planned first.
