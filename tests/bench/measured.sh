@@ -291,7 +291,7 @@ page_charts() {
 All methods and their settings on the held-out photographs of five scenes, one report. `cpu ms` is the processor time of
 a frame, the geometric mean over the scenes; the figure has the wall time, which other work on the machine
 lengthens. *Front*: no other row is both faster, by processor time, and better by PSNR. `sd` is the standard deviation over
-the scenes. [Columns](../reference/chart.md), [one scene, and another program](chart.md).
+the scenes. [Columns](../reference/chart.md), [another program](peers.md).
 END
     command_block "$chart"
     printf '![PSNR against the time of a frame, means over the scenes](charts.svg)\n\n'
