@@ -234,7 +234,7 @@ static enum orl_result search(struct job *job)
 // --- the few steps ---
 
 // What the scene must be, or the step before must have brought.
-enum step_condition { ALWAYS, SKIES_DIFFER, AFTER_GAIN, AFTER_NO_GAIN };
+enum step_condition { ALWAYS, SKIES_DIFFER, AFTER_NO_GAIN };
 
 struct step {
     enum step_condition condition;
@@ -248,9 +248,9 @@ static const struct step steps[] = {
     {SKIES_DIFFER, NULL,
      {"plain_sky=1", "guess_sharpness=0.5", "guess_blur=0.25", "guess_blur_most=0.05"}},
     {ALWAYS, NULL, {"guess_depths=16"}}, // scenes with bare backgrounds
-    {AFTER_GAIN, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}},
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
     {AFTER_NO_GAIN, NULL, {"depth_tolerance=0.04"}},
+    {ALWAYS, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}}, // few photographs of a subject
     {ALWAYS, NULL, {"surface_seeds=1"}},
     {ALWAYS, "oriel-fast", {NULL}},
 };
@@ -346,8 +346,6 @@ static bool is_for(const struct job *job, enum step_condition condition, bool ta
     switch (condition) {
     case SKIES_DIFFER:
         return orl_skies_differ(job->scene);
-    case AFTER_GAIN:
-        return taken;
     case AFTER_NO_GAIN:
         return !taken;
     default:

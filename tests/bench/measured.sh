@@ -301,7 +301,7 @@ END
         | .rows += [$r + {front: (if $better then "front" else "" end)}]
         | if $better then .best = $r.mean.psnr_db else . end) | .rows'
     printf '**Methods as they are**\n\n'
-    print_table "$work/chart/chart.json" "$overall"' as $rows
+    print_table "$work/chart/chart.json" "($overall)"' as $rows
       | table(["method", "PSNR, dB", "sd", "colours fitted, dB", "covered, dB", "SSIM", "FLIP", "completeness", "flicker",
                "cpu ms", "device, MiB", ""];
         .overall[] | .method as $m | select(.setting == "")
@@ -310,7 +310,7 @@ END
              (.mean.completeness | fixed(3)), (.flicker | fixed(2)), (.cpu_ms | fixed(0)),
              (.device_bytes / 1048576 | fixed(0)), ([$rows[] | select(.method == $m and .setting == "")][0].front)])'
     printf '**Settings**: PSNR, SSIM, FLIP and flicker less those of the method as it is, time as a multiple of its\n\n'
-    print_table "$work/chart/chart.json" "$overall"' as $rows
+    print_table "$work/chart/chart.json" "($overall)"' as $rows
       | table(["method", "setting", "PSNR, dB", "SSIM", "FLIP", "flicker", "time", "device, MiB", ""];
         .overall[] | . as $r | select(.setting != "")
           | ([$rows[] | select(.method == $r.method and .setting == "")][0]) as $own
