@@ -136,27 +136,43 @@ enum orl_result orl_heldout_expose(const struct orl_log *log, const struct orl_s
     return orl_tone_srgb(log, color, picture);
 }
 
+enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer *renderer,
+                                 const struct orl_scene *scene, const struct orl_heldout *heldout,
+                                 const struct orl_render_params *render, const bool *skip,
+                                 struct orl_image *picture, struct orl_image *coverage)
+{
+    struct orl_frame frame = {0};
+    struct orl_render_params params = *render;
+    params.leave_out |= ORL_LAYER_NORMAL | ORL_LAYER_DEPTH;
+    *picture = *coverage = (struct orl_image){0};
+    enum orl_result result = orl_renderer_draw(renderer, &heldout->view, &params, skip, &frame);
+    if (result == ORL_OK)
+        result = orl_heldout_expose(log, scene, heldout->photo, render, &frame.color, picture);
+    if (result == ORL_OK) {
+        *coverage = frame.coverage;
+        frame.coverage = (struct orl_image){0};
+    }
+    orl_frame_finish(&frame);
+    return result;
+}
+
 enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                     const struct orl_scene *scene,
                                     const struct orl_heldout *heldout,
                                     const struct orl_render_params *render, const bool *skip,
                                     bool brief, struct orl_metrics *metrics)
 {
-    struct orl_frame frame = {0};
-    struct orl_image picture = {0};
-    struct orl_render_params params = *render;
+    struct orl_image picture, coverage;
     memset(metrics, 0, sizeof *metrics);
-    params.leave_out |= ORL_LAYER_NORMAL | ORL_LAYER_DEPTH;
-    enum orl_result result = orl_renderer_draw(renderer, &heldout->view, &params, skip, &frame);
-    if (result == ORL_OK)
-        result = orl_heldout_expose(log, scene, heldout->photo, render, &frame.color, &picture);
+    enum orl_result result =
+        orl_heldout_draw(log, renderer, scene, heldout, render, skip, &picture, &coverage);
     if (result == ORL_OK && brief) {
         metrics->psnr_db = orl_metrics_psnr_db(&picture, &heldout->picture);
         result = orl_metrics_ssim(log, &picture, &heldout->picture, &metrics->ssim);
-    } else if (result == ORL_OK)
-        result =
-            orl_metrics_compare(log, &picture, &heldout->picture, &frame.coverage, metrics);
+    } else if (result == ORL_OK) {
+        result = orl_metrics_compare(log, &picture, &heldout->picture, &coverage, metrics);
+    }
     orl_image_finish(&picture);
-    orl_frame_finish(&frame);
+    orl_image_finish(&coverage);
     return result;
 }

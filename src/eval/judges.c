@@ -101,18 +101,17 @@ bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b)
     return distance < same_distance && angle < same_angle;
 }
 
-// Marks what the rendering of a photograph's view does without.
-static void set_skip(const struct orl_judges *judges, size_t photo, const bool *removed)
+void orl_judges_leave_out(const struct orl_scene *scene, size_t photo, const bool *removed,
+                          bool *skip)
 {
-    const struct orl_scene *scene = &judges->scene;
     size_t left = 0;
     for (size_t i = 0; i < scene->photo_count; i++) {
-        judges->skip[i] = (removed && removed[i]) || orl_judges_same_place(scene, i, photo);
-        left += !judges->skip[i] && !scene->photos[i].test;
+        skip[i] = (removed && removed[i]) || orl_judges_same_place(scene, i, photo);
+        left += !skip[i] && !scene->photos[i].test;
     }
     for (size_t i = 0; left == 0 && i < scene->photo_count; i++)
-        judges->skip[i] = removed && removed[i];
-    judges->skip[photo] = true;
+        skip[i] = removed && removed[i];
+    skip[photo] = true;
 }
 
 enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
@@ -121,7 +120,7 @@ enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_rendere
                                    bool brief, struct orl_metrics *metrics)
 {
     const struct orl_heldout *target = &judges->views[view];
-    set_skip(judges, target->photo, removed);
+    orl_judges_leave_out(&judges->scene, target->photo, removed, judges->skip);
     return orl_heldout_compare(log, renderer, &judges->scene, target, render, judges->skip,
                                brief, metrics);
 }

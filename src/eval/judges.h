@@ -32,8 +32,11 @@ void orl_judges_apart(const struct orl_scene *scene, size_t a, size_t b, double 
 // True when photograph b stands where a stands and looks where a looks, as repeated shots and
 // exposure series do. Rendering the view of one from the other would tell nothing.
 bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b);
-// Renders the view of judges->views[view] without that photograph, those from the same place
-// (unless no other is left) and those that `removed` marks (NULL: none), and compares as
+// Marks in `skip` what a rendering of the photograph's view does without: that photograph, those from
+// the same place (unless no other is left) and those that `removed` marks (NULL: none).
+void orl_judges_leave_out(const struct orl_scene *scene, size_t photo, const bool *removed,
+                          bool *skip);
+// Renders the view of judges->views[view] without what orl_judges_leave_out marks, and compares as
 // orl_heldout_compare does. The renderer's scene must have the photographs of the judges' scene, in
 // the same order.
 enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
