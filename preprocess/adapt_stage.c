@@ -1,8 +1,7 @@
 #include "preprocess/adapt_stage.h"
 
 #include "eval/adapt.h"
-#include "eval/judges.h"
-#include "oriel/gpu.h"
+#include "preprocess/drawing.h"
 #include "preprocess/scene_json.h"
 #include "scene/tuned_settings.h"
 
@@ -11,14 +10,6 @@ json_t *orl_stage_adapt_settings(const struct orl_job *job)
     const struct orl_prepare_params *p = job->params;
     return json_pack("{s:s, s:o*}", "adapt", orl_adapt_effort_names[p->adapt], "budget_s",
                      p->adapt == ORL_ADAPT_LONG ? json_real(p->adapt_budget_s) : NULL);
-}
-
-static size_t train_count(const struct orl_scene *scene)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        count += !scene->photos[i].test;
-    return count;
 }
 
 static void log_rows(const struct orl_log *log, const struct orl_adapt *adapt)
@@ -63,25 +54,16 @@ static enum orl_result adapt(struct orl_job *job, struct orl_gpu *gpu,
 enum orl_result orl_stage_adapt(struct orl_job *job, json_t *record)
 {
     struct orl_scene *scene = NULL;
-    struct orl_gpu *own = NULL, *gpu = job->params->gpu;
+    struct orl_drawing drawing;
     enum orl_result result = orl_scene_json_open(job, &scene);
     if (result != ORL_OK)
         return result;
-    bool enough = train_count(scene) >= ORL_JUDGES_TRAIN_MIN;
-    if (!enough)
-        orl_logf(job->log, ORL_LOG_INFO, "adapt: needs %d training photographs; the usual method "
-                 "stays", ORL_JUDGES_TRAIN_MIN);
-    // COLMAP's stereo needs no device that draws, and a scene is whole without what is found here.
-    else if (!gpu && orl_gpu_create(job->log, &(struct orl_gpu_params){
-                                        .shader_dir = job->params->shader_dir}, &own) != ORL_OK)
-        orl_logf(job->log, ORL_LOG_WARNING, "adapt: no device; the usual method stays");
-    if (own)
-        gpu = own;
-    if (enough && gpu)
-        result = adapt(job, gpu, scene, record);
+    orl_drawing_begin(job, scene, "adapt: the usual method stays", &drawing);
+    if (drawing.gpu)
+        result = adapt(job, drawing.gpu, scene, record);
     else
         json_object_set_new(record, "render", orl_defaults_json(&scene->defaults));
-    orl_gpu_destroy(&own);
+    orl_drawing_end(&drawing);
     orl_scene_destroy(&scene);
     return result;
 }

@@ -1,0 +1,27 @@
+#include "preprocess/drawing.h"
+
+#include "eval/judges.h"
+
+void orl_drawing_begin(const struct orl_job *job, const struct orl_scene *scene,
+                       const char *without, struct orl_drawing *drawing)
+{
+    const struct orl_gpu_params params = {.shader_dir = job->params->shader_dir};
+    size_t train = 0;
+    *drawing = (struct orl_drawing){0};
+    for (size_t i = 0; i < scene->photo_count; i++)
+        train += !scene->photos[i].test;
+    if (train < ORL_JUDGES_TRAIN_MIN)
+        orl_logf(job->log, ORL_LOG_INFO, "%s: needs %d training photographs", without,
+                 ORL_JUDGES_TRAIN_MIN);
+    else if (job->params->gpu)
+        drawing->gpu = job->params->gpu;
+    else if (orl_gpu_create(job->log, &params, &drawing->own) != ORL_OK)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: no device", without);
+    else
+        drawing->gpu = drawing->own;
+}
+
+void orl_drawing_end(struct orl_drawing *drawing)
+{
+    orl_gpu_destroy(&drawing->own);
+}
