@@ -17,6 +17,7 @@ struct orl_photo {
     bool radiance;        // its linear version is radiance (oriel hdr --replace-series): no value
                           // is clipped, however near to white
     bool masked;          // has a mask (orl_scene_mask_path)
+    float occluded;       // share of it that shows occluders (orl_scene_occluders_path); 0: none
     double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
@@ -135,6 +136,11 @@ char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *sc
 // "SCENE/frames/<number>/masks/<name>.png" when a frame is selected. The mask is as large as the
 // photograph and 0 outside the subject. The file exists when photo->masked.
 char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
+// Where the photograph shows what stands before the scene and has no points: a mask of any size,
+// 255 there, else 0: "SCENE/occluders/<name>.png". The file exists when photo->occluded > 0. It is
+// of SCENE/images, not of the moments of a sequence.
+char *orl_scene_occluders_path(const struct orl_log *log, const struct orl_scene *scene,
+                               size_t photo);
 // A picture of the place without the subject: "SCENE/background/<name>.png". The file may be
 // missing.
 char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,

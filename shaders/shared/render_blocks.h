@@ -147,6 +147,16 @@ ORL_BLOCK(gather_block)
 #define GUESS_LINES 32
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 
+// Occluders in a photograph's depth map.
+#if defined(__STDC_VERSION__) || defined(BLOCK_OCCLUDERS)
+ORL_BLOCK(occluders_block)
+{
+    IVEC2(map_size);       // of the depth map, pixels
+    FLOAT(occluder_depth); // what they get, scene units
+    FLOAT(unused);
+};
+#endif
+
 // Estimates in the holes of a photograph's depth map.
 #if defined(__STDC_VERSION__) || defined(BLOCK_HOLES)
 ORL_BLOCK(holes_block)

@@ -32,6 +32,8 @@ static void print_photos(const struct orl_scene *scene)
                photo->view.camera.width, photo->view.camera.height);
         if (photo->has_exposure)
             printf("  %+.2f EV, series %d", photo->exposure_ev, photo->series);
+        if (photo->occluded > 0)
+            printf("  occluders on %.1f %%", 100 * (double)photo->occluded);
         printf("\n");
     }
 }

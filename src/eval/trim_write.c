@@ -211,8 +211,8 @@ static enum orl_result write_manifest(const struct writer *w)
 
 static enum orl_result write_parts(const struct writer *w)
 {
-    static const char *const others[] = {"masks", "background", "images_linear", "frames",
-                                         "mesh.ply"};
+    static const char *const others[] = {"masks", "background", "occluders", "images_linear",
+                                         "frames", "mesh.ply"};
     enum orl_result result = write_photos(w);
     if (result == ORL_OK)
         result = write_points(w);

@@ -23,7 +23,7 @@
 #define TILED \
     .paint = "tiled", .select = "preselect", .visibility = "soft", .weight = "lumigraph", \
     .combine = "robust", .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON, \
-    .backdrop = ORL_BACKDROP_SCENE
+    .backdrop = ORL_BACKDROP_SCENE, .occluders = ORL_OCCLUDERS_DROP
 
 // What makes depth and edges better, and frames slower.
 #define REFINED \

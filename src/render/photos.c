@@ -10,6 +10,7 @@
 #include "io/picture.h"
 #include "render/ahead.h"
 #include "render/method.h"
+#include "render/occluders.h"
 #include "render/packing.h"
 #include "render/photos.h"
 #include "scene/silhouette.h"
@@ -485,7 +486,8 @@ static void write_depth(const struct frame *frame, const struct surface *surface
                              .images = {{surface->depth, 0, GL_READ_ONLY},
                                         {frame->photos->depth, 0, GL_WRITE_ONLY}},
                              .image_layers = {[1] = slot + 1},
-                             .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
+                             .barrier = GL_TEXTURE_FETCH_BARRIER_BIT |
+                                        GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(kept[0], kept[1], d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
 }
@@ -519,8 +521,10 @@ static bool has_shadow_maps(const struct frame *frame)
 uint64_t orl_photos_depth_key(const struct frame *frame)
 {
     const float shadow[2] = {frame->params->fatten_px, frame->params->depth_tolerance};
+    const int drops = frame->params->occluders;
     uint64_t key = orl_proxy_key(frame->proxy, frame->params);
-    return has_shadow_maps(frame) ? XXH3_64bits_withSeed(shadow, sizeof shadow, key) : key;
+    return has_shadow_maps(frame) ? XXH3_64bits_withSeed(shadow, sizeof shadow, key)
+                                  : XXH3_64bits_withSeed(&drops, sizeof drops, key);
 }
 
 enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, int divide)
@@ -542,10 +546,15 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, i
                                 &surface);
     if (result != ORL_OK)
         return result;
-    if (has_shadow_maps(frame))
+    if (has_shadow_maps(frame)) {
         fatten(frame, &surface, kept, state->slot);
-    else
+    } else {
         fill_holes(frame, &surface, kept, state->slot);
+        if (frame->params->occluders == ORL_OCCLUDERS_DROP)
+            result = orl_occluders_put(frame, index, kept);
+    }
+    if (result != ORL_OK)
+        return result;
     state->depth_key = frame->depth_key;
     state->depth_divide = divide;
     return ORL_OK;

@@ -42,12 +42,12 @@ static json_t *photo_json(const struct orl_photo *photo)
     const struct orl_camera *c = &photo->view.camera;
     double centre[3];
     orl_pose_centre(&photo->view.cam_from_world, centre);
-    return json_pack("{s:o, s:s, s:[i,i], s:[f,f], s:[f,f], s:[f,f,f], s:o, s:i}", "name",
-                     orl_json_string(photo->name), "split", photo->test ? "test" : "train", "size", c->width,
-                     c->height, "focal_px", c->fx, c->fy, "centre_px", c->cx, c->cy, "position",
+    return json_pack("{s:o, s:s, s:[i,i], s:[f,f], s:[f,f], s:[f,f,f], s:o, s:i, s:f}", "name",
+                     orl_json_string(photo->name), "split", photo->test ? "test" : "train", "size",
+                     c->width, c->height, "focal_px", c->fx, c->fy, "centre_px", c->cx, c->cy, "position",
                      centre[0], centre[1], centre[2], "exposure_ev",
                      photo->has_exposure ? json_real(photo->exposure_ev) : json_null(), "series",
-                     photo->series);
+                     photo->series, "occluded", (double)photo->occluded);
 }
 
 json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene)

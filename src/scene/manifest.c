@@ -54,19 +54,40 @@ static enum orl_result read_optics(const struct orl_json_place *place, const jso
                             : result;
 }
 
+// Refuses a photograph without the file that scene.json promises. Takes ownership of `path`.
+static enum orl_result need_file(const struct orl_json_place *place, char *path, const char *what)
+{
+    if (!path)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    if (!orl_path_is_file(path))
+        result = orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: %s missing", path, what);
+    free(path);
+    return result;
+}
+
 static enum orl_result read_mask(const struct orl_json_place *place, const json_t *entry,
                                  const struct orl_scene *scene, struct orl_photo *photo)
 {
     enum orl_result result = orl_json_bool(place, entry, "mask", &photo->masked);
     if (result != ORL_OK || !photo->masked)
         return result;
-    char *path = orl_scene_mask_path(place->log, scene, (size_t)(photo - scene->photos));
-    if (!path)
-        return ORL_ERR_MEMORY;
-    if (!orl_path_is_file(path))
-        result = orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: this mask is missing", path);
-    free(path);
-    return result;
+    return need_file(place,
+                     orl_scene_mask_path(place->log, scene, (size_t)(photo - scene->photos)),
+                     "this mask is");
+}
+
+static enum orl_result read_occluders(const struct orl_json_place *place, const json_t *entry,
+                                      const struct orl_scene *scene, struct orl_photo *photo)
+{
+    double share = 0;
+    enum orl_result result = orl_json_number(place, entry, "occluded", 0, 1, &share);
+    photo->occluded = (float)share;
+    if (result != ORL_OK || !(photo->occluded > 0))
+        return result;
+    return need_file(place,
+                     orl_scene_occluders_path(place->log, scene, (size_t)(photo - scene->photos)),
+                     "these occluders are");
 }
 
 static enum orl_result read_sky(const struct orl_json_place *place, const json_t *entry,
@@ -104,6 +125,8 @@ static enum orl_result read_photo(const struct orl_json_place *place, const json
         result = read_sky(place, entry, photo);
     if (result == ORL_OK)
         result = read_radiance(place, entry, photo);
+    if (result == ORL_OK)
+        result = read_occluders(place, entry, scene, photo);
     return result == ORL_OK ? read_mask(place, entry, scene, photo) : result;
 }
 

@@ -528,6 +528,12 @@ char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *sce
     return moment_path(log, scene, "masks", photo, ".png");
 }
 
+char *orl_scene_occluders_path(const struct orl_log *log, const struct orl_scene *scene,
+                               size_t photo)
+{
+    return orl_format(log, "%s/occluders/%s.png", scene->dir, scene->photos[photo].name);
+}
+
 char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,
                                 size_t photo)
 {

@@ -33,6 +33,8 @@ enum orl_result orl_subset_copy_masks(const struct orl_log *log, const struct or
         copy_if_there(log, scene, orl_scene_mask_path(log, scene, photo), dir);
     if (result == ORL_OK)
         result = copy_if_there(log, scene, orl_scene_background_path(log, scene, photo), dir);
+    if (result == ORL_OK)
+        result = copy_if_there(log, scene, orl_scene_occluders_path(log, scene, photo), dir);
     return result;
 }
 
