@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "oriel/path.h"
+#include "render/occluders.h"
 #include "walk/internal.h"
 
 enum {
@@ -123,12 +124,33 @@ static enum orl_result draw_depth(struct site *site, const struct orl_view *view
     return ORL_OK;
 }
 
-static enum orl_result write_depth(struct site *site, const struct orl_view *view,
+// Occluders get the least depth that can be stored.
+static enum orl_result put_occluders(const struct site *site, size_t photo, float nearest,
+                                     struct orl_image *depth)
+{
+    struct orl_image mask;
+    enum orl_result result = ORL_OK;
+    if (site->render.occluders == ORL_OCCLUDERS_KEEP)
+        return ORL_OK;
+    result = orl_occluders_read(site->log, site->scene, photo, &mask);
+    for (int y = 0; result == ORL_OK && mask.height && y < depth->height; y++)
+        for (int x = 0; x < depth->width; x++) {
+            int row = y * mask.height / depth->height, column = x * mask.width / depth->width;
+            if (mask.u8[row * mask.width + column] > 127)
+                depth->f32[y * depth->width + x] = nearest;
+        }
+    orl_image_finish(&mask);
+    return result;
+}
+
+static enum orl_result write_depth(struct site *site, size_t photo, const struct orl_view *view,
                                    const char *path, float *nearest)
 {
     struct orl_image depth = {0}, packed = {0};
     enum orl_result result = draw_depth(site, view, &depth);
     *nearest = result == ORL_OK ? nearest_depth(&depth) : 1;
+    if (result == ORL_OK)
+        result = put_occluders(site, photo, *nearest, &depth);
     if (result == ORL_OK)
         result = pack_depth(site->log, &depth, *nearest, &packed);
     char *file = result == ORL_OK ? orl_site_path(site, path) : NULL;
@@ -160,7 +182,7 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
     snprintf(depth, sizeof depth, "depth/%05zu.png", number);
     enum orl_result result = write_pictures(site, index, &c, picture, thumb);
     if (result == ORL_OK)
-        result = write_depth(site, &depth_view, depth, &nearest);
+        result = write_depth(site, index, &depth_view, depth, &nearest);
     json_t *depth_file = result == ORL_OK ? orl_site_file(site, depth) : NULL;
     if (result != ORL_OK || !depth_file)
         return result != ORL_OK ? result : ORL_ERR_IO;
