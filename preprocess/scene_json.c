@@ -27,7 +27,7 @@ static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
                                              "skipped", "ground", "backdrop", "skies",
-                                             "tuned", "render", "files", "sum"};
+                                             "occluded", "tuned", "render", "files", "sum"};
     json_t *stages = json_object();
     for (size_t k = 0; k < json_array_size(plan); k++) {
         const char *name = json_string_value(json_array_get(plan, k));
@@ -62,7 +62,8 @@ static int compare_photos(const void *a, const void *b)
 }
 
 // Sorted by name, like every list of photographs.
-static json_t *list_photos(const struct orl_job *job, const json_t *photos, const json_t *skies)
+static json_t *list_photos(const struct orl_job *job, const json_t *photos, const json_t *skies,
+                           const json_t *occluded)
 {
     size_t count = json_array_size(photos);
     json_t **items = calloc(count + 1, sizeof *items);
@@ -82,6 +83,9 @@ static json_t *list_photos(const struct orl_job *job, const json_t *photos, cons
         json_t *sky = json_object_get(skies, orl_json_text(entry, "name"));
         if (sky)
             json_object_set(entry, "sky", sky);
+        json_t *share = json_object_get(occluded, orl_json_text(entry, "name"));
+        if (share)
+            json_object_set(entry, "occluded", share);
         json_array_append_new(sorted, entry);
     }
     free(items);
@@ -179,7 +183,8 @@ static json_t *make_manifest(const struct orl_job *job)
     const json_t *plan = json_object_get(job->stages, "plan");
     const json_t *done = json_object_get(job->stages, "done");
     json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"),
-                                 stage_value(done, "sky", "skies"));
+                                 stage_value(done, "sky", "skies"),
+                                 stage_value(done, "occluders", "occluded"));
     return json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O, s:O, s:O*, s:O*}",
                      "format", "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                      "oriel " ORL_VERSION, "settings", settings(job->params), "counts",

@@ -24,6 +24,7 @@
 #include "preprocess/arguments.h"
 #include "preprocess/densify_stage.h"
 #include "preprocess/expose/expose.h"
+#include "preprocess/occluders_stage.h"
 #include "preprocess/photos/collect.h"
 #include "preprocess/photos/normalise.h"
 #include "preprocess/results.h"
@@ -157,7 +158,9 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 3, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
                           "photographs", true, NULL},
-    [ORL_STAGE_ADAPT] = {"adapt", 1, ORL_STAGE_EXPOSE, orl_stage_adapt_settings, orl_stage_adapt,
+    [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_EXPOSE, no_settings, orl_stage_occluders,
+                             {"occluders"}, "occluded", true, NULL},
+    [ORL_STAGE_ADAPT] = {"adapt", 1, ORL_STAGE_OCCLUDERS, orl_stage_adapt_settings, orl_stage_adapt,
                          {0}, "render", true, is_adapt_wanted},
 };
 
@@ -277,7 +280,9 @@ static enum orl_result check_record(const struct orl_job *job, json_t *record,
     for (size_t i = 0; id == ORL_STAGE_EXPOSE && i < json_array_size(told); i++)
         named = named && orl_json_text(json_array_get(told, i), "name");
     const json_t *files = json_object_get(record, "files");
-    *sound = told && named && (!stages[id].results[0] || json_object_size(files) > 0);
+    // No photograph may show occluders; then there are no files of them.
+    bool nothing = json_is_object(told) && json_object_size(told) == 0;
+    *sound = told && named && (!stages[id].results[0] || nothing || json_object_size(files) > 0);
     return ORL_OK;
 }
 

@@ -26,6 +26,7 @@ enum orl_stage_id {
     ORL_STAGE_SKY,
     ORL_STAGE_MESH,
     ORL_STAGE_EXPOSE,
+    ORL_STAGE_OCCLUDERS,
     ORL_STAGE_ADAPT,
     ORL_STAGE_COUNT
 };

@@ -48,6 +48,7 @@ sum=$(md5sum <"$scene/points.ply")
 prepare 0 --resume
 [ -s "$work/trace" ] && fail "a whole scene was worked on"
 says "ground: done already"
+says "occluders: done already"
 says "adapt: done already"
 # The ground is looked for once a scene, and opening takes what the stage found.
 grep -q '"ground": null' "$scene/scene.json" || fail "scene.json does not tell of the ground"
@@ -220,7 +221,8 @@ run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 says "adapt: done already"
 grep -q '"splat_scale": 2' "$scene/scene.json" || fail "what tune found was not kept"
 run 0 prepare "$work/p" --out "$work/few" --test-list 0,1,2
-says "adapt: needs 3 training photographs; the usual method stays"
+says "adapt: the usual method stays: needs 3 training photographs"
+says "occluders: none are looked for: needs 3 training photographs"
 run 0 info "$work/few"
 run 2 prepare "$work/p" --out "$scene" --resume --adapt much
 says "must be one of none, short, long"

@@ -1,0 +1,75 @@
+#include "preprocess/occluders_stage.h"
+
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "eval/occluder_masks.h"
+#include "io/picture.h"
+#include "preprocess/drawing.h"
+#include "preprocess/scene_json.h"
+
+// The folder is made for the first mask, so that scenes without any have none.
+static enum orl_result write_masks(struct orl_job *job, const struct orl_scene *scene,
+                                   const struct orl_image *masks, const double *shares,
+                                   json_t *occluded)
+{
+    size_t written = 0;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (!(shares[i] > 0))
+            continue;
+        if (written++ == 0)
+            result = orl_job_fresh_dir(job, "occluders");
+        char *path = orl_scene_occluders_path(job->log, scene, i);
+        if (result == ORL_OK)
+            result = path ? orl_file_make_folder(job->log, path) : ORL_ERR_MEMORY;
+        if (result == ORL_OK)
+            result = orl_png_write(job->log, path, &masks[i]);
+        if (result == ORL_OK && json_object_set_new(occluded, scene->photos[i].name,
+                                                    json_real(shares[i])) != 0)
+            result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the occluders");
+        free(path);
+    }
+    if (result == ORL_OK && written == 0)
+        result = orl_job_remove(job, "occluders");
+    orl_logf(job->log, ORL_LOG_INFO, "occluders: %zu photographs show some", written);
+    return result;
+}
+
+static enum orl_result find(struct orl_job *job, struct orl_gpu *gpu,
+                            const struct orl_scene *scene, json_t *occluded)
+{
+    struct orl_image *masks = orl_array(job->log, scene->photo_count, sizeof *masks);
+    double *shares = orl_array(job->log, scene->photo_count, sizeof *shares);
+    enum orl_result result = masks && shares ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_occluders_find(gpu, scene, job->progress, masks, shares);
+    if (result == ORL_OK)
+        result = write_masks(job, scene, masks, shares, occluded);
+    for (size_t i = 0; masks && i < scene->photo_count; i++)
+        orl_image_finish(&masks[i]);
+    free(masks);
+    free(shares);
+    return result;
+}
+
+enum orl_result orl_stage_occluders(struct orl_job *job, json_t *record)
+{
+    struct orl_scene *scene = NULL;
+    struct orl_drawing drawing = {0};
+    json_t *occluded = json_object();
+    enum orl_result result = occluded ? orl_scene_json_open(job, &scene) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        orl_drawing_begin(job, scene, "occluders: none are looked for", &drawing);
+    if (result == ORL_OK && drawing.gpu)
+        result = find(job, drawing.gpu, scene, occluded);
+    else if (result == ORL_OK)
+        result = orl_job_remove(job, "occluders");
+    if (result == ORL_OK && json_object_set(record, "occluded", occluded) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the occluders");
+    orl_drawing_end(&drawing);
+    orl_scene_destroy(&scene);
+    json_decref(occluded);
+    return result;
+}

@@ -1,0 +1,373 @@
+#include "eval/occluder_masks.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bridge/bridge.h"
+#include "core/color.h"
+#include "core/memory.h"
+#include "eval/judges.h"
+
+// Pixels of pictures of ORL_OCCLUDERS_SIDE, and differences in square roots of light, as the length
+// of the vector of channels.
+static const double blur_px = 1.5;
+enum { BLUR_TAPS = 11, OPEN_PX = 5, GROW_PX = 4 };
+static const float surface_difference = 0.25f;
+// Where depth is guessed, renderings are off by the error of the guess.
+static const float guess_difference = 0.5f;
+// Normalised cross-correlation: its window, the variance of noise in square roots of light, and what
+// another light leaves of a surface's likeness.
+enum { LIKENESS_TAPS = 25 };
+static const double likeness_px = 4;
+static const float noise = 1e-4f, likeness_most = 0.5f;
+// Shares of the picture: the surfaces that a region must prove to hide, and all that is plausible. A
+// photograph that differs nearly everywhere is in another light, or has a wrong pose.
+static const double proven_least = 0.01, occluded_most = 0.67;
+// Of a region's surfaces: less is proven along the edges of shadows.
+static const double proven_share = 0.5;
+
+// --- where a photograph differs ---
+
+struct roots {
+    float of[256]; // of light, by 8-bit value
+};
+
+static struct roots make_roots(void)
+{
+    struct roots roots;
+    for (int i = 0; i < 256; i++)
+        roots.of[i] = sqrtf(orl_srgb_decode((float)i / 255));
+    return roots;
+}
+
+static float brightness(const struct roots *roots, const uint8_t rgb[3])
+{
+    return 0.25f * roots->of[rgb[0]] + 0.5f * roots->of[rgb[1]] + 0.25f * roots->of[rgb[2]];
+}
+
+// A rendering less the photograph, after a Gaussian filter that keeps surfaces and guesses apart,
+// since these differ in how far they can be trusted. F32 x3.
+static enum orl_result differ(const struct orl_log *log, const struct orl_image *rendering,
+                              const struct orl_occluder_pictures *pictures,
+                              struct orl_image *difference)
+{
+    const struct orl_image *photo = &pictures->photo;
+    const struct roots roots = make_roots();
+    size_t count = (size_t)photo->width * (size_t)photo->height;
+    struct orl_image sides[2] = {{0}, {0}}, blurred[2] = {{0}, {0}}; // guesses, surfaces
+    enum orl_result result = orl_image_init(log, difference, photo->width, photo->height, 3,
+                                            ORL_PIXEL_F32);
+    for (int k = 0; result == ORL_OK && k < 2; k++) {
+        result = orl_image_init(log, &sides[k], photo->width, photo->height, 4, ORL_PIXEL_F32);
+        for (size_t i = 0; result == ORL_OK && i < count; i++) {
+            float *p = &sides[k].f32[4 * i];
+            p[3] = (pictures->covered.f32[i] > 0) == (k == 1);
+            for (size_t c = 0; c < 3; c++)
+                p[c] = p[3] * (roots.of[rendering->u8[3 * i + c]] - roots.of[photo->u8[3 * i + c]]);
+        }
+        if (result == ORL_OK)
+            result = orl_bridge_blur(log, &sides[k], BLUR_TAPS, blur_px, &blurred[k]);
+    }
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        const float *p = &blurred[pictures->covered.f32[i] > 0].f32[4 * i];
+        for (size_t c = 0; c < 3; c++)
+            difference->f32[3 * i + c] = p[c] / p[3];
+    }
+    for (int k = 0; k < 2; k++) {
+        orl_image_finish(&sides[k]);
+        orl_image_finish(&blurred[k]);
+    }
+    return result;
+}
+
+static float length_of(const float v[3])
+{
+    return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+// How alike the structure of the photograph and a rendering is around each pixel: normalised
+// cross-correlation of brightness, a mean of square roots of light. F32 x1.
+static enum orl_result correlate(const struct orl_log *log, const struct orl_image *photo,
+                                 const struct orl_image *rendering, struct orl_image *likeness)
+{
+    const struct roots roots = make_roots();
+    size_t count = (size_t)photo->width * (size_t)photo->height;
+    struct orl_image first, second = {0}, means[2] = {{0}, {0}}; // moments: a, b; a^2, b^2, a b
+    enum orl_result result = orl_image_init(log, &first, photo->width, photo->height, 2,
+                                            ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, &second, photo->width, photo->height, 3, ORL_PIXEL_F32);
+    if (result == ORL_OK)
+        result = orl_image_init(log, likeness, photo->width, photo->height, 1, ORL_PIXEL_F32);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        float a = brightness(&roots, &photo->u8[3 * i]);
+        float b = brightness(&roots, &rendering->u8[3 * i]);
+        memcpy(&first.f32[2 * i], (const float[]){a, b}, 2 * sizeof a);
+        memcpy(&second.f32[3 * i], (const float[]){a * a, b * b, a * b}, 3 * sizeof a);
+    }
+    if (result == ORL_OK)
+        result = orl_bridge_blur(log, &first, LIKENESS_TAPS, likeness_px, &means[0]);
+    if (result == ORL_OK)
+        result = orl_bridge_blur(log, &second, LIKENESS_TAPS, likeness_px, &means[1]);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        const float *m = &means[0].f32[2 * i], *squares = &means[1].f32[3 * i];
+        float a = fmaxf(squares[0] - m[0] * m[0], 0), b = fmaxf(squares[1] - m[1] * m[1], 0);
+        likeness->f32[i] = (squares[2] - m[0] * m[1]) / sqrtf((a + noise) * (b + noise));
+    }
+    orl_image_finish(&first);
+    orl_image_finish(&second);
+    orl_image_finish(&means[0]);
+    orl_image_finish(&means[1]);
+    return result;
+}
+
+// Where the photograph contradicts the consensus: *mask. Where the nearest photographs do so, too,
+// on a surface, and neither rendering has the photograph's structure in another light: *proof. Both
+// U8 x1, 255 there, without specks.
+static enum orl_result contradict(const struct orl_log *log,
+                                  const struct orl_occluder_pictures *pictures,
+                                  struct orl_image *mask, struct orl_image *proof)
+{
+    static const struct orl_mask_cleaning no_specks = {.open_px = OPEN_PX};
+    const struct orl_image *photo = &pictures->photo;
+    size_t count = (size_t)photo->width * (size_t)photo->height;
+    struct orl_image consensus = {0}, nearest = {0}, like[2] = {{0}, {0}}, rough[2] = {{0}, {0}};
+    enum orl_result result = differ(log, &pictures->consensus, pictures, &consensus);
+    if (result == ORL_OK)
+        result = differ(log, &pictures->nearest, pictures, &nearest);
+    if (result == ORL_OK)
+        result = correlate(log, photo, &pictures->consensus, &like[0]);
+    if (result == ORL_OK)
+        result = correlate(log, photo, &pictures->nearest, &like[1]);
+    for (int k = 0; result == ORL_OK && k < 2; k++)
+        result = orl_image_init(log, &rough[k], photo->width, photo->height, 1, ORL_PIXEL_U8);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        bool surface = pictures->covered.f32[i] > 0;
+        float least = surface ? surface_difference : guess_difference;
+        rough[0].u8[i] = length_of(&consensus.f32[3 * i]) > least ? 255 : 0;
+        bool proves = surface && length_of(&nearest.f32[3 * i]) > least &&
+                      fmaxf(like[0].f32[i], like[1].f32[i]) < likeness_most;
+        rough[1].u8[i] = proves ? rough[0].u8[i] : 0;
+    }
+    if (result == ORL_OK)
+        result = orl_bridge_clean_mask(log, &rough[0], &no_specks, mask);
+    if (result == ORL_OK)
+        result = orl_bridge_clean_mask(log, &rough[1], &no_specks, proof);
+    orl_image_finish(&consensus);
+    orl_image_finish(&nearest);
+    for (int k = 0; k < 2; k++) {
+        orl_image_finish(&like[k]);
+        orl_image_finish(&rough[k]);
+    }
+    return result;
+}
+
+// --- which regions count ---
+
+// Visits the connected region of mask pixels around `start` and unmarks it. Its pixels are listed
+// in `region`; returns their number.
+static size_t take_region(struct orl_image *mask, size_t start, size_t *region)
+{
+    size_t count = 1, width = (size_t)mask->width, height = (size_t)mask->height;
+    region[0] = start;
+    mask->u8[start] = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t at = region[i], x = at % width, y = at / width;
+        const size_t around[4] = {x > 0 ? at - 1 : at, x + 1 < width ? at + 1 : at,
+                                  y > 0 ? at - width : at, y + 1 < height ? at + width : at};
+        for (int k = 0; k < 4; k++)
+            if (mask->u8[around[k]]) {
+                mask->u8[around[k]] = 0;
+                region[count++] = around[k];
+            }
+    }
+    return count;
+}
+
+// Keeps the regions of `mask` that have enough proof. covered: the surfaces, F32 x1.
+static enum orl_result keep_proven(const struct orl_log *log, const struct orl_image *covered,
+                                   const struct orl_image *proof, struct orl_image *mask)
+{
+    size_t count = (size_t)mask->width * (size_t)mask->height;
+    size_t *region = orl_array(log, count, sizeof *region);
+    uint8_t *kept = orl_array(log, count, sizeof *kept);
+    for (size_t i = 0; region && kept && i < count; i++) {
+        if (!mask->u8[i])
+            continue;
+        size_t size = take_region(mask, i, region), surface = 0, proven = 0;
+        for (size_t k = 0; k < size; k++) {
+            surface += covered->f32[region[k]] > 0;
+            proven += proof->u8[region[k]] > 0;
+        }
+        bool keep = (double)proven >= fmax(proven_least * (double)count,
+                                           proven_share * (double)surface);
+        for (size_t k = 0; keep && k < size; k++)
+            kept[region[k]] = 255;
+    }
+    if (region && kept)
+        memcpy(mask->u8, kept, count);
+    enum orl_result result = region && kept ? ORL_OK : ORL_ERR_MEMORY;
+    free(region);
+    free(kept);
+    return result;
+}
+
+// Grows the regions: what the filter has blurred at their borders is theirs.
+static enum orl_result grow(const struct orl_log *log, struct orl_image *mask)
+{
+    struct orl_image distance;
+    size_t count = (size_t)mask->width * (size_t)mask->height;
+    enum orl_result result = orl_bridge_distance(log, mask, &distance);
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        mask->u8[i] = distance.f32[i] <= GROW_PX ? 255 : 0;
+    orl_image_finish(&distance);
+    return result;
+}
+
+enum orl_result orl_occluder_mask(const struct orl_log *log,
+                                  const struct orl_occluder_pictures *pictures,
+                                  struct orl_image *mask, double *share)
+{
+    size_t count = (size_t)pictures->photo.width * (size_t)pictures->photo.height, marked = 0;
+    struct orl_image proof = {0};
+    *mask = (struct orl_image){0};
+    *share = 0;
+    enum orl_result result = contradict(log, pictures, mask, &proof);
+    if (result == ORL_OK)
+        result = keep_proven(log, &pictures->covered, &proof, mask);
+    if (result == ORL_OK)
+        result = grow(log, mask);
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        marked += mask->u8[i] > 0;
+    if (result == ORL_OK && (double)marked <= occluded_most * (double)count)
+        *share = (double)marked / (double)count;
+    if (!(*share > 0))
+        orl_image_finish(mask);
+    orl_image_finish(&proof);
+    return result;
+}
+
+// --- the photographs of a scene ---
+
+struct finder {
+    const struct orl_log *log;
+    const struct orl_scene *scene;
+    const struct orl_progress *progress;
+    struct orl_renderer *renderer;
+    struct orl_render_params nearest, consensus;
+    struct orl_image *masks; // by photograph
+    double *shares;
+    bool *skip;   // owned
+    bool *proven; // owned: photographs whose occluders no other photograph contradicts
+};
+
+// Finds the occluders of a photograph, compared with renderings without `removed` (NULL: none).
+static enum orl_result find_of(const struct finder *f, size_t photo, const bool *removed)
+{
+    const struct orl_camera *c = &f->scene->photos[photo].view.camera;
+    int longer = c->width > c->height ? c->width : c->height;
+    int divide = (longer + ORL_OCCLUDERS_SIDE - 1) / ORL_OCCLUDERS_SIDE;
+    struct orl_heldout shot;
+    struct orl_occluder_pictures pictures = {0};
+    struct orl_image covered = {0};
+    if (orl_progress_cancelled(f->progress))
+        return ORL_ERR_CANCELLED;
+    orl_image_finish(&f->masks[photo]);
+    orl_judges_leave_out(f->scene, photo, removed, f->skip);
+    enum orl_result result = orl_heldout_load(f->log, f->scene, photo, divide, &shot);
+    if (result == ORL_OK)
+        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->nearest, f->skip,
+                                  &pictures.nearest, &covered);
+    if (result == ORL_OK)
+        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->consensus, f->skip,
+                                  &pictures.consensus, &pictures.covered);
+    if (result == ORL_OK) {
+        pictures.photo = shot.picture;
+        result = orl_occluder_mask(f->log, &pictures, &f->masks[photo], &f->shares[photo]);
+    }
+    orl_image_finish(&covered);
+    orl_image_finish(&pictures.covered);
+    orl_image_finish(&pictures.nearest);
+    orl_image_finish(&pictures.consensus);
+    orl_heldout_finish(&shot);
+    return result;
+}
+
+// The photograph with the largest share among those not yet proven; photo_count if there is none.
+static size_t next_accused(const struct finder *f)
+{
+    size_t next = f->scene->photo_count;
+    for (size_t i = 0; i < f->scene->photo_count; i++)
+        if (f->shares[i] > 0 && !f->proven[i] &&
+            (next == f->scene->photo_count || f->shares[i] > f->shares[next]))
+            next = i;
+    return next;
+}
+
+// An occluder also makes those differ that see what it hides: where only two others see a place, one
+// of them with the occluder, their mean is of both. So the photographs are compared again, the most
+// occluded first, without those before.
+static enum orl_result confirm(struct finder *f, size_t train)
+{
+    enum orl_result result = ORL_OK;
+    size_t proven = 0, photo;
+    while (result == ORL_OK && (photo = next_accused(f)) < f->scene->photo_count) {
+        double first = f->shares[photo];
+        f->shares[photo] = 0;
+        if (train - proven < ORL_JUDGES_TRAIN_MIN)
+            orl_image_finish(&f->masks[photo]);
+        else if (proven > 0)
+            result = find_of(f, photo, f->proven);
+        else
+            f->shares[photo] = first;
+        f->proven[photo] = f->shares[photo] > 0;
+        proven += f->proven[photo];
+    }
+    return result;
+}
+
+// The mean of all photographs that see a place, without those that differ from it, and no weights
+// by which one alone would decide.
+static enum orl_result set_params(struct finder *f)
+{
+    static const char *const consensus[] = {"paint=gather", "combine=sigma", "weight=equal"};
+    const struct orl_method *method = orl_method_find(f->log, "oriel");
+    if (!method)
+        return ORL_ERR_NOT_FOUND;
+    f->nearest = method->params;
+    f->nearest.occluders = ORL_OCCLUDERS_KEEP;
+    f->consensus = f->nearest;
+    return orl_render_params_assign(f->log, &f->consensus, consensus, ORL_COUNT(consensus));
+}
+
+enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                   const struct orl_progress *progress, struct orl_image *masks,
+                                   double *shares)
+{
+    struct finder f = {.log = orl_gpu_log(gpu), .scene = scene, .progress = progress,
+                       .masks = masks, .shares = shares};
+    size_t train = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        train += !scene->photos[i].test;
+    if (train < ORL_JUDGES_TRAIN_MIN)
+        return orl_fail(f.log, ORL_ERR_DATA, "%s: %zu photographs that are not held out; three are "
+                        "needed, to compare one with two others", scene->dir, train);
+    f.skip = orl_array(f.log, scene->photo_count, sizeof *f.skip);
+    f.proven = orl_array(f.log, scene->photo_count, sizeof *f.proven);
+    enum orl_result result = f.skip && f.proven ? set_params(&f) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_renderer_create(gpu, scene, NULL, &f.renderer);
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        orl_progress_report(progress, "occluders", (double)i, (double)scene->photo_count,
+                            scene->photos[i].name);
+        if (!scene->photos[i].test)
+            result = find_of(&f, i, NULL);
+    }
+    if (result == ORL_OK)
+        result = confirm(&f, train);
+    orl_renderer_destroy(&f.renderer);
+    free(f.skip);
+    free(f.proven);
+    return result;
+}

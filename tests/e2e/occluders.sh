@@ -1,0 +1,55 @@
+#!/bin/bash
+# A photograph with something before the camera: prepare finds it, renderings do without it, and its
+# mask is a result like any other. With COLMAP itself and the device.
+. "$2/tests/e2e/prepare_lib"
+paint=$(dirname "$oriel")/tests/paint_rectangle
+[ -x "$paint" ] || { echo "skipped: paint_rectangle was not built"; exit 77; }
+monument 288x192 9
+"$paint" "$work/p/0005.jpg" "$work/p/0005.jpg" 110 45 70 80 250 || fail "nothing was painted"
+
+prepare() {
+    run 0 prepare "$work/p" --out "$work/s" --quality draft --test-list 0004.jpg "$@"
+}
+mean() { # OCCLUDERS: PSNR of the held-out photograph, which stands beside the painted one
+    run 0 eval "$work/s" --set occluders="$1" --json "$work/$1.json"
+    sed -n '/"mean"/,$ s/^ *"psnr_db": \([0-9.]*\),*$/\1/p' "$work/$1.json" | head -n 1
+}
+
+prepare
+says "occluders: 1 photographs show some"
+run 0 info "$work/s"
+grep -q "0005.jpg .*occluders" "$work/out" || fail "info does not name the photograph"
+[ "$(grep -c '"occluded": 0\.' "$work/s/scene.json")" = 1 ] || fail "scene.json tells of other photographs"
+mask=$work/s/occluders/0005.jpg.png
+[ -s "$mask" ] || fail "there is no mask"
+keep=$(mean keep) drop=$(mean drop)
+awk -v keep="$keep" -v drop="$drop" 'BEGIN { exit !(drop > keep + 0.2) }' ||
+    fail "held out, dropped $drop dB, kept $keep dB"
+
+# A mask that is lost or damaged is noticed, and made again.
+sum=$(md5sum <"$mask")
+cp "$mask" "$work/mask.png"
+printf x | dd of="$mask" bs=1 seek=40 conv=notrunc status=none
+run 2 info "$work/s" --check
+says "0005.jpg.png: "
+prepare --resume
+says "occluders is done again"
+[ "$(md5sum <"$mask")" = "$sum" ] || fail "the mask that was made again is another"
+rm "$mask"
+run 2 info "$work/s"
+says "0005.jpg.png: these occluders are missing"
+prepare --resume
+[ "$(md5sum <"$mask")" = "$sum" ] || fail "the lost mask is another"
+head -c 60 "$work/mask.png" >"$mask"
+run 2 eval "$work/s"
+says "0005.jpg.png"
+prepare --resume
+
+# A photograph without it: the mask goes.
+rm -r "$work/p" "$work/p-truth"
+monument 288x192 9
+prepare --resume
+says "occluders: 0 photographs show some"
+[ -e "$work/s/occluders" ] && fail "the mask stays"
+grep -q '"occluded": 0\.' "$work/s/scene.json" && fail "scene.json tells of an occluder"
+finish
