@@ -26,6 +26,18 @@ keep=$(mean keep) drop=$(mean drop)
 awk -v keep="$keep" -v drop="$drop" 'BEGIN { exit !(drop > keep + 0.2) }' ||
     fail "held out, dropped $drop dB, kept $keep dB"
 
+# A published scene has it in the depth map of that photograph, the fourth for training, and in no
+# other.
+cp "$work/s/scene.json" "$work/scene.json"
+run 0 publish "$work/s" --out "$work/with"
+sed -i 's/"occluded": 0\.[0-9]*/"occluded": 0/' "$work/s/scene.json"
+run 0 publish "$work/s" --out "$work/without"
+cp "$work/scene.json" "$work/s/scene.json"
+for depth in "$work"/with/depth/*; do
+    cmp -s "$depth" "$work/without/depth/${depth##*/}" || echo "${depth##*/}"
+done >"$work/changed"
+[ "$(cat "$work/changed")" = 00003.png ] || fail "published depth that changes: $(cat "$work/changed")"
+
 # A mask that is lost or damaged is noticed, and made again.
 sum=$(md5sum <"$mask")
 cp "$mask" "$work/mask.png"
