@@ -251,6 +251,7 @@ static const struct step steps[] = {
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
     {AFTER_NO_GAIN, NULL, {"depth_tolerance=0.04"}},
     {ALWAYS, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}}, // few photographs of a subject
+    {ALWAYS, NULL, {"antialias=off"}}, // many small photographs, which the view is near to
     {ALWAYS, NULL, {"surface_seeds=1"}},
     {ALWAYS, "oriel-fast", {NULL}},
 };
