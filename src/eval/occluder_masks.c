@@ -250,6 +250,15 @@ enum orl_result orl_occluder_mask(const struct orl_log *log,
 
 // --- the photographs of a scene ---
 
+// Photographs that one is compared with, at most: the nearest, so that the work grows with the number
+// of photographs and not with its square.
+enum { OTHERS_MOST = 16 };
+
+struct other {
+    size_t photo;
+    double apart;
+};
+
 struct finder {
     const struct orl_log *log;
     const struct orl_scene *scene;
@@ -258,9 +267,34 @@ struct finder {
     struct orl_render_params nearest, consensus;
     struct orl_image *masks; // by photograph
     double *shares;
-    bool *skip;   // owned
-    bool *proven; // owned: photographs whose occluders no other photograph contradicts
+    struct other *others; // owned: room for all photographs
+    bool *skip;           // owned
+    bool *proven;         // owned: photographs whose occluders stand
 };
+
+static int by_apart(const void *a, const void *b)
+{
+    double first = ((const struct other *)a)->apart, second = ((const struct other *)b)->apart;
+    return (first > second) - (first < second);
+}
+
+// Skips what the rendering of a photograph's view does without: see orl_judges_leave_out, and all
+// but the nearest.
+static void set_skip(const struct finder *f, size_t photo, const bool *removed)
+{
+    size_t count = 0;
+    orl_judges_leave_out(f->scene, photo, removed, f->skip);
+    for (size_t i = 0; i < f->scene->photo_count; i++) {
+        double distance, angle;
+        if (f->skip[i] || f->scene->photos[i].test)
+            continue;
+        orl_judges_apart(f->scene, photo, i, &distance, &angle);
+        f->others[count++] = (struct other){i, distance + angle};
+    }
+    qsort(f->others, count, sizeof *f->others, by_apart);
+    for (size_t k = OTHERS_MOST; k < count; k++)
+        f->skip[f->others[k].photo] = true;
+}
 
 // Finds the occluders of a photograph, compared with renderings without `removed` (NULL: none).
 static enum orl_result find_of(const struct finder *f, size_t photo, const bool *removed)
@@ -274,7 +308,7 @@ static enum orl_result find_of(const struct finder *f, size_t photo, const bool 
     if (orl_progress_cancelled(f->progress))
         return ORL_ERR_CANCELLED;
     orl_image_finish(&f->masks[photo]);
-    orl_judges_leave_out(f->scene, photo, removed, f->skip);
+    set_skip(f, photo, removed);
     enum orl_result result = orl_heldout_load(f->log, f->scene, photo, divide, &shot);
     if (result == ORL_OK)
         result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->nearest, f->skip,
@@ -331,7 +365,8 @@ static enum orl_result confirm(struct finder *f, size_t train)
 // by which one alone would decide.
 static enum orl_result set_params(struct finder *f)
 {
-    static const char *const consensus[] = {"paint=gather", "combine=sigma", "weight=equal"};
+    static const char *const consensus[] = {"paint=gather", "combine=sigma", "weight=equal",
+                                            "sampling=bilinear"};
     const struct orl_method *method = orl_method_find(f->log, "oriel");
     if (!method)
         return ORL_ERR_NOT_FOUND;
@@ -353,9 +388,10 @@ enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *
     if (train < ORL_JUDGES_TRAIN_MIN)
         return orl_fail(f.log, ORL_ERR_DATA, "%s: %zu photographs that are not held out; three are "
                         "needed, to compare one with two others", scene->dir, train);
+    f.others = orl_array(f.log, scene->photo_count, sizeof *f.others);
     f.skip = orl_array(f.log, scene->photo_count, sizeof *f.skip);
     f.proven = orl_array(f.log, scene->photo_count, sizeof *f.proven);
-    enum orl_result result = f.skip && f.proven ? set_params(&f) : ORL_ERR_MEMORY;
+    enum orl_result result = f.others && f.skip && f.proven ? set_params(&f) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, NULL, &f.renderer);
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
@@ -367,6 +403,7 @@ enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *
     if (result == ORL_OK)
         result = confirm(&f, train);
     orl_renderer_destroy(&f.renderer);
+    free(f.others);
     free(f.skip);
     free(f.proven);
     return result;

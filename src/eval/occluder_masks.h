@@ -28,7 +28,8 @@ enum orl_result orl_occluder_mask(const struct orl_log *log,
                                   const struct orl_occluder_pictures *pictures,
                                   struct orl_image *mask, double *share) ORL_CHECK_RESULT;
 
-// The same for every training photograph of a scene, each compared with renderings from the others.
+// The same for every training photograph of a scene, each compared with renderings from the nearest
+// of the others.
 // An occluder also makes the few differ that see what it hides: so the photographs are compared
 // again, the most occluded first, without those that were found before. masks and shares: one for
 // each photograph of the scene; those of held-out photographs stay empty. The masks are the caller's

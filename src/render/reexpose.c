@@ -72,15 +72,17 @@ enum orl_result orl_photo_expose(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// Solves y = orl_light_aligned(gain, x) for x by bisection, since the right side increases.
+// Solves y = orl_light_aligned(gain, x) for x by bisection, since the right side increases. It is
+// multiplied by its denominator, as there are many pixels.
 static float unaligned(float gain, float y)
 {
-    float low = 0, high = 1;
+    float third = fminf(gain - 1, 0.5f), low = 0, high = 1;
+    float linear = gain - y * (gain - 1 - third), cubic = y * third;
     if (y >= 1)
         return y;
     for (int i = 0; i < 20; i++) {
         float x = 0.5f * (low + high);
-        if (orl_light_aligned(gain, x) < y)
+        if (x * (linear - cubic * x * x) < y)
             low = x;
         else
             high = x;
