@@ -122,9 +122,9 @@ static enum orl_result correlate(const struct orl_log *log, const struct orl_ima
     return result;
 }
 
-// Where the photograph contradicts the consensus: *mask. Where the nearest photographs do so, too,
-// on a surface, and neither rendering has the photograph's structure in another light: *proof. Both
-// U8 x1, 255 there, without specks.
+// Where the photograph contradicts the consensus: *mask. Where it contradicts the nearest photographs
+// and the points, too, on a surface, and neither rendering of photographs has its structure in another
+// light: *proof. Both U8 x1, 255 there, without specks.
 static enum orl_result contradict(const struct orl_log *log,
                                   const struct orl_occluder_pictures *pictures,
                                   struct orl_image *mask, struct orl_image *proof)
@@ -132,10 +132,13 @@ static enum orl_result contradict(const struct orl_log *log,
     static const struct orl_mask_cleaning no_specks = {.open_px = OPEN_PX};
     const struct orl_image *photo = &pictures->photo;
     size_t count = (size_t)photo->width * (size_t)photo->height;
-    struct orl_image consensus = {0}, nearest = {0}, like[2] = {{0}, {0}}, rough[2] = {{0}, {0}};
+    struct orl_image consensus = {0}, nearest = {0}, points = {0};
+    struct orl_image like[2] = {{0}, {0}}, rough[2] = {{0}, {0}};
     enum orl_result result = differ(log, &pictures->consensus, pictures, &consensus);
     if (result == ORL_OK)
         result = differ(log, &pictures->nearest, pictures, &nearest);
+    if (result == ORL_OK)
+        result = differ(log, &pictures->points, pictures, &points);
     if (result == ORL_OK)
         result = correlate(log, photo, &pictures->consensus, &like[0]);
     if (result == ORL_OK)
@@ -147,6 +150,7 @@ static enum orl_result contradict(const struct orl_log *log,
         float least = surface ? surface_difference : guess_difference;
         rough[0].u8[i] = length_of(&consensus.f32[3 * i]) > least ? 255 : 0;
         bool proves = surface && length_of(&nearest.f32[3 * i]) > least &&
+                      length_of(&points.f32[3 * i]) > least &&
                       fmaxf(like[0].f32[i], like[1].f32[i]) < likeness_most;
         rough[1].u8[i] = proves ? rough[0].u8[i] : 0;
     }
@@ -156,6 +160,7 @@ static enum orl_result contradict(const struct orl_log *log,
         result = orl_bridge_clean_mask(log, &rough[1], &no_specks, proof);
     orl_image_finish(&consensus);
     orl_image_finish(&nearest);
+    orl_image_finish(&points);
     for (int k = 0; k < 2; k++) {
         orl_image_finish(&like[k]);
         orl_image_finish(&rough[k]);
@@ -264,7 +269,7 @@ struct finder {
     const struct orl_scene *scene;
     const struct orl_progress *progress;
     struct orl_renderer *renderer;
-    struct orl_render_params nearest, consensus;
+    struct orl_render_params nearest, consensus, points;
     struct orl_image *masks; // by photograph
     double *shares;
     struct other *others; // owned: room for all photographs
@@ -317,6 +322,11 @@ static enum orl_result find_of(const struct finder *f, size_t photo, const bool 
         result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->consensus, f->skip,
                                   &pictures.consensus, &pictures.covered);
     if (result == ORL_OK) {
+        orl_image_finish(&covered);
+        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->points, f->skip,
+                                  &pictures.points, &covered);
+    }
+    if (result == ORL_OK) {
         pictures.photo = shot.picture;
         result = orl_occluder_mask(f->log, &pictures, &f->masks[photo], &f->shares[photo]);
     }
@@ -324,6 +334,7 @@ static enum orl_result find_of(const struct finder *f, size_t photo, const bool 
     orl_image_finish(&pictures.covered);
     orl_image_finish(&pictures.nearest);
     orl_image_finish(&pictures.consensus);
+    orl_image_finish(&pictures.points);
     orl_heldout_finish(&shot);
     return result;
 }
@@ -367,10 +378,12 @@ static enum orl_result set_params(struct finder *f)
 {
     static const char *const consensus[] = {"paint=gather", "combine=sigma", "weight=equal",
                                             "sampling=bilinear"};
-    const struct orl_method *method = orl_method_find(f->log, "oriel");
-    if (!method)
+    const struct orl_method *oriel = orl_method_find(f->log, "oriel");
+    const struct orl_method *points = orl_method_find(f->log, "points");
+    if (!oriel || !points)
         return ORL_ERR_NOT_FOUND;
-    f->nearest = method->params;
+    f->points = points->params;
+    f->nearest = oriel->params;
     f->nearest.occluders = ORL_OCCLUDERS_KEEP;
     f->consensus = f->nearest;
     return orl_render_params_assign(f->log, &f->consensus, consensus, ORL_COUNT(consensus));

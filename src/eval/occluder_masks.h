@@ -13,17 +13,19 @@ enum { ORL_OCCLUDERS_SIDE = 384 };
 
 // A photograph, and renderings of its view without it.
 struct orl_occluder_pictures {
-    struct orl_image photo;     // U8 x3, as are the next two, of the same size
+    struct orl_image photo;     // U8 x3, as are the next three, of the same size
     struct orl_image consensus; // the mean of all that see a place
     struct orl_image nearest;   // the best photographs of each pixel
+    struct orl_image points;    // the points' own colours
     struct orl_image covered;   // F32 x1: 1 where there is a surface
 };
 // The occluders of the photograph: regions in which it differs by much from the consensus, in square
 // roots of light, if on a hundredth of the picture and half of the region's surfaces it differs from
-// the nearest photographs, too, and has the structure of neither. Errors of geometry show in the
-// consensus alone, the nearest photographs may show another part of the same occluder, and a surface
-// in another light keeps its structure. *mask: U8 x1, 255 there, else 0; owned by the caller.
-// *share: of the picture; 0: there are none, and *mask is empty.
+// the nearest photographs and from the points, too, and has the structure of neither rendering of
+// photographs. Errors of geometry show in the consensus alone, the nearest photographs may show
+// another part of the same occluder, a surface in another light keeps its structure, and points of a
+// surface that this photograph alone shows have its colours. *mask: U8 x1, 255 there, else 0; owned
+// by the caller. *share: of the picture; 0: there are none, and *mask is empty.
 enum orl_result orl_occluder_mask(const struct orl_log *log,
                                   const struct orl_occluder_pictures *pictures,
                                   struct orl_image *mask, double *share) ORL_CHECK_RESULT;

@@ -121,6 +121,7 @@ row() { # NAME
     fi
     if [ -n "$held_out" ]; then
         cp "$scene/scene.json" "$ws/scene.json"
+        [ -d "$scene/occluders" ] && share "$scene/occluders" "$ws/occluders"
         cp "$ws/fused.ply" "$ws/points.ply"
         if "$oriel" eval "$ws" --method airieau --set fill=depth --json "$ws/eval.json" >/dev/null 2>"$ws/eval.log"; then
             psnr=$(number psnr_db "$ws/eval.json")

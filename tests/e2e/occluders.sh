@@ -4,8 +4,8 @@
 . "$2/tests/e2e/prepare_lib"
 paint=$(dirname "$oriel")/tests/paint_rectangle
 [ -x "$paint" ] || { echo "skipped: paint_rectangle was not built"; exit 77; }
-monument 288x192 9
-"$paint" "$work/p/0005.jpg" "$work/p/0005.jpg" 110 45 70 80 250 || fail "nothing was painted"
+monument 384x256 9
+"$paint" "$work/p/0005.jpg" "$work/p/0005.jpg" 150 60 90 110 250 || fail "nothing was painted"
 
 prepare() {
     run 0 prepare "$work/p" --out "$work/s" --quality draft --test-list 0004.jpg "$@"
@@ -59,7 +59,7 @@ prepare --resume
 
 # A photograph without it: the mask goes.
 rm -r "$work/p" "$work/p-truth"
-monument 288x192 9
+monument 384x256 9
 prepare --resume
 says "occluders: 0 photographs show some"
 [ -e "$work/s/occluders" ] && fail "the mask stays"

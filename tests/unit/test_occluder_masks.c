@@ -28,8 +28,8 @@ static void fill(struct orl_image *image, const struct part *part, uint8_t value
 static struct orl_occluder_pictures make_pictures(void)
 {
     struct orl_occluder_pictures p;
-    struct orl_image *grey[] = {&p.photo, &p.consensus, &p.nearest};
-    for (int k = 0; k < 3; k++) {
+    struct orl_image *grey[] = {&p.photo, &p.consensus, &p.nearest, &p.points};
+    for (int k = 0; k < 4; k++) {
         assert_int_equal(orl_image_init(NULL, grey[k], WIDTH, HEIGHT, 3, ORL_PIXEL_U8), ORL_OK);
         memset(grey[k]->u8, 160, orl_image_bytes(grey[k]));
     }
@@ -44,6 +44,7 @@ static void finish(struct orl_occluder_pictures *p)
     orl_image_finish(&p->photo);
     orl_image_finish(&p->consensus);
     orl_image_finish(&p->nearest);
+    orl_image_finish(&p->points);
     orl_image_finish(&p->covered);
 }
 
@@ -123,6 +124,17 @@ static void what_neighbours_show_too_is_no_occluder(void **state)
     assert_float_equal(share_alone(&p), 0, 0);
 }
 
+// A wall that this photograph alone shows from the front: its points are known, though others show
+// something else there.
+static void what_its_points_show_too_is_no_occluder(void **state)
+{
+    (void)state;
+    struct orl_occluder_pictures p = make_pictures();
+    fill(&p.photo, &branch, 20);
+    fill(&p.points, &branch, 40);
+    assert_float_equal(share_alone(&p), 0, 0);
+}
+
 // Stripes, as bricks.
 static void add_stripes(struct orl_image *image, const struct part *part, uint8_t dark,
                         uint8_t bright)
@@ -180,6 +192,7 @@ int main(void)
         cmocka_unit_test(an_occluder_goes_on_where_depth_is_guessed),
         cmocka_unit_test(guesses_alone_prove_nothing),
         cmocka_unit_test(what_neighbours_show_too_is_no_occluder),
+        cmocka_unit_test(what_its_points_show_too_is_no_occluder),
         cmocka_unit_test(a_surface_in_the_shade_is_no_occluder),
         cmocka_unit_test(small_and_faint_differences_are_none),
         cmocka_unit_test(another_light_is_no_occluder),
