@@ -61,7 +61,7 @@ static enum orl_result differ(const struct orl_log *log, const struct orl_image 
     for (int k = 0; result == ORL_OK && k < 2; k++) {
         result = orl_image_init(log, &sides[k], photo->width, photo->height, 4, ORL_PIXEL_F32);
         for (size_t i = 0; result == ORL_OK && i < count; i++) {
-            float *p = &sides[k].f32[4 * i];
+            float *p = sides[k].f32 + 4 * i;
             p[3] = (pictures->covered.f32[i] > 0) == (k == 1);
             for (size_t c = 0; c < 3; c++)
                 p[c] = p[3] * (roots.of[rendering->u8[3 * i + c]] - roots.of[photo->u8[3 * i + c]]);
@@ -70,7 +70,7 @@ static enum orl_result differ(const struct orl_log *log, const struct orl_image 
             result = orl_bridge_blur(log, &sides[k], BLUR_TAPS, blur_px, &blurred[k]);
     }
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        const float *p = &blurred[pictures->covered.f32[i] > 0].f32[4 * i];
+        const float *p = blurred[pictures->covered.f32[i] > 0].f32 + 4 * i;
         for (size_t c = 0; c < 3; c++)
             difference->f32[3 * i + c] = p[c] / p[3];
     }
@@ -103,15 +103,15 @@ static enum orl_result correlate(const struct orl_log *log, const struct orl_ima
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         float a = brightness(&roots, &photo->u8[3 * i]);
         float b = brightness(&roots, &rendering->u8[3 * i]);
-        memcpy(&first.f32[2 * i], (const float[]){a, b}, 2 * sizeof a);
-        memcpy(&second.f32[3 * i], (const float[]){a * a, b * b, a * b}, 3 * sizeof a);
+        memcpy(first.f32 + 2 * i, (const float[]){a, b}, 2 * sizeof a);
+        memcpy(second.f32 + 3 * i, (const float[]){a * a, b * b, a * b}, 3 * sizeof a);
     }
     if (result == ORL_OK)
         result = orl_bridge_blur(log, &first, LIKENESS_TAPS, likeness_px, &means[0]);
     if (result == ORL_OK)
         result = orl_bridge_blur(log, &second, LIKENESS_TAPS, likeness_px, &means[1]);
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        const float *m = &means[0].f32[2 * i], *squares = &means[1].f32[3 * i];
+        const float *m = means[0].f32 + 2 * i, *squares = means[1].f32 + 3 * i;
         float a = fmaxf(squares[0] - m[0] * m[0], 0), b = fmaxf(squares[1] - m[1] * m[1], 0);
         likeness->f32[i] = (squares[2] - m[0] * m[1]) / sqrtf((a + noise) * (b + noise));
     }
@@ -148,9 +148,9 @@ static enum orl_result contradict(const struct orl_log *log,
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         bool surface = pictures->covered.f32[i] > 0;
         float least = surface ? surface_difference : guess_difference;
-        rough[0].u8[i] = length_of(&consensus.f32[3 * i]) > least ? 255 : 0;
-        bool proves = surface && length_of(&nearest.f32[3 * i]) > least &&
-                      length_of(&points.f32[3 * i]) > least &&
+        rough[0].u8[i] = length_of(consensus.f32 + 3 * i) > least ? 255 : 0;
+        bool proves = surface && length_of(nearest.f32 + 3 * i) > least &&
+                      length_of(points.f32 + 3 * i) > least &&
                       fmaxf(like[0].f32[i], like[1].f32[i]) < likeness_most;
         rough[1].u8[i] = proves ? rough[0].u8[i] : 0;
     }
