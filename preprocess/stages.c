@@ -105,6 +105,17 @@ static bool is_mesh_wanted(const struct orl_job *job)
     return job->params->mesh != ORL_MESH_NONE;
 }
 
+static bool are_occluders_wanted(const struct orl_job *job)
+{
+    return job->params->occluders != ORL_OCCLUDER_SEARCH_NONE;
+}
+
+// What is made of renderings afterwards depends on whether there are any.
+static json_t *occluders_settings(const struct orl_job *job)
+{
+    return json_pack("{s:b}", "find", are_occluders_wanted(job));
+}
+
 static bool is_adapt_wanted(const struct orl_job *job)
 {
     return job->params->adapt != ORL_ADAPT_NONE;
@@ -158,8 +169,9 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 3, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
                           "photographs", true, NULL},
-    [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_EXPOSE, no_settings, orl_stage_occluders,
-                             {"occluders"}, "occluded", true, NULL},
+    [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_EXPOSE, occluders_settings,
+                             orl_stage_occluders, {"occluders"}, "occluded", true,
+                             are_occluders_wanted},
     [ORL_STAGE_ADAPT] = {"adapt", 1, ORL_STAGE_OCCLUDERS, orl_stage_adapt_settings, orl_stage_adapt,
                          {0}, "render", true, is_adapt_wanted},
 };

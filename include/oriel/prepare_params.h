@@ -47,6 +47,9 @@ enum orl_prepare_mesh { ORL_MESH_NONE, ORL_MESH_POISSON, ORL_MESH_DELAUNAY };
 // a tenth of the time of prepare. long: among all methods and options.
 enum orl_adapt_effort { ORL_ADAPT_NONE, ORL_ADAPT_SHORT, ORL_ADAPT_LONG };
 
+// Whether to look for what single photographs show before the scene.
+enum orl_occluder_search { ORL_OCCLUDER_SEARCH_NONE, ORL_OCCLUDER_SEARCH_FIND };
+
 // Which photographs that are named as doubtful are left out. blurred: much less sharp than most.
 // duplicates: same picture as another, re-encoded, or of a camera that stood still.
 enum orl_leave_out {
@@ -65,6 +68,7 @@ extern const char *const orl_densifier_names[];
 extern const char *const orl_keep_names[];
 extern const char *const orl_prepare_mesh_names[];
 extern const char *const orl_adapt_effort_names[];
+extern const char *const orl_occluder_search_names[];
 extern const char *const orl_leave_out_names[];
 extern const char *const orl_until_names[];
 
@@ -86,6 +90,7 @@ struct orl_prepare_params {
     enum orl_densifier densifier;
     enum orl_keep keep;
     enum orl_prepare_mesh mesh;
+    enum orl_occluder_search occluders;
     enum orl_adapt_effort adapt;
     double adapt_budget_s;     // of the long one, but for the comparison of methods
     int radius_neighbours;     // a splat's radius is the distance to its k-th neighbour, [1, 64],

@@ -57,6 +57,15 @@ run 2 eval "$work/s"
 says "0005.jpg.png"
 prepare --resume
 
+# Where they are not looked for, the masks go.
+prepare --resume --occluders none
+[ -e "$work/s/occluders" ] && fail "--occluders none leaves masks"
+grep -q '"occluded": 0\.' "$work/s/scene.json" && fail "--occluders none leaves shares"
+grep -q "occluders: done already\|occluders  *started" "$work/err" && fail "--occluders none looks for them"
+run 0 info "$work/s" --check
+prepare --resume
+[ "$(md5sum <"$mask")" = "$sum" ] || fail "the mask that is wanted again is another"
+
 # A photograph without it: the mask goes.
 rm -r "$work/p" "$work/p-truth"
 monument 384x256 9
