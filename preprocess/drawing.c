@@ -6,11 +6,8 @@ void orl_drawing_begin(const struct orl_job *job, const struct orl_scene *scene,
                        const char *without, struct orl_drawing *drawing)
 {
     const struct orl_gpu_params params = {.shader_dir = job->params->shader_dir};
-    size_t train = 0;
     *drawing = (struct orl_drawing){0};
-    for (size_t i = 0; i < scene->photo_count; i++)
-        train += !scene->photos[i].test;
-    if (train < ORL_JUDGES_TRAIN_MIN)
+    if (scene->photo_count - orl_heldout_count(scene) < ORL_JUDGES_TRAIN_MIN)
         orl_logf(job->log, ORL_LOG_INFO, "%s: needs %d training photographs", without,
                  ORL_JUDGES_TRAIN_MIN);
     else if (job->params->gpu)

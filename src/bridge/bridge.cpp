@@ -220,6 +220,24 @@ enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_im
     });
 }
 
+enum orl_result orl_bridge_label(const struct orl_log *log, const struct orl_image *mask,
+                                 struct orl_image *labels, size_t *count)
+{
+    *labels = orl_image();
+    *count = 0;
+    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
+    enum orl_result result =
+        orl_image_init(log, labels, mask->width, mask->height, 1, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    return run(log, mask, labels, [&](const cv::Mat &source, cv::Mat &target) {
+        cv::Mat numbers;
+        int pieces = cv::connectedComponents(source != 0, numbers, 4, CV_32S);
+        numbers.convertTo(target, CV_32F);
+        *count = static_cast<size_t>(pieces - 1); // but for what is outside
+    });
+}
+
 enum orl_result orl_bridge_distance(const struct orl_log *log, const struct orl_image *mask,
                                     struct orl_image *distance)
 {

@@ -47,6 +47,11 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
 enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_image *mask,
                                   int *largest, int *at_border) ORL_CHECK_RESULT;
 
+// Numbers the connected pieces of a mask (U8 x1, 0: outside) from 1 on; neighbours share a side.
+// labels: F32 x1, 0: outside. *count: of pieces.
+enum orl_result orl_bridge_label(const struct orl_log *log, const struct orl_image *mask,
+                                 struct orl_image *labels, size_t *count) ORL_CHECK_RESULT;
+
 // Signed distance from each pixel's centre to the subject's outline, pixels: positive outside. A
 // picture without subject, or of it alone, has its longer side everywhere. Mask: U8 x1, 0: outside;
 // result: F32 x1.

@@ -43,10 +43,8 @@ static enum orl_result copy_photos(const struct orl_log *log, const struct orl_s
 enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
                                 size_t most, int divide, struct orl_judges *judges)
 {
-    size_t train = 0, at = 0;
+    size_t train = scene->photo_count - orl_heldout_count(scene), at = 0;
     memset(judges, 0, sizeof *judges);
-    for (size_t i = 0; i < scene->photo_count; i++)
-        train += !scene->photos[i].test;
     if (train < ORL_JUDGES_TRAIN_MIN)
         return orl_fail(log, ORL_ERR_DATA,
                         "%s: %zu photographs that are not held out; three are needed, to render "

@@ -170,51 +170,34 @@ static enum orl_result contradict(const struct orl_log *log,
 
 // --- which regions count ---
 
-// Visits the connected region of mask pixels around `start` and unmarks it. Its pixels are listed
-// in `region`; returns their number.
-static size_t take_region(struct orl_image *mask, size_t start, size_t *region)
-{
-    size_t count = 1, width = (size_t)mask->width, height = (size_t)mask->height;
-    region[0] = start;
-    mask->u8[start] = 0;
-    for (size_t i = 0; i < count; i++) {
-        size_t at = region[i], x = at % width, y = at / width;
-        const size_t around[4] = {x > 0 ? at - 1 : at, x + 1 < width ? at + 1 : at,
-                                  y > 0 ? at - width : at, y + 1 < height ? at + width : at};
-        for (int k = 0; k < 4; k++)
-            if (mask->u8[around[k]]) {
-                mask->u8[around[k]] = 0;
-                region[count++] = around[k];
-            }
-    }
-    return count;
-}
+// Pixels of a region.
+struct tally {
+    size_t surface, proven;
+};
 
 // Keeps the regions of `mask` that have enough proof. covered: the surfaces, F32 x1.
 static enum orl_result keep_proven(const struct orl_log *log, const struct orl_image *covered,
                                    const struct orl_image *proof, struct orl_image *mask)
 {
-    size_t count = (size_t)mask->width * (size_t)mask->height;
-    size_t *region = orl_array(log, count, sizeof *region);
-    uint8_t *kept = orl_array(log, count, sizeof *kept);
-    for (size_t i = 0; region && kept && i < count; i++) {
-        if (!mask->u8[i])
-            continue;
-        size_t size = take_region(mask, i, region), surface = 0, proven = 0;
-        for (size_t k = 0; k < size; k++) {
-            surface += covered->f32[region[k]] > 0;
-            proven += proof->u8[region[k]] > 0;
-        }
-        bool keep = (double)proven >= fmax(proven_least * (double)count,
-                                           proven_share * (double)surface);
-        for (size_t k = 0; keep && k < size; k++)
-            kept[region[k]] = 255;
+    size_t count = (size_t)mask->width * (size_t)mask->height, regions;
+    struct orl_image labels;
+    enum orl_result result = orl_bridge_label(log, mask, &labels, &regions);
+    struct tally *of = result == ORL_OK ? orl_array(log, regions + 1, sizeof *of) : NULL;
+    if (result == ORL_OK && !of)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        struct tally *region = &of[(size_t)labels.f32[i]];
+        region->surface += covered->f32[i] > 0;
+        region->proven += proof->u8[i] > 0;
     }
-    if (region && kept)
-        memcpy(mask->u8, kept, count);
-    enum orl_result result = region && kept ? ORL_OK : ORL_ERR_MEMORY;
-    free(region);
-    free(kept);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        const struct tally *region = &of[(size_t)labels.f32[i]];
+        if ((double)region->proven < fmax(proven_least * (double)count,
+                                          proven_share * (double)region->surface))
+            mask->u8[i] = 0;
+    }
+    free(of);
+    orl_image_finish(&labels);
     return result;
 }
 
@@ -395,9 +378,7 @@ enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *
 {
     struct finder f = {.log = orl_gpu_log(gpu), .scene = scene, .progress = progress,
                        .masks = masks, .shares = shares};
-    size_t train = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        train += !scene->photos[i].test;
+    size_t train = scene->photo_count - orl_heldout_count(scene);
     if (train < ORL_JUDGES_TRAIN_MIN)
         return orl_fail(f.log, ORL_ERR_DATA, "%s: %zu photographs that are not held out; three are "
                         "needed, to compare one with two others", scene->dir, train);

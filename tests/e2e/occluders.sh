@@ -4,7 +4,7 @@
 . "$2/tests/e2e/prepare_lib"
 paint=$(dirname "$oriel")/tests/paint_rectangle
 [ -x "$paint" ] || { echo "skipped: paint_rectangle was not built"; exit 77; }
-monument 384x256 9
+monument 384x256 12
 "$paint" "$work/p/0005.jpg" "$work/p/0005.jpg" 150 60 90 110 250 || fail "nothing was painted"
 
 prepare() {
@@ -68,7 +68,7 @@ prepare --resume
 
 # A photograph without it: the mask goes.
 rm -r "$work/p" "$work/p-truth"
-monument 384x256 9
+monument 384x256 12
 prepare --resume
 says "occluders: 0 photographs show some"
 [ -e "$work/s/occluders" ] && fail "the mask stays"
