@@ -2,7 +2,7 @@
 
 #include <stdatomic.h>
 
-#include "preprocess/calibrate/threads.h"
+#include "preprocess/job/threads.h"
 
 enum { COUNT = ORL_PREEMPT_FEATURES };
 

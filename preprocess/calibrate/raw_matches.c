@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "preprocess/calibrate/threads.h"
+#include "preprocess/job/threads.h"
 
 struct found {
     uint32_t (*matches)[2]; // owned; indices of features

@@ -1,4 +1,4 @@
-#include "preprocess/calibrate/threads.h"
+#include "preprocess/job/threads.h"
 
 #include <pthread.h>
 #include <unistd.h>
