@@ -1,10 +1,8 @@
 #include "preprocess/cloud/fuse.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -12,7 +10,6 @@
 #include "core/memory.h"
 #include "preprocess/cloud/fuse_memory.h"
 #include "preprocess/cloud/fuse_photographs.h"
-#include "preprocess/job/colmap_run.h"
 #include "scene/point_stream.h"
 
 enum { CLUSTER_MOST = 400 }; // photographs that are fused together when nobody asks for more
@@ -94,52 +91,16 @@ static char *cluster_path(const struct orl_job *job, const struct orl_clusters *
     return orl_fuse_cluster_path(job->log, job->dir, clusters->size, cluster, extension);
 }
 
-static enum orl_result link_to(const struct orl_job *job, const char *name, const char *workspace)
-{
-    char *target = orl_job_path(job, "%s", name);
-    char *path = orl_path_join(job->log, workspace, name);
-    enum orl_result result = target && path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && symlink(target, path) != 0)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s; clusters need a drive that has symbolic "
-                          "links (see --fuse-cluster)", path, strerror(errno));
-    free(target);
-    free(path);
-    return result;
-}
-
-// A workspace for COLMAP with the scene's files, that fuses only the photographs `names`.
-static enum orl_result make_workspace(const struct orl_job *job, const char *workspace,
-                                      const struct orl_names *names)
-{
-    static const char *const links[] = {"images", "sparse", "stereo/depth_maps",
-                                        "stereo/normal_maps"};
-    char *stereo = orl_path_join(job->log, workspace, "stereo");
-    char *list = orl_path_join(job->log, workspace, "stereo/fusion.cfg");
-    enum orl_result result = stereo && list ? orl_dir_remove(job->log, workspace) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_dir_make(job->log, stereo);
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(links); i++)
-        result = link_to(job, links[i], workspace);
-    if (result == ORL_OK)
-        result = orl_job_write_list(job, list, names);
-    free(stereo);
-    free(list);
-    return result;
-}
-
-// Fuses a cluster in the folder `work` and writes the points that belong to it.
-static enum orl_result fuse_in(struct orl_job *job, const struct orl_clusters *clusters,
-                               int cluster, const char *work, const char *out)
+// Fuses a cluster and writes the points that belong to it.
+static enum orl_result fuse_members(struct orl_job *job, const struct orl_clusters *clusters,
+                                    int cluster, const char *out)
 {
     struct orl_names names = {0};
     struct orl_points points = {0};
     enum orl_result result = orl_clusters_photographs(job->log, clusters, cluster, &names);
     if (result == ORL_OK)
-        result = make_workspace(job, work, &names);
-    if (result == ORL_OK)
-        result = orl_fuse_photographs(job, clusters->model, &(struct orl_fusion){
-            .workspace = work, .temp = work, .names = &names, .done = cluster,
-            .total = (double)clusters->count}, &points);
+        result = orl_fuse_photographs(job, clusters->model, &names, cluster,
+                                      (double)clusters->count, &points);
     if (result == ORL_OK)
         result = orl_clusters_keep_own(job->log, clusters, cluster, &points);
     if (result == ORL_OK)
@@ -153,12 +114,10 @@ static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_cluste
                                     int cluster)
 {
     char *out = cluster_path(job, clusters, cluster, ".ply");
-    char *work = cluster_path(job, clusters, cluster, ".tmp");
     char *lock = cluster_path(job, clusters, cluster, ".lock");
     int fd = -1;
     bool taken = false;
-    enum orl_result result = out && work && lock ? orl_file_make_folder(job->log, out)
-                                                 : ORL_ERR_MEMORY;
+    enum orl_result result = out && lock ? orl_file_make_folder(job->log, out) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_lock(job->log, lock, &fd, &taken);
     if (result == ORL_OK && taken)
@@ -167,12 +126,9 @@ static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_cluste
     if (result == ORL_OK && orl_path_is_file(out))
         orl_logf(job->log, ORL_LOG_INFO, "fuse: cluster %d is there already", cluster + 1);
     else if (result == ORL_OK)
-        result = fuse_in(job, clusters, cluster, work, out);
-    if (result == ORL_OK)
-        result = orl_dir_remove(job->log, work);
+        result = fuse_members(job, clusters, cluster, out);
     orl_unlock(&fd);
     free(out);
-    free(work);
     free(lock);
     return result;
 }
@@ -227,27 +183,16 @@ static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clust
     return result;
 }
 
-// All photographs at once, in the scene itself.
+// All photographs at once.
 static enum orl_result fuse_all(struct orl_job *job, const struct orl_colmap_model *model,
-                                const struct orl_names *train, const char *path, uint64_t *count,
-                                json_t *record)
+                                const struct orl_names *train, const char *path, uint64_t *count)
 {
     struct orl_points points = {0};
-    char *temp = orl_job_path(job, ".oriel/fuse.tmp");
-    struct orl_fusion fusion = {.workspace = job->dir, .temp = temp, .names = train, .total = 1};
-    enum orl_result result = temp ? orl_job_fresh_dir(job, ".oriel/fuse.tmp") : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_fuse_photographs(job, model, &fusion, &points);
-    if (result == ORL_OK)
-        result = orl_job_remove(job, ".oriel/fuse.tmp");
+    enum orl_result result = orl_fuse_photographs(job, model, train, 0, 1, &points);
     if (result == ORL_OK)
         result = write_cloud(job, path, &points);
     *count = points.count;
-    json_object_set_new(record, "cache_gib", json_real(fusion.cache_gib));
-    json_object_set_new(record, "points_of_three", json_integer((json_int_t)fusion.of_three));
-    json_object_set_new(record, "strays", json_integer((json_int_t)fusion.strays));
     orl_points_finish(&points);
-    free(temp);
     return result;
 }
 
@@ -274,9 +219,7 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     struct orl_clusters clusters = {0};
     const struct orl_colmap_model *model = NULL;
     char *path = orl_job_path(job, ".oriel/fused.ply");
-    enum orl_result result = path ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_sparse(job, &model);
+    enum orl_result result = path ? orl_job_sparse(job, &model) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_job_train_names(job, &train);
     if (result == ORL_OK)
@@ -284,14 +227,14 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     if (result == ORL_OK && clusters.count > 1)
         result = fuse_clusters(job, &clusters, path, &points);
     else if (result == ORL_OK)
-        result = fuse_all(job, model, &train, path, &points, record);
+        result = fuse_all(job, model, &train, path, &points);
     if (result == ORL_OK)
         result = orl_job_remove(job, "stereo/fused");
     if (result == ORL_OK) {
         json_object_set_new(record, "clusters", json_integer((json_int_t)clusters.count));
         if (clusters.count > 1)
             json_object_set_new(record, "cluster_size", json_integer((json_int_t)clusters.size));
-        json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
+        json_object_set_new(record, "tool", json_string("built-in fusion"));
         json_object_set_new(record, "points", json_integer((json_int_t)points));
         orl_progress_report(job->progress, "fuse", 1, 1, NULL);
     }
@@ -308,9 +251,7 @@ static enum orl_result fuse_one(struct orl_job *job, const struct orl_fuse_param
     const struct orl_colmap_model *model = NULL;
     struct orl_clusters clusters = {0};
     struct orl_names train = {0};
-    enum orl_result result = orl_job_find_colmap(job);
-    if (result == ORL_OK)
-        result = orl_job_sparse(job, &model);
+    enum orl_result result = orl_job_sparse(job, &model);
     if (result == ORL_OK)
         result = orl_job_train_names(job, &train);
     if (result == ORL_OK)

@@ -1,12 +1,11 @@
-// Fuse: one point cloud from all depth maps, made by COLMAP. Many photographs are fused in
-// clusters that overlap.
+// Fuse: one point cloud from all depth maps. Many photographs are fused in clusters that overlap.
 #ifndef ORL_PREPROCESS_FUSE_H
 #define ORL_PREPROCESS_FUSE_H
 
 #include "preprocess/cloud/clusters.h"
 #include "preprocess/job/job.h"
 
-enum { ORL_FUSE_VERSION = 7 }; // raised when the points of the same maps change
+enum { ORL_FUSE_VERSION = 8 }; // raised when the points of the same maps change
 
 json_t *orl_stage_fuse_settings(const struct orl_job *job);
 // Writes .oriel/fused.ply. Clouds of clusters that oriel fuse has made are used.

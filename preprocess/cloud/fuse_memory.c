@@ -5,16 +5,12 @@
 #include "core/memory.h"
 #include "preprocess/cloud/clusters.h"
 
-// Bytes of a pixel in COLMAP's maps: depth, normal and colour, as its program stores them. Beside
-// the maps: COLMAP's marks of fused pixels, and the points with the lists of their photographs.
-enum { MAP_BYTES = 24, OTHER_BYTES = 10 };
-static const double PROGRAM_BYTES = 32 << 20; // COLMAP without photographs
-// COLMAP follows each pixel of a photograph into the 50 that overlap it most
-// (StereoFusion.check_num_images). With the maps of fewer in its cache it reads them again and again:
-// a fusion of seconds takes minutes (docs/measured/matching.md).
-enum { WORKING_SET = 51 };
-// Clusters smaller than these lose too many points: a surface needs three photographs to agree, and
-// those at the border of a cluster have fewer neighbours.
+// Bytes for each pixel: its depth, the pixels that are found, and the points, which are about a third
+// of the pixels.
+enum { PIXEL_BYTES = 4 + 5 + 11 };
+static const double PROGRAM_BYTES = 32 << 20; // the program, and the photographs that are read
+// Clusters smaller than these lose too many points: photographs at the border of a cluster have fewer
+// neighbours to agree with.
 enum { LEAST = 8 };
 
 static double pixels_of(const struct orl_colmap_model *model, const struct orl_colmap_image *image)
@@ -43,12 +39,7 @@ double orl_fuse_budget(size_t max_ram_bytes)
 
 double orl_fuse_bytes(double pixels)
 {
-    return orl_fuse_bytes_beside_maps(pixels) + MAP_BYTES * pixels;
-}
-
-double orl_fuse_bytes_beside_maps(double pixels)
-{
-    return PROGRAM_BYTES + OTHER_BYTES * pixels;
+    return PROGRAM_BYTES + PIXEL_BYTES * pixels;
 }
 
 static int compare_falling(const void *left, const void *right)
@@ -58,14 +49,12 @@ static int compare_falling(const void *left, const void *right)
 }
 
 // Bytes of a fusion of `count` photographs at most, when they are the largest.
-static double least_bytes(const double *falling, size_t count)
+static double most_bytes(const double *falling, size_t count)
 {
-    double pixels = 0, maps = 0;
-    for (size_t i = 0; i < count; i++) {
+    double pixels = 0;
+    for (size_t i = 0; i < count; i++)
         pixels += falling[i];
-        maps += i < WORKING_SET ? falling[i] : 0;
-    }
-    return orl_fuse_bytes_beside_maps(pixels) + MAP_BYTES * maps;
+    return orl_fuse_bytes(pixels);
 }
 
 enum orl_result orl_fuse_plan_size(const struct orl_log *log, const struct orl_colmap_model *model,
@@ -83,7 +72,7 @@ enum orl_result orl_fuse_plan_size(const struct orl_log *log, const struct orl_c
     size_t members = count < most ? count : most;
     for (size_t clusters = 2; members > LEAST; clusters++) {
         size_t fused = members < count ? members + orl_clusters_helpers(members) : count;
-        if (least_bytes(falling, fused < count ? fused : count) <= budget)
+        if (most_bytes(falling, fused < count ? fused : count) <= budget)
             break;
         size_t fewer = (count + clusters - 1) / clusters;
         members = fewer < members ? fewer : members;

@@ -1,4 +1,4 @@
-// Memory of fusion: what it takes, and the clusters and COLMAP's cache that keep to a budget.
+// Memory of fusion: what it takes, and the clusters that keep to a budget.
 #ifndef ORL_PREPROCESS_FUSE_MEMORY_H
 #define ORL_PREPROCESS_FUSE_MEMORY_H
 
@@ -11,14 +11,12 @@ double orl_fuse_budget(size_t max_ram_bytes);
 // The sum of the pixels of some photographs of the model.
 double orl_fuse_pixels(const struct orl_colmap_model *model, const struct orl_names *names);
 
-// Bytes of a fusion of so many pixels: with all maps in memory, and all but the maps.
+// Bytes of a fusion of so many pixels.
 double orl_fuse_bytes(double pixels);
-double orl_fuse_bytes_beside_maps(double pixels);
 
 // The photographs of a cluster at most: as many as fit in the budget, in bytes, with the photographs
-// that help the cluster and with maps for COLMAP to go on without reading them again and again
-// (docs/how/pipeline.md#clusters). At most `most`. Clusters are as equal as can be, so a little more or less
-// memory gives the same clusters. *size is at least 1.
+// that help the cluster (docs/how/pipeline.md#clusters). At most `most`. Clusters are as equal as can
+// be, so a little more or less memory gives the same clusters. *size is at least 1.
 enum orl_result orl_fuse_plan_size(const struct orl_log *log, const struct orl_colmap_model *model,
                                    const struct orl_names *names, size_t most, double budget,
                                    size_t *size) ORL_CHECK_RESULT;

@@ -1,162 +1,261 @@
 #include "preprocess/cloud/fuse_photographs.h"
 
-#include <math.h>
-#include <stdio.h>
+#include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "io/picture.h"
+#include "preprocess/cloud/fuse_maps.h"
 #include "preprocess/cloud/fuse_memory.h"
-#include "preprocess/job/colmap_run.h"
-#include "scene/point_radii.h"
-#include "scene/thin.h"
+#include "preprocess/job/threads.h"
 
-// Fraction of depth by which a photograph must see past a point to call the point an outlier.
-static const float STRAY_TOLERANCE = 0.01f;
+// A photograph of the fusion.
+struct source {
+    const struct orl_colmap_image *image; // of the model
+    uint32_t *others;                     // the sources that it is compared with; owned
+    size_t other_count;
+    struct orl_fused_pixels found;
+    size_t first; // of its points
+};
 
-static const double GIB = 1 << 30, CACHE_LEAST_GIB = 1.0 / 256;
+struct fusion {
+    const struct orl_job *job;
+    const struct orl_colmap_model *model;
+    struct source *sources;     // owned
+    struct orl_depth_map *maps; // owned; of each source
+    size_t count;
+    struct orl_points *points;
+    double done, total;
+    // Of the threads that run a step.
+    enum orl_result (*step)(struct fusion *f, size_t source);
+    double step_done;  // parts of this fusion's work that are finished
+    atomic_size_t next;
+    atomic_int result; // the first enum orl_result that is not ORL_OK
+};
 
-// Size of COLMAP's cache of maps in GiB; 0 when all maps fit. With a cache the points are the same;
-// maps are read again and again.
-static double plan_cache(const struct orl_job *job, const struct orl_colmap_model *model,
-                         const struct orl_names *names)
+// --- what is compared with what ---
+
+struct overlap {
+    uint32_t source, shared;
+};
+
+static int compare_overlaps(const void *left, const void *right)
 {
-    double budget = orl_fuse_budget(job->params->max_ram_bytes) / GIB;
-    double pixels = orl_fuse_pixels(model, names), all = orl_fuse_bytes(pixels) / GIB;
-    double other = orl_fuse_bytes_beside_maps(pixels) / GIB;
-    if (all <= budget)
-        return 0;
-    double cache = fmax(budget - other, CACHE_LEAST_GIB);
-    orl_logf(job->log, ORL_LOG_INFO,
-             "fuse: all maps take %.0f MiB and %.0f may be used; reading them through a cache of "
-             "%.0f MiB, which is slower", 1024 * all, 1024 * budget, 1024 * cache);
-    if (cache + other > budget)
-        orl_logf(job->log, ORL_LOG_WARNING, "fuse: %.0f MiB are not enough for %.1f megapixels; it "
-                 "takes about %.0f MiB; --fuse-cluster fuses fewer photographs at a time",
-                 1024 * budget, 1e-6 * pixels, 1024 * (cache + other));
-    return cache;
+    const struct overlap *a = left, *b = right;
+    return a->shared != b->shared ? (a->shared < b->shared ? 1 : -1)
+                                  : (a->source > b->source) - (a->source < b->source);
 }
 
-static enum orl_result fuse_args(struct orl_job *job, const char *workspace, const char *out,
-                                 int min_pixels, double cache_gib, struct orl_colmap_args *args)
+// Counts the sparse points that a source shares with each other one. `seen`: a byte for each sparse
+// point.
+static void count_shared(const struct fusion *f, size_t own, uint8_t *seen,
+                         struct overlap *overlaps)
 {
-    orl_colmap_arg(args, "--workspace_path", "%s", workspace);
-    orl_colmap_arg(args, "--output_path", "%s", out);
-    orl_colmap_arg(args, "--input_type", "geometric");
-    orl_colmap_arg(args, "--StereoFusion.min_num_pixels", "%d", min_pixels);
-    // With several threads the points depend on thread timing. Fusion is fast enough with one.
-    orl_colmap_arg(args, "--StereoFusion.num_threads", "1");
-    if (job->params->masks_dir) {
-        char *masks = orl_job_path(job, "masks");
-        if (!masks)
-            return ORL_ERR_MEMORY;
-        orl_colmap_arg(args, "--StereoFusion.mask_path", "%s", masks);
-        free(masks);
+    const struct orl_colmap_image *image = f->sources[own].image;
+    memset(seen, 0, f->model->point_count);
+    for (size_t k = 0; k < image->point_count; k++)
+        seen[image->points[k]] = 1;
+    for (size_t i = 0; i < f->count; i++) {
+        overlaps[i] = (struct overlap){(uint32_t)i, 0};
+        const struct orl_colmap_image *other = f->sources[i].image;
+        for (size_t k = 0; i != own && k < other->point_count; k++)
+            overlaps[i].shared += seen[other->points[k]];
     }
-    orl_colmap_arg(args, "--StereoFusion.use_cache", "%d", cache_gib > 0);
-    if (cache_gib > 0)
-        orl_colmap_arg(args, "--StereoFusion.cache_size", "%.4f", cache_gib);
-    return ORL_OK;
 }
 
-// Reads the cloud that COLMAP fused and, for each point, how many photographs agree on it.
-static enum orl_result read_cloud(const struct orl_job *job, const char *path,
-                                  struct orl_points *points)
+static enum orl_result find_others(struct fusion *f)
 {
-    enum orl_result result = orl_points_read(job->log, path, points);
-    char *lists = result == ORL_OK ? orl_format(job->log, "%s.vis", path) : NULL;
-    if (result == ORL_OK)
-        result = lists ? orl_colmap_visibility_read(job->log, lists, points->count,
-                                                    points->photographs)
-                       : ORL_ERR_MEMORY;
-    free(lists);
-    return result;
-}
-
-// Runs COLMAP's fusion for points that at least `min_pixels` photographs agree on. `done` is the
-// part of this fusion's work that is finished already.
-static enum orl_result fuse_cloud(struct orl_job *job, const struct orl_fusion *fusion,
-                                  int min_pixels, double done, struct orl_points *points)
-{
-    struct orl_colmap_args args = {0};
-    char *out = orl_format(job->log, "%s/%d.ply", fusion->temp, min_pixels);
-    enum orl_result result = out ? fuse_args(job, fusion->workspace, out, min_pixels,
-                                             fusion->cache_gib, &args)
-                                 : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_colmap(job, &(struct orl_colmap_run){
-            .command = "stereo_fusion", .step = "fuse", .done = fusion->done + done,
-            .share = 0.5, .total = fusion->total},
-            &args);
-    if (result == ORL_OK)
-        result = read_cloud(job, out, points);
-    free(out);
-    return result;
-}
-
-// Removes outliers: points in front of the surfaces that photographs see, mostly bright sky around
-// a dark statue. Reads each depth map once.
-static enum orl_result drop_strays(const struct orl_job *job, const struct orl_colmap_model *model,
-                                   const struct orl_names *names, struct orl_points *points)
-{
-    uint16_t *seen_past = orl_array(job->log, points->count, sizeof *seen_past);
-    enum orl_result result = seen_past ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
-        const struct orl_colmap_image *image = &model->images[i];
-        struct orl_image depth = {0};
-        if (!orl_names_contain(names, image->name))
-            continue;
-        char *path = orl_job_path(job, "stereo/depth_maps/%s.geometric.bin", image->name);
-        if (!path)
+    const struct orl_log *log = f->job->log;
+    uint8_t *seen = orl_array(log, f->model->point_count + 1, 1);
+    struct overlap *overlaps = orl_array(log, f->count, sizeof *overlaps);
+    enum orl_result result = seen && overlaps ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < f->count; i++) {
+        struct source *s = &f->sources[i];
+        count_shared(f, i, seen, overlaps);
+        qsort(overlaps, f->count, sizeof *overlaps, compare_overlaps);
+        s->others = orl_array(log, ORL_FUSE_OTHERS, sizeof *s->others);
+        if (!s->others)
             result = ORL_ERR_MEMORY;
-        else if (orl_path_is_file(path)) // COLMAP writes no map without sources
-            result = orl_colmap_map_read(job->log, path, &depth);
-        if (depth.f32) {
-            struct orl_view view = orl_colmap_image_view(model, image);
-            orl_points_count_seen_past(points, &view, &depth, STRAY_TOLERANCE, seen_past);
-        }
-        orl_image_finish(&depth);
-        free(path);
+        // Those without a point in common may still show the same surface where points are few.
+        for (size_t k = 0; result == ORL_OK && k < f->count && s->other_count < ORL_FUSE_OTHERS; k++)
+            if (overlaps[k].source != i)
+                s->others[s->other_count++] = overlaps[k].source;
     }
-    if (result == ORL_OK)
-        orl_points_drop_seen_past(seen_past, points);
-    free(seen_past);
+    free(seen);
+    free(overlaps);
     return result;
 }
 
-// Points that three photographs agree on are good. Points that only two agree on are noisier and
-// hold more outliers, but they are the only points of places that few photographs see
-// (docs/how/pipeline.md).
-static enum orl_result join_clouds(const struct orl_job *job, struct orl_points *pairs,
-                                   struct orl_points *points)
+// --- steps, each for one source ---
+
+// Takes the depth where the photograph's mask is 0: the subject is not there.
+static enum orl_result apply_mask(const struct orl_job *job, const char *name,
+                                  struct orl_image *depth)
 {
-    const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
-    const struct orl_thin_params thin = {ORL_THIN_DEFAULTS};
-    if (pairs->count == 0)
-        return orl_fail(job->log, ORL_ERR_DATA,
+    struct orl_image mask = {0};
+    char *path = orl_job_path(job, "masks/%s.png", name);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(path))
+        result = orl_picture_read(job->log, path, 1, &mask);
+    for (int y = 0; mask.u8 && y < depth->height; y++)
+        for (int x = 0; x < depth->width; x++) {
+            size_t u = (size_t)x * (size_t)mask.width / (size_t)depth->width;
+            size_t v = (size_t)y * (size_t)mask.height / (size_t)depth->height;
+            if (mask.u8[v * (size_t)mask.width + u] == 0)
+                depth->f32[(size_t)y * (size_t)depth->width + (size_t)x] = 0;
+        }
+    orl_image_finish(&mask);
+    free(path);
+    return result;
+}
+
+static enum orl_result read_depth(struct fusion *f, size_t i)
+{
+    const struct orl_job *job = f->job;
+    const struct orl_colmap_image *image = f->sources[i].image;
+    struct orl_depth_map *map = &f->maps[i];
+    char *path = orl_job_path(job, "stereo/depth_maps/%s.geometric.bin", image->name);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_path_is_file(path)) // COLMAP writes no map without sources
+        result = orl_colmap_map_read(job->log, path, &map->depth);
+    if (result == ORL_OK && map->depth.f32) {
+        map->view = orl_colmap_image_view(f->model, image);
+        map->view.camera = orl_camera_resized(&map->view.camera, map->depth.width,
+                                              map->depth.height);
+        if (job->params->masks_dir)
+            result = apply_mask(job, image->name, &map->depth);
+    }
+    free(path);
+    return result;
+}
+
+static enum orl_result find_pixels(struct fusion *f, size_t i)
+{
+    const struct source *s = &f->sources[i];
+    if (!f->maps[i].depth.f32)
+        return ORL_OK;
+    return orl_fuse_pixels_find(f->job->log, f->maps, i, s->others, s->other_count,
+                                &f->sources[i].found);
+}
+
+static enum orl_result write_pixels(struct fusion *f, size_t i)
+{
+    const struct orl_job *job = f->job;
+    const struct source *s = &f->sources[i];
+    const struct orl_image *depth = &f->maps[i].depth;
+    struct orl_image normal = {0}, whole = {0}, picture = {0};
+    if (s->found.count == 0)
+        return ORL_OK;
+    char *normals = orl_job_path(job, "stereo/normal_maps/%s.geometric.bin", s->image->name);
+    char *photo = orl_job_path(job, "images/%s", s->image->name);
+    enum orl_result result = normals && photo ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_colmap_map_read(job->log, normals, &normal);
+    if (result == ORL_OK && (normal.width != depth->width || normal.height != depth->height ||
+                             normal.channels != 3))
+        result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: not of the size of the depth map, %dx%d",
+                          normals, depth->width, depth->height);
+    if (result == ORL_OK)
+        result = orl_picture_read(job->log, photo, 3, &whole);
+    if (result == ORL_OK)
+        result = orl_bridge_resize(job->log, &whole, depth->width, depth->height, &picture);
+    if (result == ORL_OK)
+        orl_fuse_pixels_write(&f->maps[i], &s->found, &normal, &picture, s->first, f->points);
+    orl_image_finish(&normal);
+    orl_image_finish(&whole);
+    orl_image_finish(&picture);
+    free(normals);
+    free(photo);
+    return result;
+}
+
+static void run_sources(void *priv, bool caller)
+{
+    struct fusion *f = priv;
+    size_t i;
+    while (atomic_load(&f->result) == ORL_OK && (i = atomic_fetch_add(&f->next, 1)) < f->count) {
+        int none = ORL_OK;
+        enum orl_result result = f->step(f, i);
+        if (result == ORL_OK && orl_progress_cancelled(f->job->progress))
+            result = ORL_ERR_CANCELLED;
+        atomic_compare_exchange_strong(&f->result, &none, (int)result);
+        if (caller)
+            orl_progress_report(f->job->progress, "fuse", f->done + f->step_done +
+                                (double)i / (double)f->count / 3, f->total, NULL);
+    }
+}
+
+// Runs a third of the work, one source after the other or side by side: the points are the same.
+static enum orl_result run(struct fusion *f, enum orl_result (*step)(struct fusion *f, size_t i))
+{
+    f->step = step;
+    atomic_store(&f->next, 0);
+    orl_threads_run(f->count, run_sources, f);
+    f->step_done += 1 / 3.0;
+    return (enum orl_result)atomic_load(&f->result);
+}
+
+// --- all of it ---
+
+static enum orl_result make_points(struct fusion *f, struct orl_points *points)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        f->sources[i].first = count;
+        count += f->sources[i].found.count;
+    }
+    if (count == 0)
+        return orl_fail(f->job->log, ORL_ERR_DATA,
                         "no surface was found that two photographs agree on: take photographs "
                         "closer together, of textured and matt surfaces, or with --quality high");
-    enum orl_result result = orl_points_set_radii(job->log, NULL, &radii, NULL, 0, pairs);
-    return result == ORL_OK ? orl_points_add_thin(job->log, &thin, pairs, points) : result;
+    f->points = points;
+    return orl_points_init(f->job->log, points, count);
+}
+
+static void warn_of_memory(const struct orl_job *job, const struct orl_colmap_model *model,
+                           const struct orl_names *names)
+{
+    double needs = orl_fuse_bytes(orl_fuse_pixels(model, names));
+    double budget = orl_fuse_budget(job->params->max_ram_bytes);
+    if (needs > budget)
+        orl_logf(job->log, ORL_LOG_WARNING, "fuse: %.0f MiB are not enough for %zu photographs; it "
+                 "takes about %.0f MiB; --fuse-cluster fuses fewer photographs at a time",
+                 budget / (1 << 20), names->count, needs / (1 << 20));
 }
 
 enum orl_result orl_fuse_photographs(struct orl_job *job, const struct orl_colmap_model *model,
-                                     struct orl_fusion *fusion, struct orl_points *points)
+                                     const struct orl_names *names, double done, double total,
+                                     struct orl_points *points)
 {
-    struct orl_points pairs = {0};
+    struct fusion f = {.job = job, .model = model, .done = done, .total = total};
     *points = (struct orl_points){0};
-    fusion->cache_gib = plan_cache(job, model, fusion->names);
-    enum orl_result result = fuse_cloud(job, fusion, 2, 0, &pairs);
+    warn_of_memory(job, model, names);
+    f.sources = orl_array(job->log, model->image_count + 1, sizeof *f.sources);
+    f.maps = orl_array(job->log, model->image_count + 1, sizeof *f.maps);
+    enum orl_result result = f.sources && f.maps ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
+        if (orl_names_contain(names, model->images[i].name))
+            f.sources[f.count++].image = &model->images[i];
     if (result == ORL_OK)
-        result = fuse_cloud(job, fusion, 3, 0.5, points);
-    fusion->of_three = points->count;
+        result = find_others(&f);
     if (result == ORL_OK)
-        result = join_clouds(job, &pairs, points);
-    size_t joined = points->count;
+        result = run(&f, read_depth);
     if (result == ORL_OK)
-        result = drop_strays(job, model, fusion->names, points);
-    fusion->strays = joined - points->count;
-    orl_points_finish(&pairs);
+        result = run(&f, find_pixels);
+    if (result == ORL_OK)
+        result = make_points(&f, points);
+    if (result == ORL_OK)
+        result = run(&f, write_pixels);
+    for (size_t i = 0; i < f.count; i++) {
+        free(f.sources[i].others);
+        orl_fused_pixels_finish(&f.sources[i].found);
+        orl_image_finish(&f.maps[i].depth);
+    }
+    free(f.sources);
+    free(f.maps);
     if (result != ORL_OK)
         orl_points_finish(points);
     return result;

@@ -41,7 +41,7 @@ static enum orl_result find_viewers(struct orl_job *job, struct viewers *viewers
 
 static struct orl_radii_params radii_params(const struct orl_prepare_params *asked)
 {
-    struct orl_radii_params params = {ORL_RADII_DEFAULTS};
+    struct orl_radii_params params = {ORL_RADII_DEFAULTS, .dense = true};
     if (asked->radius_neighbours)
         params.neighbours = asked->radius_neighbours;
     if (asked->radius_overlap > 0)

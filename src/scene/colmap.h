@@ -83,9 +83,4 @@ enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
 enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path,
                                      const struct orl_image *image) ORL_CHECK_RESULT;
 
-// Reads from how many photographs each of the `count` points of a fused cloud was fused (255: at
-// least 255). COLMAP writes this file beside the cloud (fused.ply.vis).
-enum orl_result orl_colmap_visibility_read(const struct orl_log *log, const char *path,
-                                           size_t count, uint8_t *photographs) ORL_CHECK_RESULT;
-
 #endif

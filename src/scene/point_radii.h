@@ -9,6 +9,7 @@
 struct orl_radii_params {
     int neighbours;   // number of neighbours k, [1, 64]
     float overlap;    // radius = overlap * distance to the k-th neighbour, (0, 8]
+    bool dense;       // points lie as close as pixels of photographs (scene/radius_limits.h)
 };
 #define ORL_RADII_DEFAULTS .neighbours = 6, .overlap = 1.0f
 

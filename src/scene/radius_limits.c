@@ -12,7 +12,10 @@ enum { SIZE_SHIFT = 12, SIZE_COUNT = 1 << (31 - SIZE_SHIFT) };
 struct orl_radii_limits orl_radii_limits_of(const struct orl_radii_params *params)
 {
     const struct orl_radii_params usual = {ORL_RADII_DEFAULTS};
+    const struct orl_radii_limits dense = {ORL_RADII_LIMITS_DENSE};
     struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
+    if (params->dense)
+        limits = dense;
     float scale = params->overlap / usual.overlap *
                   sqrtf((float)params->neighbours / (float)usual.neighbours);
     limits.largest_px *= scale;
@@ -80,10 +83,10 @@ static double median(const struct orl_disc_sizes *sizes)
 struct orl_radii_limits orl_radii_limits_widened(const struct orl_radii_limits *limits,
                                                  const struct orl_disc_sizes *sizes)
 {
-    static const double typical = 2; // a disc this many times the median is nothing unusual
-    double wider = fmax(1, typical * median(sizes) / (double)limits->largest_px);
+    double wider = fmax(1, (double)limits->typical * median(sizes) / (double)limits->largest_px);
     return (struct orl_radii_limits){.largest_px = (float)(wider * (double)limits->largest_px),
-                                     .isolated_px = (float)(wider * (double)limits->isolated_px)};
+                                     .isolated_px = (float)(wider * (double)limits->isolated_px),
+                                     .typical = limits->typical};
 }
 
 void orl_points_apply_limits(const struct orl_radii_limits *limits, const float *scales,

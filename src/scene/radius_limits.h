@@ -7,12 +7,17 @@
 struct orl_radii_limits {
     float largest_px;  // radii are limited to this size in the photograph that sees most detail
     float isolated_px; // points with larger radii are isolated and dropped
+    float typical;     // both grow where a disc so many times the median would exceed largest_px;
+                       // 0: they do not
 };
-#define ORL_RADII_LIMITS_DEFAULTS .largest_px = 9.0f, .isolated_px = 16.0f
+#define ORL_RADII_LIMITS_DEFAULTS .largest_px = 9.0f, .isolated_px = 16.0f, .typical = 2.0f
+// Of a cloud with a point for nearly each pixel. Between such points pull-push closes what is open,
+// and larger discs reach past outlines.
+#define ORL_RADII_LIMITS_DENSE .largest_px = 2.0f, .isolated_px = 16.0f, .typical = 0.0f
 
-// The limits for radii of these parameters: in proportion to the radii that they give on a surface,
-// where the distance to the k-th neighbour grows as the square root of k. So the same points are
-// isolated, whatever the overlap.
+// The limits for radii of these parameters, those of a dense cloud or the defaults: in proportion to
+// the radii that they give on a surface, where the distance to the k-th neighbour grows as the square
+// root of k. So the same points are isolated, whatever the overlap.
 struct orl_radii_limits orl_radii_limits_of(const struct orl_radii_params *params);
 
 // Limits radii that the sampling of a fused cloud cannot explain. Stereo gives some

@@ -33,8 +33,8 @@ for size in "${sizes[@]}"; do
     prepare "$size" --resume --fuse-cluster "$size" "$@" 2>/dev/null # fused.ply is missing
     count=$(figure "$size" fuse clusters)
     echo "--fuse-cluster $size: $count clusters, $(figure "$size" radii points) points," \
-        "fused in $(figure "$size" fuse cpu_s) s of CPU, COLMAP's peak" \
-        "$(figure "$size" fuse child_peak_rss_mib) MiB"
+        "fused in $(figure "$size" fuse cpu_s) s of CPU, at most" \
+        "$(figure "$size" fuse peak_rss_mib) MiB"
     "$oriel" eval "$work/$size" --quiet | tail -n 1
     [ "$count" -gt 1 ] || continue
     rm "$work/$size/scene.json" # so that the clusters are made once more, and stay

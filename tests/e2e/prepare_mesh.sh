@@ -39,7 +39,7 @@ says "poisson_mesher failed"
 # New points make a new mesh.
 rm "$scene/points.ply" "$scene/.oriel/fused.ply"
 DOUBLE_SHIFT=5 prepare 0 --resume --mesh delaunay
-ran | grep -q 'stereo_fusion delaunay_mesher' || fail "the mesh of other points stays: $(ran)"
+ran | grep -q 'patch_match_stereo delaunay_mesher' || fail "the mesh of other points stays: $(ran)"
 # No longer wanted.
 prepare 0 --resume
 [ ! -e "$scene/mesh.ply" ] || fail "the mesh stays although it is not asked for"

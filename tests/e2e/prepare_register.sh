@@ -74,16 +74,19 @@ says "a distortion that no lens has"
 prints "5 used, 5 registered"
 grep -q " 0$" "$work/bent/.oriel/calibrate/model/cameras.txt" || fail "the bent camera was kept"
 
-# Masks reach COLMAP under its names, and are undistorted as photographs are.
+# Masks reach COLMAP under its names, are undistorted as photographs are, and leave points out.
 photos "$work/m" 0.png 1.png.png
 run 0 prepare "$work/p" --out "$work/masked" --masks "$work/m"
 says "3 of 5 photographs have no mask"
 [ "$(ls "$work/masked/masks" | tr '\n' ' ')" = "0.png.png 1.png.png " ] ||
     fail "masks are $(ls "$work/masked/masks")"
 [ "$(grep -c '"mask": true' "$work/masked/scene.json")" = 2 ] || fail "scene.json lists other masks"
-for option in ImageReader StereoFusion; do
-    grep -q -e "--$option.mask_path" "$work/masked/logs/colmap.log" || fail "no mask for $option"
-done
+grep -q -e "--ImageReader.mask_path" "$work/masked/logs/colmap.log" || fail "no mask for COLMAP"
+points() {
+    run 0 info "$1"
+    awk '$1 == "points" { print $2 }' "$work/out"
+}
+masked=$(points "$work/masked")
 
 # A scene whose mask is missing does not open; without masks the folder goes.
 cp -r "$work/masked" "$work/lacking"
@@ -92,6 +95,8 @@ run 2 info "$work/lacking"
 says "masks/1.png.png: this mask is missing"
 run 0 prepare "$work/p" --out "$work/masked" --resume
 [ -e "$work/masked/masks" ] && fail "masks of another job were kept"
+all=$(points "$work/masked")
+[ "$masked" -lt "$all" ] || fail "fusion has $masked points with masks, $all without"
 
 # A full disk, played by a limit on the size of files that no cloud fits into.
 (

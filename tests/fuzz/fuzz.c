@@ -10,9 +10,8 @@
 
 const struct fuzz_target fuzz_targets[] = {
     {"colmap_binary", fuzz_colmap_binary}, {"colmap_text", fuzz_colmap_text},
-    {"depth_map", fuzz_depth_map},         {"visibility", fuzz_visibility},
+    {"depth_map", fuzz_depth_map},         {"manifest", fuzz_manifest},
     {"ply", fuzz_ply},                     {"lod", fuzz_lod},
-    {"manifest", fuzz_manifest},
     {"stages", fuzz_stages},               {"path_json", fuzz_path_json},
     {"path_text", fuzz_path_text},         {"exposures", fuzz_exposures},
     {"exif", fuzz_exif},                   {"jpeg", fuzz_jpeg},

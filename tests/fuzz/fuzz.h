@@ -39,7 +39,6 @@ struct orl_scene *fuzz_scene(void);
 void fuzz_colmap_binary(const uint8_t *data, size_t size);
 void fuzz_colmap_text(const uint8_t *data, size_t size);
 void fuzz_depth_map(const uint8_t *data, size_t size);
-void fuzz_visibility(const uint8_t *data, size_t size);
 void fuzz_ply(const uint8_t *data, size_t size);
 void fuzz_lod(const uint8_t *data, size_t size);
 void fuzz_manifest(const uint8_t *data, size_t size);

@@ -15,7 +15,6 @@
 #include "oriel/path.h"
 #include "scene/point_lod.h"
 #include "scene/radius_limits.h"
-#include "scene/thin.h"
 #include "scene/tuned_settings.h"
 
 static void use_model(const struct orl_colmap_model *model)
@@ -79,36 +78,18 @@ void fuzz_depth_map(const uint8_t *data, size_t size)
     orl_image_finish(&again);
 }
 
-void fuzz_visibility(const uint8_t *data, size_t size)
-{
-    uint8_t photographs[64];
-    size_t count = size ? data[0] % ORL_COUNT(photographs) : 0;
-    fuzz_save("fused.ply.vis", data + (size > 0), size - (size > 0));
-    (void)!orl_colmap_visibility_read(&fuzz_log, fuzz_path("fused.ply.vis"), count, photographs);
-}
-
 static void use_views(struct orl_points *points)
 {
     static const struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
     const struct orl_view view = {{64, 48, 50, 50, 32, 24},
                                   {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 5}}};
-    uint16_t *seen_past = calloc(points->count + 1, sizeof *seen_past);
-    struct orl_image depth;
-    fuzz_require(orl_image_init(&fuzz_log, &depth, 32, 24, 1, ORL_PIXEL_F32) == ORL_OK, "memory");
-    for (size_t i = 0; i < 32 * 24; i++)
-        depth.f32[i] = (float)i / 64;
-    orl_points_count_seen_past(points, &view, &depth, 0.01f, seen_past);
-    orl_points_drop_seen_past(seen_past, points);
     fuzz_require(orl_points_limit_radii(&fuzz_log, &limits, &view, 1, points) == ORL_OK,
                  "radii are limited");
-    orl_image_finish(&depth);
-    free(seen_past);
 }
 
 static void use_points(struct orl_points *points)
 {
     static const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
-    static const struct orl_thin_params thin = {ORL_THIN_DEFAULTS};
     const double viewers[1][3] = {{0, 0, -5}};
     struct orl_points other;
     for (size_t i = 0; i < points->count; i++)
@@ -123,8 +104,6 @@ static void use_points(struct orl_points *points)
                  "radii are found");
     for (size_t i = 0; i < points->count; i++)
         fuzz_require(points->radius[i] > 0 && isfinite(points->radius[i]), "radii are usable");
-    fuzz_require(orl_points_add_thin(&fuzz_log, &thin, &other, points) == ORL_OK,
-                 "clouds can be joined");
     orl_points_finish(&other);
     use_views(points);
 }

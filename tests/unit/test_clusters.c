@@ -130,10 +130,10 @@ static void make_hundred(struct orl_colmap_model *model, struct orl_names *names
     }
 }
 
-// 32 MiB of COLMAP's program, 24 bytes a pixel of 51 photographs in its cache, and 10 of each.
+// 32 MiB, and 20 bytes for each pixel.
 static void clusters_follow_the_memory(void **state)
 {
-    const double mpx = PIXELS, cache = (32 << 20) + 24 * 51 * mpx, other = 10 * mpx;
+    const double mpx = PIXELS, program = 32 << 20, photo = 20 * mpx;
     struct orl_colmap_model model;
     struct orl_names names;
     size_t size;
@@ -141,12 +141,12 @@ static void clusters_follow_the_memory(void **state)
     make_hundred(&model, &names);
     assert_true(orl_fuse_pixels(&model, &names) == COUNT * mpx);
     const struct { double bytes; size_t most, size; } expected[] = {
-        {cache + other * 100, 400, 100},     // all at once
-        {cache + other * 100, 60, 60},       // 60 and 30 helpers fit
-        {cache + other * 100 - 1, 400, 50},  // two clusters of 50 and 25 helpers
-        {cache + other * 75 - 1, 400, 34},   // three of 34 and 17
-        {cache + other * 51 - 1, 400, 25},   // four of 25 and 13
-        {other, 400, 8},                     // 13 of 8: no fewer than that
+        {program + photo * 100, 400, 100},     // all at once
+        {program + photo * 100, 60, 60},       // 60 and 30 helpers fit
+        {program + photo * 100 - 1, 400, 50},  // two clusters of 50 and 25 helpers
+        {program + photo * 75 - 1, 400, 34},   // three of 34 and 17
+        {program + photo * 51 - 1, 400, 25},   // four of 25 and 13
+        {photo, 400, 8},                       // 13 of 8: no fewer than that
     };
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         assert_int_equal(orl_fuse_plan_size(NULL, &model, &names, expected[i].most,

@@ -225,13 +225,13 @@ static void limits_follow_the_overlap(void **state)
     set_wall(&usual, &all);
     for (size_t n = 0; n < ORL_COUNT(overlaps); n++) {
         struct orl_points points;
-        set_wall(&(struct orl_radii_params){usual.neighbours, overlaps[n]}, &points);
+        set_wall(&(struct orl_radii_params){usual.neighbours, overlaps[n], false}, &points);
         for (size_t i = 0; i < points.count; i++)
             assert_float_equal(points.radius[i], overlaps[n] * all.radius[i], 0);
         orl_points_finish(&points);
     }
     struct orl_points points;
-    set_wall(&(struct orl_radii_params){24, 1}, &points); // five by five points of the grid
+    set_wall(&(struct orl_radii_params){24, 1, false}, &points); // five by five points of the grid
     assert_float_equal(points.radius[12 * 6 + 6], 2 * sqrt(2), 1e-5);
     orl_points_finish(&points);
     orl_points_finish(&all);
