@@ -27,6 +27,7 @@ static const double REACH = 15;        // in camera heights; farther ground cove
                                        // of pixels
 static const double QUIET = 0.005;     // contrast that carries no information, as a fraction of
                                        // white
+static const double NEAR_PLANE = 0.03; // greatest difference of depths on the plane, as a fraction
 // First steps of the search and its bounds: shifts as fractions of the height, tilts in radians.
 static const double SHIFT = 0.15, TILT = 0.02, SHIFT_MOST = 0.5, TILT_MOST = 0.08;
 // A move by one sigma costs COST of disagreement, so that the plane stays near the points.
@@ -37,7 +38,7 @@ struct shot {
     struct orl_view view;
     int width, height;
     float *detail; // luma minus its local mean, as a fraction of white
-    bool *open;    // pixels without stereo depth
+    float *depth;  // by stereo, scene units; 0: none
     double eye[3];
     int near[NEAR_MAX], near_count;
 };
@@ -78,17 +79,17 @@ static enum orl_result find_detail(const struct orl_log *log, const struct orl_i
     return result;
 }
 
-static enum orl_result find_open(const struct orl_log *log, const struct orl_image *depth,
-                                 struct shot *shot)
+static enum orl_result reduce_depth(const struct orl_log *log, const struct orl_image *depth,
+                                    struct shot *shot)
 {
-    shot->open = orl_array(log, (size_t)shot->width * (size_t)shot->height, sizeof *shot->open);
-    if (!shot->open)
+    shot->depth = orl_array(log, (size_t)shot->width * (size_t)shot->height, sizeof *shot->depth);
+    if (!shot->depth)
         return ORL_ERR_MEMORY;
     for (int y = 0; y < shot->height; y++)
         for (int x = 0; x < shot->width; x++) {
             int u = (2 * x + 1) * depth->width / (2 * shot->width);
             int v = (2 * y + 1) * depth->height / (2 * shot->height);
-            shot->open[y * shot->width + x] = !(depth->f32[v * depth->width + u] > 0);
+            shot->depth[y * shot->width + x] = fmaxf(depth->f32[v * depth->width + u], 0);
         }
     return ORL_OK;
 }
@@ -111,7 +112,7 @@ static enum orl_result read_shot(const struct orl_log *log, const struct orl_sce
     if (result == ORL_OK)
         result = orl_colmap_map_read(log, depth_path, &depth);
     if (result == ORL_OK)
-        result = find_open(log, &depth, shot);
+        result = reduce_depth(log, &depth, shot);
     shot->view.camera = orl_camera_resized(c, shot->width, shot->height);
     orl_pose_centre(&shot->view.cam_from_world, shot->eye);
     orl_image_finish(&picture);
@@ -205,7 +206,7 @@ static bool look_up(const struct shot *shot, const double at[3], double *detail)
     if (!(u >= 2 && v >= 2 && u < shot->width - 3 && v < shot->height - 3))
         return false;
     int x = (int)u, y = (int)v;
-    if (!shot->open[y * shot->width + x])
+    if (shot->depth[y * shot->width + x] > 0)
         return false;
     const float *d = &shot->detail[y * shot->width + x];
     u -= x;
@@ -218,6 +219,7 @@ static bool look_up(const struct shot *shot, const double at[3], double *detail)
 struct tally {
     double off, contrast;
     long samples;
+    long covered; // pixels whose stereo depth is that of the plane
 };
 
 // Compares one photograph's ground pixels without depth with what its neighbours show there.
@@ -233,7 +235,11 @@ static void compare(const struct search *s, const struct shot *shot,
         for (int x = step / 2; x < shot->width; x += step) {
             const double ray[3] = {(x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy, 1};
             double inverse = orl_dot3(down, ray), at[3];
-            if (!shot->open[y * shot->width + x] || inverse * REACH * ground->height < 1)
+            float depth = shot->depth[y * shot->width + x];
+            if (inverse * REACH * ground->height < 1)
+                continue;
+            tally->covered += fabs((double)depth * inverse - 1) < NEAR_PLANE;
+            if (depth > 0)
                 continue;
             orl_view_unproject(&shot->view, x + 0.5, y + 0.5, 1 / inverse, at);
             double here = (double)shot->detail[y * shot->width + x], there;
@@ -286,12 +292,19 @@ static bool improve(const struct search *s, double length, long samples_least, s
     return better;
 }
 
+// Refines the ground. A plane that photographs hardly show is none: points of an object alone may
+// fit one, too.
 static void search(const struct orl_log *log, const struct search *s, struct orl_ground *ground)
 {
     struct move best = {0};
     struct tally tally = {0};
     for (int i = 0; i < s->shot_count; i++)
         compare(s, &s->shots[i], s->found, &tally);
+    if (tally.samples + tally.covered < SAMPLES_LEAST) {
+        orl_logf(log, ORL_LOG_INFO,
+                 "ground: not known: photographs hardly show the plane that points tell");
+        ground->height = 0;
+    }
     if (tally.samples < SAMPLES_LEAST)
         return;
     // A plane with fewer samples is a different plane, which the photographs see less of.
@@ -324,7 +337,7 @@ enum orl_result orl_ground_refine(const struct orl_log *log, struct orl_scene *s
     }
     for (int i = 0; i < s->shot_count; i++) {
         free(s->shots[i].detail);
-        free(s->shots[i].open);
+        free(s->shots[i].depth);
     }
     free(s);
     return result;

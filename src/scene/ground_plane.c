@@ -75,6 +75,20 @@ static void take_photos(const struct orl_scene *scene, struct sample *s)
     }
 }
 
+// The area of a disc as the nearest photograph sees it. Points lie closer together at outlines than on
+// smooth surfaces, so that their number alone would not tell how much of a picture a plane fills.
+static double seen_size(const struct sample *s, const struct orl_points *points, size_t i)
+{
+    const float *p = points->position[i];
+    double nearest2 = INFINITY, radius = (double)points->radius[i];
+    for (int n = 0; n < s->photo_count; n++) {
+        const double *c = s->centres[n];
+        const double to[3] = {(double)p[0] - c[0], (double)p[1] - c[1], (double)p[2] - c[2]};
+        nearest2 = fmin(nearest2, orl_dot3(to, to));
+    }
+    return nearest2 > 0 ? radius * radius / nearest2 : 0;
+}
+
 static enum orl_result take_sample(const struct orl_log *log, const struct orl_scene *scene,
                                    struct sample *s)
 {
@@ -83,15 +97,22 @@ static enum orl_result take_sample(const struct orl_log *log, const struct orl_s
     s->normal = orl_array(log, POINTS_MAX, sizeof *s->normal);
     if (!s->position || !s->normal)
         return ORL_ERR_MEMORY;
-    size_t step = (points->count + POINTS_MAX - 1) / POINTS_MAX;
-    for (size_t i = 0; i < points->count; i += step, s->count++)
+    s->tolerance = TOLERANCE * scene->photo_distance;
+    take_photos(scene, s);
+    find_along(s);
+    double total = 0, passed = 0;
+    for (size_t i = 0; i < points->count; i++)
+        total += seen_size(s, points, i);
+    for (size_t i = 0; i < points->count && s->count < POINTS_MAX; i++) {
+        passed += seen_size(s, points, i);
+        if (passed * POINTS_MAX < (s->count + 0.5) * total)
+            continue;
         for (int k = 0; k < 3; k++) {
             s->position[s->count][k] = (double)points->position[i][k];
             s->normal[s->count][k] = (double)points->normal[i][k];
         }
-    s->tolerance = TOLERANCE * scene->photo_distance;
-    take_photos(scene, s);
-    find_along(s);
+        s->count++;
+    }
     return ORL_OK;
 }
 
