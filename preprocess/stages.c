@@ -167,7 +167,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                        NULL},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, mesh_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, is_mesh_wanted},
-    [ORL_STAGE_EXPOSE] = {"expose", 3, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
+    [ORL_STAGE_EXPOSE] = {"expose", 4, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
                           "photographs", true, NULL},
     [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_EXPOSE, occluders_settings,
                              orl_stage_occluders, {"occluders"}, "occluded", true,

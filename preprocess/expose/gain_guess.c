@@ -4,6 +4,8 @@
 #include <stdint.h>
 
 // A guess is used only when its error is less than this fraction of the error without a guess.
+// Exposures need only be better: a camera measured them, and a few photographs whose processing
+// differs tell little against that.
 static const double MUST_GAIN = 0.8;
 // The same for metering against the best other guess. It asks for more, because the light of a
 // rendering is not quite that of the photograph, and a camera set by hand does not follow it.
@@ -27,6 +29,11 @@ const char *orl_gain_guess_name(enum orl_gain_guess guess)
 static bool is_metered(enum orl_gain_guess guess)
 {
     return guess == ORL_GUESS_METER || guess == ORL_GUESS_METER_NEAR;
+}
+
+static bool is_exposed(enum orl_gain_guess guess)
+{
+    return guess == ORL_GUESS_EXPOSURE || guess == ORL_GUESS_BOTH;
 }
 
 // Weights nearby views, and views that share much of their content: automatic exposure and white
@@ -70,7 +77,7 @@ static void guess_one(enum orl_gain_guess guess, const struct known *known,
                       const struct orl_gain_view *view, size_t number, const double metering[2],
                       double gain[3])
 {
-    bool uses_ev = (guess == ORL_GUESS_EXPOSURE || guess == ORL_GUESS_BOTH) && view->known;
+    bool uses_ev = is_exposed(guess) && view->known;
     bool uses_others = is_metered(guess) || guess == ORL_GUESS_NEIGHBOURS ||
                        guess == ORL_GUESS_BOTH;
     double slope = is_metered(guess) ? metering[0] : 0, total = 0, sum[3] = {0};
@@ -112,15 +119,17 @@ static enum orl_gain_guess best_guess(const struct known *known)
     for (size_t i = 0; i < known->count; i++)
         all_known = all_known && known->aligned[i].known;
     enum orl_gain_guess best = ORL_GUESS_REFERENCE;
-    double limit = MUST_GAIN * error_of(best, known);
+    double reference = error_of(best, known), limit = reference;
     for (int g = ORL_GUESS_NEIGHBOURS; g <= ORL_GUESS_METER_NEAR; g++) {
-        if (!all_known && (g == ORL_GUESS_EXPOSURE || g == ORL_GUESS_BOTH))
+        enum orl_gain_guess guess = (enum orl_gain_guess)g;
+        bool exposed = is_exposed(guess), turns = is_metered(guess) && !is_metered(best);
+        if (exposed && !all_known)
             continue;
-        double error = error_of((enum orl_gain_guess)g, known);
-        bool turns = is_metered((enum orl_gain_guess)g) && !is_metered(best);
-        if (error < limit * (turns ? METERING_MUST_GAIN : 1)) {
+        double error = error_of(guess, known);
+        double most = exposed ? limit : fmin(limit, MUST_GAIN * reference);
+        if (error < most * (turns ? METERING_MUST_GAIN : 1)) {
             limit = error;
-            best = (enum orl_gain_guess)g;
+            best = guess;
         }
     }
     return best;

@@ -258,7 +258,7 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
         !is_visible(buffer, pixel, depth))
         return ORL_OK;
     // The patch covers at least the pixels by which calibration may be wrong.
-    double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 1.5);
+    double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 3.0);
     if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, &item))
         return ORL_OK;
     enum orl_result result = orl_grow(t->log, (void **)&t->items, &t->item_capacity,
