@@ -1,5 +1,5 @@
-// Writes the estimated background depth, as a negative value, where the proxy has none. It is the
-// depth known around the pixel, but no farther than the ground (the floor of Li's room box, its
+// Writes the estimated background depth, as a negative value, where the proxy has none. It continues
+// the surfaces around the pixel, but no farther than the ground (the floor of Li's room box, its
 // only reliable side). One invocation handles 2x2 pixels.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
@@ -28,7 +28,9 @@ void main()
     fill_finer(parent, finer);
     for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
         ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
-        if (finer[k].r > 0.0 && !(imageLoad(depth, at).r > 0.0))
-            imageStore(depth, at, vec4(-1.0 / max(finer[k].r / finer[k].a, on_ground(at))));
+        // Surfaces that recede would continue beyond infinity.
+        float inverse = max(finer[k].r / finer[k].a, 1.0 / (ORL_GUESS_FARTHEST * depth_scale));
+        if (finer[k].a > 0.0 && !(imageLoad(depth, at).r > 0.0))
+            imageStore(depth, at, vec4(-1.0 / max(inverse, on_ground(at))));
     }
 }

@@ -1,7 +1,8 @@
 // Writes the finest level of the pyramid of hole filling, at half the picture's size: the weighted
 // sum of the known values among 2x2 pixels. The defines choose the value:
-// SEED_DEPTH: inverse depth, weighted so steeply towards far surfaces that a hole takes the
-// farther side of its rim, the visible background, rather than a depth between the two sides.
+// SEED_DEPTH: inverse depth and its slope, weighted so steeply towards far surfaces that a hole
+// continues the farther side of its rim, the visible background, rather than what lies between the
+// two sides. Inverse depth is linear on a plane.
 // SEED_LEAST: light of pixels for which it is only a lower bound.
 // SEED_BRIGHTER: logarithm of light that is as bright as the lower bound that SEED_LEAST has spread
 // to this pixel, so that a clipped area does not become as dark as the wall beside it.
@@ -14,6 +15,7 @@
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 #ifdef SEED_DEPTH
 layout(r32f, binding = 0) readonly uniform image2D known;
+layout(rgba16f, binding = 2) readonly uniform image2D normals; // 0: unknown
 #else
 layout(rgba32f, binding = 0) readonly uniform image2D known; // blended pixels of shared/pixel.glsl
 #endif
@@ -32,13 +34,29 @@ vec3 least = vec3(0.0);
 layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
 #endif
 
+#ifdef SEED_DEPTH
+// A surface that is seen at a flatter angle, as a cosine, counts as if it faced the view: what its
+// slope would give grows without limit.
+const float FACING_LEAST = 0.1;
+
+// The depth's value for the centre of its block, `by` pixels away; see fill.glsl.
+vec4 seed_depth(float z, ivec2 at, vec2 by)
+{
+    vec3 normal = imageLoad(normals, at).xyz;
+    vec3 ray = vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0);
+    float facing = dot(normal, ray);
+    vec2 slope = normal.xy / (focal.xy * z * facing);
+    slope = abs(facing) > FACING_LEAST * length(ray) ? slope : vec2(0.0);
+    float weight = clamp(pow(z / depth_scale, 14.0), 1e-15, 1e15); // sums fit floats
+    return vec4(1.0 / z + dot(slope, by), 2.0 * slope, 1.0) * weight;
+}
+#endif
+
 vec4 seed(ivec2 at)
 {
     vec4 value = imageLoad(known, at); // 0 outside
 #ifdef SEED_DEPTH
-    float z = value.r;
-    float weight = clamp(pow(z / depth_scale, 14.0), 1e-15, 1e15); // sums fit floats
-    return z > 0.0 ? vec4(1.0 / z, 0.0, 0.0, 1.0) * weight : vec4(0.0);
+    return value.r > 0.0 ? seed_depth(value.r, at, 0.5 - vec2(at & 1)) : vec4(0.0);
 #elif defined(SEED_GUESSES)
     float weight = pixel_weight(value);
     return weight > 0.0 && imageLoad(trusted, at).z > 0.0 ? vec4(value.rgb / weight, 1.0)

@@ -40,10 +40,11 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
 }
 
 // One program from texture to texture, over the texture `covered`. per_invocation: pixels that one
-// invocation handles in each direction.
+// invocation handles in each direction. beside: read besides; NULL: nothing is.
 struct step {
     const char *file, *defines;
     int per_invocation;
+    const struct orl_tex *beside;
 };
 
 static void run(const struct frame *frame, struct step step, const struct orl_tex *first,
@@ -57,19 +58,19 @@ static void run(const struct frame *frame, struct step step, const struct orl_te
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, step.file, NULL, step.defines),
                              .params = &block, .params_size = sizeof block,
                              .images = {{first, 0, first_access}, {second, 0, second_access},
-                                        {frame->surface.depth, 0, GL_READ_ONLY}},
+                                        {step.beside, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
     orl_pixel_groups((width + n - 1) / n, (height + n - 1) / n, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
-// Spreads the known values of level 0 over all of it (pull-push, Gortler 1996). `how`: a define of
-// fill_push.comp, or NULL.
-static void spread(const struct frame *frame, const char *how)
+// Spreads the known values of level 0 over all of it (pull-push, Gortler 1996). Defines of
+// fill_pull.comp and fill_push.comp, or NULL.
+static void spread(const struct frame *frame, const char *pull_how, const char *push_how)
 {
-    static const struct step pull = {"fill/fill_pull.comp", NULL, 1};
-    const struct step push = {"fill/fill_push.comp", how, 2};
+    const struct step pull = {"fill/fill_pull.comp", pull_how, 1, NULL};
+    const struct step push = {"fill/fill_push.comp", push_how, 2, NULL};
     struct orl_tex *const *level = frame->fill->level;
     for (int i = 1; i < frame->fill->levels; i++)
         run(frame, pull, level[i - 1], GL_READ_ONLY, level[i], GL_WRITE_ONLY, level[i]);
@@ -78,16 +79,16 @@ static void spread(const struct frame *frame, const char *how)
 }
 
 static void seed(const struct frame *frame, const char *what, const struct orl_tex *from,
-                 GLenum access)
+                 const struct orl_tex *beside, GLenum access)
 {
     struct orl_tex *finest = frame->fill->level[0];
-    run(frame, (struct step){"fill/fill_seed.comp", what, 1}, from, GL_READ_ONLY, finest, access,
-        finest);
+    run(frame, (struct step){"fill/fill_seed.comp", what, 1, beside}, from, GL_READ_ONLY, finest,
+        access, finest);
 }
 
 void orl_fill_depth(const struct frame *frame)
 {
-    static const struct step apply = {"fill/fill_depth.comp", NULL, 2};
+    static const struct step apply = {"fill/fill_depth.comp", NULL, 2, NULL};
     struct image_block *block = &frame->fill->block;
     struct orl_tex *depth = frame->surface.depth;
     double distance = frame->scene->photo_distance;
@@ -95,8 +96,8 @@ void orl_fill_depth(const struct frame *frame)
     orl_set_focal(&frame->view->camera, block->focal);
     orl_frame_ground(frame, block->ground);
     orl_pass_begin(frame->gpu, "fill");
-    seed(frame, "SEED_DEPTH", depth, GL_WRITE_ONLY);
-    spread(frame, "FAR");
+    seed(frame, "SEED_DEPTH", depth, frame->surface.normal, GL_WRITE_ONLY);
+    spread(frame, "FAR", "FAR");
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
     orl_pass_end(frame->gpu);
 }
@@ -104,20 +105,20 @@ void orl_fill_depth(const struct frame *frame)
 // Pixels that clip in every photograph take the brightness of the sufficiently bright light around.
 static void lift(const struct frame *frame)
 {
-    static const struct step apply = {"fill/fill_lift.comp", NULL, 2};
-    seed(frame, "SEED_LEAST", frame->picture, GL_WRITE_ONLY);
-    spread(frame, NULL);
-    seed(frame, "SEED_BRIGHTER", frame->picture, GL_READ_WRITE);
-    spread(frame, NULL);
+    static const struct step apply = {"fill/fill_lift.comp", NULL, 2, NULL};
+    seed(frame, "SEED_LEAST", frame->picture, NULL, GL_WRITE_ONLY);
+    spread(frame, NULL, NULL);
+    seed(frame, "SEED_BRIGHTER", frame->picture, NULL, GL_READ_WRITE);
+    spread(frame, NULL, NULL);
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->picture, GL_READ_WRITE,
         frame->picture);
 }
 
 void orl_fill_room(const struct frame *frame)
 {
-    static const struct step apply = {"fill/fill_room.comp", NULL, 2};
-    seed(frame, NULL, frame->room, GL_WRITE_ONLY);
-    spread(frame, NULL);
+    static const struct step apply = {"fill/fill_room.comp", NULL, 2, NULL};
+    seed(frame, NULL, frame->room, NULL, GL_WRITE_ONLY);
+    spread(frame, NULL, NULL);
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->room, GL_READ_WRITE,
         frame->room);
 }
@@ -129,6 +130,7 @@ void orl_fill_color(const struct frame *frame)
     if (frame->radiance)
         lift(frame);
     if (!frame->finishes)
-        seed(frame, surfaces ? "SEED_SURFACES" : NULL, frame->picture, GL_WRITE_ONLY);
-    spread(frame, frame->finishes && frame->params->surface_seeds < 1 ? "PARTLY" : NULL);
+        seed(frame, surfaces ? "SEED_SURFACES" : NULL, frame->picture, frame->surface.depth,
+             GL_WRITE_ONLY);
+    spread(frame, NULL, frame->finishes && frame->params->surface_seeds < 1 ? "PARTLY" : NULL);
 }

@@ -236,7 +236,7 @@ static enum orl_result draw(struct frame *frame, bool normals)
     int count = orl_reconstruction_count(frame), done = 0;
     enum orl_result result = ORL_OK;
     const struct orl_view *whole = frame->view;
-    frame->normals = normals || orl_progressive_underpaints(frame) ||
+    frame->normals = normals || orl_frame_guesses(frame) || orl_progressive_underpaints(frame) ||
                      (painter->reads_normals && painter->reads_normals(frame));
     for (; result == ORL_OK && done < count; done++) {
         struct orl_render_params params = *frame->params;
