@@ -125,8 +125,8 @@
         "How much surfaces count beside guessed places in the colours that fill what no " \
         "photograph paints. It is mostly background, not the surface before it.") \
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
-        "How many depths are tried where only a guessed depth is known. One at which " \
-        "photographs agree clearly better replaces the guess. With 0 none are tried.") \
+        "How many depths are tried where only a guessed depth is known, from the guess to " \
+        "infinity. The guess moves to where photographs do not see past it. With 0 it stays.") \
     NUMBER(own_place, 0, 0, 0.5, "share of the way to the next photograph", "paint=tiled", \
         ORL_NO_TRIES, \
         "How near a photograph's own place a view takes on that photograph, in full at the " \

@@ -1,6 +1,6 @@
-// Costs of the planes of each open cell: how much the photographs of its tile differ when they are
-// projected to a plane (plane sweep of Collins 1996), how many of them see past it, and how far it
-// is from the depth that was estimated from the surfaces around.
+// Costs of the planes of each open cell: how many photographs see past it, how much those of its
+// tile differ when they are projected to it (plane sweep of Collins 1996), and how far it is from
+// the depth that was estimated from the surfaces around.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/sample/srgb.glsl"
@@ -17,17 +17,16 @@ layout(std430, binding = 3) writeonly buffer plane_costs {
 };
 
 const int AT_ONCE = 4; // planes for which the parameters of a photograph are loaded once
-// Difference between photographs, in square roots of light, that costs 1, the most.
-const float DIFFER_MOST = 0.15;
+// Cost of photographs that differ, at most, and at which difference in square roots of light. It is
+// less than the cost of being seen past: photographs that show the sky or a black cloth agree at any
+// depth, and those that show different things at one depth do not say which depth is right.
+const float DIFFER_COST = 0.3, DIFFER_MOST = 0.15;
 // Cost of leaving the estimate by FAR planes or more, and by fewer in proportion.
-const float PRIOR = 0.4, FAR = 4.0;
-// Cost of a plane that is nearer than the estimate by one step or more. Photographs that show the
-// sky or a black cloth agree at any depth, so their agreement before the background proves nothing.
-const float NEARER = 1.0;
+const float PRIOR = 0.2, FAR = 4.0;
 // A cell with surfaces in more than this share of the (2 AROUND + 1)^2 cells around it is closed:
-// the surfaces around a small hole know its depth better than colours do.
+// the surfaces around a small hole know its depth better than photographs do.
 const int AROUND = 4;
-const float SURFACES_MOST = 0.4;
+const float SURFACES_MOST = 0.8;
 
 // Mean inverse depth of the estimates in a cell; 0: there are none, or surfaces all around.
 float open_estimate(ivec2 cell)
@@ -55,7 +54,6 @@ struct opinion {
     float squares; // of colours, times weight
     float weights; // squares of the weights
     float past;    // weight of the photographs that see a surface behind the point
-    float all;     // weight of all photographs that show the point's place
 };
 
 void ask(photo shot, bool listed, vec3 p, inout opinion o)
@@ -77,11 +75,10 @@ void ask(photo shot, bool listed, vec3 p, inout opinion o)
     o.squares += dot(color, color) * counts;
     o.weights += counts * counts;
     o.past += open * past;
-    o.all += weight;
 }
 
-// Between 0 and 1 if photographs agree, and 1 if fewer than two see the point, plus the share of
-// those that see past it.
+// The share of the photographs that see past the point, of those in which nothing hides it, plus
+// how much the others differ: most if fewer than two are left.
 float cost_of(opinion o)
 {
     float weight = max(o.sum.a, 1e-30);
@@ -90,7 +87,8 @@ float cost_of(opinion o)
     float variance = max(o.squares / weight - dot(mean, mean), 0.0) * voices /
                      max(voices - 1.0, 0.5);
     float differ = min(sqrt(variance) / DIFFER_MOST, 1.0);
-    return mix(1.0, differ, clamp(voices - 1.0, 0.0, 1.0)) + o.past / max(o.all, 1e-30);
+    return DIFFER_COST * mix(1.0, differ, clamp(voices - 1.0, 0.0, 1.0)) +
+           o.past / max(o.past + o.sum.a, 1e-30);
 }
 
 void main()
@@ -113,19 +111,18 @@ void main()
     for (int first = 0; first < planes; first += AT_ONCE) {
         opinion opinions[AT_ONCE];
         for (int n = 0; n < AT_ONCE; n++)
-            opinions[n] = opinion(vec4(0.0), 0.0, 0.0, 0.0, 0.0);
+            opinions[n] = opinion(vec4(0.0), 0.0, 0.0, 0.0);
         int c = 0, i = chosen[list];
         do { // the condition comes last: see tiled.comp
             photo shot = photo_at(max(i, 0));
             for (int n = 0; n < AT_ONCE; n++)
-                ask(shot, i >= 0, ray / plane_inverse(float(first + n)), opinions[n]);
+                ask(shot, i >= 0,
+                    ray / max(estimate * plane_share(float(first + n)), least_inverse),
+                    opinions[n]);
             c++;
             i = c < asked ? chosen[list + c] : -1;
         } while (i >= 0);
-        for (int n = 0; n < AT_ONCE && first + n < planes; n++) {
-            float off = float(first + n) - estimate / plane_step; // > 0: nearer than the estimate
-            costs[row + first + n] = cost_of(opinions[n]) + PRIOR * min(abs(off) / FAR, 1.0) +
-                                     NEARER * clamp(off, 0.0, 1.0);
-        }
+        for (int n = 0; n < AT_ONCE && first + n < planes; n++)
+            costs[row + first + n] = cost_of(opinions[n]) + PRIOR * min(float(first + n) / FAR, 1.0);
     }
 }

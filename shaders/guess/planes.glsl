@@ -1,6 +1,6 @@
 // The depths that are tried where the surface has none. The view is divided into cells, and each
-// open cell, which has estimated background depth alone, takes one of gather_block's `planes`.
-// Plane k is at the inverse depth k * plane_step; plane 0 is at infinity.
+// open cell, which has estimated background depth alone, takes one of gather_block's `planes`: plane
+// 0 is its estimate, the last one is at infinity, and inverse depth falls by equal steps.
 const int PLANES_MAX = 32; // of the option guess_depths
 
 const float CLOSED = -1.0; // cost of the planes of a cell that is not open
@@ -16,8 +16,8 @@ int first_cost(ivec2 cell)
     return (cell.y * cells_across_down().x + cell.x) * planes;
 }
 
-// Plane 0 as a finite depth.
-float plane_inverse(float k)
+// Inverse depth of a plane as a share of the estimate's.
+float plane_share(float k)
 {
-    return max(k, 0.02) * plane_step;
+    return 1.0 - k / float(planes - 1);
 }

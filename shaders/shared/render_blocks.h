@@ -126,7 +126,7 @@ ORL_BLOCK(gather_block)
     INT(voxel_side);         // voxels each way
     FLOAT(billboard_half);   // half the width of a billboard, scene units
     INT(planes);             // planes of shaders/guess
-    FLOAT(plane_step);       // inverse depth between two of them
+    FLOAT(least_inverse);    // inverse depth of the farthest one
     FLOAT(unused_1);
     FLOAT(unused_2);
     // Rows of rotation | translation: of billboards to units of a voxel, of the room to a space
@@ -168,6 +168,9 @@ ORL_BLOCK(holes_block)
 
 // Image-space hole filling and the final composition.
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)
+// The farthest estimate of background depth, as a multiple of a typical depth of the scene.
+#define ORL_GUESS_FARTHEST 1000.0
+
 ORL_BLOCK(image_block)
 {
     IVEC2(image_size);  // of the written level, pixels

@@ -4,9 +4,6 @@
 
 enum { COSTS = 3, SUMS = 4 }; // storage bindings of shaders/guess
 
-// The nearest plane, as a multiple of the scene's typical inverse depth.
-static const double NEAREST = 2;
-
 static int plane_count(const struct frame *frame)
 {
     return (int)(frame->params->guess_depths + 0.5f);
@@ -93,7 +90,7 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     double distance = frame->scene->photo_distance > 0 ? frame->scene->photo_distance : 1;
     struct gather_block planes = *block;
     planes.planes = plane_count(frame);
-    planes.plane_step = (float)(NEAREST / distance / (planes.planes - 1));
+    planes.least_inverse = (float)(1 / (ORL_GUESS_FARTHEST * distance));
     int width = guess->picked->params.width, height = guess->picked->params.height;
     struct orl_dispatch d = *choice;
     d.params = &planes;

@@ -1,4 +1,4 @@
-// Private to src/render: depth where the surface has none, from the agreement of photographs.
+// Private to src/render: guessed depth moves to where photographs do not see past it.
 #ifndef ORL_RENDER_GUESS_H
 #define ORL_RENDER_GUESS_H
 
@@ -7,7 +7,7 @@
 
 struct guess {
     struct orl_buf *costs, *sums;         // per cell and plane: shaders/guess/planes.glsl
-    struct orl_tex *estimated, *picked;   // per cell, R32F: inverse depth
+    struct orl_tex *estimated, *picked;   // per cell, R32F: inverse depth; share of it
 };
 
 // Allocates for pictures of this size. Does nothing if the frame tries no depths.
@@ -15,7 +15,8 @@ enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
 void orl_guess_finish(struct orl_gpu *gpu, struct guess *guess);
 // True if this frame tries depths: the method asks for it, and the costs fit into a storage buffer.
 bool orl_guess_applies(const struct frame *frame);
-// Replaces the estimated background depth by depths at which photographs agree. `choice`: the
+// Moves the estimated background depth to the nearest depths, from the estimate to infinity, past which
+// few photographs see and at which they agree. `choice`: the
 // dispatch of shaders/gather/choose.comp, with the parameters `block`, that has run and then runs
 // again, since other photographs see the new depths best.
 void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choice,

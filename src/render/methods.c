@@ -28,7 +28,7 @@
 // What makes depth and edges better, and frames slower.
 #define REFINED \
     , .front_layer = 0.01f, .min_support = 8, .silhouette = 2, .surface_seeds = 0.03f, \
-    .tint_penalty = 1, .antialias = ORL_ANTIALIAS_ON
+    .guess_depths = 16, .tint_penalty = 1, .antialias = ORL_ANTIALIAS_ON
 
 const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",

@@ -1,5 +1,5 @@
-// Depth where the surface has none: photographs agree on what is behind an opening in a wall, and
-// bring nothing before it.
+// Depth where the surface has none: it continues the surfaces around, moves behind what photographs
+// see past, and never comes nearer.
 #include <math.h>
 
 #include "wall_scene.h"
@@ -87,7 +87,7 @@ static void photographs_tell_the_depth_behind_an_opening(void **state)
     double rim = error_with(0, BEHIND_Z), tried = error_with(16, BEHIND_Z);
     print_message("mean error: depth of the rim %.3f, depths tried %.3f\n", rim, tried);
     assert_true(rim > 0.1);
-    assert_true(tried < 0.5 * rim);
+    assert_true(tried < 0.8 * rim);
 }
 
 // The surfaces around an opening are its nearest background. Photographs that agree before it show
@@ -135,6 +135,97 @@ static void guesses_change_without_a_line(void **state)
     assert_true(most < 6.0 / 255); // a jump between the two depths: 14
 }
 
+// Mean error, in square roots of light, of a picture whose right part continues a slanting wall that
+// has points on its left alone. A photograph from aside shows squares all over it. normals: the points
+// have the wall's normals, else ones that face the view.
+static double error_beside_slanting_wall(bool normals)
+{
+    enum { POINTS = 128, WIDE = 512, BESIDE = 12 };
+    const double slope = 0.6, at_eye = 5, edge = -0.5, eye = 0.8; // z = at_eye + slope * x
+    struct fixture f;
+    setup_empty(&f, at_eye);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, POINTS * POINTS), ORL_OK);
+    struct orl_points *points = &f.scene.points;
+    set_square(points, 0, POINTS, 6, -3 + edge, 0, green);
+    for (size_t i = 0; i < POINTS * POINTS; i++) {
+        points->position[i][2] = (float)(at_eye + slope * (double)points->position[i][0]);
+        if (normals) {
+            points->normal[i][0] = (float)(slope / sqrt(1 + slope * slope));
+            points->normal[i][2] = (float)(-1 / sqrt(1 + slope * slope));
+        }
+    }
+    add_photo(&f, look_from(eye, 0, 0, WIDE, FOCAL), green);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, WIDE, WIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < WIDE * WIDE; i++) {
+        double x = (i % WIDE + 0.5 - WIDE / 2) / FOCAL, y = (i / WIDE + 0.5 - WIDE / 2) / FOCAL;
+        double z = (at_eye + slope * eye) / (1 - slope * x);
+        memset(&image.u8[3 * i], squares(eye + z * x, z * y), 3);
+    }
+    repaint_photo(&f, &image);
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    params.guess_blur = 0;
+    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
+    double sum = 0;
+    for (int y = SIDE / 2 - INNER; y < SIDE / 2 + INNER; y++)
+        for (int k = SIDE / 2; k < SIDE / 2 + BESIDE; k++) { // the points end at column 50
+            double x = (k + 0.5 - SIDE / 2) / FOCAL, z = at_eye / (1 - slope * x);
+            double truth = squares(z * x, z * (y + 0.5 - SIDE / 2) / FOCAL) / 255.0;
+            sum += fabs(sqrt((double)color_at(&frame, k, y)[1]) - pow(truth, 1.1));
+        }
+    orl_frame_finish(&frame);
+    teardown(&f);
+    return sum / (2 * INNER * BESIDE);
+}
+
+static void guesses_continue_slanting_surfaces(void **state)
+{
+    (void)state;
+    double flat = error_beside_slanting_wall(false), slanting = error_beside_slanting_wall(true);
+    print_message("mean error: flat %.3f, slanting %.3f\n", flat, slanting);
+    assert_true(flat > 0.05);
+    assert_true(slanting < 0.75 * flat);
+}
+
+// Beside a plate its depth is guessed. There a photograph from aside sees a red wall far behind, which
+// the plate hides from the view, so that nothing is at the guess. At greater depths it shows what is
+// beside that wall, blue.
+static void guesses_move_behind_what_photographs_see_past(void **state)
+{
+    (void)state;
+    enum { POINTS = 96, WIDE = 512, AT = SIDE / 2 + 12 };
+    const double eye = 3, wall_z = 12, wall_edge = -1;
+    struct fixture f;
+    setup_empty(&f, WALL_Z);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, 2 * POINTS * POINTS), ORL_OK);
+    set_square(&f.scene.points, 0, POINTS, 5, -2.5, (float)WALL_Z, green);
+    set_square(&f.scene.points, POINTS * POINTS, POINTS, 20, wall_edge - 10, (float)wall_z, red);
+    add_photo(&f, look_from(eye, 0, 0, WIDE, FOCAL), green);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, WIDE, WIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < WIDE * WIDE; i++) {
+        double x = (i % WIDE + 0.5 - WIDE / 2) / FOCAL, y = (i / WIDE + 0.5 - WIDE / 2) / FOCAL;
+        bool plate = eye + WALL_Z * x < 0 && fabs(WALL_Z * y) < 2.5;
+        bool wall = eye + wall_z * x < wall_edge && fabs(wall_z * y) < 10;
+        memcpy(&image.u8[3 * i], plate ? green : wall ? red : blue, 3);
+    }
+    repaint_photo(&f, &image);
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    float seen[2][3];
+    for (int moved = 0; moved < 2; moved++) {
+        params.guess_depths = moved ? params.guess_depths : 0;
+        struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
+        memcpy(seen[moved], color_at(&frame, AT, SIDE / 2), sizeof seen[moved]);
+        orl_frame_finish(&frame);
+        params = orl_method_find(NULL, "oriel")->params;
+    }
+    teardown(&f);
+    print_message("guess: red %.2f, blue %.2f; moved: red %.2f, blue %.2f\n", (double)seen[0][0],
+                  (double)seen[0][2], (double)seen[1][0], (double)seen[1][2]);
+    assert_true(seen[0][0] > 0.9f && seen[0][2] < 0.1f);
+    assert_true(seen[1][2] > 0.9f && seen[1][0] < 0.1f);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -142,6 +233,8 @@ int main(void)
         cmocka_unit_test(photographs_tell_the_depth_behind_an_opening),
         cmocka_unit_test(nothing_comes_before_the_background),
         cmocka_unit_test(guesses_change_without_a_line),
+        cmocka_unit_test(guesses_continue_slanting_surfaces),
+        cmocka_unit_test(guesses_move_behind_what_photographs_see_past),
     };
     int failed = cmocka_run_group_tests_name("guess", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

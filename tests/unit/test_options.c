@@ -120,18 +120,18 @@ static void variants_take_the_settings_of_their_base(void **state)
 {
     (void)state;
     const struct orl_method *high = orl_method_find(NULL, "oriel-high");
-    struct orl_tuned tuned[] = {{(char *)"oriel", (char *)"guess_depths", 16, NULL},
+    struct orl_tuned tuned[] = {{(char *)"oriel", (char *)"sharpness", 16, NULL},
                                 {(char *)"oriel", (char *)"candidates", 4, NULL},
                                 {(char *)"oriel-high", (char *)"border_px", 2, NULL}};
     struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
                               .tuned_count = 2};
     struct orl_render_params params;
     assert_int_equal(orl_render_params_tuned(NULL, high, &scene, &params), ORL_OK);
-    assert_float_equal(params.guess_depths, 16, 0);
+    assert_float_equal(params.sharpness, 16, 0);
     assert_float_equal(params.candidates, high->params.candidates, 0);
     scene.tuned_count = 3;
     assert_int_equal(orl_render_params_tuned(NULL, high, &scene, &params), ORL_OK);
-    assert_float_equal(params.guess_depths, 0, 0);
+    assert_float_equal(params.sharpness, high->params.sharpness, 0);
     assert_float_equal(params.border_px, 2, 0);
 }
 
