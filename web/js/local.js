@@ -9,6 +9,7 @@ import {isBehind, project} from "oriel/view.js";
 
 const RANK_EVERY = 250; // milliseconds, while moving
 const LOOK_EVERY = 200;
+const MIDDLE_MOST = 5; // of the scene's distance: a guess may lie a thousand times as far
 const handheld = matchMedia("(pointer: coarse)").matches;
 
 // Bytes for photographs on the graphics chip: what phones stand, more where there is more.
@@ -168,11 +169,13 @@ export class LocalPicture {
         return f ? this.renderer.pointAt(x * f.width / camera.width, y * f.height / camera.height) : null;
     }
 
-    // What the middle of the picture shows, in the world; null: nothing is known of it.
+    // What the middle of the picture shows, in the world, if it is near enough to turn around, else a
+    // point before it; null: nothing is known of it.
     middle()
     {
         const f = this.renderer.frame;
-        return f ? this.renderer.pointAt(f.width / 2, f.height / 2) : null;
+        const most = MIDDLE_MOST * this.manifest.distance;
+        return f ? this.renderer.pointAt(f.width / 2, f.height / 2, most) : null;
     }
 
     forEachPoint(visit) { this.cloud.forEachCoarse(visit); }

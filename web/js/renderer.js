@@ -33,7 +33,7 @@ function makePrograms(device, sources)
         push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}),
         support: screen("support.frag"), seedDepth: screen("fill_seed_depth.frag"),
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
-        fillPushFar: screen("fill_push.frag", {FAR: 1}),
+        fillPullFar: screen("fill_pull.frag", {FAR: 1}), fillPushFar: screen("fill_push.frag", {FAR: 1}),
         fillDepth: screen("fill_depth.frag", {FAR: 1}), depthUnpack: screen("depth_unpack.frag"),
         choose: screen("choose.frag", {TILE}), vote: screen("silhouette_vote.frag", {TILE}),
         cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
@@ -136,8 +136,9 @@ export class Renderer {
         this.splat(camera, o);
         this.pullPush();
         const pointsOnly = LAYERS[layer] === "points" || this.photos.ready.length === 0;
-        this.fillIn(f.fillDepth, this.programs.seedDepth, this.programs.fillPushFar,
-                    {known: this.supported, typical: this.values.typical}, f.fillDepth.pulled[0], 1);
+        this.fillIn(f.fillDepth, {seed: this.programs.seedDepth, pull: this.programs.fillPullFar,
+                                  push: this.programs.fillPushFar},
+                    {...this.values, known: this.supported, normals: this.normals}, f.fillDepth.pulled[0], 1);
         this.device.pass(this.programs.fillDepth, f.depth,
                          {...this.values, known: this.supported,
                           filled: f.fillDepth.pushed[0].textures[0]});
@@ -220,12 +221,12 @@ export class Renderer {
     }
 
     // Gortler's pull and push from seeds: pyramid.pushed[0] is filled everywhere if anything is known.
-    fillIn(pyramid, seed, push, values, seeds, factor)
+    fillIn(pyramid, {seed, pull, push}, values, seeds, factor)
     {
-        const {device, programs} = this, {pulled, pushed} = pyramid, top = pulled.length - 1;
+        const {device} = this, {pulled, pushed} = pyramid, top = pulled.length - 1;
         device.pass(seed, seeds, values);
         for (let i = 1; i <= top; i++)
-            device.pass(programs.fillPull, pulled[i], {fine: pulled[i - 1].textures[0], factor});
+            device.pass(pull, pulled[i], {fine: pulled[i - 1].textures[0], factor});
         let above = pulled[top].textures[0];
         for (let i = top - 1; i >= 0; i--) {
             device.pass(push, pushed[i], {fine: pulled[i].textures[0], coarse: above});
@@ -265,8 +266,8 @@ export class Renderer {
         const gl = this.device.gl, f = this.frame;
         const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
                         normals: this.normals, points_only: pointsOnly};
-        this.fillIn(f.fillColor, this.programs.seedColor, this.programs.fillPush, colors, f.seeds,
-                    0.25);
+        this.fillIn(f.fillColor, {seed: this.programs.seedColor, pull: this.programs.fillPull,
+                                  push: this.programs.fillPush}, colors, f.seeds, 0.25);
         gl.bindTexture(gl.TEXTURE_2D, f.guesses.id);
         gl.generateMipmap(gl.TEXTURE_2D);
         this.device.pass(this.programs.compose, f.composed,
@@ -310,10 +311,10 @@ export class Renderer {
         return Math.abs(pixel[0]);
     }
 
-    // What that pixel shows, in the world; null: nothing.
-    pointAt(x, y)
+    // What that pixel shows, in the world, no deeper than `most`; null: nothing.
+    pointAt(x, y, most = Infinity)
     {
-        const z = this.depthAt(x, y), c = this.camera;
+        const z = Math.min(this.depthAt(x, y), most), c = this.camera;
         if (!(z > 0))
             return null;
         const q = [(x - c.cx) / c.fx * z, (y - c.cy) / c.fy * z, z];
