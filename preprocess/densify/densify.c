@@ -351,6 +351,9 @@ static enum orl_result process(struct densifier *d, size_t photo, const struct p
         result = orl_densify_remove_speckles(d->log, &camera, &maps, pixels / SPECKLE_SHARE,
                                              0.01f);
     if (result == ORL_OK && job.last)
+        result = orl_densify_trim_outlines(d->log, &camera, &job.reference->levels[job.finest],
+                                           &maps);
+    if (result == ORL_OK && job.last)
         result = orl_densify_complete(d->log, &job, &maps);
     if (result == ORL_OK)
         result = write_maps(d, photo, pass, &maps);

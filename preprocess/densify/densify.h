@@ -9,7 +9,7 @@
 #include "scene/colmap.h"
 
 // Raised when the same photographs and settings give different maps.
-enum { ORL_DENSIFY_VERSION = 5 };
+enum { ORL_DENSIFY_VERSION = 6 };
 
 // One unit of work, which may run beside others, on other machines too: one pass over some of the
 // photographs.

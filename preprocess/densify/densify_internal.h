@@ -164,4 +164,11 @@ enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
                                             struct densify_maps *maps, size_t least,
                                             float tolerance);
 
+// Removes depth that reaches past an outline: near a step to something farther, of pixels of which
+// the stereo is not sure and which look like what is farther. `camera`: of the maps' size; luma: U8 x1
+// of that size.
+enum orl_result orl_densify_trim_outlines(const struct orl_log *log,
+                                          const struct orl_camera *camera,
+                                          const struct orl_image *luma, struct densify_maps *maps);
+
 #endif
