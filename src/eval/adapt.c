@@ -247,6 +247,7 @@ static const struct step steps[] = {
     // Photographs of different days, of which the mean is nearer to another day than any is.
     {SKIES_DIFFER, NULL,
      {"plain_sky=1", "guess_sharpness=0.5", "guess_blur=0.25", "guess_blur_most=0.05"}},
+    {ALWAYS, NULL, {"silhouette=1"}}, // depth that hardly reaches past outlines
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
     {AFTER_NO_GAIN, NULL, {"depth_tolerance=0.04"}},
     {ALWAYS, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}}, // few photographs of a subject
