@@ -165,8 +165,8 @@ enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
                                             float tolerance);
 
 // Removes depth that reaches past an outline: near a step to something farther, of pixels of which
-// the stereo is not sure and which look like what is farther. `camera`: of the maps' size; luma: U8 x1
-// of that size.
+// the stereo is not sure and which look like what is farther. `camera`: of the maps' size; luma: the
+// photograph at that size, U8 x1.
 enum orl_result orl_densify_trim_outlines(const struct orl_log *log,
                                           const struct orl_camera *camera,
                                           const struct orl_image *luma, struct densify_maps *maps);

@@ -20,7 +20,7 @@ enum {
 static const float STEP = 0.03f;     // difference of inverse depth between two surfaces
 static const float FACING = 0.1f;    // least cosine at which a plane's slope is known
 static const float SURE = 0.7f;      // confidence from which a depth is not doubted
-static const float LIKENESS = 0.05f; // difference of luma at which pixels are half alike, about
+static const float LIKENESS = 0.05f; // standard deviation of luma between pixels that are alike
 static const float DISTINCT = 0.1f;  // least difference of luma between surface and background
 static const float CLEARLY = 2, DOUBT = 0.05f; // how much more a pixel is like the background
 
