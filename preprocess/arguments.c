@@ -52,6 +52,7 @@ json_t *orl_prepare_arguments(const struct orl_log *log, const struct orl_prepar
     add(list, "--densifier", json_string(orl_densifier_names[p->densifier]));
     add(list, "--keep", json_string(orl_keep_names[p->keep]));
     add(list, "--mesh", json_string(orl_prepare_mesh_names[p->mesh]));
+    add(list, "--hull", json_string(orl_hull_use_names[p->hull]));
     add(list, "--occluders", json_string(orl_occluder_search_names[p->occluders]));
     add(list, "--adapt", json_string(orl_adapt_effort_names[p->adapt]));
     add(list, "--leave-out", json_string(orl_leave_out_names[p->leave_out]));

@@ -47,6 +47,9 @@ enum orl_prepare_mesh { ORL_MESH_NONE, ORL_MESH_POISSON, ORL_MESH_DELAUNAY };
 // a tenth of the time of prepare. long: among all methods and options.
 enum orl_adapt_effort { ORL_ADAPT_NONE, ORL_ADAPT_SHORT, ORL_ADAPT_LONG };
 
+// Whether the visual hull closes surfaces of a subject with silhouettes that stereo leaves open.
+enum orl_hull_use { ORL_HULL_NONE, ORL_HULL_CLOSE };
+
 // Whether to look for what single photographs show before the scene.
 enum orl_occluder_search { ORL_OCCLUDER_SEARCH_NONE, ORL_OCCLUDER_SEARCH_FIND };
 
@@ -68,6 +71,7 @@ extern const char *const orl_densifier_names[];
 extern const char *const orl_keep_names[];
 extern const char *const orl_prepare_mesh_names[];
 extern const char *const orl_adapt_effort_names[];
+extern const char *const orl_hull_use_names[];
 extern const char *const orl_occluder_search_names[];
 extern const char *const orl_leave_out_names[];
 extern const char *const orl_until_names[];
@@ -90,6 +94,7 @@ struct orl_prepare_params {
     enum orl_densifier densifier;
     enum orl_keep keep;
     enum orl_prepare_mesh mesh;
+    enum orl_hull_use hull;
     enum orl_occluder_search occluders;
     enum orl_adapt_effort adapt;
     double adapt_budget_s;     // of the long one, but for the comparison of methods

@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "core/lock.h"
 #include "core/memory.h"
+#include "preprocess/cloud/close_hull.h"
 #include "preprocess/cloud/fuse_memory.h"
 #include "preprocess/cloud/fuse_photographs.h"
 #include "scene/point_stream.h"
@@ -61,7 +62,8 @@ json_t *orl_stage_fuse_settings(const struct orl_job *job)
     // One fusion of all has no "cluster" in the key, so older keys stay valid. A size that memory
     // decides is not in it either: a fusion is not done again because other memory is free.
     int size = job->params->fuse_cluster ? job->params->fuse_cluster : CLUSTER_MOST;
-    return json_pack("{s:o*}", "cluster", most > (size_t)size ? json_integer(size) : NULL);
+    return json_pack("{s:o*, s:s*}", "cluster", most > (size_t)size ? json_integer(size) : NULL, "hull",
+                     job->params->hull == ORL_HULL_NONE ? "none" : NULL);
 }
 
 static enum orl_result write_cloud(struct orl_job *job, const char *path, struct orl_points *points)
@@ -185,10 +187,13 @@ static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clust
 
 // All photographs at once.
 static enum orl_result fuse_all(struct orl_job *job, const struct orl_colmap_model *model,
-                                const struct orl_names *train, const char *path, uint64_t *count)
+                                const struct orl_names *train, const char *path, uint64_t *count,
+                                json_t *record)
 {
     struct orl_points points = {0};
     enum orl_result result = orl_fuse_photographs(job, model, train, 0, 1, &points);
+    if (result == ORL_OK && job->params->hull != ORL_HULL_NONE)
+        result = orl_close_hull(job, model, train, &points, record);
     if (result == ORL_OK)
         result = write_cloud(job, path, &points);
     *count = points.count;
@@ -227,7 +232,7 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     if (result == ORL_OK && clusters.count > 1)
         result = fuse_clusters(job, &clusters, path, &points);
     else if (result == ORL_OK)
-        result = fuse_all(job, model, &train, path, &points);
+        result = fuse_all(job, model, &train, path, &points, record);
     if (result == ORL_OK)
         result = orl_job_remove(job, "stereo/fused");
     if (result == ORL_OK) {

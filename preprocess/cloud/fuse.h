@@ -5,7 +5,7 @@
 #include "preprocess/cloud/clusters.h"
 #include "preprocess/job/job.h"
 
-enum { ORL_FUSE_VERSION = 8 }; // raised when the points of the same maps change
+enum { ORL_FUSE_VERSION = 9 }; // raised when the points of the same maps change
 
 json_t *orl_stage_fuse_settings(const struct orl_job *job);
 // Writes .oriel/fused.ply. Clouds of clusters that oriel fuse has made are used.

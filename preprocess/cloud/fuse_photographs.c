@@ -112,17 +112,15 @@ static enum orl_result apply_mask(const struct orl_job *job, const char *name,
     return result;
 }
 
-static enum orl_result read_depth(struct fusion *f, size_t i)
+enum orl_result orl_fuse_read_map(const struct orl_job *job, const struct orl_colmap_model *model,
+                                  const struct orl_colmap_image *image, struct orl_depth_map *map)
 {
-    const struct orl_job *job = f->job;
-    const struct orl_colmap_image *image = f->sources[i].image;
-    struct orl_depth_map *map = &f->maps[i];
     char *path = orl_job_path(job, "stereo/depth_maps/%s.geometric.bin", image->name);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_path_is_file(path)) // COLMAP writes no map without sources
         result = orl_colmap_map_read(job->log, path, &map->depth);
     if (result == ORL_OK && map->depth.f32) {
-        map->view = orl_colmap_image_view(f->model, image);
+        map->view = orl_colmap_image_view(model, image);
         map->view.camera = orl_camera_resized(&map->view.camera, map->depth.width,
                                               map->depth.height);
         if (job->params->masks_dir)
@@ -130,6 +128,11 @@ static enum orl_result read_depth(struct fusion *f, size_t i)
     }
     free(path);
     return result;
+}
+
+static enum orl_result read_depth(struct fusion *f, size_t i)
+{
+    return orl_fuse_read_map(f->job, f->model, f->sources[i].image, &f->maps[i]);
 }
 
 static enum orl_result find_pixels(struct fusion *f, size_t i)

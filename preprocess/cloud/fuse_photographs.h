@@ -3,6 +3,7 @@
 #define ORL_PREPROCESS_FUSE_PHOTOGRAPHS_H
 
 #include "oriel/points.h"
+#include "preprocess/cloud/fuse_maps.h"
 #include "preprocess/job/job.h"
 
 // How many others each photograph is compared with: those that share most sparse points with it.
@@ -13,5 +14,11 @@
 enum orl_result orl_fuse_photographs(struct orl_job *job, const struct orl_colmap_model *model,
                                      const struct orl_names *names, double done, double total,
                                      struct orl_points *points) ORL_CHECK_RESULT;
+
+// Reads the depth map of a photograph, the scene's mask applied. Without data: there is none. The
+// caller releases map->depth.
+enum orl_result orl_fuse_read_map(const struct orl_job *job, const struct orl_colmap_model *model,
+                                  const struct orl_colmap_image *image,
+                                  struct orl_depth_map *map) ORL_CHECK_RESULT;
 
 #endif

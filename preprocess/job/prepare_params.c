@@ -8,6 +8,7 @@ const char *const orl_mapper_names[] = {"auto", "incremental", "hierarchical", "
 const char *const orl_densifier_names[] = {"auto", "gl", "colmap", NULL};
 const char *const orl_keep_names[] = {"minimal", "all", NULL};
 const char *const orl_prepare_mesh_names[] = {"none", "poisson", "delaunay", NULL};
+const char *const orl_hull_use_names[] = {"none", "close", NULL};
 const char *const orl_occluder_search_names[] = {"none", "find", NULL};
 const char *const orl_adapt_effort_names[] = {"none", "short", "long", NULL};
 const char *const orl_leave_out_names[] = {"none", "blurred", "duplicates", "both", NULL};

@@ -10,7 +10,7 @@ enum { INPUTS_MAX = 4096 };
 struct options {
     const char *out, *masks, *exposures;
     struct arg_enum quality, sharing, matching, mapper, densifier, keep, mesh, leave_out, until;
-    struct arg_enum occluders, adapt;
+    struct arg_enum hull, occluders, adapt;
     double fps;
     int frames;
     int test_every, max_size, seed, max_vram_mib, max_ram_mib;
@@ -34,6 +34,7 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
         .densifier = (enum orl_densifier)o->densifier.value,
         .keep = (enum orl_keep)o->keep.value, .mesh = (enum orl_prepare_mesh)o->mesh.value,
         .leave_out = (enum orl_leave_out)o->leave_out.value, .fps = o->fps, .frames = o->frames,
+        .hull = (enum orl_hull_use)o->hull.value,
         .occluders = (enum orl_occluder_search)o->occluders.value,
         .adapt = (enum orl_adapt_effort)o->adapt.value, .adapt_budget_s = o->adapt_s,
         .radius_neighbours = o->radius_neighbours, .radius_overlap = o->radius_overlap,
@@ -63,6 +64,7 @@ int cmd_prepare(int argc, char **argv)
                         .mesh = {orl_prepare_mesh_names, ORL_MESH_NONE},
                         .leave_out = {orl_leave_out_names, ORL_LEAVE_OUT_NONE},
                         .until = {orl_until_names, ORL_UNTIL_END}, .seed = 1,
+                        .hull = {orl_hull_use_names, ORL_HULL_CLOSE},
                         .occluders = {orl_occluder_search_names, ORL_OCCLUDER_SEARCH_FIND},
                         .adapt = {orl_adapt_effort_names, ORL_ADAPT_SHORT}, .adapt_s = 120};
     const struct arg_option options[] = {
@@ -102,6 +104,9 @@ int cmd_prepare(int argc, char **argv)
          1 << 20},
         {"until", ARG_ENUM, &o.until, "STAGE",
          "stop before features or stereo, which oriel plan divides into jobs", 0, 0},
+        {"hull", ARG_ENUM, &o.hull, "HOW",
+         "close surfaces that stereo leaves open by the hull of silhouettes: masks, or what is before "
+         "a dark backdrop", 0, 0},
         {"occluders", ARG_ENUM, &o.occluders, "HOW",
          "find what single photographs show before the scene, so that it is not painted onto what "
          "is behind", 0, 0},

@@ -80,6 +80,12 @@ if command -v colmap >/dev/null; then
     [ "$(count dense points)" -ge 1000 ] || fail "only $(count dense points) points"
     [ ! -e dense/.oriel ] && [ ! -e dense/stereo ] || fail "what was needed on the way is left over"
     runs 0 "$oriel" eval dense --method points
+    # The silhouettes of cameras all around close the surfaces, and do no harm to the picture.
+    runs 0 "$oriel" synth figures --cameras 16 --size 480x360 --out around
+    runs 0 "$oriel" import around --masks around/masks --points densify --quality draft \
+        --test-list cam03 --out closed --verbose
+    grep -q 'visual hull of 15 silhouettes (masks) closes surfaces by [1-9]' stderr.txt ||
+        fail "silhouettes close nothing"
     # The cameras are those that were given, in the truth's own coordinates: a copy without
     # points has the same.
     runs 0 "$oriel" import photos-truth/cameras.json --images photos --test-list 0003 --out bare

@@ -101,6 +101,12 @@ run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all \
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 says "radii: done already"
 [ -s "$work/trace" ] && fail "radii need COLMAP"
+# Without the visual hull points are fused again, of the same maps.
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all --hull none
+says "densify: done already"
+grep -q "fuse: done already" "$work/err" && fail "the cloud stays when there is to be no hull"
+[ -s "$work/trace" ] && fail "--hull none needs COLMAP"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 run 2 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all --radius-overlap 9
 says "--radius-overlap 9: must be a number from 0.01 to 8"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep minimal

@@ -1,0 +1,145 @@
+#include "preprocess/cloud/close_hull.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/vec3.h"
+#include "io/picture.h"
+#include "preprocess/cloud/fuse_photographs.h"
+#include "preprocess/cloud/hull_points.h"
+#include "preprocess/cloud/silhouettes.h"
+
+// Share of the points that may lie outside: strays and what stands beside the subject. Masks that hide
+// passers-by exclude more of what is behind.
+static const double OUTSIDE_MOST = 0.35;
+
+// --- colours of new points ---
+
+// The photograph that faces a point most directly and whose silhouette holds it; -1: none.
+static int facing(const struct orl_silhouettes *found, const struct orl_points *points, size_t point,
+                  double pixel[2])
+{
+    double world[3], normal[3], best = 0, at[2], depth;
+    int chosen = -1;
+    for (int k = 0; k < 3; k++) {
+        world[k] = (double)points->position[point][k];
+        normal[k] = (double)points->normal[point][k];
+    }
+    for (size_t i = 0; i < found->count; i++) {
+        const struct orl_silhouette *s = &found->items[i];
+        double towards[3];
+        orl_pose_centre(&s->view.cam_from_world, towards);
+        for (int k = 0; k < 3; k++)
+            towards[k] -= world[k];
+        double cosine = orl_dot3(towards, normal) / sqrt(orl_dot3(towards, towards));
+        if (!(cosine > best) || !orl_view_project(&s->view, world, at, &depth) ||
+            !(at[0] >= 0 && at[1] >= 0 && at[0] < s->mask.width && at[1] < s->mask.height) ||
+            !s->mask.u8[(size_t)at[1] * (size_t)s->mask.width + (size_t)at[0]])
+            continue;
+        best = cosine;
+        chosen = (int)i;
+        memcpy(pixel, at, sizeof at);
+    }
+    return chosen;
+}
+
+// Where a new point takes its colour.
+struct origin {
+    int photo; // -1: nowhere
+    double pixel[2];
+};
+
+static enum orl_result color_from(struct orl_job *job, const struct orl_silhouettes *found, int photo,
+                                  const struct origin *origins, size_t first,
+                                  struct orl_points *points)
+{
+    struct orl_image picture = {0};
+    char *path = orl_job_path(job, "images/%s", found->image[photo]->name);
+    enum orl_result result = path ? orl_picture_read(job->log, path, 3, &picture) : ORL_ERR_MEMORY;
+    for (size_t p = first; result == ORL_OK && p < points->count; p++) {
+        const double *pixel = origins[p - first].pixel;
+        if (origins[p - first].photo == photo && pixel[0] < picture.width &&
+            pixel[1] < picture.height)
+            memcpy(points->color[p],
+                   picture.u8 + 3 * ((size_t)pixel[1] * (size_t)picture.width + (size_t)pixel[0]),
+                   sizeof points->color[p]);
+    }
+    orl_image_finish(&picture);
+    free(path);
+    return result;
+}
+
+// Colours the points from `first` on.
+static enum orl_result set_colors(struct orl_job *job, const struct orl_silhouettes *found,
+                                  size_t first, struct orl_points *points)
+{
+    struct origin *origins = orl_array(job->log, points->count - first, sizeof *origins);
+    enum orl_result result = origins ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t p = first; result == ORL_OK && p < points->count; p++)
+        origins[p - first].photo = facing(found, points, p, origins[p - first].pixel);
+    for (size_t i = 0; result == ORL_OK && i < found->count; i++)
+        result = color_from(job, found, (int)i, origins, first, points);
+    free(origins);
+    return result;
+}
+
+// --- carving ---
+
+static enum orl_result see_maps(struct orl_job *job, const struct orl_colmap_model *model,
+                                const struct orl_silhouettes *found, struct orl_hull_points *hull)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < found->count; i++) {
+        struct orl_depth_map map = {0};
+        result = orl_fuse_read_map(job, model, found->image[i], &map);
+        if (result == ORL_OK && map.depth.f32)
+            orl_hull_points_see(hull, i, &map);
+        orl_image_finish(&map.depth);
+        if (result == ORL_OK && orl_progress_cancelled(job->progress))
+            result = ORL_ERR_CANCELLED;
+    }
+    return result;
+}
+
+static enum orl_result close_with(struct orl_job *job, const struct orl_colmap_model *model,
+                                  const struct orl_silhouettes *found, struct orl_points *points,
+                                  json_t *record)
+{
+    struct orl_hull_points hull = {0};
+    size_t before = points->count, first = before;
+    enum orl_result result = orl_hull_points_begin(job->log, found->items, found->count, points,
+                                                   &hull);
+    double outside = (double)hull.outside_count / (double)before;
+    bool agree = outside <= OUTSIDE_MOST;
+    if (result == ORL_OK && agree)
+        result = see_maps(job, model, found, &hull);
+    if (result == ORL_OK && agree)
+        result = orl_hull_points_end(job->log, &hull, points, &first);
+    if (result == ORL_OK && agree)
+        result = set_colors(job, found, first, points);
+    if (result == ORL_OK && agree) {
+        orl_logf(job->log, ORL_LOG_INFO, "fuse: the visual hull of %zu silhouettes (%s) closes "
+                 "surfaces by %zu points; %zu outside it are dropped", found->count,
+                 found->given ? "masks" : "dark backdrop", points->count - first, before - first);
+        json_object_set_new(record, "hull", json_pack(
+            "{s:I, s:I, s:I, s:s}", "silhouettes", (json_int_t)found->count, "added",
+            (json_int_t)(points->count - first), "dropped", (json_int_t)(before - first), "from",
+            found->given ? "masks" : "dark backdrop"));
+    }
+    orl_hull_points_finish(&hull);
+    return result;
+}
+
+enum orl_result orl_close_hull(struct orl_job *job, const struct orl_colmap_model *model,
+                               const struct orl_names *train, struct orl_points *points,
+                               json_t *record)
+{
+    struct orl_silhouettes found;
+    enum orl_result result = orl_silhouettes_find(job, model, train, points, &found);
+    if (result == ORL_OK && found.count)
+        result = close_with(job, model, &found, points, record);
+    orl_silhouettes_finish(&found);
+    return result;
+}

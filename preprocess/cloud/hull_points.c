@@ -1,0 +1,393 @@
+#include "preprocess/cloud/hull_points.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scene/nearest_points.h"
+
+enum {
+    SIDE_MIN = 32,     // voxels
+    SIDE_MAX = 256,    // 200 MiB while the surface is made
+    WRONG_ONE_IN = 32, // silhouettes and maps
+};
+// The cube is around the inner 99 % of the points along each axis, and half as large again as they:
+// stereo may have missed a part of the subject. In a larger one the backdrop would leave more that is
+// not the subject.
+static const double OUTERMOST = 0.005, ROOM = 1.5;
+static const double VOXEL_PX = 2;   // least size of a voxel, pixels of the photographs
+static const double THROUGH = 1.5;  // voxels that a map must see behind the centre of one
+static const double APART = 0.5;    // voxels from any other point to a new one
+static const double NEAR_HULL = 0.1; // of the cube: points outside that are nearer are strays of the subject
+
+static size_t voxel_count(const struct orl_hull *cube)
+{
+    return (size_t)cube->side * (size_t)cube->side * (size_t)cube->side;
+}
+
+static void voxel_centre(const struct orl_hull *cube, size_t index, double centre[3])
+{
+    size_t side = (size_t)cube->side;
+    const size_t at[3] = {index % side, index / side % side, index / (side * side)};
+    for (int k = 0; k < 3; k++)
+        centre[k] = cube->origin[k] + ((double)at[k] + 0.5) * cube->voxel;
+}
+
+// How many photographs may be wrong about a place.
+static int pardoned(const struct orl_hull_points *hull)
+{
+    return (int)(hull->count / WRONG_ONE_IN);
+}
+
+// --- silhouettes ---
+
+static bool excludes(const struct orl_silhouette *s, const double world[3])
+{
+    double pixel[2], depth;
+    if (!orl_view_project(&s->view, world, pixel, &depth) || !(pixel[0] >= 0 && pixel[1] >= 0 &&
+            pixel[0] < s->mask.width && pixel[1] < s->mask.height))
+        return false; // the picture does not show the place
+    return !s->mask.u8[(size_t)pixel[1] * (size_t)s->mask.width + (size_t)pixel[0]];
+}
+
+static bool is_outside(const struct orl_hull_points *hull, const double world[3])
+{
+    int against = 0, most = pardoned(hull);
+    for (size_t i = 0; i < hull->count && against <= most; i++)
+        against += excludes(&hull->silhouettes[i], world);
+    return against > most;
+}
+
+static enum orl_result mark_outside(const struct orl_log *log, const struct orl_points *points,
+                                    struct orl_hull_points *hull)
+{
+    hull->outside = orl_array(log, points->count, sizeof *hull->outside);
+    if (!hull->outside)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < points->count; i++) {
+        const float *p = points->position[i];
+        hull->outside[i] = is_outside(hull, (double[3]){(double)p[0], (double)p[1], (double)p[2]});
+        hull->outside_count += hull->outside[i];
+    }
+    return ORL_OK;
+}
+
+// --- parts of the cube ---
+
+// The voxel that holds a position; false: it is beyond the cube.
+static bool find_voxel(const struct orl_hull *cube, const float position[3], size_t *index)
+{
+    size_t at[3];
+    for (int k = 0; k < 3; k++) {
+        double v = floor(((double)position[k] - cube->origin[k]) / cube->voxel);
+        if (!(v >= 0 && v < cube->side))
+            return false;
+        at[k] = (size_t)v;
+    }
+    *index = at[0] + (size_t)cube->side * (at[1] + (size_t)cube->side * at[2]);
+    return true;
+}
+
+// Marks a voxel that is inside by 2 and puts it on the stack.
+static void visit(struct orl_hull *cube, size_t index, uint32_t *stack, size_t *height)
+{
+    if (cube->inside[index] != 1)
+        return;
+    cube->inside[index] = 2;
+    stack[(*height)++] = (uint32_t)index;
+}
+
+// Keeps the parts that hold points: others were left by chance, where few silhouettes overlap.
+static enum orl_result keep_parts(const struct orl_log *log, const struct orl_points *points,
+                                  const bool *outside, struct orl_hull *cube)
+{
+    size_t side = (size_t)cube->side, count = voxel_count(cube), height = 0, index;
+    const size_t step[3] = {1, side, side * side};
+    uint32_t *stack = orl_array(log, count, sizeof *stack);
+    if (!stack)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < points->count; i++)
+        if (!outside[i] && find_voxel(cube, points->position[i], &index))
+            visit(cube, index, stack, &height);
+    while (height > 0) {
+        index = stack[--height];
+        const size_t at[3] = {index % side, index / side % side, index / (side * side)};
+        for (int k = 0; k < 3; k++) {
+            if (at[k] > 0)
+                visit(cube, index - step[k], stack, &height);
+            if (at[k] + 1 < side)
+                visit(cube, index + step[k], stack, &height);
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        cube->inside[i] = cube->inside[i] == 2;
+    free(stack);
+    return ORL_OK;
+}
+
+// --- the cube ---
+
+static int compare_floats(const void *left, const void *right)
+{
+    float a = *(const float *)left, b = *(const float *)right;
+    return (a > b) - (a < b);
+}
+
+// The middle and the longest extent of the points inside all silhouettes.
+static enum orl_result find_extent(const struct orl_log *log, const struct orl_points *points,
+                                   const bool *outside, double middle[3], double *extent)
+{
+    float *sorted = orl_array(log, points->count, sizeof *sorted);
+    *extent = 0;
+    if (!sorted)
+        return ORL_ERR_MEMORY;
+    for (int k = 0; k < 3; k++) {
+        size_t count = 0;
+        for (size_t i = 0; i < points->count; i++)
+            if (!outside[i])
+                sorted[count++] = points->position[i][k];
+        if (!count)
+            break;
+        qsort(sorted, count, sizeof *sorted, compare_floats);
+        size_t cut = (size_t)(OUTERMOST * (double)count);
+        double low = (double)sorted[cut], high = (double)sorted[count - 1 - cut];
+        middle[k] = 0.5 * (low + high);
+        *extent = fmax(*extent, high - low);
+    }
+    free(sorted);
+    return ORL_OK;
+}
+
+// The finest size of a pixel at the middle, over the photographs.
+static double pixel_size(const struct orl_hull_points *hull, const double middle[3])
+{
+    double least = INFINITY, pixel[2], depth;
+    for (size_t i = 0; i < hull->count; i++) {
+        const struct orl_view *view = &hull->silhouettes[i].view;
+        if (orl_view_project(view, middle, pixel, &depth))
+            least = fmin(least, depth / fmax(view->camera.fx, view->camera.fy));
+    }
+    return least;
+}
+
+enum orl_result orl_hull_points_begin(const struct orl_log *log,
+                                      const struct orl_silhouette *silhouettes, size_t count,
+                                      const struct orl_points *points, struct orl_hull_points *hull)
+{
+    double middle[3] = {0}, extent = 0;
+    *hull = (struct orl_hull_points){.silhouettes = silhouettes, .count = count};
+    enum orl_result result = mark_outside(log, points, hull);
+    if (result == ORL_OK)
+        result = find_extent(log, points, hull->outside, middle, &extent);
+    if (result != ORL_OK || !(extent > 0))
+        return result;
+    double size = ROOM * extent, voxel = VOXEL_PX * pixel_size(hull, middle);
+    int side = (int)fmin(fmax(ceil(size / voxel), SIDE_MIN), SIDE_MAX);
+    for (int k = 0; k < 3; k++)
+        middle[k] -= 0.5 * size;
+    result = orl_hull_init(log, &hull->cube, side, middle, size);
+    hull->through = result == ORL_OK ? orl_array(log, voxel_count(&hull->cube), 1) : NULL;
+    if (!hull->through)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < voxel_count(&hull->cube); i++) {
+        double centre[3];
+        voxel_centre(&hull->cube, i, centre);
+        hull->cube.inside[i] = !is_outside(hull, centre);
+    }
+    return ORL_OK;
+}
+
+void orl_hull_points_finish(struct orl_hull_points *hull)
+{
+    orl_hull_finish(&hull->cube);
+    free(hull->through);
+    free(hull->outside);
+    *hull = (struct orl_hull_points){0};
+}
+
+// --- depth maps ---
+
+void orl_hull_points_see(struct orl_hull_points *hull, size_t which,
+                         const struct orl_depth_map *map)
+{
+    const struct orl_silhouette *s = &hull->silhouettes[which];
+    size_t count = hull->through ? voxel_count(&hull->cube) : 0;
+    for (size_t i = 0; i < count; i++) {
+        double centre[3], pixel[2], depth;
+        voxel_centre(&hull->cube, i, centre);
+        if (!hull->cube.inside[i] || hull->through[i] == UINT8_MAX || excludes(s, centre) ||
+            !orl_view_project(&map->view, centre, pixel, &depth) ||
+            !(pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < map->depth.width &&
+              pixel[1] < map->depth.height))
+            continue;
+        double seen = (double)map->depth.f32[(size_t)pixel[1] * (size_t)map->depth.width +
+                                             (size_t)pixel[0]];
+        hull->through[i] += seen > depth + THROUGH * hull->cube.voxel; // no depth is 0
+    }
+}
+
+// --- the surface ---
+
+// Smooths lines of `side` values that lie `step` apart, by the binomial filter 1 4 6 4 1.
+static void smooth_line(float *at, size_t step, int side)
+{
+    float line[SIDE_MAX + 4] = {0};
+    for (int i = 0; i < side; i++)
+        line[i + 2] = at[(size_t)i * step];
+    for (int i = 0; i < side; i++)
+        at[(size_t)i * step] = (line[i] + line[i + 4] + 4 * (line[i + 1] + line[i + 3]) +
+                                6 * line[i + 2]) / 16;
+}
+
+// The surface, smoothed over the steps of the voxels.
+static enum orl_result make_surface(const struct orl_log *log, const struct orl_hull *cube,
+                                    struct orl_mesh *mesh)
+{
+    size_t side = (size_t)cube->side, count = voxel_count(cube);
+    float *field = orl_array(log, count, sizeof *field);
+    if (!field)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        field[i] = cube->inside[i];
+    for (size_t a = 0; a < side; a++)
+        for (size_t b = 0; b < side; b++) {
+            smooth_line(field + side * (a + side * b), 1, cube->side);
+            smooth_line(field + a + side * side * b, side, cube->side);
+        }
+    for (size_t a = 0; a < side * side; a++)
+        smooth_line(field + a, side * side, cube->side);
+    for (size_t i = 0; i < count; i++)
+        field[i] = 0.5f - field[i];
+    enum orl_result result = orl_hull_field_mesh(log, cube, field, 0, mesh);
+    free(field);
+    return result;
+}
+
+// --- points ---
+
+// True if the cube cuts the hull off here.
+static bool is_cut(const struct orl_hull *cube, const float position[3])
+{
+    bool cut = false;
+    for (int k = 0; k < 3; k++) {
+        double at = ((double)position[k] - cube->origin[k]) / cube->voxel;
+        cut = cut || !(at > 1 && at < cube->side - 1);
+    }
+    return cut;
+}
+
+static enum orl_result surface_points(const struct orl_log *log, const struct orl_hull *cube,
+                                      const struct orl_mesh *mesh, struct orl_points *surface)
+{
+    enum orl_result result = orl_points_init(log, surface, mesh->vertex_count);
+    if (result != ORL_OK)
+        return result;
+    surface->count = 0;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        if (orl_point_usable(mesh->position[i]) && !is_cut(cube, mesh->position[i])) {
+            memcpy(surface->position[surface->count], mesh->position[i], sizeof mesh->position[i]);
+            memcpy(surface->normal[surface->count++], mesh->normal[i], sizeof mesh->normal[i]);
+        }
+    return ORL_OK;
+}
+
+// Moves the points of which `taken` says so to `out`.
+static enum orl_result take(const struct orl_log *log, const bool *taken, struct orl_points *points,
+                            struct orl_points *out)
+{
+    size_t left = 0;
+    enum orl_result result = orl_points_init(log, out, points->count);
+    if (result != ORL_OK)
+        return result;
+    out->count = 0;
+    for (size_t i = 0; i < points->count; i++)
+        if (taken[i])
+            orl_points_copy(points, i, out, out->count++);
+        else
+            orl_points_copy(points, i, points, left++);
+    points->count = left;
+    return ORL_OK;
+}
+
+// Drops the points that are within `reach` of another cloud (near), or that are not.
+static enum orl_result drop(const struct orl_log *log, const struct orl_points *others, double reach,
+                            bool near, struct orl_points *points)
+{
+    size_t left = 0;
+    if (!others->count || !points->count)
+        return ORL_OK;
+    int *found = orl_array(log, points->count, sizeof *found);
+    float *dist2 = orl_array(log, points->count, sizeof *dist2);
+    enum orl_result result = found && dist2 ? orl_points_nearest(log, others, points, found, dist2)
+                                            : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < points->count; i++)
+        if (((double)dist2[i] <= reach * reach) != near)
+            orl_points_copy(points, i, points, left++);
+    if (result == ORL_OK)
+        points->count = left;
+    free(found);
+    free(dist2);
+    return result;
+}
+
+// The clouds one after the other.
+static enum orl_result join(const struct orl_log *log, const struct orl_points *const clouds[3],
+                            struct orl_points *joined)
+{
+    size_t count = 0;
+    for (int c = 0; c < 3; c++)
+        count += clouds[c]->count;
+    enum orl_result result = orl_points_init(log, joined, count);
+    count = 0;
+    for (int c = 0; result == ORL_OK && c < 3; c++)
+        for (size_t i = 0; i < clouds[c]->count; i++)
+            orl_points_copy(clouds[c], i, joined, count++);
+    return result;
+}
+
+static enum orl_result replace_points(const struct orl_log *log, const struct orl_hull_points *hull,
+                                      const struct orl_mesh *mesh, struct orl_points *points,
+                                      size_t *added)
+{
+    struct orl_points surface = {0}, outside = {0}, joined = {0};
+    enum orl_result result = take(log, hull->outside, points, &outside);
+    if (result == ORL_OK)
+        result = surface_points(log, &hull->cube, mesh, &surface);
+    if (result == ORL_OK)
+        result = drop(log, &surface, NEAR_HULL * hull->cube.side * hull->cube.voxel, true, &outside);
+    if (result == ORL_OK)
+        result = drop(log, points, APART * hull->cube.voxel, true, &surface);
+    if (result == ORL_OK)
+        result = join(log, (const struct orl_points *const[3]){points, &outside, &surface}, &joined);
+    if (result == ORL_OK) {
+        *added = points->count + outside.count;
+        orl_points_finish(points);
+        *points = joined;
+    }
+    orl_points_finish(&surface);
+    orl_points_finish(&outside);
+    return result;
+}
+
+enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_points *hull,
+                                    struct orl_points *points, size_t *added)
+{
+    struct orl_mesh mesh = {0};
+    bool any = false;
+    *added = points->count;
+    if (!hull->through)
+        return ORL_OK;
+    for (size_t i = 0; i < voxel_count(&hull->cube); i++)
+        hull->cube.inside[i] = hull->cube.inside[i] && hull->through[i] <= pardoned(hull);
+    enum orl_result result = keep_parts(log, points, hull->outside, &hull->cube);
+    for (size_t i = 0; i < voxel_count(&hull->cube); i++)
+        any = any || hull->cube.inside[i];
+    if (result != ORL_OK || !any)
+        return result;
+    result = make_surface(log, &hull->cube, &mesh);
+    if (result == ORL_OK)
+        result = replace_points(log, hull, &mesh, points, added);
+    orl_mesh_finish(&mesh);
+    return result;
+}

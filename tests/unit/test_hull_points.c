@@ -1,0 +1,193 @@
+// The visual hull closes what stereo leaves open: photographs around a ball, three quarters of which have points.
+#include <math.h>
+
+#include "preprocess/cloud/hull_points.h"
+#include "test.h"
+
+enum { SIDE = 96, RING = 12, ABOVE = 6, PHOTOS = RING + 2 * ABOVE };
+static const double AWAY = 6, PIXELS = 200, TAU = 6.283185307179586;
+
+struct fixture {
+    struct orl_silhouette silhouettes[PHOTOS];
+    struct orl_points points;
+};
+
+static double distance(const float a[3], double x, double y, double z)
+{
+    return sqrt(((double)a[0] - x) * ((double)a[0] - x) + ((double)a[1] - y) * ((double)a[1] - y) +
+                ((double)a[2] - z) * ((double)a[2] - z));
+}
+
+// Marks the pixels whose rays meet a ball of radius 1.
+static void add_ball(struct orl_silhouette *s, double x, double y, double z)
+{
+    double eye[3], ray[3];
+    orl_pose_centre(&s->view.cam_from_world, eye);
+    const double to[3] = {x - eye[0], y - eye[1], z - eye[2]};
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        orl_view_unproject(&s->view, i % SIDE + 0.5, (int)(i / SIDE) + 0.5, 1, ray);
+        double along = 0, ray2 = 0, to2 = 0;
+        for (int k = 0; k < 3; k++) {
+            ray[k] -= eye[k];
+            along += ray[k] * to[k];
+            ray2 += ray[k] * ray[k];
+            to2 += to[k] * to[k];
+        }
+        if (to2 - along * along / ray2 <= 1)
+            s->mask.u8[i] = 255;
+    }
+}
+
+static void add_point(struct orl_points *points, double x, double y, double z)
+{
+    float *p = points->position[points->count++];
+    p[0] = (float)x, p[1] = (float)y, p[2] = (float)z;
+}
+
+// The upper three quarters of the ball, in steps that are finer than the voxels and a pixel within the outlines.
+static int set_up(void **state)
+{
+    enum { STEPS = 160 };
+    struct fixture *f = calloc(1, sizeof *f);
+    assert_non_null(f);
+    for (int i = 0; i < PHOTOS; i++) {
+        double turn = TAU * i / (i < RING ? RING : ABOVE);
+        double high = i < RING ? 0 : i < RING + ABOVE ? 0.7 : -0.7;
+        const double eye[3] = {AWAY * cos(turn) * cos(high), AWAY * sin(turn) * cos(high),
+                               AWAY * sin(high)};
+        struct orl_silhouette *s = &f->silhouettes[i];
+        s->view = (struct orl_view){{SIDE, SIDE, PIXELS, PIXELS, 0.5 * SIDE, 0.5 * SIDE},
+                                    orl_pose_look_at(eye, (double[3]){0}, (double[3]){0, 0, 1})};
+        assert_int_equal(orl_image_init(NULL, &s->mask, SIDE, SIDE, 1, ORL_PIXEL_U8), ORL_OK);
+        add_ball(s, 0, 0, 0);
+    }
+    assert_int_equal(orl_points_init(NULL, &f->points, STEPS * STEPS), ORL_OK);
+    f->points.count = 0;
+    for (int i = -STEPS / 12; i < STEPS / 4; i++)
+        for (int k = 0; k < STEPS; k++) {
+            double up = 0.25 * TAU * i / (0.25 * STEPS), turn = TAU * k / STEPS;
+            add_point(&f->points, 0.95 * cos(turn) * cos(up), 0.95 * sin(turn) * cos(up),
+                      0.95 * sin(up));
+        }
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < PHOTOS; i++)
+        orl_image_finish(&f->silhouettes[i].mask);
+    orl_points_finish(&f->points);
+    free(f);
+    return 0;
+}
+
+// Closes the points without depth maps; the first new point.
+static size_t close_points(struct fixture *f)
+{
+    struct orl_hull_points hull;
+    size_t added;
+    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    assert_int_equal(orl_hull_points_end(NULL, &hull, &f->points, &added), ORL_OK);
+    orl_hull_points_finish(&hull);
+    return added;
+}
+
+static void the_open_part_is_closed(void **state)
+{
+    struct fixture *f = *state;
+    size_t before = f->points.count, first = close_points(f);
+    assert_int_equal(first, before);
+    assert_true(f->points.count > first + 500);
+    for (size_t i = first; i < f->points.count; i++) {
+        const float *p = f->points.position[i], *n = f->points.normal[i];
+        double from = distance(p, 0, 0, 0);
+        // The hull of these cameras reaches 9 % past the ball at most, and voxels are 0.06 wide.
+        assert_true(from > 0.94 && from < 1.15);
+        assert_true((double)(p[0] * n[0] + p[1] * n[1] + p[2] * n[2]) > 0.8 * from);
+    }
+    for (int k = 0; k < 24; k++) {
+        double nearest = INFINITY, turn = TAU * k / 24, up = -0.6 - 0.03 * k;
+        for (size_t i = first; i < f->points.count; i++)
+            nearest = fmin(nearest, distance(f->points.position[i], cos(turn) * cos(up),
+                                             sin(turn) * cos(up), sin(up)));
+        assert_true(nearest < 0.15);
+    }
+}
+
+static void strays_go_and_what_stands_apart_stays(void **state)
+{
+    struct fixture *f = *state;
+    add_point(&f->points, 0, 0, 1.2); // a stray above the ball
+    add_point(&f->points, 0, 2, -0.5); // what stands beside it: seen, outside all silhouettes
+    size_t first = close_points(f), strays = 0, apart = 0;
+    for (size_t i = 0; i < f->points.count; i++) {
+        strays += distance(f->points.position[i], 0, 0, 1.2) < 1e-3;
+        apart += distance(f->points.position[i], 0, 2, -0.5) < 1e-3 && i < first;
+    }
+    assert_int_equal(strays, 0);
+    assert_int_equal(apart, 1);
+}
+
+// The camera at +x sees a hole into the ball, as deep as its middle.
+static void what_a_map_sees_through_is_not_closed(void **state)
+{
+    struct fixture *f = *state;
+    struct orl_hull_points hull;
+    size_t added, before = 0, after = 0;
+    struct orl_depth_map map = {.view = f->silhouettes[0].view};
+    assert_int_equal(orl_image_init(NULL, &map.depth, SIDE, SIDE, 1, ORL_PIXEL_F32), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        double across = hypot(i % SIDE + 0.5 - 0.5 * SIDE, (int)(i / SIDE) + 0.5 - 0.5 * SIDE);
+        map.depth.f32[i] = across < 12 ? (float)AWAY : 0;
+    }
+    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    orl_hull_points_see(&hull, 0, &map);
+    assert_int_equal(orl_hull_points_end(NULL, &hull, &f->points, &added), ORL_OK);
+    orl_hull_points_finish(&hull);
+    for (size_t i = added; i < f->points.count; i++) { // within 0.2 of the hole's axis
+        const float *p = f->points.position[i];
+        bool hole = hypot((double)p[1], (double)p[2]) < 0.2;
+        before += hole && p[0] > 0.5f;
+        after += hole && fabs((double)p[0]) < 0.2;
+    }
+    assert_int_equal(before, 0);
+    assert_true(after > 4);
+    orl_image_finish(&map.depth);
+}
+
+// A second ball in all silhouettes, of which stereo has found nothing, may be chance.
+static void parts_without_points_are_left_out(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < PHOTOS; i++)
+        for (int part = 0; part < 2; part++)
+            add_ball(&f->silhouettes[i], 0, 0, part ? 0 : 2.6);
+    size_t first = close_points(f);
+    assert_true(f->points.count > first);
+    for (size_t i = first; i < f->points.count; i++)
+        assert_true(f->points.position[i][2] < 1.3f);
+}
+
+static void points_that_silhouettes_exclude_make_no_hull(void **state)
+{
+    struct fixture *f = *state;
+    memset(f->silhouettes[3].mask.u8, 0, SIDE * SIDE);
+    size_t before = f->points.count;
+    assert_int_equal(close_points(f), before);
+    assert_int_equal(f->points.count, before);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_open_part_is_closed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(strays_go_and_what_stands_apart_stays, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_a_map_sees_through_is_not_closed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(parts_without_points_are_left_out, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(points_that_silhouettes_exclude_make_no_hull, set_up,
+                                        tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
