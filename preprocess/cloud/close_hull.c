@@ -11,9 +11,10 @@
 #include "preprocess/cloud/hull_points.h"
 #include "preprocess/cloud/silhouettes.h"
 
-// Share of the points that may lie outside: strays and what stands beside the subject. Masks that hide
-// passers-by exclude more of what is behind.
-static const double OUTSIDE_MOST = 0.35;
+// Share of the points that may lie outside, each counted as often as other photographs agree on it:
+// strays, which few agree on, and what stands beside the subject. Masks that hide passers-by and
+// pictures taken at night exclude more.
+static const double OUTSIDE_MOST = 0.2;
 
 // --- colours of new points ---
 
@@ -111,8 +112,10 @@ static enum orl_result close_with(struct orl_job *job, const struct orl_colmap_m
     size_t before = points->count, first = before;
     enum orl_result result = orl_hull_points_begin(job->log, found->items, found->count, points,
                                                    &hull);
-    double outside = (double)hull.outside_count / (double)before;
-    bool agree = outside <= OUTSIDE_MOST;
+    bool agree = hull.outside_share <= OUTSIDE_MOST;
+    if (result == ORL_OK)
+        orl_logf(job->log, ORL_LOG_DEBUG, "fuse: %.1f %% of the points lie outside silhouettes",
+                 100 * hull.outside_share);
     if (result == ORL_OK && agree)
         result = see_maps(job, model, found, &hull);
     if (result == ORL_OK && agree)

@@ -65,11 +65,15 @@ static enum orl_result mark_outside(const struct orl_log *log, const struct orl_
     hull->outside = orl_array(log, points->count, sizeof *hull->outside);
     if (!hull->outside)
         return ORL_ERR_MEMORY;
+    double all = 0, outside = 0;
     for (size_t i = 0; i < points->count; i++) {
         const float *p = points->position[i];
+        int others = points->photographs[i] > 1 ? points->photographs[i] - 1 : 0;
         hull->outside[i] = is_outside(hull, (double[3]){(double)p[0], (double)p[1], (double)p[2]});
-        hull->outside_count += hull->outside[i];
+        outside += hull->outside[i] ? others : 0;
+        all += others;
     }
+    hull->outside_share = all > 0 ? outside / all : 0;
     return ORL_OK;
 }
 

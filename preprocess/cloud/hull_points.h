@@ -14,7 +14,7 @@ struct orl_hull_points {
     struct orl_hull cube;
     uint8_t *through; // side^3: how many maps see through the voxel; owned
     bool *outside;    // of each point: too many silhouettes exclude it; owned
-    size_t outside_count;
+    double outside_share; // of the points, each counted as often as other photographs agree on it
 };
 
 // Carves the cube by the silhouettes of `count` photographs. One in 32 of them may be wrong. Points

@@ -14,7 +14,9 @@ enum {
     BORDER = 50,   // of the picture's side: the width of its border
     DARKEST = 100, // thresholds above are not those of a dark backdrop; 8 bits
 };
-static const double BRIGHT_BORDER = 0.1; // share of the pixels at the border, on average
+// Share of the pixels at the border that may be the subject's, on average and in any photograph. A
+// subject that leaves the pictures is not one that they go around, and masks may leave the room in.
+static const double BORDER_MOST = 0.1, BORDER_MOST_ONE = 0.5;
 // Length of the mean of the directions to the photographs: 0 all around, 1 from one side.
 static const double ONE_SIDED = 0.8;
 
@@ -63,12 +65,37 @@ static bool is_one_sided(const struct orl_silhouettes *found, const struct orl_p
     return sqrt(orl_dot3(mean, mean)) > ONE_SIDED;
 }
 
+// --- the border of the pictures ---
+
+// The share of the pixels at the picture's border that are marked.
+static double border_share(const struct orl_image *mask)
+{
+    int wide = mask->width / BORDER + 1, high = mask->height / BORDER + 1;
+    size_t marked = 0, count = 0;
+    for (int y = 0; y < mask->height; y++)
+        for (int x = 0; x < mask->width; x++)
+            if (x < wide || y < high || x >= mask->width - wide || y >= mask->height - high) {
+                marked += mask->u8[(size_t)y * (size_t)mask->width + (size_t)x] != 0;
+                count++;
+            }
+    return (double)marked / (double)count;
+}
+
+// Adds a photograph's share to the mean over `count`. False if it is too large by then.
+static bool add_border(const struct orl_image *mask, size_t count, double *mean)
+{
+    double share = border_share(mask);
+    *mean += share / (double)count;
+    return share <= BORDER_MOST_ONE && *mean <= BORDER_MOST;
+}
+
 // --- masks of the scene ---
 
 static enum orl_result read_masks(struct orl_job *job, struct orl_silhouettes *found, bool *all)
 {
+    double border = 0;
     enum orl_result result = ORL_OK;
-    *all = job->params->masks_dir != NULL;
+    *all = true;
     for (size_t i = 0; result == ORL_OK && *all && i < found->count; i++) {
         struct orl_silhouette *s = &found->items[i];
         char *path = orl_job_path(job, "masks/%s.png", found->image[i]->name);
@@ -76,8 +103,9 @@ static enum orl_result read_masks(struct orl_job *job, struct orl_silhouettes *f
         *all = result == ORL_OK && orl_path_is_file(path);
         if (*all)
             result = orl_picture_read(job->log, path, 1, &s->mask);
-        *all = *all && s->mask.width == s->view.camera.width &&
-               s->mask.height == s->view.camera.height;
+        *all = *all && result == ORL_OK && s->mask.width == s->view.camera.width &&
+               s->mask.height == s->view.camera.height &&
+               add_border(&s->mask, found->count, &border);
         free(path);
     }
     return result;
@@ -98,20 +126,6 @@ static enum orl_result read_dark(struct orl_job *job, const struct orl_silhouett
     return result;
 }
 
-// The share of the pixels at the picture's border that are marked.
-static double border_share(const struct orl_image *mask)
-{
-    int wide = mask->width / BORDER + 1, high = mask->height / BORDER + 1;
-    size_t marked = 0, count = 0;
-    for (int y = 0; y < mask->height; y++)
-        for (int x = 0; x < mask->width; x++)
-            if (x < wide || y < high || x >= mask->width - wide || y >= mask->height - high) {
-                marked += mask->u8[(size_t)y * (size_t)mask->width + (size_t)x] != 0;
-                count++;
-            }
-    return (double)marked / (double)count;
-}
-
 static int compare_ints(const void *left, const void *right)
 {
     return *(const int *)left - *(const int *)right;
@@ -124,23 +138,20 @@ static enum orl_result find_threshold(struct orl_job *job, const struct orl_silh
                                       int *threshold)
 {
     int *used = orl_array(job->log, found->count, sizeof *used);
-    double bright = 0;
+    double border = 0;
+    bool dark = true;
     enum orl_result result = used ? ORL_OK : ORL_ERR_MEMORY;
-    *threshold = -1;
-    for (size_t i = 0; result == ORL_OK && i < found->count; i++) {
+    for (size_t i = 0; result == ORL_OK && dark && i < found->count; i++) {
         struct orl_image mask = {0};
         result = read_dark(job, found, i, -1, &used[i], &mask);
-        if (result == ORL_OK)
-            bright += border_share(&mask) / (double)found->count;
+        dark = result == ORL_OK && add_border(&mask, found->count, &border);
         orl_image_finish(&mask);
-        if (bright > BRIGHT_BORDER)
-            break;
     }
-    if (result == ORL_OK && bright <= BRIGHT_BORDER) {
+    *threshold = -1;
+    if (result == ORL_OK && dark) {
         qsort(used, found->count, sizeof *used, compare_ints);
-        *threshold = used[found->count / 4];
-        if (*threshold > DARKEST)
-            *threshold = -1;
+        if (used[found->count / 4] <= DARKEST)
+            *threshold = used[found->count / 4];
     }
     free(used);
     return result;

@@ -15,8 +15,8 @@ struct orl_silhouettes {
 
 // Finds them for the training photographs `train`: the scene's masks, if each photograph has one, or
 // without masks what is brighter than a dark backdrop, if all have one. None if there are fewer than
-// five, or if they were taken from one side of the points: their hull would be much larger than the
-// subject. The model must outlive them.
+// five, if they were taken from one side of the points, so that their hull would be much larger than
+// the subject, or if the silhouettes leave the pictures. The model must outlive them.
 enum orl_result orl_silhouettes_find(struct orl_job *job, const struct orl_colmap_model *model,
                                      const struct orl_names *train, const struct orl_points *points,
                                      struct orl_silhouettes *found) ORL_CHECK_RESULT;

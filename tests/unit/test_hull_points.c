@@ -40,6 +40,7 @@ static void add_ball(struct orl_silhouette *s, double x, double y, double z)
 
 static void add_point(struct orl_points *points, double x, double y, double z)
 {
+    points->photographs[points->count] = 2;
     float *p = points->position[points->count++];
     p[0] = (float)x, p[1] = (float)y, p[2] = (float)z;
 }
@@ -173,8 +174,15 @@ static void parts_without_points_are_left_out(void **state)
 static void points_that_silhouettes_exclude_make_no_hull(void **state)
 {
     struct fixture *f = *state;
-    memset(f->silhouettes[3].mask.u8, 0, SIDE * SIDE);
+    struct orl_hull_points hull;
     size_t before = f->points.count;
+    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    assert_true(hull.outside_share < 0.01);
+    orl_hull_points_finish(&hull);
+    memset(f->silhouettes[3].mask.u8, 0, SIDE * SIDE);
+    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    assert_true(hull.outside_share > 0.99);
+    orl_hull_points_finish(&hull);
     assert_int_equal(close_points(f), before);
     assert_int_equal(f->points.count, before);
 }

@@ -142,12 +142,27 @@ static void masks_are_silhouettes_if_each_photograph_has_one(void **state)
     assert_int_equal(count_found(f), PHOTOS);
 }
 
+static void masks_that_leave_the_room_in_are_no_silhouettes(void **state)
+{
+    struct fixture *f = *state;
+    char name[32];
+    write_all(f, 230);
+    f->params.masks_dir = "masks";
+    for (int i = 0; i < PHOTOS; i++) {
+        snprintf(name, sizeof name, "%s.png", f->names[i]);
+        write_square(f, "masks", name, 1, 0, 255);
+    }
+    assert_int_equal(count_found(f), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_dark_backdrop_shows_them, set_up, tear_down),
         cmocka_unit_test_setup_teardown(other_backdrops_do_not, set_up, tear_down),
         cmocka_unit_test_setup_teardown(photographs_from_one_side_have_no_near_hull, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(masks_that_leave_the_room_in_are_no_silhouettes, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(masks_are_silhouettes_if_each_photograph_has_one, set_up,
                                         tear_down),
