@@ -22,7 +22,7 @@ static const double OUTSIDE_MOST = 0.2;
 static int facing(const struct orl_silhouettes *found, const struct orl_points *points, size_t point,
                   double pixel[2])
 {
-    double world[3], normal[3], best = 0, at[2], depth;
+    double world[3], normal[3], best = 0, at[2];
     int chosen = -1;
     for (int k = 0; k < 3; k++) {
         world[k] = (double)points->position[point][k];
@@ -35,9 +35,7 @@ static int facing(const struct orl_silhouettes *found, const struct orl_points *
         for (int k = 0; k < 3; k++)
             towards[k] -= world[k];
         double cosine = orl_dot3(towards, normal) / sqrt(orl_dot3(towards, towards));
-        if (!(cosine > best) || !orl_view_project(&s->view, world, at, &depth) ||
-            !(at[0] >= 0 && at[1] >= 0 && at[0] < s->mask.width && at[1] < s->mask.height) ||
-            !s->mask.u8[(size_t)at[1] * (size_t)s->mask.width + (size_t)at[0]])
+        if (!(cosine > best) || orl_silhouette_ask(s, world, at) != ORL_SILHOUETTE_INSIDE)
             continue;
         best = cosine;
         chosen = (int)i;

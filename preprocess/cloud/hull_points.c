@@ -42,13 +42,22 @@ static int pardoned(const struct orl_hull_points *hull)
 
 // --- silhouettes ---
 
+enum orl_silhouette_verdict orl_silhouette_ask(const struct orl_silhouette *s,
+                                               const double world[3], double pixel[2])
+{
+    double depth;
+    if (!orl_view_project(&s->view, world, pixel, &depth) ||
+        !(pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < s->mask.width && pixel[1] < s->mask.height))
+        return ORL_SILHOUETTE_UNSEEN;
+    return s->mask.u8[(size_t)pixel[1] * (size_t)s->mask.width + (size_t)pixel[0]]
+               ? ORL_SILHOUETTE_INSIDE
+               : ORL_SILHOUETTE_OUTSIDE;
+}
+
 static bool excludes(const struct orl_silhouette *s, const double world[3])
 {
-    double pixel[2], depth;
-    if (!orl_view_project(&s->view, world, pixel, &depth) || !(pixel[0] >= 0 && pixel[1] >= 0 &&
-            pixel[0] < s->mask.width && pixel[1] < s->mask.height))
-        return false; // the picture does not show the place
-    return !s->mask.u8[(size_t)pixel[1] * (size_t)s->mask.width + (size_t)pixel[0]];
+    double pixel[2];
+    return orl_silhouette_ask(s, world, pixel) == ORL_SILHOUETTE_OUTSIDE;
 }
 
 static bool is_outside(const struct orl_hull_points *hull, const double world[3])
