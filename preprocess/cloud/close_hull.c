@@ -19,8 +19,8 @@ static const double OUTSIDE_MOST = 0.2;
 // --- colours of new points ---
 
 // The photograph that faces a point most directly and whose silhouette holds it; -1: none.
-static int facing(const struct orl_silhouettes *found, const struct orl_points *points, size_t point,
-                  double pixel[2])
+static int facing(const struct orl_silhouettes *found, const struct orl_points *points,
+                  size_t point, double pixel[2])
 {
     double world[3], normal[3], best = 0, at[2];
     int chosen = -1;
@@ -50,8 +50,8 @@ struct origin {
     double pixel[2];
 };
 
-static enum orl_result color_from(struct orl_job *job, const struct orl_silhouettes *found, int photo,
-                                  const struct origin *origins, size_t first,
+static enum orl_result color_from(struct orl_job *job, const struct orl_silhouettes *found,
+                                  int photo, const struct origin *origins, size_t first,
                                   struct orl_points *points)
 {
     struct orl_image picture = {0};
@@ -109,7 +109,7 @@ static enum orl_result close_with(struct orl_job *job, const struct orl_colmap_m
     struct orl_hull_points hull = {0};
     size_t before = points->count, first = before;
     enum orl_result result = orl_hull_points_begin(job->log, found->items, found->count, points,
-                                                   &hull);
+                                                   job->params->max_ram_bytes, &hull);
     bool agree = hull.outside_share <= OUTSIDE_MOST;
     if (result == ORL_OK)
         orl_logf(job->log, ORL_LOG_DEBUG, "fuse: %.1f %% of the points lie outside silhouettes",

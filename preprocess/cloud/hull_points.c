@@ -9,17 +9,18 @@
 
 enum {
     SIDE_MIN = 32,     // voxels
-    SIDE_MAX = 256,    // 200 MiB while the surface is made
+    SIDE_MAX = 256,    // 224 MiB while the surface is made
+    VOXEL_BYTES = 14,  // inside, through, stack or field, and the surface's copy of the field
     WRONG_ONE_IN = 32, // silhouettes and maps
 };
 // The cube is around the inner 99 % of the points along each axis, and half as large again as they:
-// stereo may have missed a part of the subject. In a larger one the backdrop would leave more that is
-// not the subject.
+// stereo may have missed a part of the subject. In a larger one the backdrop would leave more that
+// is not the subject.
 static const double OUTERMOST = 0.005, ROOM = 1.5;
 static const double VOXEL_PX = 2;   // least size of a voxel, pixels of the photographs
 static const double THROUGH = 1.5;  // voxels that a map must see behind the centre of one
 static const double APART = 0.5;    // voxels from any other point to a new one
-static const double NEAR_HULL = 0.1; // of the cube: points outside that are nearer are strays of the subject
+static const double NEAR_HULL = 0.1; // of the cube: nearer points outside are the subject's strays
 
 static size_t voxel_count(const struct orl_hull *cube)
 {
@@ -186,7 +187,8 @@ static double pixel_size(const struct orl_hull_points *hull, const double middle
 
 enum orl_result orl_hull_points_begin(const struct orl_log *log,
                                       const struct orl_silhouette *silhouettes, size_t count,
-                                      const struct orl_points *points, struct orl_hull_points *hull)
+                                      const struct orl_points *points, size_t max_bytes,
+                                      struct orl_hull_points *hull)
 {
     double middle[3] = {0}, extent = 0;
     *hull = (struct orl_hull_points){.silhouettes = silhouettes, .count = count};
@@ -196,7 +198,8 @@ enum orl_result orl_hull_points_begin(const struct orl_log *log,
     if (result != ORL_OK || !(extent > 0))
         return result;
     double size = ROOM * extent, voxel = VOXEL_PX * pixel_size(hull, middle);
-    int side = (int)fmin(fmax(ceil(size / voxel), SIDE_MIN), SIDE_MAX);
+    double most = max_bytes ? fmin(cbrt((double)max_bytes / VOXEL_BYTES), SIDE_MAX) : SIDE_MAX;
+    int side = (int)fmax(fmin(ceil(size / voxel), most), SIDE_MIN);
     for (int k = 0; k < 3; k++)
         middle[k] -= 0.5 * size;
     result = orl_hull_init(log, &hull->cube, side, middle, size);
@@ -323,9 +326,9 @@ static enum orl_result take(const struct orl_log *log, const bool *taken, struct
     return ORL_OK;
 }
 
-// Drops the points that are within `reach` of another cloud (near), or that are not.
-static enum orl_result drop(const struct orl_log *log, const struct orl_points *others, double reach,
-                            bool near, struct orl_points *points)
+// Drops the points that are within `reach` of another cloud.
+static enum orl_result drop_near(const struct orl_log *log, const struct orl_points *others,
+                                 double reach, struct orl_points *points)
 {
     size_t left = 0;
     if (!others->count || !points->count)
@@ -335,7 +338,7 @@ static enum orl_result drop(const struct orl_log *log, const struct orl_points *
     enum orl_result result = found && dist2 ? orl_points_nearest(log, others, points, found, dist2)
                                             : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < points->count; i++)
-        if (((double)dist2[i] <= reach * reach) != near)
+        if ((double)dist2[i] > reach * reach)
             orl_points_copy(points, i, points, left++);
     if (result == ORL_OK)
         points->count = left;
@@ -364,15 +367,16 @@ static enum orl_result replace_points(const struct orl_log *log, const struct or
                                       size_t *added)
 {
     struct orl_points surface = {0}, outside = {0}, joined = {0};
+    const struct orl_points *const clouds[3] = {points, &outside, &surface};
     enum orl_result result = take(log, hull->outside, points, &outside);
     if (result == ORL_OK)
         result = surface_points(log, &hull->cube, mesh, &surface);
     if (result == ORL_OK)
-        result = drop(log, &surface, NEAR_HULL * hull->cube.side * hull->cube.voxel, true, &outside);
+        result = drop_near(log, &surface, NEAR_HULL * hull->cube.side * hull->cube.voxel, &outside);
     if (result == ORL_OK)
-        result = drop(log, points, APART * hull->cube.voxel, true, &surface);
+        result = drop_near(log, points, APART * hull->cube.voxel, &surface);
     if (result == ORL_OK)
-        result = join(log, (const struct orl_points *const[3]){points, &outside, &surface}, &joined);
+        result = join(log, clouds, &joined);
     if (result == ORL_OK) {
         *added = points->count + outside.count;
         orl_points_finish(points);

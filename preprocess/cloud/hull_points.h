@@ -25,11 +25,11 @@ struct orl_hull_points {
 };
 
 // Carves the cube by the silhouettes of `count` photographs. One in 32 of them may be wrong. Points
-// must be usable. `silhouettes` must outlive the hull. On success and failure alike, the caller must
+// must be usable. The cube's voxels take at most `max_bytes` (0: no limit), which makes them coarser. `silhouettes` must outlive the hull. On success and failure alike, the caller must
 // call orl_hull_points_finish.
 enum orl_result orl_hull_points_begin(const struct orl_log *log,
                                       const struct orl_silhouette *silhouettes, size_t count,
-                                      const struct orl_points *points,
+                                      const struct orl_points *points, size_t max_bytes,
                                       struct orl_hull_points *hull) ORL_CHECK_RESULT;
 // Notes which voxels the depth map of photograph `which` sees through. Depth beside the silhouette
 // does not count.

@@ -1,4 +1,5 @@
-// The visual hull closes what stereo leaves open: photographs around a ball, three quarters of which have points.
+// The visual hull closes what stereo leaves open: photographs around a ball, three quarters of which
+// have points.
 #include <math.h>
 
 #include "preprocess/cloud/hull_points.h"
@@ -45,7 +46,8 @@ static void add_point(struct orl_points *points, double x, double y, double z)
     p[0] = (float)x, p[1] = (float)y, p[2] = (float)z;
 }
 
-// The upper three quarters of the ball, in steps that are finer than the voxels and a pixel within the outlines.
+// The upper three quarters of the ball, in steps that are finer than the voxels and a pixel within
+// the outlines.
 static int set_up(void **state)
 {
     enum { STEPS = 160 };
@@ -84,12 +86,18 @@ static int tear_down(void **state)
     return 0;
 }
 
+static void begin(const struct fixture *f, struct orl_hull_points *hull)
+{
+    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, 0, hull),
+                     ORL_OK);
+}
+
 // Closes the points without depth maps; the first new point.
 static size_t close_points(struct fixture *f)
 {
     struct orl_hull_points hull;
     size_t added;
-    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    begin(f, &hull);
     assert_int_equal(orl_hull_points_end(NULL, &hull, &f->points, &added), ORL_OK);
     orl_hull_points_finish(&hull);
     return added;
@@ -143,7 +151,7 @@ static void what_a_map_sees_through_is_not_closed(void **state)
         double across = hypot(i % SIDE + 0.5 - 0.5 * SIDE, (int)(i / SIDE) + 0.5 - 0.5 * SIDE);
         map.depth.f32[i] = across < 12 ? (float)AWAY : 0;
     }
-    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    begin(f, &hull);
     orl_hull_points_see(&hull, 0, &map);
     assert_int_equal(orl_hull_points_end(NULL, &hull, &f->points, &added), ORL_OK);
     orl_hull_points_finish(&hull);
@@ -176,15 +184,25 @@ static void points_that_silhouettes_exclude_make_no_hull(void **state)
     struct fixture *f = *state;
     struct orl_hull_points hull;
     size_t before = f->points.count;
-    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    begin(f, &hull);
     assert_true(hull.outside_share < 0.01);
     orl_hull_points_finish(&hull);
     memset(f->silhouettes[3].mask.u8, 0, SIDE * SIDE);
-    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points, &hull), ORL_OK);
+    begin(f, &hull);
     assert_true(hull.outside_share > 0.99);
     orl_hull_points_finish(&hull);
     assert_int_equal(close_points(f), before);
     assert_int_equal(f->points.count, before);
+}
+
+static void voxels_fit_in_memory(void **state)
+{
+    const struct fixture *f = *state;
+    struct orl_hull_points hull;
+    assert_int_equal(orl_hull_points_begin(NULL, f->silhouettes, PHOTOS, &f->points,
+                                           (size_t)14 * 40 * 40 * 40, &hull), ORL_OK);
+    assert_true(hull.cube.side >= 39 && hull.cube.side <= 40);
+    orl_hull_points_finish(&hull);
 }
 
 int main(void)
@@ -194,6 +212,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(strays_go_and_what_stands_apart_stays, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_a_map_sees_through_is_not_closed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(parts_without_points_are_left_out, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(voxels_fit_in_memory, set_up, tear_down),
         cmocka_unit_test_setup_teardown(points_that_silhouettes_exclude_make_no_hull, set_up,
                                         tear_down),
     };
