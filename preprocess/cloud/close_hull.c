@@ -14,7 +14,7 @@
 // Share of the points that may lie outside, each counted as often as other photographs agree on it:
 // strays, which few agree on, and what stands beside the subject. Masks that hide passers-by and
 // pictures taken at night exclude more.
-static const double OUTSIDE_MOST = 0.2;
+static const double OUTSIDE_MOST = 0.3;
 
 // --- colours of new points ---
 
