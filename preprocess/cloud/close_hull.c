@@ -102,33 +102,43 @@ static enum orl_result see_maps(struct orl_job *job, const struct orl_colmap_mod
     return result;
 }
 
+// Carves the rest of the hull, and takes its points.
+static enum orl_result take_points(struct orl_job *job, const struct orl_colmap_model *model,
+                                   const struct orl_silhouettes *found,
+                                   struct orl_hull_points *hull, struct orl_points *points,
+                                   json_t *record)
+{
+    const char *from = found->given ? "masks" : "dark backdrop";
+    size_t before = points->count, first = before;
+    enum orl_result result = see_maps(job, model, found, hull);
+    if (result == ORL_OK)
+        result = orl_hull_points_end(job->log, hull, points, &first);
+    if (result == ORL_OK)
+        result = set_colors(job, found, first, points);
+    if (result != ORL_OK)
+        return result;
+    orl_logf(job->log, ORL_LOG_INFO, "fuse: the visual hull of %zu silhouettes (%s) closes "
+             "surfaces by %zu points; %zu outside it are dropped", found->count, from,
+             points->count - first, before - first);
+    json_object_set_new(record, "hull", json_pack(
+        "{s:I, s:I, s:I, s:s}", "silhouettes", (json_int_t)found->count, "added",
+        (json_int_t)(points->count - first), "dropped", (json_int_t)(before - first), "from",
+        from));
+    return ORL_OK;
+}
+
 static enum orl_result close_with(struct orl_job *job, const struct orl_colmap_model *model,
                                   const struct orl_silhouettes *found, struct orl_points *points,
                                   json_t *record)
 {
     struct orl_hull_points hull = {0};
-    size_t before = points->count, first = before;
     enum orl_result result = orl_hull_points_begin(job->log, found->items, found->count, points,
                                                    job->params->max_ram_bytes, &hull);
-    bool agree = hull.outside_share <= OUTSIDE_MOST;
     if (result == ORL_OK)
         orl_logf(job->log, ORL_LOG_DEBUG, "fuse: %.1f %% of the points lie outside silhouettes",
                  100 * hull.outside_share);
-    if (result == ORL_OK && agree)
-        result = see_maps(job, model, found, &hull);
-    if (result == ORL_OK && agree)
-        result = orl_hull_points_end(job->log, &hull, points, &first);
-    if (result == ORL_OK && agree)
-        result = set_colors(job, found, first, points);
-    if (result == ORL_OK && agree) {
-        orl_logf(job->log, ORL_LOG_INFO, "fuse: the visual hull of %zu silhouettes (%s) closes "
-                 "surfaces by %zu points; %zu outside it are dropped", found->count,
-                 found->given ? "masks" : "dark backdrop", points->count - first, before - first);
-        json_object_set_new(record, "hull", json_pack(
-            "{s:I, s:I, s:I, s:s}", "silhouettes", (json_int_t)found->count, "added",
-            (json_int_t)(points->count - first), "dropped", (json_int_t)(before - first), "from",
-            found->given ? "masks" : "dark backdrop"));
-    }
+    if (result == ORL_OK && hull.outside_share <= OUTSIDE_MOST)
+        result = take_points(job, model, found, &hull, points, record);
     orl_hull_points_finish(&hull);
     return result;
 }

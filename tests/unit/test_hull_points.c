@@ -19,8 +19,8 @@ static double distance(const float a[3], double x, double y, double z)
                 ((double)a[2] - z) * ((double)a[2] - z));
 }
 
-// Marks the pixels whose rays meet a ball of radius 1.
-static void add_ball(struct orl_silhouette *s, double x, double y, double z)
+// Marks the pixels whose rays meet a ball.
+static void add_ball(struct orl_silhouette *s, double x, double y, double z, double radius)
 {
     double eye[3], ray[3];
     orl_pose_centre(&s->view.cam_from_world, eye);
@@ -34,7 +34,7 @@ static void add_ball(struct orl_silhouette *s, double x, double y, double z)
             ray2 += ray[k] * ray[k];
             to2 += to[k] * to[k];
         }
-        if (to2 - along * along / ray2 <= 1)
+        if (to2 - along * along / ray2 <= radius * radius)
             s->mask.u8[i] = 255;
     }
 }
@@ -62,7 +62,7 @@ static int set_up(void **state)
         s->view = (struct orl_view){{SIDE, SIDE, PIXELS, PIXELS, 0.5 * SIDE, 0.5 * SIDE},
                                     orl_pose_look_at(eye, (double[3]){0}, (double[3]){0, 0, 1})};
         assert_int_equal(orl_image_init(NULL, &s->mask, SIDE, SIDE, 1, ORL_PIXEL_U8), ORL_OK);
-        add_ball(s, 0, 0, 0);
+        add_ball(s, 0, 0, 0, 1);
     }
     assert_int_equal(orl_points_init(NULL, &f->points, STEPS * STEPS), ORL_OK);
     f->points.count = 0;
@@ -166,17 +166,34 @@ static void what_a_map_sees_through_is_not_closed(void **state)
     orl_image_finish(&map.depth);
 }
 
-// A second ball in all silhouettes, of which stereo has found nothing, may be chance.
+// The points of the hull that belong to a small ball beside the large one.
+static size_t count_beside(const struct fixture *f, size_t first)
+{
+    size_t count = 0;
+    for (size_t i = first; i < f->points.count; i++)
+        count += distance(f->points.position[i], 1.05, 0, 1.05) < 0.3;
+    return count;
+}
+
+// A second part in all silhouettes, of which stereo has found nothing, may be chance.
 static void parts_without_points_are_left_out(void **state)
 {
     struct fixture *f = *state;
     for (int i = 0; i < PHOTOS; i++)
-        for (int part = 0; part < 2; part++)
-            add_ball(&f->silhouettes[i], 0, 0, part ? 0 : 2.6);
+        add_ball(&f->silhouettes[i], 1.05, 0, 1.05, 0.2);
     size_t first = close_points(f);
     assert_true(f->points.count > first);
-    for (size_t i = first; i < f->points.count; i++)
-        assert_true(f->points.position[i][2] < 1.3f);
+    assert_int_equal(count_beside(f, first), 0);
+}
+
+// With a point of its own it stays.
+static void parts_with_points_are_closed(void **state)
+{
+    struct fixture *f = *state;
+    for (int i = 0; i < PHOTOS; i++)
+        add_ball(&f->silhouettes[i], 1.05, 0, 1.05, 0.2);
+    add_point(&f->points, 1.05, 0, 1.05);
+    assert_true(count_beside(f, close_points(f)) > 20);
 }
 
 static void points_that_silhouettes_exclude_make_no_hull(void **state)
@@ -212,6 +229,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(strays_go_and_what_stands_apart_stays, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_a_map_sees_through_is_not_closed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(parts_without_points_are_left_out, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(parts_with_points_are_closed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(voxels_fit_in_memory, set_up, tear_down),
         cmocka_unit_test_setup_teardown(points_that_silhouettes_exclude_make_no_hull, set_up,
                                         tear_down),
