@@ -61,6 +61,8 @@ json_t *orl_prepare_arguments(const struct orl_log *log, const struct orl_prepar
     add_number(list, "--frames", p->frames);
     add_number(list, "--max-size", p->max_size);
     add_number(list, "--test-every", p->test_every);
+    if (p->test_block.end > 0)
+        add(list, "--test-block", json_sprintf("%d:%d", p->test_block.first, p->test_block.end));
     add_number(list, "--radius-neighbours", p->radius_neighbours);
     add_number(list, "--radius-overlap", p->radius_overlap);
     add_number(list, "--fuse-cluster", p->fuse_cluster);

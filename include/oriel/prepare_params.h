@@ -76,6 +76,11 @@ extern const char *const orl_occluder_search_names[];
 extern const char *const orl_leave_out_names[];
 extern const char *const orl_until_names[];
 
+// Photographs by their place in the order of names, from 0.
+struct orl_test_block {
+    int first, end; // first to end - 1; end 0: none
+};
+
 struct orl_prepare_params {
     const char *const *inputs; // photographs, videos and folders of them, with their sub-folders
     size_t input_count;
@@ -85,6 +90,7 @@ struct orl_prepare_params {
     enum orl_leave_out leave_out;
     int test_every;            // hold out photographs 0, N, 2N, ... by name; 0: none
     const struct orl_names *test_list; // hold out these (extension optional); NULL: none
+    struct orl_test_block test_block;  // hold out these
     int max_size;              // larger side of the undistorted photographs in pixels;
                                // 0: by quality
     enum orl_quality quality;

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "preprocess/import/import_internal.h"
+#include "preprocess/job/test_block.h"
 
 static bool has_extension(const char *name, const char *const *known)
 {
@@ -302,6 +303,11 @@ static enum orl_result hold_out(struct import_job *job)
 {
     const struct orl_import_params *params = job->params;
     size_t test = 0;
+    enum orl_result result = orl_test_block_check(job->log, params->test_block, job->view_count);
+    if (result != ORL_OK)
+        return result;
+    for (int i = params->test_block.first; i < params->test_block.end; i++)
+        job->views[i].test = true;
     for (size_t i = 0; params->test_every && i < job->view_count; i += (size_t)params->test_every)
         job->views[i].test = true;
     for (size_t n = 0; params->test_list && n < params->test_list->count; n++) {

@@ -28,6 +28,7 @@ struct orl_import_params {
     double pixel_centre;       // as for orl_known_cameras_read; negative: by format
     int test_every;            // hold out photographs 0, N, 2N, ... by name; 0: none
     const struct orl_names *test_list; // hold out these (extension optional); NULL: none
+    struct orl_test_block test_block;  // hold out these
     int max_size;              // greatest longer side of the scene's photographs, pixels; 0: any
     enum orl_import_silhouettes silhouettes;
     const char *masks_dir;     // of ORL_SILHOUETTES_GIVEN

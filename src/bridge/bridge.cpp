@@ -102,6 +102,19 @@ enum orl_result orl_bridge_blur(const struct orl_log *log, const struct orl_imag
     });
 }
 
+enum orl_result orl_bridge_median(const struct orl_log *log, const struct orl_image *image,
+                                  struct orl_image *median)
+{
+    *median = orl_image();
+    ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->channels == 1 && image->data);
+    enum orl_result result =
+        orl_image_init(log, median, image->width, image->height, 1, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    return run(log, image, median,
+               [](const cv::Mat &source, cv::Mat &target) { cv::medianBlur(source, target, 5); });
+}
+
 enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_image *image,
                                   int width, int height, struct orl_image *resized)
 {

@@ -13,6 +13,9 @@ extern "C" {
 // normalised. Border pixels are repeated outwards. F32, any number of channels.
 enum orl_result orl_bridge_blur(const struct orl_log *log, const struct orl_image *image, int taps,
                                 double sigma_px, struct orl_image *blurred) ORL_CHECK_RESULT;
+// Median of the 5x5 pixels around each pixel. Border pixels are repeated outwards. F32 x1.
+enum orl_result orl_bridge_median(const struct orl_log *log, const struct orl_image *image,
+                                  struct orl_image *median) ORL_CHECK_RESULT;
 // Resizes: averages pixel areas where the picture shrinks, interpolates bilinearly where it grows.
 // U8 values are averaged as stored and rounded.
 enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_image *image,

@@ -195,6 +195,20 @@ enum orl_result args_parse(const struct orl_log *log, const struct arg_command *
     return ORL_OK;
 }
 
+enum orl_result args_held_out(const struct orl_log *log, int every, const struct orl_names *list,
+                              const char *text, struct orl_test_block *block)
+{
+    char end;
+    if ((every > 0) + (list->count > 0) + (text != NULL) > 1)
+        return orl_fail(log, ORL_ERR_ARGUMENT,
+                        "--test-every, --test-list and --test-block exclude each other");
+    if (text && (sscanf(text, "%d:%d%c", &block->first, &block->end, &end) != 2 ||
+                 block->first < 0 || block->end <= block->first))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--test-block %s: must be A:B with A from 0 and B "
+                        "above A", text);
+    return ORL_OK;
+}
+
 enum orl_result args_part(const struct orl_log *log, const char *text, int *index, int *count)
 {
     char end;

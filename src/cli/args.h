@@ -3,6 +3,7 @@
 #define ORL_CLI_ARGS_H
 
 #include "core/file.h"
+#include "oriel/prepare_params.h"
 
 enum arg_type {
     ARG_FLAG,   // bool
@@ -53,6 +54,10 @@ enum orl_result args_parse(const struct orl_log *log, const struct arg_command *
                            char **argv, struct arg_common *common, const char **positionals,
                            size_t *positional_count) ORL_CHECK_RESULT;
 
+// Reads "A:B", the block of --test-block; NULL: none. ORL_ERR_ARGUMENT, logged: anything else, or
+// more than one of the options that hold photographs out is given.
+enum orl_result args_held_out(const struct orl_log *log, int every, const struct orl_names *list,
+                              const char *text, struct orl_test_block *block) ORL_CHECK_RESULT;
 // Reads "K/N", the K-th of N parts with K from 1 to N. *index is K - 1. ORL_ERR_ARGUMENT, logged:
 // anything else.
 enum orl_result args_part(const struct orl_log *log, const char *text, int *index,

@@ -59,14 +59,15 @@ static void print_rows(const struct orl_chart *chart)
         const struct orl_chart_row *row = &chart->rows[i];
         const char *name = row->scene ? row->scene : "all scenes";
         if (strcmp(name, scene) != 0)
-            printf("%s%-14s %-22s %9s %9s %7s %7s %9s  (%s)\n", i ? "\n" : "", "method",
-                   "setting", "frame ms", "PSNR dB", "SSIM", "FLIP", "MiB", name);
+            printf("%s%-14s %-22s %9s %9s %7s %7s %7s %9s  (%s)\n", i ? "\n" : "", "method",
+                   "setting", "frame ms", "PSNR dB", "SSIM", "FLIP", "crumbs", "MiB", name);
         scene = name;
         printf("%-14s %-22s", row->method, row->setting);
         print_number(row->frame_ms, 9, 2);
         print_number(row->psnr_db, 9, 2);
         print_number(row->ssim, 7, 4);
         print_number(row->flip, 7, 4);
+        print_number(row->crumbs, 7, 1);
         print_number(row->device_mib, 9, 1);
         printf("%s\n", row->on_front ? "  front" : "");
     }

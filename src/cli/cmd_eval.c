@@ -40,8 +40,8 @@ struct job {
 static void print_figures(const struct orl_eval_view *view)
 {
     const struct orl_metrics *m = &view->metrics;
-    printf(" %7.2f %7.2f %7.2f  %.4f  %.4f  %6.1f %6.1f  %.4f %9.1f\n", m->psnr_db,
-           m->psnr_cc_db, m->psnr_covered_db, m->ssim, view->flip, 100 * m->coverage,
+    printf(" %7.2f %7.2f %7.2f  %.4f  %.4f  %6.1f  %6.1f %6.1f  %.4f %9.1f\n", m->psnr_db,
+           m->psnr_cc_db, m->psnr_covered_db, m->ssim, view->flip, m->crumbs, 100 * m->coverage,
            100 * m->completeness, m->ncc_error, view->render_ms);
 }
 
@@ -62,8 +62,8 @@ static void print_table(const struct orl_eval *eval)
 {
     printf("%s%s%s, %s\n", eval->method, eval->setting[0] ? " " : "", eval->setting,
            eval->device);
-    printf("%-24s %11s %7s %7s %7s  %6s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR",
-           "fitted", "covered", "SSIM", "FLIP", "cover%", "full%", "1-NCC", "ms");
+    printf("%-24s %11s %7s %7s %7s  %6s  %6s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR",
+           "fitted", "covered", "SSIM", "FLIP", "crumbs", "cover%", "full%", "1-NCC", "ms");
     for (size_t i = 0; i < eval->view_count; i++) {
         const struct orl_eval_view *view = &eval->views[i];
         char size[32], shown[ORL_TEXT_SHOWN];

@@ -9,7 +9,7 @@
 #include "preprocess/import.h"
 
 struct options {
-    const char *silhouettes, *points, *mesh, *frames, *quality, *room;
+    const char *silhouettes, *points, *mesh, *frames, *quality, *room, *test_block;
     int max_vram_mib;
     struct orl_names test_list;
     struct orl_import_params params;
@@ -126,10 +126,9 @@ static enum orl_result run(const struct terminal *terminal, const void *given,
     params.densify.max_vram_bytes = (size_t)o->max_vram_mib << 20;
     if (!params.out)
         return orl_fail(log, ORL_ERR_ARGUMENT, "import: --out SCENE is missing");
-    if (params.test_every && o->test_list.count)
-        return orl_fail(log, ORL_ERR_ARGUMENT,
-                        "import: --test-every and --test-list exclude each other");
-    if (o->frames)
+    result = args_held_out(log, params.test_every, &o->test_list, o->test_block,
+                           &params.test_block);
+    if (result == ORL_OK && o->frames)
         result = parse_frames(log, o->frames, &params.frames);
     if (result == ORL_OK)
         result = parse_points(log, o, &params);
@@ -161,6 +160,8 @@ int cmd_import(int argc, char **argv)
         {"test-every", ARG_INT, &p->test_every, "N", "hold out every N-th photograph by name", 2,
          100000},
         {"test-list", ARG_LIST, &o.test_list, "A,B,..", "hold out these photographs", 0, 0},
+        {"test-block", ARG_STRING, &o.test_block, "A:B",
+         "hold out photographs A to B - 1 in the order of names, from 0: the protocol beyond", 0, 0},
         {"max-size", ARG_INT, &p->max_size, "PX",
          "larger side of photographs in the scene (any)", 64, 16384},
         {"points", ARG_STRING, &o.points, "none|densify|FILE",

@@ -8,7 +8,7 @@
 enum { INPUTS_MAX = 4096 };
 
 struct options {
-    const char *out, *masks, *exposures;
+    const char *out, *masks, *exposures, *test_block;
     struct arg_enum quality, sharing, matching, mapper, densifier, keep, mesh, leave_out, until;
     struct arg_enum hull, occluders, adapt;
     double fps;
@@ -44,9 +44,10 @@ static enum orl_result prepare(const struct terminal *terminal, const struct opt
         .max_ram_bytes = (size_t)o->max_ram_mib << 20, .shader_dir = common->shader_dir};
     if (!o->out)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT, "prepare: --out SCENE is missing");
-    if (o->test_every && o->test_list.count)
-        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
-                        "prepare: --test-every and --test-list exclude each other");
+    enum orl_result result = args_held_out(&terminal->log, o->test_every, &o->test_list,
+                                           o->test_block, &params.test_block);
+    if (result != ORL_OK)
+        return result;
     if (o->fps > 0 && o->frames)
         return orl_fail(&terminal->log, ORL_ERR_ARGUMENT,
                         "prepare: --fps and --frames exclude each other");
@@ -77,6 +78,8 @@ int cmd_prepare(int argc, char **argv)
         {"test-every", ARG_INT, &o.test_every, "N", "hold out every N-th photograph by name",
          2, 100000},
         {"test-list", ARG_LIST, &o.test_list, "A,B,..", "hold out these photographs", 0, 0},
+        {"test-block", ARG_STRING, &o.test_block, "A:B",
+         "hold out photographs A to B - 1 in the order of names, from 0: the protocol beyond", 0, 0},
         {"max-size", ARG_INT, &o.max_size, "PX",
          "larger side of photographs in the scene (by quality: 800, 1600, 3200)", 64, 16384},
         {"quality", ARG_ENUM, &o.quality, "NAME", "sizes and effort", 0, 0},

@@ -172,7 +172,8 @@ static void list_rows(struct orl_chart *chart, const json_t *list)
             .method = json_string_value(json_object_get(row, "method")),
             .setting = json_string_value(json_object_get(row, "setting")),
             .psnr_db = orl_row_number(mean, "psnr_db"), .ssim = orl_row_number(mean, "ssim"),
-            .flip = orl_row_number(mean, "flip"), .frame_ms = orl_row_number(row, "frame_ms"),
+            .flip = orl_row_number(mean, "flip"), .crumbs = orl_row_number(mean, "crumbs"),
+            .frame_ms = orl_row_number(row, "frame_ms"),
             .device_mib = orl_row_number(row, "device_bytes") / (1 << 20),
             .on_front = json_is_true(json_object_get(row, "on_front"))};
     }

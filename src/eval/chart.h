@@ -38,7 +38,7 @@ struct orl_chart_params {
 struct orl_chart_row {
     const char *scene; // NULL: mean over all scenes
     const char *method, *setting;
-    double psnr_db, ssim, flip;
+    double psnr_db, ssim, flip, crumbs;
     double frame_ms, device_mib; // NAN: unknown
     bool on_front;               // no other row is both faster and better
 };

@@ -44,7 +44,7 @@ struct chart_scene {
 
 // --- chart_measure.c ---
 
-enum { CHART_FIGURES = 7 };
+enum { CHART_FIGURES = 8 };
 extern const char *const orl_chart_figures[CHART_FIGURES]; // names: psnr_db, ...
 
 // Sets "views", "mean" and "sd" of a row from pictures that `picture` returns one by one: U8 x3 of

@@ -92,7 +92,8 @@ enum orl_result orl_chart_write_photographs(struct chart_scene *scene)
 // --- accuracy ---
 
 const char *const orl_chart_figures[CHART_FIGURES] = {
-    "psnr_db", "psnr_cc_db", "psnr_covered_db", "ssim", "flip", "coverage", "completeness"};
+    "psnr_db", "psnr_cc_db", "psnr_covered_db", "ssim", "flip", "crumbs", "coverage",
+    "completeness"};
 
 static enum orl_result compare_view(const struct chart_scene *scene, const char *id, size_t view,
                                     const struct orl_image *rendered,
@@ -117,7 +118,7 @@ static enum orl_result compare_view(const struct chart_scene *scene, const char 
         result = write_picture(scene, id, view, "flip", &painted, "error_map", object);
     if (result == ORL_OK) {
         const double values[CHART_FIGURES] = {m.psnr_db, m.psnr_cc_db, m.psnr_covered_db, m.ssim,
-                                              flip, m.coverage, m.completeness};
+                                              flip, m.crumbs, m.coverage, m.completeness};
         memcpy(figures, values, sizeof values);
         for (size_t k = 0; k < CHART_FIGURES; k++)
             json_object_set_new(object, orl_chart_figures[k], json_real(values[k]));

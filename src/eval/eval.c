@@ -148,6 +148,7 @@ static void take_means(struct orl_eval *eval)
         mean->metrics.coverage += m->coverage / n;
         mean->metrics.completeness += m->completeness / n;
         mean->metrics.ncc_error += m->ncc_error / n;
+        mean->metrics.crumbs += m->crumbs / n;
         mean->flip += eval->views[i].flip / n;
         mean->radiance.pu21_psnr_db += eval->views[i].radiance.pu21_psnr_db / n;
         mean->radiance.mu_psnr_db += eval->views[i].radiance.mu_psnr_db / n;
@@ -176,7 +177,7 @@ enum orl_result orl_eval_check(const struct orl_log *log, const struct orl_scene
             return ORL_OK;
     return orl_fail(log, ORL_ERR_DATA,
                     "%s: no photograph is held out to compare with; prepare the scene with "
-                    "--test-every N or --test-list A,B", scene->dir);
+                    "--test-every N, --test-list A,B or --test-block A:B", scene->dir);
 }
 
 static enum orl_result measure_all(struct job *job)

@@ -30,6 +30,7 @@ static bool set_figures(json_t *object, const struct orl_eval *eval,
            set(object, "coverage", json_real(m->coverage)) &&
            set(object, "completeness", json_real(m->completeness)) &&
            set(object, "ncc_error", json_real(m->ncc_error)) &&
+           set(object, "crumbs", json_real(m->crumbs)) &&
            set(object, "flip", json_real(view->flip)) &&
            set(object, "render_ms", json_real(view->render_ms));
 }

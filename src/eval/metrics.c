@@ -259,6 +259,62 @@ static enum orl_result measure_rephoto(const struct orl_log *log, const struct o
     return ORL_OK;
 }
 
+// --- crumbs ---
+
+enum { CRUMB_REACH = 2 }; // pixels: half of the 5x5 median's window
+
+// How far each pixel stands out of the median of its surroundings, in the square root of luma.
+static enum orl_result prominence(const struct orl_log *log, const struct orl_image *image,
+                                  struct orl_image *out)
+{
+    struct orl_image root, median = {0};
+    *out = (struct orl_image){0};
+    enum orl_result result =
+        orl_image_init(log, &root, image->width, image->height, 1, ORL_PIXEL_F32);
+    for (size_t i = 0; result == ORL_OK && i < pixel_count(image); i++)
+        root.f32[i] = sqrtf(luma(image->u8 + 3 * i) / 255);
+    if (result == ORL_OK)
+        result = orl_bridge_median(log, &root, &median);
+    if (result == ORL_OK) {
+        for (size_t i = 0; i < pixel_count(image); i++)
+            root.f32[i] = fabsf(root.f32[i] - median.f32[i]);
+        *out = root;
+        root = (struct orl_image){0};
+    }
+    orl_image_finish(&root);
+    orl_image_finish(&median);
+    return result;
+}
+
+static float greatest_near(const struct orl_image *image, int x, int y)
+{
+    float greatest = 0;
+    for (int j = y - CRUMB_REACH; j <= y + CRUMB_REACH; j++)
+        for (int i = x - CRUMB_REACH; i <= x + CRUMB_REACH; i++)
+            if (i >= 0 && j >= 0 && i < image->width && j < image->height)
+                greatest = fmaxf(greatest, image->f32[(size_t)j * (size_t)image->width + (size_t)i]);
+    return greatest;
+}
+
+static enum orl_result measure_crumbs(const struct orl_log *log, const struct orl_image *a,
+                                      const struct orl_image *b, struct orl_metrics *metrics)
+{
+    const float stands_out = 0.1f, in_photograph = stands_out / 3;
+    struct orl_image rendered, photograph = {0};
+    size_t crumbs = 0;
+    enum orl_result result = prominence(log, a, &rendered);
+    if (result == ORL_OK)
+        result = prominence(log, b, &photograph);
+    for (int y = 0; result == ORL_OK && y < a->height; y++)
+        for (int x = 0; x < a->width; x++)
+            crumbs += rendered.f32[(size_t)y * (size_t)a->width + (size_t)x] > stands_out &&
+                      greatest_near(&photograph, x, y) <= in_photograph;
+    metrics->crumbs = 1e4 * (double)crumbs / (double)pixel_count(a);
+    orl_image_finish(&rendered);
+    orl_image_finish(&photograph);
+    return result;
+}
+
 double orl_metrics_psnr_db(const struct orl_image *a, const struct orl_image *b)
 {
     double sum = 0;
@@ -285,6 +341,8 @@ enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_
     enum orl_result result = orl_metrics_ssim(log, a, b, &measured.ssim);
     if (result == ORL_OK)
         result = measure_rephoto(log, a, b, &measured);
+    if (result == ORL_OK)
+        result = measure_crumbs(log, a, b, &measured);
     if (result == ORL_OK)
         *metrics = measured;
     return result;

@@ -12,6 +12,7 @@ struct orl_metrics {
     double coverage;        // share of pixels with coverage > 0.5
     double completeness;    // Virtual Rephotography: share of pixels not left black
     double ncc_error;       // Virtual Rephotography: mean of 1 - NCC over complete patches, [0, 2]
+    double crumbs;          // specks and torn edges: crumbs per 10,000 pixels
 };
 
 // a: rendered, b: photograph, both U8 x3 of one size; coverage F32 x1.

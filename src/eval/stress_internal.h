@@ -124,7 +124,7 @@ enum orl_result orl_stress_farther(struct stress_case *c, double level, uint64_t
 
 // --- stress_measure.c ---
 
-enum { STRESS_FIGURES = 5 };
+enum { STRESS_FIGURES = 6 };
 extern const char *const orl_stress_figures[STRESS_FIGURES]; // psnr_db, ssim, flip, ...
 
 // What no severity may break (docs/reference/stress.md).

@@ -11,8 +11,8 @@
 #include "eval/stability.h"
 #include "eval/stress_internal.h"
 
-const char *const orl_stress_figures[STRESS_FIGURES] = {"psnr_db", "ssim", "flip", "completeness",
-                                                        "coverage"};
+const char *const orl_stress_figures[STRESS_FIGURES] = {"psnr_db", "ssim", "flip", "crumbs",
+                                                        "completeness", "coverage"};
 static const double small_move = 1e-4; // of the scene's distance
 static const float sky_depth = 1e4f;   // scene units, for sky in true depth
 
@@ -115,7 +115,8 @@ static enum orl_result compare(struct job *job, const struct stress_view *view,
         result = orl_flip_compare(job->log, picture, &view->picture, NULL, &flip);
     if (result != ORL_OK)
         return result;
-    const double values[STRESS_FIGURES] = {m.psnr_db, m.ssim, flip, m.completeness, m.coverage};
+    const double values[STRESS_FIGURES] = {m.psnr_db, m.ssim, flip, m.crumbs,
+                                           m.completeness, m.coverage};
     for (size_t k = 0; k < STRESS_FIGURES; k++)
         job->result->figures[k] += values[k] / n;
     double brightness = mean_of(picture) / fmax(mean_of(&view->picture), 1);

@@ -20,7 +20,7 @@ grep -q "^$methods rows measured, 0 used again, 0 left out" stdout.txt || fail "
 grep -q 'front$' stdout.txt || fail "nothing is on the front"
 for field in version commit device driver software quick scenes rows overall checksum held_out \
     points prepare_s views picture error_map mean sd psnr_db psnr_cc_db psnr_covered_db ssim flip \
-    coverage completeness flicker frame_ms p95_ms cpu_ms frames open_s device_bytes host_peak_bytes \
+    crumbs coverage completeness flicker frame_ms p95_ms cpu_ms frames open_s device_bytes host_peak_bytes \
     device_bytes_by_owner photographs provenance scene_checksum on_front dominated_by sentence; do
     grep -q "\"$field\"" report/chart.json || fail "no field $field"
 done
@@ -42,7 +42,7 @@ cmp -s before.json report/chart.json || fail "the same rows make another chart"
 parts=("$oriel" chart ws --quiet --seconds 0 --out parts --quick)
 in_two_parts chart "${parts[@]}"
 grep -q "^0 rows measured, $methods used again" stdout.txt || fail "rows of the parts were not used"
-figures='"(scene|method|setting|photo|psnr_db|psnr_cc_db|psnr_covered_db|ssim|flip|coverage|completeness)"'
+figures='"(scene|method|setting|photo|psnr_db|psnr_cc_db|psnr_covered_db|ssim|flip|crumbs|coverage|completeness)"'
 for folder in report parts; do
     (cd "$folder/rows/ws" && grep -E "$figures" ./*.json) >"$folder.rows"
 done
@@ -72,7 +72,7 @@ done
 
 # The same photographs, the same figures as those of oriel eval.
 runs 0 "$oriel" eval ws --method points --json eval.json --quiet
-for field in psnr_db ssim flip completeness; do
+for field in psnr_db ssim flip crumbs completeness; do
     a=$(sed -n "s/.*\"$field\": \([0-9.]*\),*/\1/p" eval.json | tail -n 1)       # its mean
     b=$(sed -n "s/.*\"$field\": \([0-9.]*\),*/\1/p" full/rows/ws/points.json | head -n 1)
     awk -v a="$a" -v b="$b" 'BEGIN { exit !(a > 0 && (a - b) ^ 2 < 1e-8) }' ||

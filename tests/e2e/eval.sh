@@ -18,7 +18,7 @@ grep -q '^mean' stdout.txt || fail "no mean"
 [ -s stderr.txt ] && fail "--quiet is not quiet"
 head -c1 out.json | grep -q '{' || fail "the JSON of one method is no object"
 for field in scene method device size views mean photo psnr_db psnr_cc_db psnr_covered_db ssim \
-    coverage completeness ncc_error flip render_ms; do
+    coverage completeness ncc_error crumbs flip render_ms; do
     grep -q "\"$field\"" out.json || fail "no field $field"
 done
 [ "$(ls pictures | wc -l)" -eq 3 ] || fail "not three pictures: $(ls pictures)"

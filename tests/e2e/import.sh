@@ -56,6 +56,10 @@ fi
 runs 2 "$oriel" import set --out other --masks set/masks --silhouettes dark
 runs 2 "$oriel" import set --out other --silhouettes bright
 runs 2 "$oriel" import set --out other --frames 3:1
+runs 2 "$oriel" import set --out other --masks set/masks --test-every 2 --test-block 0:1
+grep -q 'exclude each other' stderr.txt || fail "takes two ways to hold photographs out"
+runs 2 "$oriel" import set --out other --masks set/masks --test-block 4:7
+grep -q 'there are 6 photographs' stderr.txt || fail "does not say how many photographs there are"
 runs 2 "$oriel" import set --out moving
 grep -q 'moving: not empty' stderr.txt || fail "does not say that the folder is taken"
 head -c 300 set/cameras.json >cut.json

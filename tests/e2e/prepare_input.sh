@@ -91,6 +91,14 @@ run 2 prepare "$work/p" --out "$work/s" --quality best
 says "must be one of draft, standard, high"
 run 2 prepare "$work/p" --out "$work/s" --test-every 2 --test-list a
 says "exclude each other"
+run 2 prepare "$work/p" --out "$work/s" --test-block 0:1 --test-list a
+says "exclude each other"
+for block in 2:2 -1:1 1 1:2:3; do
+    run 2 prepare "$work/p" --out "$work/s" --test-block "$block"
+    says "must be A:B"
+done
+run 2 prepare "$work/p" --out "$work/s" --test-block 0:99
+says "--test-block 0:99: there are "
 run 2 prepare "$work/p" --out "$work/s" --test-list a,zebra
 says "--test-list zebra: no usable photograph of this name"
 run 2 prepare "$work/p" --out "$work/s" --test-list a,b,c,d
@@ -105,7 +113,7 @@ head -c 100 "$work/p/a.png" >"$work/p/cut.png"
 echo text >"$work/p/text.jpg"
 echo x >"$work/p/live.mov"
 : >"$work/p/nothing.jpg"
-run 0 prepare "$work/p" --out "$work/s" --test-list e
+run 0 prepare "$work/p" --out "$work/s" --test-block 4:5
 for name in cut.png text.jpg nothing.jpg; do
     says "$work/p/$name: "
 done

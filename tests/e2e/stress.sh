@@ -12,7 +12,7 @@ grep -q '(jpeg)$' stdout.txt || fail "no table of an axis"
 awk '$1 == "points" && $2 != $3 { bad = 1 } END { exit bad }' stdout.txt ||
     fail "points depend on the photographs' files"
 for field in version commit device driver software quick scene checksum truth photographs held_out points size \
-    seed methods axes title unit levels own_truth rows severity level mean psnr_db ssim flip completeness \
+    seed methods axes title unit levels own_truth rows severity level mean psnr_db ssim flip crumbs completeness \
     coverage flicker invariants hold not_finite brightness overshoot moved_mean moved_share provenance \
     picture losses start_db worst_db lost_db at; do
     grep -q "\"$field\"" report/stress.json || fail "no field $field"

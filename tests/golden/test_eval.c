@@ -188,6 +188,7 @@ static void check_figures(const json_t *object, const struct orl_eval_view *view
     assert_float_equal(number(object, "coverage"), m->coverage, 1e-6);
     assert_float_equal(number(object, "completeness"), m->completeness, 1e-6);
     assert_float_equal(number(object, "ncc_error"), m->ncc_error, 1e-6);
+    assert_float_equal(number(object, "crumbs"), m->crumbs, 1e-6);
     assert_float_equal(number(object, "flip"), view->flip, 1e-6);
     assert_float_equal(number(object, "render_ms"), view->render_ms, 1e-3);
 }
@@ -199,9 +200,9 @@ static void report_has_the_agreed_fields(void **state)
                                   {.name = (char[]){"b.jpg"}, .test = true}};
     struct orl_scene scene = {.dir = (char[]){"some/scene"}, .photos = photos, .photo_count = 2};
     struct orl_eval_view views[2] = {
-        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125}, {33, 34, 0.25, 0.5}, 3.5,
+        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125, 2.5}, {33, 34, 0.25, 0.5}, 3.5,
          0.0625},
-        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125}, {35, 36, 0.75, 1}, 1.5,
+        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125, 7.25}, {35, 36, 0.75, 1}, 1.5,
          0.03125}};
     struct orl_eval eval = {.scene = &scene, .method = "points", .device = "a device",
                             .views = views, .view_count = 2, .mean = views[1],

@@ -344,12 +344,13 @@ static void copies_and_completes(void **state)
     fclose(ply);
     const struct orl_import_params params = {
         .cameras = w->cameras, .out = out, ORL_IMPORT_DEFAULTS, .images_dir = photos,
-        .test_every = 4, .points = ORL_IMPORT_CLOUD, .points_file = cloud, .mesh = mesh};
+        .test_every = 4, .test_block = {2, 3}, .points = ORL_IMPORT_CLOUD, .points_file = cloud, .mesh = mesh};
     assert_int_equal(orl_import(NULL, &params, NULL), ORL_OK);
     struct orl_scene *scene;
     assert_int_equal(orl_scene_open(NULL, out, &scene), ORL_OK);
     assert_string_equal(scene->photos[0].name, "cam00.png");
     assert_true(scene->photos[0].test && !scene->photos[1].test);
+    assert_true(scene->photos[2].test && !scene->photos[3].test);
     assert_int_equal(scene->points.count, 100);
     assert_true(scene->points.radius[55] > 0.09f && scene->points.radius[55] < 0.3f);
     char *photo = orl_scene_photo_path(NULL, scene, 3), *given = join(photos, "cam03.png");
@@ -382,7 +383,7 @@ static void refuses(void **state)
         struct orl_import_params params;
         enum orl_result result;
         const char *why;
-    } cases[10];
+    } cases[11];
     for (size_t i = 0; i < ORL_COUNT(cases); i++)
         cases[i].params = base;
     cases[0].params.images_dir = nowhere;
@@ -405,6 +406,8 @@ static void refuses(void **state)
     cases[7].result = ORL_ERR_NOT_FOUND, cases[7].why = "nowhere";
     cases[8].params.mesh = w->cameras;
     cases[8].result = ORL_ERR_FORMAT, cases[8].why = "no faces";
+    cases[10].params.test_block = (struct orl_test_block){1, 5};
+    cases[10].result = ORL_ERR_ARGUMENT, cases[10].why = "--test-block 1:5: there are 4 photographs";
     cases[9].params.out = w->set;
     cases[9].result = ORL_ERR_ARGUMENT, cases[9].why = "not empty";
     for (size_t i = 0; i < ORL_COUNT(cases); i++) {

@@ -81,6 +81,7 @@ static void identical_pictures(void **state)
     assert_float_equal(m.coverage, 1, 0);
     assert_float_equal(m.completeness, 1, 0);
     assert_float_equal(m.ncc_error, 0, 1e-12);
+    assert_float_equal(m.crumbs, 0, 0);
 }
 
 // MSE of an offset of 10 is 100: 10 log10(65025 / 100). A colour fit takes it away.
@@ -173,6 +174,34 @@ static void flat_against_textured(void **state)
     assert_float_equal(m.ncc_error, 1, 1e-12);
 }
 
+static void dab(struct orl_image *image, int x, int y, uint8_t value)
+{
+    memset(image->u8 + 3 * (y * image->width + x), value, 3);
+}
+
+// Grey 100 has the square root of luma 0.626: grey 134 stands 0.0987 out of it and grey 135 0.1014;
+// grey 66 -0.1175; in the photograph grey 110 stands 0.0306 out and grey 111 0.0335.
+static void specks_are_crumbs(void **state)
+{
+    (void)state;
+    struct orl_image a = flat(50, 20, 100, 100, 100), b = flat(50, 20, 100, 100, 100);
+    dab(&a, 4, 4, 134);   // too faint
+    dab(&a, 10, 4, 135);  // a crumb
+    dab(&a, 20, 4, 66);   // a crumb: darker ones count alike
+    dab(&a, 30, 4, 135);  // no crumb: two pixels away the photograph has a detail
+    dab(&b, 32, 6, 111);
+    dab(&a, 40, 4, 135);  // a crumb: this detail is three pixels away
+    dab(&b, 43, 4, 111);
+    dab(&a, 10, 14, 135); // a crumb: this detail is too faint
+    dab(&b, 10, 14, 110);
+    dab(&a, 49, 19, 135); // a crumb: repeated beyond the corner, it fills 9 of 25 pixels
+    for (int y = 12; y < 15; y++) // 12 crumbs: the three in the middle are of 15 equal ones in 25
+        for (int x = 20; x < 25; x++)
+            dab(&a, x, y, 200);
+    struct orl_metrics m = compare(a, b, covered(50, 20, 1));
+    assert_float_equal(m.crumbs, 1e4 * (5 + 12) / 1000, 1e-9);
+}
+
 static void colour_fit_undoes_an_affine_change(void **state)
 {
     (void)state;
@@ -255,6 +284,7 @@ int main(void)
         cmocka_unit_test(nothing_covered),
         cmocka_unit_test(holes_are_incomplete),
         cmocka_unit_test(flat_against_textured),
+        cmocka_unit_test(specks_are_crumbs),
         cmocka_unit_test(colour_fit_undoes_an_affine_change),
         cmocka_unit_test(pictures_of_any_size),
         cmocka_unit_test(different_sizes_are_refused),

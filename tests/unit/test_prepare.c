@@ -242,6 +242,26 @@ static void holds_out_by_name(void **state)
     orl_names_finish(&list);
 }
 
+static void holds_out_a_block(void **state)
+{
+    (void)state;
+    for (int end = 3; end <= 5; end += 2) {
+        struct world w;
+        world_open(&w);
+        save_photo(w.photos, "0.jpg", 0);
+        save_photo(w.photos, "1.jpg", 1);
+        save_photo(w.photos, "2.jpg", 2);
+        save_photo(w.photos, "3.jpg", 3);
+        w.params.test_block = (struct orl_test_block){1, end};
+        assert_int_equal(orl_stage_collect(&w.job), end == 3 ? ORL_OK : ORL_ERR_ARGUMENT);
+        for (size_t i = 0; end == 3 && i < 4; i++)
+            assert_int_equal(w.job.sources[i].test, i == 1 || i == 2);
+        if (end == 5)
+            assert_non_null(strstr(w.said.text, "--test-block 1:5: there are 4 photographs"));
+        world_close(&w);
+    }
+}
+
 static void finds_masks(void **state)
 {
     (void)state;
@@ -316,6 +336,7 @@ int main(void)
         cmocka_unit_test(refuses_too_few),
         cmocka_unit_test(refuses_ambiguous_names),
         cmocka_unit_test(holds_out_by_name),
+        cmocka_unit_test(holds_out_a_block),
         cmocka_unit_test(finds_masks),
         cmocka_unit_test(counts_views),
     };
