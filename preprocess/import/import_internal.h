@@ -34,7 +34,7 @@ struct import_job {
     size_t view_count;
     bool sequence;      // true when the pictures are folders or clips
     size_t frame_count; // frames of the sequence that were written
-    bool said_endless;  // see orl_hull_make
+    bool said_endless;  // see orl_cones_mesh
 };
 
 // --- import_scene.c: the folder ---

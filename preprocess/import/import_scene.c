@@ -10,7 +10,7 @@
 #include "io/picture.h"
 #include "preprocess/import/import_internal.h"
 #include "scene/colmap_internal.h"
-#include "scene/hull.h"
+#include "scene/cones.h"
 #include "scene/manifest.h"
 #include "oriel/points.h"
 #include "scene/free_space.h"
@@ -171,21 +171,17 @@ static enum orl_result read_silhouettes(const struct import_job *job, const char
 static enum orl_result carve_mesh(struct import_job *job, const char *folder,
                                   struct orl_mesh *mesh)
 {
-    struct orl_hull hull = {0};
     size_t count = 0;
     struct orl_silhouette *silhouettes =
         orl_array(job->log, job->view_count, sizeof *silhouettes);
     enum orl_result result =
         silhouettes ? read_silhouettes(job, folder, silhouettes, &count) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_hull_make(job->log, silhouettes, count, job->params->hull_side, 1,
-                               &job->said_endless, &hull);
-    if (result == ORL_OK)
-        result = orl_hull_mesh(job->log, &hull, (size_t)job->params->hull_triangles, mesh);
+        result = orl_cones_mesh(job->log, silhouettes, count, job->params->hull_side,
+                                (size_t)job->params->hull_triangles, &job->said_endless, mesh);
     for (size_t i = 0; i < count; i++)
         orl_image_finish(&silhouettes[i].mask);
     free(silhouettes);
-    orl_hull_finish(&hull);
     return result;
 }
 

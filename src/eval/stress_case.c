@@ -9,12 +9,11 @@
 #include "core/vec3.h"
 #include "eval/stress_internal.h"
 #include "io/picture.h"
+#include "scene/cones.h"
 #include "scene/free_space.h"
-#include "scene/hull.h"
 #include "scene/radius_limits.h"
 
-enum { HULL_SIDE = 128 };           // voxels
-static const double hull_reach = 0.5; // of a voxel: thin parts stay
+enum { HULL_SIDE = 128 }; // voxels
 
 // --- copies ---
 
@@ -201,7 +200,6 @@ static enum orl_result write_hull(const struct stress_case *c)
     const struct orl_log *log = orl_gpu_log(c->gpu);
     struct orl_silhouette *silhouettes =
         orl_array(log, c->scene.photo_count, sizeof *silhouettes);
-    struct orl_hull hull = {0};
     struct orl_mesh mesh = {0};
     size_t count = 0;
     char *path = orl_scene_mesh_path(log, &c->scene);
@@ -212,15 +210,12 @@ static enum orl_result write_hull(const struct stress_case *c)
                 (struct orl_silhouette){c->scene.photos[i].view, c->masks[i]};
     // Silhouettes that are wrong enough have no place in common; that is no error of the program.
     if (result == ORL_OK)
-        result = orl_hull_make(NULL, silhouettes, count, HULL_SIDE, hull_reach, NULL, &hull);
+        result = orl_cones_mesh(NULL, silhouettes, count, HULL_SIDE, 0, NULL, &mesh);
     if (result == ORL_ERR_DATA)
         result = ORL_ERR_NOT_FOUND;
     if (result == ORL_OK)
-        result = orl_hull_mesh(log, &hull, 0, &mesh);
-    if (result == ORL_OK)
         result = orl_mesh_write(log, path, &mesh);
     orl_mesh_finish(&mesh);
-    orl_hull_finish(&hull);
     free(silhouettes);
     free(path);
     return result;

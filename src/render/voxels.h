@@ -3,8 +3,8 @@
 #ifndef ORL_RENDER_VOXELS_H
 #define ORL_RENDER_VOXELS_H
 
-#include "render/cones.h"
 #include "render/frame.h"
+#include "scene/cones.h"
 
 struct voxels {
     struct orl_hull cube; // side, origin, voxel; inside stays NULL
@@ -37,6 +37,11 @@ int orl_voxels_side(const struct frame *frame);
 void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, bool *said);
 
 // --- the steps of carving, for ahead.c ---
+
+// Asks the device for the intersection of all cones, as orl_cones_field. The caller destroys *field.
+// Does not wait for the device.
+enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones, int side,
+                                struct orl_buf **field) ORL_CHECK_RESULT;
 
 // Reads what orl_cones_carve gave for a cube of side^3. The surface is not listed yet.
 enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones, int side,

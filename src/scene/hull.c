@@ -120,7 +120,7 @@ static bool leaves_room(const struct table *t, const struct orl_view *view, cons
 }
 
 enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silhouette *silhouette,
-                               double reach, struct orl_hull *hull)
+                               struct orl_hull *hull)
 {
     const struct orl_image *mask = &silhouette->mask;
     struct table table;
@@ -128,7 +128,7 @@ enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silho
                          mask->width == silhouette->view.camera.width &&
                          mask->height == silhouette->view.camera.height);
     enum orl_result result = table_init(log, mask, &table);
-    double radius = reach * 0.5 * sqrt(3.0) * hull->voxel;
+    double radius = 0.5 * sqrt(3.0) * hull->voxel; // of the sphere around a voxel
     uint8_t *at = hull->inside;
     for (int z = 0; result == ORL_OK && z < hull->side; z++)
         for (int y = 0; y < hull->side; y++)
@@ -220,11 +220,11 @@ static bool occupied(const struct orl_hull *hull, int low[3], int high[3])
 
 static enum orl_result carve_all(const struct orl_log *log,
                                  const struct orl_silhouette *silhouettes, size_t count,
-                                 double reach, struct orl_hull *hull)
+                                 struct orl_hull *hull)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
-        result = orl_hull_carve(log, &silhouettes[i], reach, hull);
+        result = orl_hull_carve(log, &silhouettes[i], hull);
     return result;
 }
 
@@ -241,7 +241,7 @@ static enum orl_result try_bounds(const struct orl_log *log,
     const double start[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach};
     enum orl_result result = orl_hull_init(log, &hull, COARSE, start, 2 * reach);
     if (result == ORL_OK)
-        result = carve_all(log, silhouettes, count, 1, &hull);
+        result = carve_all(log, silhouettes, count, &hull);
     bool any = result == ORL_OK && occupied(&hull, low, high);
     orl_hull_finish(&hull);
     if (result != ORL_OK)
@@ -309,36 +309,7 @@ enum orl_result orl_hull_find_bounds(const struct orl_log *log,
     return result;
 }
 
-enum orl_result orl_hull_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                              size_t count, int side, double reach, bool *said,
-                              struct orl_hull *hull)
-{
-    struct orl_hull_bounds bounds;
-    memset(hull, 0, sizeof *hull);
-    enum orl_result result = orl_hull_find_bounds(log, silhouettes, count, &bounds);
-    if (result == ORL_OK && bounds.endless && said) {
-        if (!*said)
-            orl_hull_warn_endless(log);
-        *said = true;
-    }
-    if (result == ORL_OK)
-        result = orl_hull_init(log, hull, side, bounds.origin, bounds.size);
-    if (result == ORL_OK)
-        result = carve_all(log, silhouettes, count, reach, hull);
-    if (result != ORL_OK)
-        orl_hull_finish(hull);
-    return result;
-}
-
-// --- volume and surface ---
-
-double orl_hull_volume(const struct orl_hull *hull)
-{
-    size_t count = (size_t)hull->side * (size_t)hull->side * (size_t)hull->side, inside = 0;
-    for (size_t i = 0; i < count; i++)
-        inside += hull->inside[i];
-    return (double)inside * hull->voxel * hull->voxel * hull->voxel;
-}
+// --- surface ---
 
 enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_hull *cube,
                                     const float *field, size_t triangles, struct orl_mesh *mesh)
@@ -369,20 +340,5 @@ enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_
         result = orl_mesh_set_normals(log, mesh);
     if (result != ORL_OK)
         orl_mesh_finish(mesh);
-    return result;
-}
-
-enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *hull,
-                              size_t triangles, struct orl_mesh *mesh)
-{
-    size_t count = (size_t)hull->side * (size_t)hull->side * (size_t)hull->side;
-    memset(mesh, 0, sizeof *mesh);
-    float *field = orl_array(log, count, sizeof *field);
-    if (!field)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < count; i++)
-        field[i] = (float)(hull->inside[i] ? -hull->voxel : hull->voxel);
-    enum orl_result result = orl_hull_field_mesh(log, hull, field, triangles, mesh);
-    free(field);
     return result;
 }

@@ -43,24 +43,14 @@ void orl_hull_warn_endless(const struct orl_log *log);
 enum orl_result orl_hull_init(const struct orl_log *log, struct orl_hull *hull, int side,
                               const double origin[3], double size) ORL_CHECK_RESULT;
 void orl_hull_finish(struct orl_hull *hull);
-// Intersects the hull with the partial hull of one silhouette (Goldluecke 2003, section 3).
-// `reach` scales the radius of the voxel's circumscribed sphere that is tested. At 1 a voxel is
-// removed only when it lies wholly outside the silhouette, so the hull contains the subject; at 0
-// only its centre is tested. Where the silhouette leaves the picture, voxels outside it stay within
-// 45 degrees of that place.
+// Removes the voxels that lie wholly outside one silhouette, so that the hull contains the subject
+// and up to a voxel more (scene/cones.h has the hull itself). Where the silhouette leaves the picture,
+// voxels outside it stay within 45 degrees of that place.
 enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silhouette *silhouette,
-                               double reach, struct orl_hull *hull) ORL_CHECK_RESULT;
-// Makes the hull of all silhouettes, in the cube that orl_hull_find_bounds gives. *said: that the
-// bounds are endless has been said, which is said once; NULL: it is not said.
-enum orl_result orl_hull_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                              size_t count, int side, double reach, bool *said,
-                              struct orl_hull *hull) ORL_CHECK_RESULT;
-double orl_hull_volume(const struct orl_hull *hull);
-// Makes the hull's surface, with normals, of at most about `triangles` (0: unlimited).
-enum orl_result orl_hull_mesh(const struct orl_log *log, const struct orl_hull *hull,
-                              size_t triangles, struct orl_mesh *mesh) ORL_CHECK_RESULT;
-// The same of a field that is negative inside: a value at each voxel's centre of the cube, x fastest.
-// The surface lies where it is 0. cube->inside is not read.
+                               struct orl_hull *hull) ORL_CHECK_RESULT;
+// Makes the surface, with normals, where a field is 0 that is negative inside: it has a value at each
+// voxel's centre of the cube, x fastest. At most about `triangles` (0: unlimited). cube->inside is not
+// read.
 enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_hull *cube,
                                     const float *field, size_t triangles,
                                     struct orl_mesh *mesh) ORL_CHECK_RESULT;

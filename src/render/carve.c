@@ -1,43 +1,9 @@
-#include "render/cones.h"
-
+// Carves voxels with the cones of silhouettes on the device.
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "bridge/bridge.h"
-#include "core/memory.h"
+#include "render/voxels.h"
 #include "shared/hull_blocks.h"
-
-void orl_cones_finish(struct cones *cones)
-{
-    for (size_t i = 0; i < cones->count; i++)
-        orl_image_finish(&cones->all[i].distance);
-    free(cones->all);
-    memset(cones, 0, sizeof *cones);
-}
-
-enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                               size_t count, struct cones *cones)
-{
-    memset(cones, 0, sizeof *cones);
-    enum orl_result result = orl_hull_find_bounds(log, silhouettes, count, &cones->bounds);
-    if (result != ORL_OK)
-        return result;
-    cones->all = orl_array(log, count, sizeof *cones->all);
-    if (!cones->all)
-        return ORL_ERR_MEMORY;
-    cones->count = count;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        struct cone *cone = &cones->all[i];
-        cone->view = silhouettes[i].view;
-        result = orl_silhouette_is_open(log, &silhouettes[i].mask, &cone->open);
-        if (result == ORL_OK)
-            result = orl_bridge_distance(log, &silhouettes[i].mask, &cone->distance);
-    }
-    if (result != ORL_OK)
-        orl_cones_finish(cones);
-    return result;
-}
 
 static struct carve_block carve_params(const struct cone *cone, const double cube[3], double voxel,
                                        int side)
@@ -45,7 +11,7 @@ static struct carve_block carve_params(const struct cone *cone, const double cub
     const struct orl_view *view = &cone->view;
     double origin[3];
     struct carve_block block = {.size = {view->camera.width, view->camera.height}, .side = side,
-                                .open = cone->open, .most = (float)(4 * voxel),
+                                .open = cone->open, .most = (float)(ORL_CONES_MOST * voxel),
                                 .focal = {(float)view->camera.fx, (float)view->camera.fy,
                                           (float)view->camera.cx, (float)view->camera.cy}};
     orl_pose_apply(&view->cam_from_world, cube, origin);

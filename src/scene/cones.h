@@ -1,0 +1,37 @@
+// The visual hull on the cones of its silhouettes: each camera's partial hull as signed distances.
+#ifndef ORL_SCENE_CONES_H
+#define ORL_SCENE_CONES_H
+
+#include "scene/hull.h"
+
+// Distances to a cone are told apart up to so many voxels.
+#define ORL_CONES_MOST 4.0
+
+// One camera's partial hull.
+struct cone {
+    struct orl_view view;
+    struct orl_image distance; // F32 x1: signed distance to the outline, pixels, positive outside
+    bool open;                 // the subject leaves the picture
+};
+
+struct cones {
+    struct cone *all; // owned
+    size_t count;
+    struct orl_hull_bounds bounds; // of what all of them have in common
+};
+
+// Errors are those of orl_hull_find_bounds.
+enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
+                               size_t count, struct cones *cones) ORL_CHECK_RESULT;
+void orl_cones_finish(struct cones *cones);
+// Intersects all cones in a cube of side^3 voxels, x fastest: at each voxel's centre the signed
+// distance to the nearest cone, scene units, negative inside. The caller frees *field.
+enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *cones, int side,
+                                float **field) ORL_CHECK_RESULT;
+// Makes the hull's surface, with normals, of at most about `triangles` (0: unlimited). *said: that
+// the hull has no end has been said, which is said once; NULL: it is not said.
+enum orl_result orl_cones_mesh(const struct orl_log *log, const struct orl_silhouette *silhouettes,
+                               size_t count, int side, size_t triangles, bool *said,
+                               struct orl_mesh *mesh) ORL_CHECK_RESULT;
+
+#endif
