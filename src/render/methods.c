@@ -214,9 +214,11 @@ static bool has_mesh(const struct orl_scene *scene)
 static void suit_scene(const struct orl_scene *scene, struct orl_render_params *params)
 {
     const struct proxy_kind *kind = orl_proxy_kind_of(params);
-    // Silhouettes leave a mesh and no points.
+    // Silhouettes leave no points, but a mesh of their hull or the hull itself.
     if (kind == &orl_proxy_splats && !scene->points.count && strcmp(params->paint, "points") != 0)
-        snprintf(params->proxy, sizeof params->proxy, "%s", orl_proxy_mesh.name);
+        snprintf(params->proxy, sizeof params->proxy, "%s",
+                 !has_mesh(scene) && has_silhouettes(scene) ? orl_proxy_hull.name
+                                                            : orl_proxy_mesh.name);
     if (kind == &orl_proxy_hull && !has_silhouettes(scene))
         snprintf(params->proxy, sizeof params->proxy, "%s",
                  has_mesh(scene) || !scene->points.count ? orl_proxy_mesh.name

@@ -1,39 +1,67 @@
 #include "render/proxy.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
 
+#include "core/memory.h"
 #include "render/frame.h"
 #include "render/method.h"
 
-static void find_extent(struct proxy *proxy)
+static int compare_floats(const void *a, const void *b)
 {
-    struct proxy_extent *extent = &proxy->extent;
-    for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY, sum = 0;
-        for (size_t i = 0; i < proxy->vertex_count; i++) {
-            double x = (double)proxy->vertices[i][k];
-            low = x < low ? x : low;
-            high = x > high ? x : high;
-            sum += x;
-        }
-        if (!(low <= high))
-            continue;
-        extent->low[k] = low;
-        extent->high[k] = high;
-        extent->centroid[k] = sum / (double)proxy->vertex_count;
-    }
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
 }
 
-static void find_vertices(struct proxy *proxy, const struct orl_scene *scene)
+enum orl_result orl_vertices_range(const struct orl_log *log, const float (*vertices)[3],
+                                   size_t vertex_count, double share, double low[3],
+                                   double high[3])
+{
+    size_t step = vertex_count / 100000 + 1, count = (vertex_count + step - 1) / step;
+    size_t out = (size_t)(share * (double)count);
+    float *along = orl_array(log, count + 1, sizeof *along);
+    if (!along)
+        return ORL_ERR_MEMORY;
+    for (int k = 0; count && k < 3; k++) {
+        for (size_t i = 0; i < count; i++)
+            along[i] = vertices[i * step][k];
+        qsort(along, count, sizeof *along, compare_floats);
+        low[k] = (double)along[out];
+        high[k] = (double)along[count - 1 - out];
+    }
+    free(along);
+    return ORL_OK;
+}
+
+static enum orl_result find_extent(const struct orl_log *log, struct proxy *proxy)
+{
+    struct proxy_extent *extent = &proxy->extent;
+    size_t within = 0;
+    enum orl_result result = orl_vertices_range(log, proxy->vertices, proxy->vertex_count, 0.02,
+                                                extent->low, extent->high);
+    for (size_t i = 0; result == ORL_OK && i < proxy->vertex_count; i++) {
+        double at[3];
+        bool inside = true;
+        for (int k = 0; k < 3; k++) {
+            at[k] = (double)proxy->vertices[i][k];
+            inside = inside && at[k] >= extent->low[k] && at[k] <= extent->high[k];
+        }
+        within += inside;
+        for (int k = 0; inside && k < 3; k++)
+            extent->centroid[k] += (at[k] - extent->centroid[k]) / (double)within;
+    }
+    return result;
+}
+
+static enum orl_result find_vertices(const struct orl_log *log, struct proxy *proxy,
+                                     const struct orl_scene *scene)
 {
     proxy->kind->vertices(proxy->state, scene, &proxy->vertices, &proxy->vertex_count);
     memset(&proxy->extent, 0, sizeof proxy->extent);
-    find_extent(proxy);
     free(proxy->aspects);
     proxy->aspects = NULL;
+    return find_extent(log, proxy);
 }
 
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -43,7 +71,7 @@ enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *sc
     *proxy = (struct proxy){.kind = kind};
     enum orl_result result = kind->create(gpu, scene, most_bytes, &proxy->state);
     if (result == ORL_OK)
-        find_vertices(proxy, scene);
+        result = find_vertices(orl_gpu_log(gpu), proxy, scene);
     return result;
 }
 
@@ -56,7 +84,7 @@ enum orl_result orl_proxy_update(const struct frame *frame)
     enum orl_result result = proxy->kind->update(frame, proxy->state, &changed);
     if (result == ORL_OK && changed) {
         proxy->version++;
-        find_vertices(proxy, frame->scene);
+        result = find_vertices(orl_gpu_log(frame->gpu), proxy, frame->scene);
     }
     return result;
 }

@@ -61,11 +61,18 @@ extern const struct proxy_kind orl_proxy_mesh;   // mesh_proxy.c
 extern const struct proxy_kind orl_proxy_hull;   // hull_proxy.c
 extern const struct proxy_kind orl_proxy_voxels; // voxel_proxy.c
 
-// Extent of the proxy's vertices, world.
+// Extent of the proxy's vertices, world. A cloud has single points hundreds of times as far away as its
+// subject, and the box of all of them has its centre anywhere.
 struct proxy_extent {
-    double low[3], high[3]; // bounding box; 0 without vertices
-    double centroid[3];     // mean of the vertices
+    double low[3], high[3]; // along each axis from the 2nd to the 98th percentile; 0 without vertices
+    double centroid[3];     // mean of the vertices in this box
 };
+
+// The values along each axis between which all vertices lie but a share of them at either end. Unchanged
+// without vertices.
+enum orl_result orl_vertices_range(const struct orl_log *log, const float (*vertices)[3],
+                                   size_t vertex_count, double share, double low[3],
+                                   double high[3]) ORL_CHECK_RESULT;
 
 // What a photograph shows of the proxy (Princ 2014, 2.3.2).
 struct photo_aspect {

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "render/photos.h"
+#include "render/proxy.h"
 
 bool orl_voxels_has_silhouette(const struct frame *frame, size_t photo)
 {
@@ -132,30 +133,17 @@ void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, boo
 
 // --- from points ---
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // A cube around all points but the outermost hundredth along each axis.
 static enum orl_result bound_points(const struct orl_log *log, const struct orl_points *points,
                                     struct orl_hull *cube)
 {
-    size_t step = points->count / 100000 + 1, count = (points->count + step - 1) / step;
-    float *along = orl_array(log, count, sizeof *along);
-    double low[3], high[3], size = 0;
-    if (!along)
-        return ORL_ERR_MEMORY;
-    for (int k = 0; k < 3; k++) {
-        for (size_t i = 0; i < count; i++)
-            along[i] = points->position[i * step][k];
-        qsort(along, count, sizeof *along, compare_floats);
-        low[k] = (double)along[count / 100];
-        high[k] = (double)along[count - 1 - count / 100];
+    double low[3] = {0}, high[3] = {0}, size = 0;
+    enum orl_result result =
+        orl_vertices_range(log, (const float (*)[3])points->position, points->count, 0.01, low, high);
+    if (result != ORL_OK)
+        return result;
+    for (int k = 0; k < 3; k++)
         size = fmax(size, high[k] - low[k]);
-    }
-    free(along);
     size = size > 0 ? 1.05 * size : 1;
     cube->voxel = size / cube->side;
     for (int k = 0; k < 3; k++)

@@ -165,10 +165,40 @@ static void a_scene_without_mesh_says_so(void **state)
     teardown(&f);
 }
 
+// Two strays of two hundred vertices, far away, move neither the box nor the centre.
+static void the_extent_leaves_strays_out(void **state)
+{
+    (void)state;
+    enum { COUNT = 200 };
+    struct fixture f;
+    struct orl_mesh mesh;
+    struct proxy proxy;
+    const uint32_t face[3] = {0, 1, 2};
+    setup_empty(&f, 4);
+    assert_int_equal(orl_mesh_init(NULL, &mesh, COUNT, 1), ORL_OK);
+    memcpy(mesh.triangle[0], face, sizeof face);
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < 3; k++)
+            mesh.position[i][k] = i < 2 ? 1000 : (float)((i * (k + 3)) % COUNT) / COUNT;
+    char *path = orl_path_join(NULL, f.dir, "mesh.ply");
+    assert_int_equal(orl_mesh_write(NULL, path, &mesh), ORL_OK);
+    assert_int_equal(orl_proxy_create(gpu, &f.scene, &orl_proxy_mesh, 0, &proxy), ORL_OK);
+    for (int k = 0; k < 3; k++) {
+        assert_true(proxy.extent.low[k] >= 0 && proxy.extent.low[k] < 0.05);
+        assert_true(proxy.extent.high[k] > 0.95 && proxy.extent.high[k] < 1);
+        assert_float_equal(proxy.extent.centroid[k], 0.5, 0.05);
+    }
+    orl_proxy_finish(gpu, &proxy);
+    orl_mesh_finish(&mesh);
+    free(path);
+    teardown(&f);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_extent_leaves_strays_out),
         cmocka_unit_test(triangles_have_their_depth_and_normal),
         cmocka_unit_test(nothing_is_where_no_triangle_is),
         cmocka_unit_test(every_method_paints_a_mesh),

@@ -96,8 +96,8 @@ static void choices_must_go_together(void **state)
     assert_int_equal(orl_render_params_assign(NULL, &params, generic, 3), ORL_OK);
 }
 
-// A scene of silhouettes has a mesh and no points.
-static void scenes_without_points_use_their_mesh(void **state)
+// A scene of silhouettes has no points, but a mesh or what makes a hull.
+static void scenes_without_points_use_mesh_or_hull(void **state)
 {
     (void)state;
     struct orl_scene scene = {.dir = (char *)"a scene"};
@@ -105,6 +105,11 @@ static void scenes_without_points_use_their_mesh(void **state)
     const struct orl_method *method = orl_method_find(NULL, "orzan-view");
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
     assert_string_equal(params.proxy, "mesh");
+    struct orl_photo photo = {.masked = true};
+    scene.photos = &photo;
+    scene.photo_count = 1;
+    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    assert_string_equal(params.proxy, "hull"); // there is no mesh
     scene.points.count = 1;
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
     assert_string_equal(params.proxy, "splats");
@@ -170,7 +175,7 @@ int main(void)
         cmocka_unit_test(options_that_nothing_reads_are_refused),
         cmocka_unit_test(several_are_set_at_once),
         cmocka_unit_test(choices_must_go_together),
-        cmocka_unit_test(scenes_without_points_use_their_mesh),
+        cmocka_unit_test(scenes_without_points_use_mesh_or_hull),
         cmocka_unit_test(scenes_settings_are_used),
         cmocka_unit_test(variants_take_the_settings_of_their_base),
     };
