@@ -108,7 +108,7 @@ publish_walk() {
 begin dependencies "looking for what Oriel needs"
 install_dependencies || fail "installing what is missing"
 begin build "building Oriel"
-build_oriel "$build" -DCMAKE_BUILD_TYPE=Release -DORL_TESTS=OFF || fail "the build"
+build_oriel "$build" -DCMAKE_BUILD_TYPE=Release || fail "the build"
 version=$("$oriel" version | cut -d' ' -f2)
 
 if [ -d "$demo" ]; then

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Oriel and runs all of its tests.
-#   ./test.sh            everything (what CI runs)
+#   ./test.sh            everything
 #   ./test.sh --quick    the plain build and its tests only
+#   ./test.sh --strict   everything, and warnings are errors (what CI runs)
 set -u
 cd "$(dirname "$0")" || exit 1
 . .ci/deps.sh
 
-quick=
+quick='' strict=()
 [ "${1:-}" = --quick ] && quick=1
+[ "${1:-}" = --strict ] && strict=(-DCMAKE_COMPILE_WARNING_AS_ERROR=ON)
 start=$SECONDS
 # Rough minutes on two cores without a GPU, for the time left: "name minutes".
 steps=("dependencies 2" "build 1" "tests 9")
@@ -66,7 +68,7 @@ extra=(libcmocka-dev openexr imagemagick libheif-examples sqlite3 chromium chrom
 install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }
 
 step build "building with gcc"
-build_oriel build || { failed+=("gcc build"); finish; }
+build_oriel build -DORL_TESTS=ON "${strict[@]}" || { failed+=("gcc build"); finish; }
 
 step tests "running the tests"
 run_tests build
@@ -81,7 +83,7 @@ if [ -z "$quick" ]; then
     unset GALLIUM_DRIVER LIBGL_ALWAYS_SOFTWARE ORIEL_TEST_DEVICE
 
     step clang "building with clang and testing that"
-    if CC=clang CXX=clang++ build_oriel build-clang; then
+    if CC=clang CXX=clang++ build_oriel build-clang -DORL_TESTS=ON "${strict[@]}"; then
         run_tests build-clang -L 'unit|golden'
     else
         failed+=("clang build")
@@ -90,7 +92,7 @@ if [ -z "$quick" ]; then
     step sanitizers "building and testing with AddressSanitizer and UBSan"
     # Leaks of Mesa and EGL's driver loading are not ours to fix: leak detection
     # stays on for the unit tests, which use no GL. leaks.supp names other libraries'.
-    if build_oriel build-sanitize -DORL_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug; then
+    if build_oriel build-sanitize --preset=sanitize "${strict[@]}"; then
         LSAN_OPTIONS=suppressions=$PWD/tests/leaks.supp UBSAN_OPTIONS=print_stacktrace=1 \
             run_tests build-sanitize -L 'unit|fuzz'
         ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \

@@ -77,8 +77,9 @@ static void convolve_row(const float *in, int width, const struct kernel *kernel
     int radius = kernel->radius;
     for (int x = -radius; x < width + radius; x++)
         padded[x + radius] = in[x < 0 ? 0 : x >= width ? width - 1 : x];
-    memset(out, 0, (size_t)width * sizeof *out);
-    for (int k = 0; k <= 2 * radius; k++)
+    for (int x = 0; x < width; x++)
+        out[x] = kernel->taps[0] * padded[x];
+    for (int k = 1; k <= 2 * radius; k++)
         for (int x = 0; x < width; x++)
             out[x] += kernel->taps[k] * padded[x + k];
 }
@@ -94,7 +95,8 @@ static void convolve(const float *in, int width, int height, const struct kernel
     int radius = down->radius;
     for (int y = 0; y < height; y++) {
         float *row = out + (size_t)y * (size_t)width;
-        memset(row, 0, (size_t)width * sizeof *row);
+        for (int x = 0; x < width; x++)
+            row[x] = 0;
         for (int k = -radius; k <= radius; k++) {
             int from = y + k < 0 ? 0 : y + k >= height ? height - 1 : y + k;
             const float *other = work[0] + (size_t)from * (size_t)width;

@@ -20,8 +20,15 @@ static enum orl_result check(const struct orl_log *log, const char *path, int co
                     code > 0 ? strerror(code) : libraw_strerror(code));
 }
 
+// The type of a file's offset in LibRaw's callbacks.
+#if LIBRAW_COMPILE_CHECK_VERSION_NOTLESS(0, 22)
+typedef INT64 raw_offset;
+#else
+typedef int raw_offset;
+#endif
+
 // Records damage; without a handler LibRaw prints to stderr.
-static void drop_damage(void *priv, const char *file, const int offset)
+static void drop_damage(void *priv, const char *file, const raw_offset offset)
 {
     (void)file;
     (void)offset;

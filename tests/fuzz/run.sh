@@ -12,7 +12,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../../.ci/deps.sh"
 dir=${FUZZ_DIR:-$here/../../build-fuzz} jobs=${FUZZ_JOBS:-1} seconds=$1
 shift
-CC=clang CXX=clang++ build_oriel "$dir" -DORL_FUZZ=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo fuzz ||
+build_oriel "$dir" --preset=fuzz fuzz ||
     exit 1
 dir=$(cd "$dir" && pwd)
 fuzz=$dir/tests/fuzz/fuzz

@@ -113,7 +113,7 @@ static void write_model(const struct truth *truth, const char *dir)
     for (int i = 0; i < trial->count; i++)
         for (int top = 0; top < c->height; top += CELL)
             for (int left = 0; left < c->width; left += CELL) {
-                int x, y, views[SHOTS], count = 0;
+                int x = 0, y = 0, views[SHOTS], count = 0;
                 double world[3], pixels[SHOTS][2];
                 if (!find_corner(&truth->photos[i], left, top, &x, &y))
                     continue;
