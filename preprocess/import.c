@@ -64,6 +64,7 @@ static void finish(struct import_job *job)
     }
     free(job->views);
     free(job->targets);
+    free(job->first_empty);
     free(job->dir);
     orl_known_cameras_finish(&job->known);
 }

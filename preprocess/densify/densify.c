@@ -9,6 +9,7 @@
 
 #include "core/lock.h"
 #include "core/memory.h"
+#include "io/mask.h"
 #include "io/picture.h"
 #include "preprocess/densify/densify_internal.h"
 
@@ -150,7 +151,7 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
         return ORL_ERR_MEMORY;
     enum orl_result result = ORL_OK;
     if (orl_path_is_file(path)) {
-        result = orl_picture_read(d->log, path, 1, &job->mask);
+        result = orl_mask_read(d->log, path, &job->mask);
         if (result == ORL_OK &&
             (job->mask.width != picture->width || job->mask.height != picture->height))
             result = orl_fail(d->log, ORL_ERR_DATA, "%s: %dx%d, but its photograph is %dx%d", path,

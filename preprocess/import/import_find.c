@@ -328,6 +328,38 @@ static enum orl_result hold_out(struct import_job *job)
                           "two must remain", test, job->view_count);
 }
 
+static bool is_only_name(const struct import_job *job, const char *base)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < job->view_count; i++)
+        count += strcmp(orl_path_name(job->views[i].image->name), base) == 0;
+    return count == 1;
+}
+
+// Looks for the companion of the camera "front/0001.jpg" in front/, else for "front_0001", else, where
+// no other camera has this name, for "0001".
+static enum orl_result find_companion(const struct import_job *job, const char *dir,
+                                      const char *role, const char *name,
+                                      struct import_found *found)
+{
+    const char *base = orl_path_name(name);
+    char *inside = orl_format(job->log, "%s/%.*s", dir, (int)(base - name), name);
+    char *flat = orl_strdup(job->log, name);
+    for (char *c = flat; c && *c; c++)
+        if (*c == '/')
+            *c = '_';
+    enum orl_result result = inside && flat ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && base != name && orl_path_is_dir(inside))
+        result = orl_import_find(job->log, inside, base, role, true, found);
+    if (result == ORL_OK && base != name && found->kind == IMPORT_NOTHING)
+        result = orl_import_find(job->log, dir, flat, role, true, found);
+    if (result == ORL_OK && found->kind == IMPORT_NOTHING && is_only_name(job, base))
+        result = orl_import_find(job->log, dir, base, role, true, found);
+    free(inside);
+    free(flat);
+    return result;
+}
+
 // Finds masks or backgrounds, of which every camera must have one.
 static enum orl_result find_companions(struct import_job *job, const char *option,
                                        const char *dir, const char *role)
@@ -339,7 +371,7 @@ static enum orl_result find_companions(struct import_job *job, const char *optio
     for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
         struct import_view *view = &job->views[i];
         struct import_found *found = masks ? &view->mask : &view->background;
-        result = orl_import_find(job->log, dir, orl_path_name(view->image->name), role, true, found);
+        result = find_companion(job, dir, role, view->image->name, found);
         if (result == ORL_OK && found->kind == IMPORT_NOTHING)
             result = orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: nothing here for the camera "
                               "%s", option, dir, view->image->name);

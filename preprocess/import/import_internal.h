@@ -34,6 +34,8 @@ struct import_job {
     size_t view_count;
     bool sequence;      // true when the pictures are folders or clips
     size_t frame_count; // frames of the sequence that were written
+    size_t mask_count, empty_masks; // silhouettes that were written, and those without a subject
+    char *first_empty; // file or picture of the first such; owned
     bool said_endless;  // see orl_cones_mesh
 };
 

@@ -3,8 +3,9 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "scene/linear.h"
+#include "io/mask.h"
 #include "io/picture.h"
+#include "scene/linear.h"
 #include "scene/remap.h"
 #include "preprocess/import/import_internal.h"
 #include "scene/silhouette.h"
@@ -186,7 +187,7 @@ static enum orl_result make_mask(const struct import_job *job, const char *path,
     enum orl_result result;
     switch (job->params->silhouettes) {
     case ORL_SILHOUETTES_GIVEN:
-        return orl_picture_read(job->log, mask_path, 1, mask);
+        return orl_mask_read(job->log, mask_path, mask);
     case ORL_SILHOUETTES_DARK:
         result = orl_silhouette_dark(job->log, picture, job->params->dark_threshold, &threshold,
                                      mask);
@@ -198,9 +199,33 @@ static enum orl_result make_mask(const struct import_job *job, const char *path,
     }
 }
 
-static enum orl_result import_picture(const struct import_job *job,
-                                      const struct import_view *view, int frame, const char *path,
-                                      const char *mask_path,
+static enum orl_result count_mask(struct import_job *job, const char *path,
+                                  const struct orl_image *mask)
+{
+    job->mask_count++;
+    if (orl_mask_count(mask))
+        return ORL_OK;
+    if (!job->empty_masks++)
+        job->first_empty = orl_strdup(job->log, path);
+    return job->first_empty ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+// A subject may be absent from some pictures.
+static enum orl_result judge_masks(const struct import_job *job)
+{
+    if (!job->empty_masks)
+        return ORL_OK;
+    if (job->empty_masks == job->mask_count)
+        return orl_fail(job->log, ORL_ERR_DATA, "%s: no silhouette has any pixel of the subject, as "
+                        "this one%s", job->first_empty,
+                        job->params->masks_dir ? ": masks are black where the subject is not" : "");
+    orl_logf(job->log, ORL_LOG_WARNING, "%s: %zu of %zu silhouettes are empty, as this one",
+             job->first_empty, job->empty_masks, job->mask_count);
+    return ORL_OK;
+}
+
+static enum orl_result import_picture(struct import_job *job, const struct import_view *view,
+                                      int frame, const char *path, const char *mask_path,
                                       const struct orl_background *background)
 {
     struct orl_image picture = {0}, mask = {0};
@@ -212,6 +237,8 @@ static enum orl_result import_picture(const struct import_job *job,
         result = write_photo(job, view, -1, path, &picture);
     if (result == ORL_OK && job->params->silhouettes != ORL_SILHOUETTES_NONE) {
         result = make_mask(job, path, mask_path, background, &picture, &mask);
+        if (result == ORL_OK)
+            result = count_mask(job, mask_path ? mask_path : path, &mask);
         if (result == ORL_OK)
             result = write_mask(job, view, frame, mask_path ? mask_path : path, &mask);
         if (result == ORL_OK && frame == 0)
@@ -344,6 +371,8 @@ enum orl_result orl_import_pictures(struct import_job *job)
     }
     if (result == ORL_OK && job->sequence)
         result = drop_surplus(job);
+    if (result == ORL_OK)
+        result = judge_masks(job);
     if (result == ORL_OK)
         orl_progress_report(job->progress, "import", 1, 1, NULL);
     return result;

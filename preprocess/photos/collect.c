@@ -13,6 +13,7 @@
 #include "preprocess/photos/develop.h"
 #include "preprocess/photos/doubts.h"
 #include "preprocess/photos/list.h"
+#include "preprocess/photos/masks.h"
 
 static int compare_sources(const void *a, const void *b)
 {
@@ -290,62 +291,6 @@ static enum orl_result choose_test(struct orl_job *job)
     return ORL_OK;
 }
 
-// By the photograph's name in the scene or in the input, with or without its extension.
-static enum orl_result find_mask_file(const struct orl_job *job, struct orl_source *source)
-{
-    const char *const names[] = {source->name, source->given};
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < 4 && !source->mask; i++) {
-        const char *name = names[i / 2];
-        char *path = orl_format(job->log, "%s/%.*s.png", job->params->masks_dir,
-                                (int)(i % 2 ? stem_length(name) : strlen(name)), name);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (orl_path_is_file(path))
-            source->mask = realpath(path, NULL);
-        free(path);
-    }
-    return result;
-}
-
-static enum orl_result find_mask(const struct orl_job *job, struct orl_source *source)
-{
-    enum orl_result result = find_mask_file(job, source);
-    int width, height;
-    if (result == ORL_OK && source->mask &&
-        (result = orl_file_hash(job->log, source->mask, &source->mask_hash)) == ORL_OK &&
-        (result = orl_picture_size(job->log, source->mask, &width, &height)) == ORL_OK &&
-        (width != source->width || height != source->height))
-        result = orl_fail(job->log, ORL_ERR_DATA, "%s: %dx%d pixels, but its photograph %s has "
-                          "%dx%d", source->mask, width, height, source->name, source->width,
-                          source->height);
-    return result;
-}
-
-static enum orl_result find_masks(struct orl_job *job)
-{
-    if (!job->params->masks_dir)
-        return ORL_OK;
-    if (!orl_path_is_dir(job->params->masks_dir))
-        return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--masks %s: no such folder",
-                        job->params->masks_dir);
-    size_t found = 0;
-    for (size_t i = 0; i < job->source_count; i++) {
-        enum orl_result result = find_mask(job, &job->sources[i]);
-        if (result != ORL_OK)
-            return result;
-        found += job->sources[i].mask != NULL;
-    }
-    if (!found)
-        return orl_fail(job->log, ORL_ERR_NOT_FOUND,
-                        "--masks %s: no mask for any photograph (NAME.png or NAME.EXT.png)",
-                        job->params->masks_dir);
-    if (found < job->source_count)
-        orl_logf(job->log, ORL_LOG_WARNING, "%zu of %zu photographs have no mask: used whole",
-                 job->source_count - found, job->source_count);
-    return ORL_OK;
-}
-
 static enum orl_result link_photos(struct orl_job *job)
 {
     enum orl_result result = orl_job_fresh_dir(job, ".oriel/photos");
@@ -381,7 +326,7 @@ enum orl_result orl_stage_collect(struct orl_job *job)
         return result;
     if (job->source_count < 3)
         return too_few(job);
-    if ((result = choose_test(job)) != ORL_OK || (result = find_masks(job)) != ORL_OK ||
+    if ((result = choose_test(job)) != ORL_OK || (result = orl_masks_find(job)) != ORL_OK ||
         (result = orl_develop(job)) != ORL_OK)
         return result;
     return link_photos(job);

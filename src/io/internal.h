@@ -39,6 +39,10 @@ enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, con
                                 size_t size, int channels, struct orl_image *image);
 enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                size_t size, int channels, struct orl_image *image);
+// Decodes samples as stored: U8 x4, or F32 x4 in [0, 1] where the file has 16 bits a sample. Alpha is
+// opaque where the file has none.
+enum orl_result orl_png_decode_rgba(const struct orl_log *log, const char *path,
+                                    const uint8_t *data, size_t size, struct orl_image *image);
 // True for binary Netpbm files (P4, P5, P6), recognised by their first bytes.
 bool orl_pnm_is(const uint8_t *data, size_t size);
 enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path, FILE *stream,

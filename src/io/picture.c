@@ -329,6 +329,59 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     return result;
 }
 
+// Takes RGB or RGBA: U8, or F32 with the samples of an encoded picture.
+static enum orl_result to_rgba(const struct orl_log *log, const struct orl_image *from,
+                               struct orl_image *image)
+{
+    enum orl_result result = orl_image_init(log, image, from->width, from->height, 4,
+                                            ORL_PIXEL_U8);
+    size_t count = (size_t)from->width * (size_t)from->height;
+    size_t channels = (size_t)from->channels;
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        for (size_t c = 0; c < 4; c++) {
+            size_t at = channels * i + c;
+            image->u8[4 * i + c] =
+                c >= channels ? 255
+                : from->type == ORL_PIXEL_U8 ? from->u8[at]
+                                             : (uint8_t)ceilf(255 * from->f32[at]);
+        }
+    return result;
+}
+
+enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *path,
+                                      struct orl_image *image)
+{
+    memset(image, 0, sizeof *image);
+    struct orl_image from = {0};
+    uint8_t *data = NULL;
+    size_t size = 0;
+    FILE *stream = NULL;
+    enum format format = FORMAT_UNKNOWN;
+    enum orl_result result = open_file(log, path, &stream, &format);
+    if (result != ORL_OK)
+        return result;
+    fclose(stream);
+    if (format == FORMAT_PNG) {
+        result = orl_file_read(log, path, max_file_bytes, &data, &size);
+        if (result == ORL_OK)
+            result = orl_png_decode_rgba(log, path, data, size, &from);
+    } else if (format == FORMAT_JPEG || format == FORMAT_PNM) {
+        result = orl_picture_read(log, path, 3, &from);
+    } else {
+        result = orl_picture_read_linear(log, path, &from);
+        size_t count = result == ORL_OK ? orl_image_bytes(&from) / sizeof(float) : 0;
+        for (size_t i = 0; i < count; i++)
+            from.f32[i] = orl_srgb_encode(from.f32[i]);
+    }
+    if (result == ORL_OK)
+        result = to_rgba(log, &from, image);
+    if (result != ORL_OK)
+        orl_image_finish(image);
+    orl_image_finish(&from);
+    free(data);
+    return result;
+}
+
 bool orl_exif_exposure_ev(const struct orl_exif *exif, double *ev)
 {
     *ev = 0;

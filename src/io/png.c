@@ -117,9 +117,10 @@ static bool is_linear(const struct png_job *job)
            png_get_gAMA(job->png, job->info, &gamma) && fabs(gamma - 1) < 0.01;
 }
 
-// Decodes 8-bit samples, or with `deep` samples of the file's depth in the machine's byte order.
-static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool deep,
-                                  struct orl_image *rgb)
+// Decodes RGB or RGBA: 8-bit samples, or with `deep` samples of the file's depth in the machine's
+// byte order.
+static enum orl_result decode(struct png_job *job, size_t file_size, int channels, bool deep,
+                              struct orl_image *image)
 {
     // Deflate compresses at most 1032 to 1 (zlib's technical notes).
     const uint64_t max_ratio = 1032;
@@ -129,7 +130,7 @@ static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool de
     png_read_info(job->png, job->info);
     png_uint_32 width = png_get_image_width(job->png, job->info);
     png_uint_32 height = png_get_image_height(job->png, job->info);
-    size_t pixel = 3 * (deep ? sizeof(float) : 1);
+    size_t pixel = (size_t)channels * (deep ? sizeof(float) : 1);
     enum orl_result result =
         orl_picture_check_memory(job->log, job->path, width, height, pixel);
     if (result != ORL_OK)
@@ -144,16 +145,19 @@ static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool de
         png_set_scale_16(job->png); // rounds, unlike strip_16
     else if (job->wide)
         png_set_swap(job->png);
-    png_set_strip_alpha(job->png);
+    if (channels == 3)
+        png_set_strip_alpha(job->png);
+    else
+        png_set_add_alpha(job->png, 0xffff, PNG_FILLER_AFTER);
     png_set_gray_to_rgb(job->png);
     png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
-    size_t row = (size_t)width * (job->wide ? 6 : 3);
+    size_t row = (size_t)width * (size_t)channels * (job->wide ? 2 : 1);
     if (png_get_rowbytes(job->png, job->info) != row)
         png_error(job->png, "unexpected row size");
     // With `deep` the samples go to the end of the image, where they are converted to floats
     // in place.
-    result = orl_image_init(job->log, rgb, (int)width, (int)height, 3,
+    result = orl_image_init(job->log, image, (int)width, (int)height, channels,
                             deep ? ORL_PIXEL_F32 : ORL_PIXEL_U8);
     if (result != ORL_OK)
         return result;
@@ -161,7 +165,7 @@ static enum orl_result decode_rgb(struct png_job *job, size_t file_size, bool de
     if (!job->rows)
         return ORL_ERR_MEMORY;
     for (size_t y = 0; y < height; y++)
-        job->rows[y] = rgb->u8 + (orl_image_bytes(rgb) - row * height) + y * row;
+        job->rows[y] = image->u8 + (orl_image_bytes(image) - row * height) + y * row;
     png_read_image(job->png, job->rows);
     png_read_end(job->png, NULL);
     return ORL_OK;
@@ -192,9 +196,24 @@ enum orl_result orl_png_decode(const struct orl_log *log, const char *path, cons
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
     if (result == ORL_OK)
-        result = decode_rgb(&job, size, false, image);
+        result = decode(&job, size, 3, false, image);
     end_reading(&job);
     return result == ORL_OK && channels == 1 ? to_luma(log, image) : result;
+}
+
+// Converts the samples of a deep picture to floats in place, 1 at white.
+static void to_floats(const struct png_job *job, struct orl_image *image)
+{
+    // From the front, a float overwrites only samples that were already read.
+    size_t count = orl_image_bytes(image) / sizeof(float);
+    size_t sample = job->wide ? 2 : 1;
+    const uint8_t *from = image->u8 + orl_image_bytes(image) - count * sample;
+    for (size_t i = 0; i < count; i++) {
+        uint16_t value = from[i];
+        if (job->wide)
+            memcpy(&value, from + 2 * i, 2);
+        image->f32[i] = (float)value / (job->wide ? 65535 : 255);
+    }
 }
 
 enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
@@ -203,23 +222,30 @@ enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *pat
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
     if (result == ORL_OK)
-        result = decode_rgb(&job, size, true, image);
+        result = decode(&job, size, 3, true, image);
     end_reading(&job);
     if (result != ORL_OK)
         return result;
-    // From the front, a float overwrites only samples that were already read.
-    size_t count = (size_t)image->width * (size_t)image->height * 3;
-    size_t sample = job.wide ? 2 : 1;
-    const uint8_t *from = image->u8 + orl_image_bytes(image) - count * sample;
-    float white = job.wide ? 65535 : 255;
-    for (size_t i = 0; i < count; i++) {
-        uint16_t value = from[i];
-        if (job.wide)
-            memcpy(&value, from + 2 * i, 2);
-        float encoded = (float)value / white;
-        image->f32[i] = job.linear ? encoded : orl_srgb_decode(encoded);
-    }
+    to_floats(&job, image);
+    size_t count = orl_image_bytes(image) / sizeof(float);
+    for (size_t i = 0; !job.linear && i < count; i++)
+        image->f32[i] = orl_srgb_decode(image->f32[i]);
     return ORL_OK;
+}
+
+enum orl_result orl_png_decode_rgba(const struct orl_log *log, const char *path,
+                                    const uint8_t *data, size_t size, struct orl_image *image)
+{
+    struct png_job job = {.log = log, .path = path, .data = data, .size = size};
+    const size_t depth_at = 24; // of the header, which has a fixed length
+    bool deep = size > depth_at && data[depth_at] == 16;
+    enum orl_result result = start_reading(&job);
+    if (result == ORL_OK)
+        result = decode(&job, size, 4, deep, image);
+    end_reading(&job);
+    if (result == ORL_OK && deep)
+        to_floats(&job, image);
+    return result;
 }
 
 // --- writing ---

@@ -105,6 +105,16 @@ run 2 prepare "$work/p" --out "$work/s" --test-list a,b,c,d
 says "at least two must remain"
 run 2 prepare "$work/p" --out "$work/s" --masks "$work/empty"
 says "no mask for any photograph"
+mkdir "$work/black"
+base64 -d >"$work/black/a.png" <<'PNG'
+iVBORw0KGgoAAAANSUhEUgAAAGAAAABQCAAAAADDiS9JAAAAgklEQVRYCbXBAQEAAABAIP6ftkLJTGYyk5nMZCYzmclM
+ZjKTmcxkJjOZyUxmMpOZzGQmM5nJTGYyk5nMZCYzmclMZjKTmcxkJjOZyUxmMpOZzGQmM5nJTGYyk5nMZCYzmclMZjKT
+mcxkJjOZyUxmMpOZzGQmM5nJTGYyk5nMZCYzmQXqNABRn24ZTwAAAABJRU5ErkJggg==
+PNG
+for run in first second; do
+    run 2 prepare "$work/p" --out "$work/black_scene" --masks "$work/black"
+    says "all of its 1 masks are black"
+done
 run 2 prepare "$work/p"
 says "--out SCENE is missing"
 

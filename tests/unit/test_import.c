@@ -237,7 +237,7 @@ static void undistorts(void **state)
     orl_colmap_camera_project(&from, dot, pixel);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
-            if (hypot(x + 0.5 - pixel[0], y + 0.5 - pixel[1]) < 4)
+            if (hypot(x + 0.5 - pixel[0], y + 0.5 - pixel[1]) < 8) // more than a speck
                 memset(bent.u8 + 3 * (y * W + x), 255, 3);
     for (int i = 0; i < 2; i++) {
         snprintf(path, sizeof path, "%s/%c.png", dir, "ab"[i]);
@@ -270,6 +270,7 @@ static void undistorts(void **state)
                 at[0] += v * (x + 0.5);
                 at[1] += v * (y + 0.5);
             }
+        assert_true(sum > 0);
         assert_float_equal(at[0] / sum, c->fx * dot[0] + c->cx, 0.5);
         assert_float_equal(at[1] / sum, c->fy * dot[1] + c->cy, 0.5);
         orl_image_finish(&straight);
@@ -278,6 +279,115 @@ static void undistorts(void **state)
     orl_scene_destroy(&scene);
     orl_image_finish(&bent);
     free(dir);
+    free(out);
+}
+
+// --- masks ---
+
+// A set of pictures front/1.png and back/1.png with cameras, in work/NAME.
+static char *make_pair(const struct work *w, const char *name)
+{
+    enum { W = 64, H = 48 };
+    char *dir = join(w->dir, name), path[4096];
+    struct orl_image grey;
+    assert_int_equal(orl_image_init(NULL, &grey, W, H, 3, ORL_PIXEL_U8), ORL_OK);
+    memset(grey.u8, 128, orl_image_bytes(&grey));
+    static const char *const sides[] = {"front", "back"};
+    FILE *images;
+    for (int i = 0; i < 2; i++) {
+        snprintf(path, sizeof path, "%s/images/%s", dir, sides[i]);
+        assert_int_equal(orl_dir_make(NULL, path), ORL_OK);
+        snprintf(path, sizeof path, "%s/images/%s/1.png", dir, sides[i]);
+        assert_int_equal(orl_png_write(NULL, path, &grey), ORL_OK);
+    }
+    FILE *file = test_create(dir, "cameras.txt");
+    fprintf(file, "1 PINHOLE 64 48 60 60 32 24\n");
+    fclose(file);
+    images = test_create(dir, "images.txt");
+    for (int i = 0; i < 2; i++)
+        fprintf(images, "%d 1 0 0 0 %d 0 0 1 %s/1.png\n\n", i + 1, i, sides[i]);
+    fclose(images);
+    fclose(test_create(dir, "points3D.txt"));
+    orl_image_finish(&grey);
+    return dir;
+}
+
+// White left of `column`.
+static void write_part(const char *dir, const char *name, int column)
+{
+    char *path = join(dir, name), *folder = join(dir, name);
+    struct orl_image mask;
+    *strrchr(folder, '/') = '\0';
+    assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
+    assert_int_equal(orl_image_init(NULL, &mask, 64, 48, 1, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < 64 * 48; i++)
+        mask.u8[i] = i % 64 < column ? 1 : 0;
+    assert_int_equal(orl_png_write(NULL, path, &mask), ORL_OK);
+    orl_image_finish(&mask);
+    free(path);
+    free(folder);
+}
+
+static void expect_parts(const char *scene, int back, int front)
+{
+    const int want[2] = {back, front};
+    for (int i = 0; i < 2; i++) {
+        char *path = join(scene, i ? "masks/front/1.png.png" : "masks/back/1.png.png");
+        struct orl_image mask = picture(path, 1);
+        for (int x = 0; x < 64; x++)
+            assert_int_equal(mask.u8[x] != 0, x < want[i]);
+        orl_image_finish(&mask);
+        free(path);
+    }
+}
+
+static void finds_masks_in_folders(void **state)
+{
+    const struct work *w = *state;
+    char *dir = make_pair(w, "pair"), *masks = join(dir, "m"), *out = join(w->dir, "pair_scene");
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_import_params params = {.cameras = dir, .out = out, ORL_IMPORT_DEFAULTS,
+                                       .silhouettes = ORL_SILHOUETTES_GIVEN, .masks_dir = masks};
+    // One file cannot be the mask of two pictures of the same name.
+    write_part(dir, "m/1.png", 5);
+    assert_int_equal(orl_import(&log, &params, NULL), ORL_ERR_NOT_FOUND);
+    write_part(dir, "m/front/1.png", 10);
+    write_part(dir, "m/back/1.png.png", 20);
+    assert_int_equal(orl_import(&log, &params, NULL), ORL_OK);
+    expect_parts(out, 20, 10);
+    // The scene's own names.
+    free(masks);
+    free(out);
+    params.masks_dir = masks = join(dir, "flat");
+    params.out = out = join(w->dir, "pair_flat");
+    write_part(dir, "flat/front_1.png", 30);
+    write_part(dir, "flat/back_1.png", 40);
+    assert_int_equal(orl_import(&log, &params, NULL), ORL_OK);
+    expect_parts(out, 40, 30);
+    free(dir);
+    free(masks);
+    free(out);
+}
+
+static void names_black_masks(void **state)
+{
+    const struct work *w = *state;
+    char *dir = make_pair(w, "dark"), *masks = join(dir, "m"), *out = join(w->dir, "dark_scene");
+    struct said said;
+    struct orl_log log = log_to(&said);
+    const struct orl_import_params params = {
+        .cameras = dir, .out = out, ORL_IMPORT_DEFAULTS, .silhouettes = ORL_SILHOUETTES_GIVEN,
+        .masks_dir = masks};
+    write_part(dir, "m/front/1.png", 0);
+    write_part(dir, "m/back/1.png", 0);
+    assert_int_equal(orl_import(&log, &params, NULL), ORL_ERR_DATA);
+    assert_non_null(strstr(said.text, "masks are black where the subject is not"));
+    write_part(dir, "m/back/1.png", 7);
+    assert_int_equal(orl_import(&log, &params, NULL), ORL_OK);
+    assert_non_null(strstr(said.text, "front/1.png: 1 of 2 silhouettes are empty"));
+    free(dir);
+    free(masks);
     free(out);
 }
 
@@ -432,6 +542,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(imports_sequences), cmocka_unit_test(finds_silhouettes_by_difference),
         cmocka_unit_test(chooses_targets), cmocka_unit_test(undistorts),
+        cmocka_unit_test(finds_masks_in_folders), cmocka_unit_test(names_black_masks),
         cmocka_unit_test(copies_and_completes), cmocka_unit_test(keeps_linear_light), cmocka_unit_test(refuses),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,11 @@
+// The masks of photographs that a user gives, brought to one form.
+#ifndef ORL_PREPROCESS_MASKS_H
+#define ORL_PREPROCESS_MASKS_H
+
+#include "preprocess/job/job.h"
+
+// Finds the mask of each source in the folder of masks and sets source->mask to a copy that every
+// reader, COLMAP's too, takes alike: PNG, one channel, 255 for pixels that count and 0 for others.
+enum orl_result orl_masks_find(struct orl_job *job) ORL_CHECK_RESULT;
+
+#endif

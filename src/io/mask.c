@@ -1,0 +1,130 @@
+#include "io/mask.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "io/picture.h"
+
+enum {
+    LABELS_BELOW = 32, // files that are nowhere brighter hold labels
+    COLOURED = 32,     // least difference of the channels of a colour that is no noise
+};
+
+static uint8_t brightest_channel(const uint8_t *pixel)
+{
+    uint8_t most = pixel[0] > pixel[1] ? pixel[0] : pixel[1];
+    return most > pixel[2] ? most : pixel[2];
+}
+
+static uint8_t darkest_channel(const uint8_t *pixel)
+{
+    uint8_t least = pixel[0] < pixel[1] ? pixel[0] : pixel[1];
+    return least < pixel[2] ? least : pixel[2];
+}
+
+// Least value that counts in a file with this greatest value.
+static int threshold_of(int greatest)
+{
+    return greatest < LABELS_BELOW ? 1 : (greatest + 1) / 2;
+}
+
+static bool alpha_varies(const struct orl_image *rgba)
+{
+    size_t count = orl_image_bytes(rgba);
+    for (size_t i = 7; i < count; i += 4)
+        if (rgba->u8[i] != rgba->u8[3])
+            return true;
+    return false;
+}
+
+static void from_alpha(const struct orl_image *rgba, struct orl_image *mask)
+{
+    int greatest = 0;
+    size_t count = orl_image_bytes(mask);
+    for (size_t i = 0; i < count; i++)
+        greatest = rgba->u8[4 * i + 3] > greatest ? rgba->u8[4 * i + 3] : greatest;
+    int threshold = threshold_of(greatest);
+    for (size_t i = 0; i < count; i++)
+        mask->u8[i] = rgba->u8[4 * i + 3] >= threshold ? 255 : 0;
+}
+
+static void from_colours(const struct orl_image *rgba, struct orl_image *mask)
+{
+    int greatest = 0;
+    size_t count = orl_image_bytes(mask);
+    for (size_t i = 0; i < count; i++) {
+        int value = brightest_channel(rgba->u8 + 4 * i);
+        greatest = value > greatest ? value : greatest;
+    }
+    int threshold = threshold_of(greatest);
+    for (size_t i = 0; i < count; i++) {
+        const uint8_t *pixel = rgba->u8 + 4 * i;
+        int value = brightest_channel(pixel);
+        bool coloured = value - darkest_channel(pixel) >= COLOURED;
+        mask->u8[i] = value >= threshold || coloured ? 255 : 0;
+    }
+}
+
+static enum orl_result read_mask(const struct orl_log *log, const char *path, bool alpha_only,
+                                 struct orl_image *mask)
+{
+    struct orl_image rgba = {0};
+    memset(mask, 0, sizeof *mask);
+    enum orl_result result = orl_picture_read_rgba(log, path, &rgba);
+    bool alpha = result == ORL_OK && alpha_varies(&rgba);
+    if (result == ORL_OK && (alpha || !alpha_only))
+        result = orl_image_init(log, mask, rgba.width, rgba.height, 1, ORL_PIXEL_U8);
+    if (result == ORL_OK && alpha)
+        from_alpha(&rgba, mask);
+    else if (result == ORL_OK && !alpha_only)
+        from_colours(&rgba, mask);
+    orl_image_finish(&rgba);
+    return result;
+}
+
+enum orl_result orl_mask_read(const struct orl_log *log, const char *path, struct orl_image *mask)
+{
+    return read_mask(log, path, false, mask);
+}
+
+enum orl_result orl_mask_read_alpha(const struct orl_log *log, const char *path,
+                                    struct orl_image *mask)
+{
+    return read_mask(log, path, true, mask);
+}
+
+size_t orl_mask_count(const struct orl_image *mask)
+{
+    size_t marked = 0, count = orl_image_bytes(mask);
+    for (size_t i = 0; i < count; i++)
+        marked += mask->u8[i] != 0;
+    return marked;
+}
+
+enum orl_result orl_mask_find(const struct orl_log *log, const char *dir, const char *name,
+                              char **path)
+{
+    static const char *const extensions[] = {"png", "PNG", "jpg", "JPG", "jpeg", "JPEG", "tif",
+                                             "tiff", "pbm", "pgm", "ppm", "exr"};
+    static const char *const endings[] = {"", "_mask", ".mask"};
+    const char *dot = strrchr(orl_path_name(name), '.');
+    int stem = (int)(dot ? (size_t)(dot - name) : strlen(name));
+    const int lengths[] = {(int)strlen(name), stem};
+    enum { TRIES = ORL_COUNT(lengths) * ORL_COUNT(endings) * ORL_COUNT(extensions) };
+    *path = NULL;
+    for (size_t i = 0; i < TRIES && !*path; i++) {
+        const char *extension = extensions[i / (ORL_COUNT(lengths) * ORL_COUNT(endings))];
+        const char *ending = endings[i / ORL_COUNT(lengths) % ORL_COUNT(endings)];
+        char *file = orl_format(log, "%s/%.*s%s.%s", dir, lengths[i % ORL_COUNT(lengths)], name,
+                                ending, extension);
+        if (!file)
+            return ORL_ERR_MEMORY;
+        if (orl_path_is_file(file))
+            *path = file;
+        else
+            free(file);
+    }
+    return ORL_OK;
+}
