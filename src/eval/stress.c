@@ -38,7 +38,6 @@ struct severity {
     int level;
     const char *id; // in names of rows
     struct stress_case changed;
-    struct orl_renderer *renderer;
     bool made, impossible;
 };
 
@@ -60,13 +59,12 @@ static enum orl_result make_severity(struct job *job, struct severity *s)
     s->made = true;
     s->impossible = result == ORL_ERR_NOT_FOUND;
     if (result == ORL_OK)
-        result = orl_renderer_create(job->gpu, &s->changed.scene, NULL, &s->renderer);
+        result = orl_stress_open(&s->changed);
     return s->impossible ? ORL_OK : result;
 }
 
 static void finish_severity(struct severity *s)
 {
-    orl_renderer_destroy(&s->renderer);
     if (s->made)
         orl_stress_case_finish(&s->changed);
 }
@@ -110,7 +108,7 @@ static enum orl_result measure(struct job *job, struct severity *s,
         result = orl_render_params_tuned(job->log, choice->method, &s->changed.scene, &render);
     orl_stress_axis_options(s->axis, &render);
     if (result == ORL_OK)
-        result = orl_stress_measure(&s->changed, s->renderer, &render, &result_of);
+        result = orl_stress_measure(&s->changed, &render, &result_of);
     json_t *mean = json_object();
     for (int k = 0; k < STRESS_FIGURES; k++)
         json_object_set_new(mean, orl_stress_figures[k], orl_number_json(result_of.figures[k]));
@@ -176,7 +174,7 @@ static enum orl_result add_row(struct job *job, struct severity *s,
             result = make_severity(job, s);
         if (result == ORL_OK && s->impossible)
             return ORL_OK;
-        if (result == ORL_OK && s->renderer)
+        if (result == ORL_OK)
             result = measure(job, s, choice, &row);
         if (result == ORL_OK && row)
             result = orl_row_keep(&job->store, id, &row);

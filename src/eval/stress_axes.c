@@ -26,7 +26,7 @@ enum { POINTS = STRESS_CHANGES_POINTS, FILES = STRESS_CHANGES_FILES, COLORS = ST
        TRUTH = STRESS_NEEDS_TRUTH };
 
 const struct stress_axis orl_stress_axes[] = {
-    {"photographs", "photographs left out (three stay)", "%", {0, 25, 50, 65, 75, 100}, 0, NULL,
+    {"photographs", "photographs left out (three stay)", "%", {0, 25, 50, 65, 75, 100}, COLORS, NULL,
      orl_stress_fewer_photos, {NULL}},
     {"points", "points left out", "%", {0, 50, 80, 90, 97, 99}, POINTS, NULL,
      orl_stress_fewer_points, {NULL}},
@@ -121,7 +121,7 @@ enum orl_result orl_stress_worsen(const struct stress_case *base,
     if (result == ORL_OK && axis->worsen)
         result = axis->worsen(c, level, seed_of(axis, params->seed));
     if (result == ORL_OK && axis->flags & STRESS_RECOLORS)
-        result = orl_stress_recolor(base, c);
+        result = orl_stress_color_points(orl_gpu_log(c->gpu), c->photos, &c->scene);
     if (result == ORL_OK && axis->flags & STRESS_CHANGES_POINTS)
         result = orl_stress_set_radii(c);
     if (result == ORL_OK && (axis->flags & STRESS_CHANGES_FILES || axis->generate))

@@ -149,14 +149,17 @@ static enum orl_result leave_out_near(struct stress_case *c, struct stress_view 
     size_t left = 0;
     double target[3];
     target_of(c, &view->view, target);
-    view->skip = orl_array(orl_gpu_log(c->gpu), c->scene.photo_count, sizeof *view->skip);
-    if (!view->skip)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < c->scene.photo_count; i++) {
-        view->skip[i] = angle_between(target, &view->view, &c->scene.photos[i].view) < least;
-        left += !view->skip[i] && !c->scene.photos[i].test;
+    enum orl_result result = orl_stress_own_scene(c, view);
+    for (size_t i = 0; result == ORL_OK && i < c->scene.photo_count; i++) {
+        struct orl_photo *photo = &view->scene->photos[i];
+        photo->test = photo->test || angle_between(target, &view->view, &photo->view) < least;
+        left += !photo->test;
     }
-    return left >= PHOTOS_FOR_A_VIEW ? ORL_OK : ORL_ERR_NOT_FOUND;
+    if (result == ORL_OK && left < PHOTOS_FOR_A_VIEW)
+        return ORL_ERR_NOT_FOUND;
+    return result == ORL_OK
+               ? orl_stress_color_points(orl_gpu_log(c->gpu), c->photos, view->scene)
+               : result;
 }
 
 // Leaves out the photographs that see a view's target from directions within `level` degrees.

@@ -40,7 +40,7 @@ static enum orl_result copy_images(const struct orl_log *log, const struct orl_i
 }
 
 static enum orl_result copy_views(const struct orl_log *log, const struct stress_view *from,
-                                  size_t count, size_t photos, struct stress_view **to)
+                                  size_t count, struct stress_view **to)
 {
     *to = orl_array(log, count, sizeof **to);
     enum orl_result result = *to ? ORL_OK : ORL_ERR_MEMORY;
@@ -51,12 +51,6 @@ static enum orl_result copy_views(const struct orl_log *log, const struct stress
         result = copy_image(log, &from[i].picture, &view->picture);
         if (result == ORL_OK)
             result = copy_image(log, &from[i].depth, &view->depth);
-        if (result == ORL_OK && from[i].skip) {
-            view->skip = orl_array(log, photos, sizeof *view->skip);
-            result = view->skip ? ORL_OK : ORL_ERR_MEMORY;
-            if (view->skip)
-                memcpy(view->skip, from[i].skip, photos * sizeof *view->skip);
-        }
     }
     return result;
 }
@@ -98,10 +92,37 @@ enum orl_result orl_stress_copy(const struct stress_case *from, struct stress_ca
     if (result == ORL_OK)
         result = copy_images(log, from->masks, photos, &to->masks);
     if (result == ORL_OK)
-        result = copy_views(log, from->views, from->view_count, photos, &to->views);
+        result = copy_views(log, from->views, from->view_count, &to->views);
     if (result == ORL_OK)
-        result = copy_views(log, from->walk, from->walk_count, photos, &to->walk);
+        result = copy_views(log, from->walk, from->walk_count, &to->walk);
     return result;
+}
+
+enum orl_result orl_stress_own_scene(const struct stress_case *c, struct stress_view *view)
+{
+    const struct orl_log *log = orl_gpu_log(c->gpu);
+    view->scene = orl_array(log, 1, sizeof *view->scene);
+    return view->scene ? copy_scene(log, &c->scene, view->scene) : ORL_ERR_MEMORY;
+}
+
+enum orl_result orl_stress_open(struct stress_case *c)
+{
+    enum orl_result result = orl_renderer_create(c->gpu, &c->scene, NULL, &c->renderer);
+    for (size_t i = 0; result == ORL_OK && i < c->view_count + c->walk_count; i++) {
+        struct stress_view *view = i < c->view_count ? &c->views[i] : &c->walk[i - c->view_count];
+        if (view->scene)
+            result = orl_renderer_create(c->gpu, view->scene, NULL, &view->renderer);
+    }
+    return result;
+}
+
+static void finish_scene(struct orl_scene *scene)
+{
+    for (size_t i = 0; i < scene->photo_count; i++)
+        free(scene->photos[i].name);
+    free(scene->photos);
+    free(scene->dir);
+    orl_points_finish(&scene->points);
 }
 
 static void finish_views(struct stress_view *views, size_t count)
@@ -109,15 +130,18 @@ static void finish_views(struct stress_view *views, size_t count)
     for (size_t i = 0; views && i < count; i++) {
         orl_image_finish(&views[i].picture);
         orl_image_finish(&views[i].depth);
-        free(views[i].skip);
+        orl_renderer_destroy(&views[i].renderer);
+        if (views[i].scene)
+            finish_scene(views[i].scene);
+        free(views[i].scene);
     }
     free(views);
 }
 
 void orl_stress_case_finish(struct stress_case *c)
 {
+    orl_renderer_destroy(&c->renderer);
     for (size_t i = 0; i < c->scene.photo_count; i++) {
-        free(c->scene.photos[i].name);
         if (c->photos)
             orl_image_finish(&c->photos[i]);
         if (c->masks)
@@ -127,9 +151,7 @@ void orl_stress_case_finish(struct stress_case *c)
     free(c->masks);
     finish_views(c->views, c->view_count);
     finish_views(c->walk, c->walk_count);
-    free(c->scene.photos);
-    free(c->scene.dir);
-    orl_points_finish(&c->scene.points);
+    finish_scene(&c->scene);
     if (!c->borrowed_synth)
         orl_synth_destroy(&c->synth);
     memset(c, 0, sizeof *c);
@@ -163,34 +185,6 @@ enum orl_result orl_stress_set_radii(struct stress_case *c)
     free(views);
     free(eyes);
     return result;
-}
-
-int orl_stress_photo_of(const struct stress_case *c, size_t point, int pixel[2])
-{
-    int best = -1;
-    double most = 0, world[3];
-    for (int k = 0; k < 3; k++)
-        world[k] = (double)c->scene.points.position[point][k];
-    const float *n = c->scene.points.normal[point];
-    for (size_t i = 0; i < c->scene.photo_count; i++) {
-        const struct orl_photo *photo = &c->scene.photos[i];
-        double at[2], z, eye[3];
-        if (photo->test || !orl_view_project(&photo->view, world, at, &z) || at[0] < 0 ||
-            at[1] < 0 || at[0] >= photo->view.camera.width || at[1] >= photo->view.camera.height)
-            continue;
-        orl_pose_centre(&photo->view.cam_from_world, eye);
-        double way[3] = {eye[0] - world[0], eye[1] - world[1], eye[2] - world[2]};
-        double distance = orl_normalize3(way);
-        double facing = way[0] * (double)n[0] + way[1] * (double)n[1] + way[2] * (double)n[2];
-        double detail = fmax(facing, 1e-3) * photo->view.camera.fx / distance;
-        if (detail > most) {
-            most = detail;
-            best = (int)i;
-            pixel[0] = (int)at[0];
-            pixel[1] = (int)at[1];
-        }
-    }
-    return best;
 }
 
 // --- files ---

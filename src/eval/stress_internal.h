@@ -17,7 +17,8 @@ struct stress_view {
     struct orl_view view;
     struct orl_image picture; // owned: what should be seen, U8 x3; empty in a walk
     struct orl_image depth;   // owned: true z, F32 x1; 0: sky; empty: unknown
-    bool *skip;               // owned: per photograph, not used for this view; NULL: all are used
+    struct orl_scene *scene;  // owned: what may be used for this view; NULL: all of the case
+    struct orl_renderer *renderer; // owned: of that scene; NULL: not opened, or the case's
 };
 
 struct stress_case {
@@ -30,6 +31,7 @@ struct stress_case {
     size_t view_count;
     struct stress_view *walk;    // owned: neighbouring frames, for flicker
     size_t walk_count;
+    struct orl_renderer *renderer; // owned: of the scene; NULL: not opened
     struct orl_synth *synth;     // draws the truth; NULL: of a real scene
     bool borrowed_synth;
 };
@@ -46,6 +48,10 @@ struct orl_synth_params orl_stress_generator(const struct orl_stress_params *par
 enum orl_result orl_stress_make_scene(struct orl_gpu *gpu, const struct orl_stress_params *params,
                                       const struct orl_scene *scene, struct stress_case *c);
 enum orl_result orl_stress_copy(const struct stress_case *from, struct stress_case *to);
+// Gives the view a scene of its own, which the caller may change.
+enum orl_result orl_stress_own_scene(const struct stress_case *c, struct stress_view *view);
+// Makes the renderers, when nothing changes any more.
+enum orl_result orl_stress_open(struct stress_case *c);
 void orl_stress_case_finish(struct stress_case *c);
 // Sets the radii of all points as prepare does, which drops isolated ones.
 enum orl_result orl_stress_set_radii(struct stress_case *c);
@@ -54,8 +60,17 @@ enum orl_result orl_stress_write_files(struct stress_case *c, const char *dir, b
 // What the synthetic camera sees. depth may be NULL.
 enum orl_result orl_stress_draw_truth(struct stress_case *c, const struct orl_view *view,
                                       struct orl_image *picture, struct orl_image *depth);
-// The photograph that shows a point best among those in use, and the pixel; -1: none does.
+
+// --- stress_colors.c ---
+
+// The photograph among those in use that would show a point best if nothing hid it, and the pixel;
+// -1: none would.
 int orl_stress_photo_of(const struct stress_case *c, size_t point, int pixel[2]);
+// Gives each point the colour that it has in the photograph that shows it best among those in use,
+// so that a trial knows nothing of other photographs. A point that none shows takes the colour of
+// the nearest one that is shown. photos: as in struct stress_case.
+enum orl_result orl_stress_color_points(const struct orl_log *log, const struct orl_image *photos,
+                                        struct orl_scene *scene);
 
 // --- stress_axes.c ---
 
@@ -64,7 +79,7 @@ enum {
     STRESS_NEEDS_MASKS = 2,
     STRESS_CHANGES_POINTS = 4,
     STRESS_CHANGES_FILES = 8,  // photographs or masks
-    STRESS_RECOLORS = 16,      // points take part in what happens to the photographs
+    STRESS_RECOLORS = 16,      // points take the colours of the changed photographs
     STRESS_OWN_START = 32,     // the first severity is not the unchanged scene
     STRESS_OWN_TRUTH = 64,     // other severities show other pictures: PSNR may rise
     STRESS_ON_HULL = 128,      // methods stand on the visual hull
@@ -102,7 +117,6 @@ double orl_stress_normal(uint64_t seed, uint64_t a, uint64_t b);
 enum orl_result orl_stress_fewer_points(struct stress_case *c, double level, uint64_t seed);
 enum orl_result orl_stress_noisy_points(struct stress_case *c, double level, uint64_t seed);
 enum orl_result orl_stress_outliers(struct stress_case *c, double level, uint64_t seed);
-enum orl_result orl_stress_recolor(const struct stress_case *base, struct stress_case *c);
 
 // stress_photos.c
 enum orl_result orl_stress_exposure(struct stress_case *c, double level, uint64_t seed);
@@ -148,7 +162,7 @@ struct stress_result {
     struct stress_invariants invariants;
     struct orl_image picture;       // owned: the first view, U8 x3
 };
-enum orl_result orl_stress_measure(const struct stress_case *c, struct orl_renderer *renderer,
+enum orl_result orl_stress_measure(const struct stress_case *c,
                                    const struct orl_render_params *render,
                                    struct stress_result *result);
 

@@ -223,6 +223,8 @@ enum orl_result orl_stress_make_synth(struct orl_gpu *gpu, const struct orl_stre
     }
     if (result == ORL_OK)
         result = orl_stress_set_radii(c);
+    if (result == ORL_OK)
+        result = orl_stress_color_points(log, c->photos, &c->scene);
     free(cameras);
     return result;
 }
@@ -277,6 +279,8 @@ enum orl_result orl_stress_make_figure(struct orl_gpu *gpu, const struct orl_str
         result = make_walk(c);
     if (result == ORL_OK)
         result = orl_stress_set_radii(c);
+    if (result == ORL_OK)
+        result = orl_stress_color_points(log, c->photos, &c->scene);
     free(cameras);
     return result;
 }
@@ -382,6 +386,8 @@ enum orl_result orl_stress_make_scene(struct orl_gpu *gpu, const struct orl_stre
         result = thin_points(log, &scene->points, &c->scene.points);
     if (result == ORL_OK)
         result = orl_stress_set_radii(c);
+    if (result == ORL_OK)
+        result = orl_stress_color_points(log, c->photos, &c->scene);
     if (result == ORL_OK)
         result = make_walk(c);
     for (size_t k = 0; k < count; k++)

@@ -19,7 +19,6 @@ static const float sky_depth = 1e4f;   // scene units, for sky in true depth
 struct job {
     const struct stress_case *c;
     const struct orl_log *log;
-    struct orl_renderer *renderer;
     const struct orl_render_params *render;
     struct stress_result *result;
     float low[3], high[3]; // of everything that pictures are made of, linear
@@ -101,7 +100,8 @@ static enum orl_result draw(struct job *job, const struct stress_view *view,
 {
     struct orl_render_params render = *job->render;
     render.leave_out |= leave_out;
-    return orl_renderer_draw(job->renderer, at, &render, view->skip, frame);
+    return orl_renderer_draw(view->renderer ? view->renderer : job->c->renderer, at, &render, NULL,
+                             frame);
 }
 
 static enum orl_result compare(struct job *job, const struct stress_view *view,
@@ -173,7 +173,7 @@ static enum orl_result measure_view(struct job *job, size_t index)
         result = orl_tone_srgb(job->log, &frame.color, &plain);
     }
     if (result == ORL_OK)
-        result = orl_heldout_expose(job->log, &job->c->scene, view->photo, job->render,
+        result = orl_heldout_expose(job->log, view->scene ? view->scene : &job->c->scene, view->photo, job->render,
                                     &frame.color, &picture);
     if (result == ORL_OK)
         result = compare(job, view, &picture, &frame.coverage);
@@ -248,12 +248,11 @@ static enum orl_result walk(struct job *job)
     return result;
 }
 
-enum orl_result orl_stress_measure(const struct stress_case *c, struct orl_renderer *renderer,
+enum orl_result orl_stress_measure(const struct stress_case *c,
                                    const struct orl_render_params *render,
                                    struct stress_result *out)
 {
-    struct job job = {.c = c, .log = orl_gpu_log(c->gpu), .renderer = renderer,
-                      .render = render, .result = out};
+    struct job job = {.c = c, .log = orl_gpu_log(c->gpu), .render = render, .result = out};
     *out = (struct stress_result){.invariants = {.brightness = INFINITY}};
     find_range(&job);
     enum orl_result result = ORL_OK;

@@ -88,20 +88,3 @@ enum orl_result orl_stress_outliers(struct stress_case *c, double level, uint64_
     }
     return result;
 }
-
-enum orl_result orl_stress_recolor(const struct stress_case *base, struct stress_case *c)
-{
-    struct orl_points *points = &c->scene.points;
-    for (size_t i = 0; i < points->count; i++) {
-        int pixel[2], photo = orl_stress_photo_of(c, i, pixel);
-        if (photo < 0)
-            continue;
-        size_t at = 3 * ((size_t)pixel[1] * (size_t)c->photos[photo].width + (size_t)pixel[0]);
-        for (size_t k = 0; k < 3; k++) {
-            int value = points->color[i][k] + c->photos[photo].u8[at + k] -
-                        base->photos[photo].u8[at + k];
-            points->color[i][k] = (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
-        }
-    }
-    return ORL_OK;
-}

@@ -188,15 +188,78 @@ static void near_photographs_are_skipped(void **state)
 {
     (void)state;
     struct stress_case c = worsened("angle", 25), far;
-    const bool *skip = c.views[0].skip;
     size_t skipped = 0;
     for (size_t i = 0; i < c.scene.photo_count; i++)
-        skipped += skip[i] && !c.scene.photos[i].test;
+        skipped += c.views[0].scene->photos[i].test && !c.scene.photos[i].test;
     assert_true(skipped > 0 && skipped + 2 <= photos_in_use(&c));
     assert_int_equal(orl_stress_worsen(&base, &params, axis_named("angle"), 170, changed_dir, &far),
                      ORL_ERR_NOT_FOUND);
     orl_stress_case_finish(&c);
     orl_stress_case_finish(&far);
+}
+
+static void fill_photo(struct orl_image *photo, const uint8_t color[3])
+{
+    for (size_t p = 0; p < (size_t)photo->width * (size_t)photo->height; p++)
+        memcpy(&photo->u8[3 * p], color, 3);
+}
+
+static size_t points_of_color(const struct orl_scene *scene, const uint8_t color[3])
+{
+    size_t count = 0;
+    for (size_t i = 0; i < scene->points.count; i++)
+        count += memcmp(scene->points.color[i], color, 3) == 0;
+    return count;
+}
+
+// A trial knows no colour of a photograph that it may not use, neither by pixels nor by points.
+static void forbidden_photographs_color_no_point(void **state)
+{
+    (void)state;
+    static const uint8_t forbidden[3] = {255, 0, 255}, allowed[3] = {0, 255, 0};
+    struct stress_case c = worsened("angle", 25), marked;
+    assert_int_equal(orl_stress_copy(&base, &marked), ORL_OK);
+    for (size_t i = 0; i < marked.scene.photo_count; i++)
+        if (!marked.scene.photos[i].test)
+            fill_photo(&marked.photos[i], c.views[0].scene->photos[i].test ? forbidden : allowed);
+    for (size_t i = 0; i < marked.scene.points.count; i++)
+        memcpy(marked.scene.points.color[i], forbidden, 3);
+    assert_int_equal(orl_stress_angle(&marked, 25, 1), ORL_OK);
+    assert_int_equal(points_of_color(marked.views[0].scene, allowed), base.scene.points.count);
+    assert_int_equal(points_of_color(&marked.scene, forbidden), base.scene.points.count);
+    orl_stress_case_finish(&c);
+    orl_stress_case_finish(&marked);
+}
+
+// Two cameras look along z, one unit apart. The first sees both points behind one another, the
+// second both beside one another; the first is nearer to both. The third point is in no frame.
+static void hidden_points_are_not_painted(void **state)
+{
+    (void)state;
+    static const uint8_t red[3] = {255, 0, 0}, green[3] = {0, 255, 0};
+    struct orl_photo photos[2];
+    struct orl_image pictures[2];
+    struct orl_scene scene = {.photos = photos, .photo_count = 2};
+    for (size_t i = 0; i < 2; i++) {
+        photos[i] = (struct orl_photo){
+            .view = {.camera = {.width = 32, .height = 32, .fx = 16, .fy = 16, .cx = 16, .cy = 16},
+                     .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                        .t = {-(double)i, 0, 0}}}};
+        assert_int_equal(orl_image_init(NULL, &pictures[i], 32, 32, 3, ORL_PIXEL_U8), ORL_OK);
+        fill_photo(&pictures[i], i ? green : red);
+    }
+    assert_int_equal(orl_points_init(NULL, &scene.points, 3), ORL_OK);
+    const float at[3][3] = {{0, 0, 1}, {0, 0, 2}, {0, 0, -5}};
+    memcpy(scene.points.position, at, sizeof at);
+    for (size_t i = 0; i < 3; i++)
+        scene.points.normal[i][2] = -1;
+    assert_int_equal(orl_stress_color_points(NULL, pictures, &scene), ORL_OK);
+    assert_memory_equal(scene.points.color[0], red, 3);
+    assert_memory_equal(scene.points.color[1], green, 3);
+    assert_memory_equal(scene.points.color[2], red, 3); // of the nearest point
+    for (size_t i = 0; i < 2; i++)
+        orl_image_finish(&pictures[i]);
+    orl_points_finish(&scene.points);
 }
 
 static void losses_are_found_between_severities(void **state)
@@ -215,8 +278,7 @@ static void losses_are_found_between_severities(void **state)
 static const double luck_db = 0.75;
 
 static void check_method(const struct stress_axis *axis, int level, const struct stress_case *c,
-                         struct orl_renderer *renderer, const struct orl_method *method,
-                         double *start_db)
+                         const struct orl_method *method, double *start_db)
 {
     struct orl_render_params render;
     struct stress_result result;
@@ -224,7 +286,7 @@ static void check_method(const struct stress_axis *axis, int level, const struct
     orl_stress_axis_options(axis, &render);
     struct stress_case still = *c; // flicker has tests of its own
     still.walk_count = 0;
-    assert_int_equal(orl_stress_measure(&still, renderer, &render, &result), ORL_OK);
+    assert_int_equal(orl_stress_measure(&still, &render, &result), ORL_OK);
     const struct stress_invariants *i = &result.invariants;
     double db = result.figures[0];
     *start_db = level ? *start_db : db;
@@ -248,18 +310,16 @@ static void every_method_keeps_the_invariants(void **state)
         // The unchanged scene is measured with the first axis alone.
         for (int level = unchanged && axis != orl_stress_axes; level < ORL_STRESS_LEVELS; level++) {
             struct stress_case c;
-            struct orl_renderer *renderer = NULL;
             enum orl_result result =
                 orl_stress_worsen(&base, &params, axis, axis->levels[level], changed_dir, &c);
             if (result == ORL_OK)
-                assert_int_equal(orl_renderer_create(gpu, &c.scene, NULL, &renderer), ORL_OK);
+                assert_int_equal(orl_stress_open(&c), ORL_OK);
             else
                 assert_int_equal(result, ORL_ERR_NOT_FOUND);
-            for (int m = 0; renderer && orl_methods[m].name; m++) {
+            for (int m = 0; c.renderer && orl_methods[m].name; m++) {
                 assert_true(m < METHODS_MAX);
-                check_method(axis, level, &c, renderer, &orl_methods[m], &start_db[m]);
+                check_method(axis, level, &c, &orl_methods[m], &start_db[m]);
             }
-            orl_renderer_destroy(&renderer);
             orl_stress_case_finish(&c);
         }
         if (axis == orl_stress_axes)
@@ -276,6 +336,8 @@ int main(void)
         cmocka_unit_test(cameras_are_as_wrong_as_asked),
         cmocka_unit_test(photographs_are_as_bad_as_asked),
         cmocka_unit_test(near_photographs_are_skipped),
+        cmocka_unit_test(forbidden_photographs_color_no_point),
+        cmocka_unit_test(hidden_points_are_not_painted),
         cmocka_unit_test(losses_are_found_between_severities),
         cmocka_unit_test(every_method_keeps_the_invariants),
     };
