@@ -8,7 +8,7 @@
 #include "walk/server.h"
 
 struct options {
-    const char *method, *host, *title, *light;
+    const char *method, *host, *title, *light, *embed_in;
     struct orl_names settings;
     int port, max_vram_mib;
     bool edits, radiance;
@@ -45,6 +45,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_walk_params params = {
         .host = o->host, .port = o->port, .title = o->title, .edits = o->edits,
+        .embed_in = o->embed_in,
         .choice = &choice, .progress = &terminal->progress, .ready = print_address};
     if (result == ORL_OK)
         result = orl_walk_serve(gpu, renderer, scene, &params);
@@ -63,6 +64,8 @@ int cmd_walk(int argc, char **argv)
          "to listen on; default 127.0.0.1; others ask for the token in the printed address", 0, 0},
         {"title", ARG_STRING, &o.title, "TEXT",
          "of the page; default: that of walk.json, else the scene's name", 0, 0},
+        {"embed-in", ARG_STRING, &o.embed_in, "ORIGINS",
+         "sites whose pages may frame the walk; default: none", 0, 0},
         {"edit", ARG_FLAG, &o.edits, NULL,
          "other machines may change annotations, title and start view, too", 0, 0},
         {"method", ARG_STRING, &o.method, "NAME",

@@ -196,7 +196,7 @@ static const char *type_of(const char *path)
     const char *dot = strrchr(path, '.');
     static const char *const types[][2] = {
         {".js", "text/javascript"}, {".css", "text/css"}, {".json", "application/json"},
-        {".jpg", "image/jpeg"}, {".png", "image/png"}, {".bin", "application/octet-stream"}};
+        {".svg", "image/svg+xml"}, {".jpg", "image/jpeg"}, {".png", "image/png"}, {".bin", "application/octet-stream"}};
     for (size_t i = 0; dot && i < ORL_COUNT(types); i++)
         if (strcmp(dot, types[i][0]) == 0)
             return types[i][1];

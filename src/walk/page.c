@@ -112,12 +112,13 @@ static void fill_template(const struct value *values, size_t count, struct text 
     add(page, rest);
 }
 
-enum { TITLE, POSTER, STYLE, MODULES, FILES, VALUES };
+enum { TITLE, ICON, POSTER, STYLE, MODULES, FILES, VALUES };
 
 static void start_values(const struct orl_log *log, const char *title,
                          struct value values[VALUES])
 {
-    static const char *const keys[VALUES] = {"title", "poster", "style", "modules", "files"};
+    static const char *const keys[VALUES] = {"title", "icon", "poster", "style", "modules",
+                                              "files"};
     for (int i = 0; i < VALUES; i++)
         values[i] = (struct value){.key = keys[i], .text = {.log = log}};
     add_html(&values[TITLE].text, title);
@@ -136,8 +137,8 @@ char *orl_walk_index(const struct orl_log *log, const char *title, const char *p
     start_values(log, title, values);
     add(&values[POSTER].text, poster);
     add(&values[STYLE].text, "<link rel=\"stylesheet\" href=\"style.css\">");
-    add(&values[MODULES].text,
-        "<script type=\"importmap\">{\"imports\": {\"oriel/\": \"./js/\"}}</script>");
+    add(&values[ICON].text, "icon.svg");
+    add(&values[MODULES].text, "<script type=\"module\" src=\"js/main.js\"></script>");
     fill_template(values, VALUES, &page);
     finish_values(values);
     if (page.result == ORL_OK)
@@ -188,7 +189,24 @@ enum orl_result orl_site_page(struct site *site)
 
 // --- the site as one file ---
 
-// Adds every module as a data: address, under the name by which others import it.
+// Adds a module as a data: address. Such an address is no place to be relative to, so what the module
+// imports as "./NAME" becomes "oriel/NAME".
+static void add_module(struct text *text, const char *module)
+{
+    static const char relative[] = "from \"./", named[] = "from \"oriel/";
+    struct text plain = {.log = text->log};
+    for (const char *at; (at = strstr(module, relative)) != NULL; module = at + strlen(relative)) {
+        add_bytes(&plain, module, (size_t)(at - module));
+        add(&plain, named);
+    }
+    add(&plain, module);
+    add_base64(text, (const uint8_t *)plain.data, plain.size);
+    if (text->result == ORL_OK)
+        text->result = plain.result;
+    free(plain.data);
+}
+
+// Adds every module under the name by which others import it.
 static void add_modules(struct text *text)
 {
     bool first = true;
@@ -199,18 +217,18 @@ static void add_modules(struct text *text)
         add(text, first ? "\n\"oriel/" : ",\n\"oriel/");
         add(text, f->name + 3);
         add(text, "\": \"data:text/javascript;base64,");
-        add_base64(text, (const uint8_t *)f->text, strlen(f->text));
+        add_module(text, f->text);
         add(text, "\"");
         first = false;
     }
-    add(text, "\n}}</script>");
+    add(text, "\n}}</script>\n<script type=\"module\">import \"oriel/main.js\";</script>");
 }
 
 // True for data files, which the page requests by name.
 static bool is_data(const char *path)
 {
     return strcmp(path, index_name) != 0 && strcmp(path, "style.css") != 0 &&
-           strncmp(path, "js/", 3) != 0;
+           strcmp(path, "icon.svg") != 0 && strncmp(path, "js/", 3) != 0;
 }
 
 // Adds the paths of all data files below `folder` of the site ("": the site itself).
@@ -275,6 +293,7 @@ enum orl_result orl_site_pack(struct site *site, const char *file)
     struct value values[VALUES];
     struct text page = {.log = site->log}, files = {.log = site->log};
     start_values(site->log, site->params->title, values);
+    add(&values[ICON].text, "data:,");
     add(&values[STYLE].text, "<style>");
     add(&values[STYLE].text, web_file("style.css"));
     add(&values[STYLE].text, "</style>");

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <netdb.h>
 #include <sys/random.h>
 #include <sys/socket.h>
@@ -25,6 +26,7 @@ enum {
     CLIENTS_MOST = 64,
     CHUNK = 16384,       // bytes of a file that are written at once
     TOKEN_BYTES = 16,
+    HEADERS = 2048,      // bytes of an answer's headers
     IDLE_S = 30,         // seconds until an unfinished request ends the connection
 };
 
@@ -54,6 +56,8 @@ struct server {
     struct walk_renderer walk;
     struct content content;
     struct lws_context *context;
+    char policy[1024];         // where the page and what it shows may come from
+    struct lws_protocol_vhost_options headers[4]; // of every answer
     struct session *sessions; // the sessions of clients that walk
     size_t session_count;
     unsigned clock;
@@ -69,22 +73,23 @@ struct server {
 
 static bool is_local(const char *name)
 {
-    return strcmp(name, "127.0.0.1") == 0 || strcmp(name, "localhost") == 0 ||
-           strcmp(name, "[::1]") == 0 || strcmp(name, "::1") == 0;
+    return strcmp(name, "127.0.0.1") == 0 || strcasecmp(name, "localhost") == 0 ||
+           strcasecmp(name, "localhost.") == 0 || strcmp(name, "[::1]") == 0 || strcmp(name, "::1") == 0;
 }
 
 // Without a token, a request must name this machine as its host. This stops another site's page
 // whose host name resolves to this machine (DNS rebinding). Pages of another origin are always
-// refused.
+// refused. A page that came through a proxy may be of https, where the server is not.
 static bool asks_from_here(const struct server *server, struct lws *wsi)
 {
-    char host[256] = "", origin[256] = "", own[300];
+    char host[256] = "", origin[300] = "";
     if (lws_hdr_copy(wsi, host, sizeof host, WSI_TOKEN_HOST) <= 0)
         return false;
     if (lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) > 0) {
-        snprintf(own, sizeof own, "http://%s", host);
-        if (lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN) <= 0 ||
-            strcmp(origin, own) != 0)
+        const char *at = lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN) > 0
+                             ? strstr(origin, "://") : NULL;
+        bool web = strncmp(origin, "http://", 7) == 0 || strncmp(origin, "https://", 8) == 0;
+        if (!at || !web || strcasecmp(at + 3, host) != 0)
             return false;
     }
     char *port = strrchr(host, ':');
@@ -115,12 +120,38 @@ static int refuse(struct lws *wsi, unsigned status)
                                                                                                   : 0;
 }
 
+static int end_file(struct lws *wsi, struct session *session)
+{
+    free(session->file.owned);
+    session->file = (struct content_file){0};
+    return lws_http_transaction_completed(wsi) ? -1 : 0;
+}
+
+// A body that came with the request is not read: the connection ends.
+static int refuse_method(struct lws *wsi)
+{
+    unsigned char buffer[LWS_PRE + HEADERS], *at = buffer + LWS_PRE, *end = buffer + sizeof buffer - 1;
+    static const char allowed[] = "GET, HEAD";
+    bool told = !lws_add_http_header_status(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, &at, end) &&
+                !lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_ALLOW,
+                                              (const unsigned char *)allowed,
+                                              (int)strlen(allowed), &at, end) &&
+                !lws_add_http_header_content_length(wsi, 0, &at, end) &&
+                !lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &at, end);
+    (void)told; // the connection ends in any case
+    return -1;
+}
+
 static int start_file(struct server *server, struct lws *wsi, struct session *session,
                       const char *path)
 {
-    unsigned char buffer[LWS_PRE + 1024], *at = buffer + LWS_PRE, *end = buffer + sizeof buffer - 1;
+    unsigned char buffer[LWS_PRE + HEADERS], *at = buffer + LWS_PRE, *end = buffer + sizeof buffer - 1;
+    char *uri;
+    int length, method = lws_http_get_uri_and_method(wsi, &uri, &length);
     if (!asks_from_here(server, wsi))
         return refuse(wsi, HTTP_STATUS_FORBIDDEN);
+    if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
+        return refuse_method(wsi);
     free(session->file.owned);
     enum orl_result result = orl_content_find(&server->content, path, &session->file);
     if (result != ORL_OK)
@@ -137,6 +168,8 @@ static int start_file(struct server *server, struct lws *wsi, struct session *se
                                      end) ||
         lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &at, end))
         return -1;
+    if (method == LWSHUMETH_HEAD)
+        return end_file(wsi, session);
     lws_callback_on_writable(wsi);
     return 0;
 }
@@ -154,9 +187,7 @@ static int continue_file(struct lws *wsi, struct session *session)
         lws_callback_on_writable(wsi);
         return 0;
     }
-    free(session->file.owned);
-    session->file = (struct content_file){0};
-    return lws_http_transaction_completed(wsi) ? -1 : 0;
+    return end_file(wsi, session);
 }
 
 // --- clients that walk ---
@@ -473,6 +504,28 @@ static enum orl_result check_address(const struct orl_log *log, const char *host
                                     "this machine", host);
 }
 
+// The page is made of this server's files alone, and other sites may neither frame it, unless
+// --embed-in names them, nor show its pictures.
+static enum orl_result make_headers(struct server *server)
+{
+    const char *others = server->params->embed_in ? server->params->embed_in : "";
+    struct lws_protocol_vhost_options *h = server->headers;
+    int length = snprintf(server->policy, sizeof server->policy,
+                          "default-src 'self'; img-src 'self' blob: data:; base-uri 'none'; "
+                          "form-action 'none'; frame-ancestors 'self' %s", others);
+    if (length >= (int)sizeof server->policy || strpbrk(others, ";,\r\n"))
+        return orl_fail(server->log, ORL_ERR_ARGUMENT, "--embed-in %s: must be origins such as "
+                        "https://museum.example, with spaces between them", others);
+    h[0] = (struct lws_protocol_vhost_options){&h[1], NULL, "content-security-policy:",
+                                               server->policy};
+    h[1] = (struct lws_protocol_vhost_options){&h[2], NULL, "x-content-type-options:", "nosniff"};
+    // The address may hold the token.
+    h[2] = (struct lws_protocol_vhost_options){&h[3], NULL, "referrer-policy:", "no-referrer"};
+    h[3] = (struct lws_protocol_vhost_options){NULL, NULL, "cross-origin-resource-policy:",
+                                               "same-origin"};
+    return ORL_OK;
+}
+
 static enum orl_result listen_there(struct server *server)
 {
     static const struct lws_protocols protocols[] = {
@@ -482,7 +535,7 @@ static enum orl_result listen_there(struct server *server)
     const struct orl_walk_params *params = server->params;
     struct lws_context_creation_info info = {
         .port = params->port ? params->port : 0, .iface = params->host, .protocols = protocols,
-        .user = server, .timeout_secs = IDLE_S, .keepalive_timeout = IDLE_S,
+        .user = server, .headers = server->headers, .timeout_secs = IDLE_S, .keepalive_timeout = IDLE_S,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND, .gid = (gid_t)-1, .uid = (uid_t)-1};
     lws_set_log_level(LLL_ERR, NULL);
     server->context = lws_create_context(&info);
@@ -611,6 +664,8 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
         result = make_token(&server);
     if (result == ORL_OK)
         result = orl_walk_warm_up(&server.walk, scene, &params->choice->params);
+    if (result == ORL_OK)
+        result = make_headers(&server);
     if (result == ORL_OK)
         result = listen_there(&server);
     if (result == ORL_OK)

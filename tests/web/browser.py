@@ -15,15 +15,23 @@ WAIT_S = 180 # a limit for a busy machine, not what anything is expected to take
 
 
 class QuietHandler(http.server.SimpleHTTPRequestHandler):
+    headers_to_add = {}
+
     def log_message(self, *args):
         pass
+
+    def end_headers(self):
+        for name, value in self.headers_to_add.items():
+            self.send_header(name, value)
+        super().end_headers()
 
 
 class Server:
     """Serves `folder` on a free port of this machine."""
 
-    def __init__(self, folder):
-        handler = functools.partial(QuietHandler, directory=folder)
+    def __init__(self, folder, headers=None, handler=QuietHandler):
+        kind = type("Handler", (handler,), {"headers_to_add": headers or {}})
+        handler = functools.partial(kind, directory=folder)
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
         self.address = f"http://127.0.0.1:{self.server.server_address[1]}"
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
@@ -48,9 +56,13 @@ class Browser:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
         self.driver.set_script_timeout(120)
-        # The picture, not the window, has this size.
+        self.touches = touch
+        self.resize(width, height)
+
+    def resize(self, width, height):
+        """The picture, not the window, gets this size."""
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": touch})
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": self.touches})
 
     def open(self, address, seconds=WAIT_S):
         """Waits until everything that the view wants is there, and drawn."""
@@ -89,6 +101,16 @@ class Browser:
         send("keyDown")
         self.wait(until)
         send("keyUp")
+
+    def click(self, x, y, times=1):
+        for n in range(1, times + 1):
+            for kind in ("mousePressed", "mouseReleased"):
+                self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+                    "type": kind, "x": x, "y": y, "button": "left", "clickCount": n})
+
+    def wheel(self, x, y, by):
+        self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
+            "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": by})
 
     def drag(self, *points):
         """Of the mouse, with the left button. The page has seen all of it then."""

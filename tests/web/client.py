@@ -18,15 +18,19 @@ class Walk:
         self.host, self.port = self.address.split("/")[2].split(":")
 
     def get(self, path, **headers):
+        answer, body = self.ask("GET", path, **headers)
+        return answer.status, body
+
+    def ask(self, method, path, **headers):
         connection = http.client.HTTPConnection(self.host, int(self.port), timeout=60)
-        connection.putrequest("GET", path, skip_host="Host" in headers)
+        connection.putrequest(method, path, skip_host="Host" in headers)
         for name, value in headers.items():
             connection.putheader(name, value)
         connection.endheaders()
         answer = connection.getresponse()
         body = answer.read()
         connection.close()
-        return answer.status, body
+        return answer, body
 
     def close(self):
         self.process.terminate()

@@ -219,12 +219,12 @@ class Page(unittest.TestCase):
         run(ORIEL, "render", SCENE, "--at", home, "--out", own, "--quiet")
         for kind in ("oriel", "nerfstudio"):
             path = self.browser.js(f"""
-                return import("oriel/path_files.js").then(m => m.{kind}Path([oriel.path.keys[1]], 1));""")
+                return import("./js/path_files.js").then(m => m.{kind}Path([oriel.path.keys[1]], 1));""")
             if kind == "nerfstudio": # its size is that of a video
                 path["render_width"], path["render_height"] = self.size(own)
             self.assertGreaterEqual(psnr(self.rendered(path, kind), own), 32, kind)
         many = self.browser.js("""
-            return import("oriel/path_files.js").then(m => m.orielPath(oriel.path.keys, 2));""")
+            return import("./js/path_files.js").then(m => m.orielPath(oriel.path.keys, 2));""")
         self.assertEqual((many["frames"], len(many["keyframes"])), (49, 2))
         # The time between keyframes, by the field in their row, as the program has it.
         both = self.browser.js("""
@@ -232,7 +232,7 @@ class Page(unittest.TestCase):
             const seconds = document.querySelectorAll("#path .seconds");
             seconds[0].value = 1;
             seconds[0].dispatchEvent(new Event("change"));
-            return Promise.all([import("oriel/path_files.js"), import("oriel/keyframes.js")]).then(([f, k]) => [
+            return Promise.all([import("./js/path_files.js"), import("./js/keyframes.js")]).then(([f, k]) => [
                 f.orielPath(oriel.path.keys, oriel.path.duration), k.viewAt(oriel.path.keys, 0.125).eye]);""")
         self.assertEqual([key["seconds"] for key in both[0]["keyframes"]], [1, 3, 3])
         self.assertEqual(both[0]["frames"], 4 * 24 + 1)
@@ -271,7 +271,7 @@ class Page(unittest.TestCase):
         keys = self.browser.js("return oriel.path.keys")
         for kind in ("oriel", "nerfstudio"):
             saved = self.browser.js(f"""
-                return import("oriel/path_files.js").then(m => JSON.stringify(m.{kind}Path(oriel.path.keys, 2.5)));""")
+                return import("./js/path_files.js").then(m => JSON.stringify(m.{kind}Path(oriel.path.keys, 2.5)));""")
             self.browser.js("oriel.path.change(keys => keys.splice(0, 3))")
             again, said = self.opened(f"{kind}.json", saved)
             self.assertIn(f"{kind}.json: 3 views", said)
@@ -310,7 +310,7 @@ class Page(unittest.TestCase):
 
     def test_benchmark(self):
         before = self.view()
-        figures = self.browser.js("return import('oriel/benchmark.js').then(m => m.benchmark(oriel, 1))")
+        figures = self.browser.js("return import('./js/benchmark.js').then(m => m.benchmark(oriel, 1))")
         self.assertGreater(figures["frames"], 0)
         self.assertGreaterEqual(figures["frame_ms"]["longest"], figures["frame_ms"]["median"])
         self.browser.settle()
@@ -432,8 +432,8 @@ class Page(unittest.TestCase):
 
     def test_missing_file_is_said(self):
         self.browser.js("oriel.files.schedule(() => 0, () => oriel.files.get('photos/none.jpg'))")
-        self.browser.wait("return document.getElementById('hint').classList.contains('error')")
-        self.assertIn("none.jpg", self.browser.js("return document.getElementById('hint').textContent"))
+        self.browser.wait("return document.getElementById('problem').textContent !== ''")
+        self.assertIn("none.jpg", self.browser.js("return document.getElementById('problem').textContent"))
         self.reopen(self.address)
         said = self.browser.errors() # the console tells of it no later than of another page's load
         self.assertTrue(said)

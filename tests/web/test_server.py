@@ -96,7 +96,34 @@ class Server(unittest.TestCase):
         self.assertEqual(self.walk.get("/manifest.json", Origin="http://evil.example")[0], 403)
         self.assertFalse(opens(self.walk, Origin="http://evil.example"))
         self.assertFalse(opens(self.walk, Host="evil.example"))
-        self.assertTrue(opens(self.walk, Origin=f"http://{self.walk.host}:{self.walk.port}"))
+        for scheme in ("http", "https"): # the latter: of a proxy
+            self.assertTrue(opens(self.walk, Origin=f"{scheme}://{self.walk.host}:{self.walk.port}"))
+        self.assertFalse(opens(self.walk, Origin=f"file://{self.walk.host}:{self.walk.port}"))
+        for host in ("LOCALHOST", "localhost."):
+            self.assertEqual(self.walk.get("/manifest.json", Host=f"{host}:{self.walk.port}")[0], 200)
+
+    def test_methods_that_change_nothing(self):
+        for method in ("PUT", "DELETE", "OPTIONS", "POST", "PATCH"):
+            answer, _ = self.walk.ask(method, "/manifest.json")
+            self.assertEqual((answer.status, answer.getheader("Allow")), (405, "GET, HEAD"), method)
+        answer, body = self.walk.ask("HEAD", "/js/main.js")
+        self.assertEqual((answer.status, body), (200, b""))
+        self.assertGreater(int(answer.getheader("Content-Length")), 1000)
+        self.works()
+
+    def test_other_sites_neither_frame_nor_show_it(self):
+        for path in ("/", "/photos/00000.jpg", "/none"):
+            answer, _ = self.walk.ask("GET", path)
+            self.assertIn("frame-ancestors 'self'", answer.getheader("Content-Security-Policy"), path)
+            self.assertEqual([answer.getheader(name) for name in (
+                "X-Content-Type-Options", "Cross-Origin-Resource-Policy", "Referrer-Policy")],
+                ["nosniff", "same-origin", "no-referrer"], path)
+        walk = Walk("--embed-in", "https://museum.example")
+        try:
+            self.assertIn("frame-ancestors 'self' https://museum.example",
+                          walk.ask("GET", "/")[0].getheader("Content-Security-Policy"))
+        finally:
+            walk.close()
 
     def test_frames(self):
         client = Client(self.walk)

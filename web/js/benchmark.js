@@ -1,6 +1,6 @@
 // Ten seconds past all photographs, and how long frames took.
-import {viewAt} from "oriel/keyframes.js";
-import {photoView} from "oriel/view.js";
+import {viewAt} from "./keyframes.js";
+import {photoView} from "./view.js";
 
 const SECONDS = 10;
 

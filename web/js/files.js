@@ -1,8 +1,11 @@
 // The site's files, by their path: from the web server, or from the page itself where everything is
 // in one file. Loads a few at a time, the most urgent first.
-import {text} from "oriel/strings.js";
+import {text} from "./strings.js";
 
-const AT_ONCE = 4, TRIES = 3;
+const AT_ONCE = 4;
+const RETRY_MS = [300, 1500, 6000]; // between the tries of a request that may succeed later
+
+const pause = ms => new Promise(done => setTimeout(done, ms));
 
 function embeddedFiles()
 {
@@ -26,7 +29,7 @@ export class Files {
         this.embedded = embeddedFiles();
         this.onError = onError;
         this.bytes = 0;      // loaded so far
-        this.waiting = [];   // {priority(), run()}
+        this.waiting = [];   // {priority(), job()}
         this.running = 0;
     }
 
@@ -42,19 +45,30 @@ export class Files {
     // The file's bytes, at once.
     async get(path)
     {
-        let data;
-        if (this.embedded) {
-            if (!(path in this.embedded))
-                throw new Error(text.missing(path));
-            data = decodeBase64(this.embedded[path]);
-        } else {
-            const answer = await fetch(this.url(path));
-            if (!answer.ok)
-                throw new Error(text.notLoaded(path, answer.status));
-            data = await answer.arrayBuffer();
-        }
+        const data = this.embedded ? this.unpack(path) : await this.fetch(path);
         this.bytes += data.byteLength;
         return data;
+    }
+
+    unpack(path)
+    {
+        if (!(path in this.embedded))
+            throw new Error(text.missing(path));
+        return decodeBase64(this.embedded[path]);
+    }
+
+    // A connection may be reset, and a server busy, for a moment.
+    async fetch(path)
+    {
+        for (const wait of [...RETRY_MS, null]) {
+            const answer = await fetch(this.url(path)).catch(() => null);
+            const data = answer && answer.ok && await answer.arrayBuffer().catch(() => null);
+            if (data)
+                return data;
+            if (wait === null || (answer && !answer.ok && answer.status < 500))
+                throw new Error(text.notLoaded(path, answer ? answer.status : 0));
+            await pause(wait);
+        }
     }
 
     async json(path)
@@ -75,10 +89,10 @@ export class Files {
         return URL.createObjectURL(new Blob([await this.get(path)]));
     }
 
-    // Runs `job` once those with a smaller priority() are done. What fails is tried again, later.
+    // Runs `job` once those with a smaller priority() are done.
     schedule(priority, job)
     {
-        this.waiting.push({priority, job, tries: 0});
+        this.waiting.push({priority, job});
         this.next();
     }
 
@@ -93,22 +107,10 @@ export class Files {
                 return; // nothing of what waits is wanted now
             const [task] = this.waiting.splice(least, 1);
             this.running++;
-            this.run(task).finally(() => {
+            task.job().catch(this.onError).finally(() => {
                 this.running--;
                 this.next();
             });
-        }
-    }
-
-    async run(task)
-    {
-        try {
-            await task.job();
-        } catch (error) {
-            if (++task.tries < TRIES)
-                this.waiting.push(task);
-            else
-                this.onError(error);
         }
     }
 }

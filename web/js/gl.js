@@ -1,5 +1,5 @@
 // WebGL2: programs from shader files, textures, targets, and one call that runs a pass.
-import {text} from "oriel/strings.js";
+import {text} from "./strings.js";
 
 const PRELUDE = `#version 300 es
 precision highp float;

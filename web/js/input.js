@@ -1,5 +1,5 @@
 // Keys, mouse, wheel and fingers, as the navigator understands them.
-import {clamp} from "oriel/math.js";
+import {clamp} from "./math.js";
 
 const MOVES = { // right, up, forward
     KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, -1, 0],
@@ -11,27 +11,37 @@ const DEAD = 0.15;          // of a stick's way, which means nothing
 const PAD_EVERY = 100;      // milliseconds between two looks at a gamepad at rest
 const WHEEL_STEP = 0.0004;  // of the scene's distance, per pixel of the wheel
 const FINGER_STEP = 0.0015; // the same per pixel of two fingers
+const TAP_MS = 300, TAP_PX = 6; // longer, or farther, is a drag
+const TWICE_MS = 400, TWICE_PX = 30; // between two taps that are one double tap
+const OWN_KEYS = ["range", "radio", "checkbox", "file"]; // inputs that no letters are typed into
+
+// The key as its layout has it; of a layout without Latin letters, as its place has it elsewhere.
+function keyOf(event)
+{
+    const key = event.key.toLowerCase(), [, letter] = /^Key([A-Z])$/.exec(event.code) || [];
+    if (key.length !== 1 || key < "\x7f")
+        return key;
+    return letter ? letter.toLowerCase() : {Comma: ",", Period: "."}[event.code] || key;
+}
 
 export class Input {
-    // focal(): of the camera, CSS pixels; actions: by key
-    constructor(canvas, navigator, {focal, actions, wake})
+    // focal(): of the camera, CSS pixels; actions: by key; holdsWheel(): is the wheel the walk's? If not,
+    // onWheelLeft(). onTap(x, y), onTwice(x, y): one and two short touches of a place
+    constructor(canvas, navigator, {focal, actions, wake, holdsWheel, onWheelLeft, onTap, onTwice})
     {
-        this.navigator = navigator;
-        this.canvas = canvas;
-        this.focal = focal;
-        this.actions = actions;
-        this.wake = wake;
+        Object.assign(this, {canvas, navigator, focal, actions, wake, holdsWheel, onWheelLeft, onTap, onTwice});
         this.pressed = new Set();
         this.tapped = new Set(); // since the last frame: a short touch of a key counts too
         this.fast = false;
         this.pointers = new Map();
         window.addEventListener("keydown", event => this.keyDown(event));
         window.addEventListener("keyup", event => this.keyUp(event));
-        window.addEventListener("blur", () => this.pressed.clear());
+        for (const kind of ["blur", "visibilitychange"])
+            window.addEventListener(kind, () => this.pressed.clear(), true);
         canvas.addEventListener("pointerdown", event => this.pointerDown(event));
         canvas.addEventListener("pointermove", event => this.pointerMove(event));
-        for (const kind of ["pointerup", "pointercancel"])
-            canvas.addEventListener(kind, event => this.pointers.delete(event.pointerId));
+        canvas.addEventListener("pointerup", event => this.pointerUp(event));
+        canvas.addEventListener("pointercancel", event => this.pointers.delete(event.pointerId));
         canvas.addEventListener("wheel", event => this.wheel(event), {passive: false});
         canvas.addEventListener("contextmenu", event => event.preventDefault());
         window.addEventListener("gamepadconnected", () => this.watchPads());
@@ -65,17 +75,23 @@ export class Input {
 
     // --- keys ---
 
-    // Sliders and lists keep their own keys.
-    taken(event)
+    // Fields keep what is typed into them, sliders and the like the keys that set them.
+    taken({target, key, ctrlKey, metaKey, altKey})
     {
-        const target = event.target;
-        return event.ctrlKey || event.metaKey || event.altKey || target.closest("dialog[open]") ||
-               (target.closest("input, select, textarea") !== null && event.key !== "Escape") ||
-               (target.closest("button") !== null && (event.key === "Enter" || event.key === " "));
+        const control = target.closest("input, select, textarea, button");
+        if (ctrlKey || metaKey || altKey || target.closest("dialog[open]"))
+            return true;
+        if (!control || key === "Escape")
+            return false;
+        if (control.tagName === "BUTTON")
+            return key === "Enter" || key === " ";
+        return !OWN_KEYS.includes(control.type) || key.length > 1 || key === " ";
     }
 
     keyDown(event)
     {
+        if (event.key === "Meta") // a Mac tells of no other key that is let go of before this one
+            this.pressed.clear();
         if (this.taken(event))
             return;
         this.fast = event.shiftKey;
@@ -86,7 +102,7 @@ export class Input {
             this.wake();
             return;
         }
-        const action = this.actions.get(event.key.toLowerCase());
+        const action = this.actions.get(keyOf(event));
         if (action && !event.repeat) {
             event.preventDefault();
             action();
@@ -123,7 +139,25 @@ export class Input {
         this.canvas.focus({preventScroll: true});
         this.canvas.setPointerCapture(event.pointerId);
         this.pointers.set(event.pointerId, [event.clientX, event.clientY]);
+        this.down = this.pointers.size === 1 && event.button === 0
+            ? {at: [event.clientX, event.clientY], time: event.timeStamp} : null;
         this.wake();
+    }
+
+    pointerUp(event)
+    {
+        const at = [event.clientX, event.clientY], {down, last} = this, far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+        this.pointers.delete(event.pointerId);
+        this.wake();
+        this.down = this.last = null;
+        if (!down || event.timeStamp - down.time > TAP_MS || far(at, down.at) > TAP_PX)
+            return;
+        if (last && down.time - last.time < TWICE_MS && far(at, last.at) < TWICE_PX) {
+            this.onTwice(...at);
+        } else {
+            this.last = {at, time: event.timeStamp};
+            this.onTap(...at);
+        }
     }
 
     pointerMove(event)
@@ -155,6 +189,10 @@ export class Input {
 
     wheel(event)
     {
+        if (!this.holdsWheel()) {
+            this.onWheelLeft();
+            return;
+        }
         event.preventDefault();
         const pixels = event.deltaY * [1, 30, 300][event.deltaMode];
         if (event.ctrlKey)

@@ -1,5 +1,5 @@
 // Keyframes: views with seconds to the next one, and the views between them.
-import {mix, quatFromRotation, rotationFromQuat, slerp} from "oriel/math.js";
+import {mix, quatFromRotation, rotationFromQuat, slerp} from "./math.js";
 
 export const SECONDS_A_KEY = 3; // from a keyframe to the next, until somebody sets another time
 

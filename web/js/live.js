@@ -1,13 +1,14 @@
 // The picture as a server draws it: one request for a frame at a time over a WebSocket.
-import {add, rotateBack, scale} from "oriel/math.js";
-import {text} from "oriel/strings.js";
-import {isBehind, project} from "oriel/view.js";
+import {add, rotateBack, scale} from "./math.js";
+import {text} from "./strings.js";
+import {isBehind, project} from "./view.js";
 
 const HEADER_WORDS = 6;
 const LAYERS = ["color", "depth", "normal", "coverage", "points"];
 const QUALITY_MOVING = 75, QUALITY_STILL = 90;
 const PIXELS_MOST = 2.0e6; // the server refuses more than 4 million
 const RETRY_MS = 1500;
+const SILENT_MS = 8000; // a server that has not answered for so long is said to hang
 const LOADING_MOST = 48; // photographs of a frame
 const MAP_POINT_BYTES = 16;
 
@@ -43,9 +44,15 @@ export class LivePicture {
         this.measures = false; // frames at rest tell what they took
         this.measured = null;  // the last of what they told
         this.method = null;    // {name, settings} that was chosen
-        this.saving = [];      // resolve() of each settings that were sent
+        this.unsaved = null;   // {settings, done: [resolve()], newer} that the server has not answered;
+                               // newer: they are not what was sent last
+        this.problem = "";     // why no frames come
         this.site = null;      // {resolve, reject, onProgress} of who waits for the site's data
         this.onRendering = this.onMethod = () => {};
+        window.addEventListener("beforeunload", event => {
+            if (this.unsaved)
+                event.preventDefault();
+        });
     }
 
     connect(files)
@@ -56,23 +63,53 @@ export class LivePicture {
             this.socket = new WebSocket(address, "oriel-walk");
             this.socket.binaryType = "arraybuffer";
             this.socket.onopen = () => {
-                this.lost = false;
-                if (this.method)
-                    this.choose(this.method.name, this.method.settings);
-                if (this.site)
-                    this.askForSite();
+                this.opened();
                 resolve();
-                this.onChange();
             };
             this.socket.onmessage = event => typeof event.data === "string"
                 ? this.hear(JSON.parse(event.data)) : this.receive(event.data);
             this.socket.onclose = () => {
                 reject(new Error(text.noServer));
-                this.lost = true;
-                this.asked = null;
+                this.closed();
                 setTimeout(() => this.connect(files).catch(() => {}), RETRY_MS);
             };
         });
+    }
+
+    // What the server does not know of this client is told again.
+    opened()
+    {
+        this.lost = false;
+        this.problem = "";
+        if (this.method)
+            this.tell({method: this.method.name, set: this.method.settings});
+        if (this.site)
+            this.tell({site: true});
+        if (this.unsaved)
+            this.tellSettings();
+        this.onChange();
+    }
+
+    closed()
+    {
+        const newly = !this.lost;
+        this.lost = true;
+        this.asked = null;
+        this.problem = text.noServer;
+        clearTimeout(this.silence);
+        if (this.renders)
+            this.hear({rendering: {done: 0, total: 0, problem: text.noServer}});
+        if (newly)
+            this.onChange();
+    }
+
+    // False: the server is away. What waits for it is told once it is back.
+    tell(message)
+    {
+        const open = this.socket.readyState === WebSocket.OPEN;
+        if (open)
+            this.socket.send(JSON.stringify(message));
+        return open;
     }
 
     // --- frames ---
@@ -108,16 +145,27 @@ export class LivePicture {
         if (request === this.next)
             this.next = null;
         this.asked = {number: request.number, at: performance.now(), marks: this.marks};
-        this.socket.send(JSON.stringify(request));
+        this.tell(request);
+        this.silence = setTimeout(() => {
+            this.problem = text.silentServer;
+            this.onChange();
+        }, SILENT_MS);
     }
 
     async receive(data)
     {
+        clearTimeout(this.silence);
+        this.problem = "";
         const [number, microseconds, width, height, missing, picks] = new Uint32Array(data, 0, HEADER_WORDS);
         const depths = new Float32Array(data, 4 * HEADER_WORDS, picks);
         const image = await createImageBitmap(new Blob([data.slice(4 * (HEADER_WORDS + picks))], {type: "image/jpeg"}));
-        const {asked} = this, took = performance.now() - asked.at;
+        const {asked} = this;
         this.bytes += data.byteLength;
+        if (!asked) { // the server went away meanwhile
+            image.close();
+            return;
+        }
+        const took = performance.now() - asked.at;
         this.asked = null;
         const own = this.waiting.length && this.waiting[0].request.number === number ? this.waiting[0] : null;
         if (own && missing) {
@@ -174,10 +222,13 @@ export class LivePicture {
 
     hear(message)
     {
-        if ("saved" in message && this.saving.length)
-            this.saving.shift()(message.saved);
-        if (message.rendering)
+        if ("saved" in message && this.unsaved)
+            this.hearOfSettings(message.saved);
+        if (message.rendering) {
+            const {done, total, problem} = message.rendering;
+            this.renders = done < total && !problem;
             this.onRendering(message.rendering);
+        }
         if (message.figures)
             this.measured = message.figures;
         if (message.choice)
@@ -190,16 +241,35 @@ export class LivePicture {
     choose(name, settings)
     {
         this.method = {name, settings};
-        this.socket.send(JSON.stringify({method: name, set: settings}));
+        this.tell({method: name, set: settings});
     }
 
-    // True once the settings of the walk are with the scene.
+    // True once the settings of the walk are with the scene. They hold all that was changed, so the
+    // newest alone are told, one at a time, and again to a server that was away.
     save(settings)
     {
+        const told = this.unsaved;
         return new Promise(done => {
-            this.saving.push(done);
-            this.socket.send(JSON.stringify({save: settings}));
+            this.unsaved = {settings, done: [...(told ? told.done : []), done], newer: told !== null};
+            if (!told)
+                this.tellSettings();
         });
+    }
+
+    tellSettings()
+    {
+        this.unsaved.newer = false;
+        this.tell({save: this.unsaved.settings});
+    }
+
+    hearOfSettings(saved)
+    {
+        if (this.unsaved.newer) {
+            this.tellSettings();
+            return;
+        }
+        this.unsaved.done.forEach(done => done(saved));
+        this.unsaved = null;
     }
 
     // A promise that the published site's data are on the server; onProgress(done, total) until then.
@@ -207,14 +277,8 @@ export class LivePicture {
     {
         return new Promise((resolve, reject) => {
             this.site = {resolve, reject, onProgress};
-            this.askForSite();
+            this.tell({site: true});
         });
-    }
-
-    askForSite()
-    {
-        if (!this.lost) // else once the server is back
-            this.socket.send(JSON.stringify({site: true}));
     }
 
     hearOfSite({done, total, ready, problem})
@@ -234,7 +298,9 @@ export class LivePicture {
     // With the exposure and the tone curve that frames have now.
     render(path, format)
     {
-        this.socket.send(JSON.stringify({render: path, format, ev: this.ev, tone: this.tone}));
+        this.renders = this.tell({render: path, format, ev: this.ev, tone: this.tone});
+        if (!this.renders)
+            this.onRendering({done: 0, total: 0, problem: text.noServer});
     }
 
     middle() { return null; }

@@ -1,11 +1,11 @@
 // The picture as this browser draws it: points and photographs on its own graphics chip.
-import {Device} from "oriel/gl.js";
-import {clamp, distance} from "oriel/math.js";
-import {rankPhotos} from "oriel/photos.js";
-import {Cloud} from "oriel/points.js";
-import {LAYERS, loadShaders, Renderer} from "oriel/renderer.js";
-import {text} from "oriel/strings.js";
-import {isBehind, project} from "oriel/view.js";
+import {Device} from "./gl.js";
+import {clamp, distance} from "./math.js";
+import {rankPhotos} from "./photos.js";
+import {Cloud} from "./points.js";
+import {LAYERS, loadShaders, Renderer} from "./renderer.js";
+import {text} from "./strings.js";
+import {isBehind, project} from "./view.js";
 
 const RANK_EVERY = 250; // milliseconds, while moving
 const LOOK_EVERY = 200;
@@ -41,6 +41,7 @@ export class LocalPicture {
         this.all = photos;
         this.onChange = onChange;
         this.layers = LAYERS;
+        this.problem = "";     // why no frames come
         this.remote = false;   // a frame is there once draw() returns
         // Of a picture, whatever the screen: each takes some 120 bytes on the graphics chip.
         this.pixelsMost = handheld ? 1.0e6 : 2.6e6;

@@ -1,25 +1,27 @@
 // The walk: loads the site, draws when something changes, and joins input, picture and tools.
-import {benchmark} from "oriel/benchmark.js";
-import {Files} from "oriel/files.js";
-import {Input} from "oriel/input.js";
-import {LivePicture} from "oriel/live.js";
-import {LocalPicture} from "oriel/local.js";
-import {Map2d} from "oriel/map.js";
-import {clamp} from "oriel/math.js";
-import {MethodPanel} from "oriel/methods.js";
-import {Navigator} from "oriel/navigation.js";
-import {Notes} from "oriel/notes.js";
-import {PathEditor} from "oriel/path.js";
-import {makePhotos} from "oriel/photos.js";
-import {text} from "oriel/strings.js";
-import {buildHelp, byId, Compare, make, Panel, save, showHint, showProgress, Thumbs, Tools} from "oriel/ui.js";
-import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "oriel/view.js";
+import {benchmark} from "./benchmark.js";
+import {Files} from "./files.js";
+import {Input} from "./input.js";
+import {LivePicture} from "./live.js";
+import {LocalPicture} from "./local.js";
+import {Map2d} from "./map.js";
+import {clamp} from "./math.js";
+import {MethodPanel} from "./methods.js";
+import {Navigator} from "./navigation.js";
+import {Notes} from "./notes.js";
+import {PathEditor} from "./path.js";
+import {makePhotos} from "./photos.js";
+import {text} from "./strings.js";
+import {buildHelp, byId, Compare, make, Panel, save, showHint, showProblem, showProgress, Thumbs, Tools} from "./ui.js";
+import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "./view.js";
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
 const FRAME_LONG = 38, FRAME_SHORT = 14;  // milliseconds: fewer pixels, more pixels
 const LIVE_LONG = 75, LIVE_SHORT = 40;    // the same of frames that come over the network
 const REFINE_AFTER = 140;                 // milliseconds of rest
-const SIDE = ["path", "maker", "method"]; // panels that share a place
+const RIGHT = ["path", "maker", "method"]; // panels that share a place
+const SHEETS = ["panel", ...RIGHT, "map", "note"]; // of which a narrow window shows one
+const NARROW = matchMedia("(max-width: 1099px)"); // as style.css has it
 const POSTER_SHARE = 0.625;               // height to width: POSTER_* of site_photos.c
 
 class Walk {
@@ -42,6 +44,7 @@ class Walk {
         });
         this.running = false;
         this.ev = 0; // exposure, stops
+        this.asked = Object.fromEntries(new URLSearchParams(location.search)); // by whoever made the link
     }
 
     // The picture can be drawn from now on.
@@ -52,11 +55,31 @@ class Walk {
         this.own = picture.remote ? null : picture; // drawn by this browser
         this.buildTools();
         this.readAddress();
-        this.placePoster();
+        this.resized();
+        byId("over").classList.toggle("bare", this.asked.ui === "none");
         window.addEventListener("hashchange", () => this.readAddress());
-        window.addEventListener("resize", () => this.wake());
+        window.addEventListener("resize", () => this.resized());
+        this.watchPixels();
+        NARROW.addEventListener("change", () => this.reveal(SHEETS.find(id => !byId(id).hidden)));
         this.canvas.setAttribute("aria-label", text.canvas);
         this.wake();
+    }
+
+    resized()
+    {
+        this.placePoster();
+        this.tools.fit();
+        this.change(() => {});
+    }
+
+    // A window that goes to another screen may keep its size, but not the size of its pixels.
+    watchPixels()
+    {
+        const same = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
+        same.addEventListener("change", () => {
+            this.resized();
+            this.watchPixels();
+        }, {once: true});
     }
 
     // Opens a picture on a canvas. Its changes count while it is the one that shows.
@@ -88,20 +111,16 @@ class Walk {
     buildTools()
     {
         const nav = this.navigator, help = buildHelp();
-        const toggle = id => () => {
-            byId(id).hidden = !byId(id).hidden;
-            for (const other of SIDE.includes(id) ? SIDE : [])
-                byId(other).hidden ||= other !== id;
-            this.wake();
-        };
+        const toggle = id => () => this.toggle(id);
         const shown = id => () => !byId(id).hidden;
         const edits = Boolean(this.manifest.edits);
         const mode = name => ({run: () => this.act(() => nav.setMode(name)), pressed: () => nav.mode === name});
         this.thumbs = new Thumbs(this.photos, this.files, photo => this.act(() => nav.goTo(photo)));
         const actions = {
             home: {key: "h", run: () => this.act(() => nav.goHome())},
-            previous: {key: ",", run: () => this.act(() => nav.browse(-1))},
-            next: {key: ".", run: () => this.act(() => nav.browse(1))},
+            // Where Dvorak has comma and full stop, there are two of the keys that move.
+            previous: {key: ",", also: "pageup", run: () => this.act(() => nav.browse(-1))},
+            next: {key: ".", also: "pagedown", run: () => this.act(() => nav.browse(1))},
             snap: {key: "p", run: () => this.act(() => nav.snap())},
             ...Object.fromEntries(nav.modes.map((name, i) => [name, {key: String(i + 1), ...mode(name)}])),
             layer: {key: "l", run: () => this.setLayer((this.layer + 1) % this.picture.layers.length)},
@@ -120,8 +139,7 @@ class Walk {
             path: {key: "k", run: toggle("path"), pressed: shown("path")},
             record: {key: "r", run: () => this.act(() => {
                 this.path.add();
-                if (byId("path").hidden)
-                    toggle("path")();
+                this.reveal("path");
             })},
             ...(edits ? {maker: {key: "n", run: toggle("maker"), pressed: shown("maker")}} : {}),
             ...(this.manifest.methods ? {method: {key: "o", pressed: shown("method"), run: () => {
@@ -145,15 +163,76 @@ class Walk {
         this.makePath(edits);
         this.notes = new Notes(nav, this.manifest.walk, {
             canvas: this.canvas, wake: () => this.wake(), seen: point => this.picture.seen.get(point),
+            reveal: () => this.reveal("note"),
             pick: (x, y) => this.pick(x, y), save: edits ? settings => this.server.save(settings) : null,
         });
         byId("attribution").textContent = this.manifest.walk.attribution || "";
         this.map = new Map2d(nav, this.picture, photo => this.act(() => nav.goTo(photo)));
         this.input = new Input(this.canvas, nav, {
             focal: () => this.windowCamera(1).fx, wake: () => this.wake(),
-            actions: new Map(Object.values(actions).map(a => [a.key, a.run])),
+            actions: new Map([["escape", () => this.closeTop()],
+                              ...Object.values(actions).flatMap(a => [a.key, a.also].map(key => [key, a.run]))]),
+            holdsWheel: () => this.holdsWheel(), onWheelLeft: () => showHint(text.clickFirst),
+            onTap: (x, y) => this.notes.tap(x, y), onTwice: (x, y) => this.goThere(x, y),
         });
         document.addEventListener("fullscreenchange", () => this.wake());
+    }
+
+    // --- panels ---
+
+    toggle(id)
+    {
+        if (byId(id).hidden)
+            this.reveal(id);
+        else
+            byId(id).hidden = true;
+        this.wake();
+    }
+
+    // Shows a panel, in the place of those that it shares its place with.
+    reveal(id)
+    {
+        const crowd = NARROW.matches ? SHEETS : RIGHT;
+        for (const other of crowd.includes(id) ? crowd : [])
+            byId(other).hidden = other !== id;
+        if (id)
+            byId(id).hidden = false;
+        this.wake();
+    }
+
+    // Of what is open, that which has the focus, else the last of it.
+    closeTop()
+    {
+        const open = ["thumbs", ...SHEETS].filter(id => !byId(id).hidden);
+        const id = open.find(one => byId(one).contains(document.activeElement)) || open.pop();
+        if (this.notes.placing)
+            this.notes.stopPlacing();
+        else if (id === "note")
+            this.notes.close();
+        else if (id)
+            this.toggle(id);
+        if (id !== "note")
+            this.canvas.focus();
+    }
+
+    // --- what the pointer does ---
+
+    // Within another page the wheel scrolls that page until the walk has the focus, unless the address
+    // says otherwise.
+    holdsWheel()
+    {
+        const {wheel} = this.asked;
+        return wheel === "walk" || (wheel !== "page" && (window.top === window || document.hasFocus()));
+    }
+
+    // To what a place of the window shows.
+    async goThere(x, y)
+    {
+        const point = await this.pick(x, y);
+        if (point)
+            this.act(() => this.navigator.approach(point));
+        else
+            showHint(text.nothingThere);
     }
 
     makePath(edits)
@@ -190,11 +269,11 @@ class Walk {
     // Of a page with a server: "server", or "browser" as a visitor of the published page sees it.
     async drawBy(id)
     {
-        this.asked = id;
+        this.drawer = id;
         try {
             if (id === "browser")
                 this.own = await (this.opening ||= this.openOwn());
-            if (this.asked === id)
+            if (this.drawer === id)
                 this.show(id === "browser" ? this.own : this.server);
         } catch (error) {
             this.opening = null;
@@ -206,7 +285,7 @@ class Walk {
     async openOwn()
     {
         await this.server.prepareSite((done, total) => {
-            if (this.asked === "browser")
+            if (this.drawer === "browser")
                 this.panel.showDrawer("", text.preparing(done, total));
         });
         const files = new Files(this.files.onError, "site/"), manifest = await files.json("manifest.json");
@@ -293,18 +372,26 @@ class Walk {
 
     // --- the address ---
 
+    // What follows the # is this visitor's view; what stands before it is said by who made the link.
     readAddress()
     {
         const parts = new URLSearchParams(location.hash.slice(1)), nav = this.navigator;
-        const photo = parts.has("p") ? this.photos[Number(parts.get("p")) - 1] : undefined;
+        const photo = this.photoOf(parts.get("p")) || (parts.has("v") ? null : this.photoOf(this.asked.start));
         const view = parts.has("v") ? viewFromText(parts.get("v"), nav.home) : null;
-        if (nav.modes.includes(parts.get("mode")))
-            nav.setMode(parts.get("mode"));
+        const mode = parts.get("mode") || this.asked.mode;
+        if (nav.modes.includes(mode))
+            nav.setMode(mode);
         if (photo)
             nav.setView(photoView(photo), photo);
         else if (view)
             nav.setView(view);
         this.wake();
+    }
+
+    // By number from 1, or by name.
+    photoOf(said)
+    {
+        return this.photos[Number(said) - 1] || this.photos.find(photo => photo.name === said);
     }
 
     writeAddress()
@@ -423,7 +510,8 @@ class Walk {
         this.thumbs.mark(nav.at);
         this.compare.update(nav.at, nav.view);
         byId("place").textContent = nav.at ? text.atPhoto(nav.at.number + 1, this.photos.length, nav.at.name) : "";
-        showHint(this.compare.on && !nav.at && !nav.flying ? text.standAtPhoto : nav.farOut ? text.farOut : "");
+        showHint(this.picture.problem || (this.compare.on && !nav.at && !nav.flying ? text.standAtPhoto
+                                          : nav.farOut ? text.farOut : ""));
         showProgress(this.picture.loadedShare);
         if (this.shouldShowPicture())
             byId("poster").classList.add("away");
@@ -452,7 +540,13 @@ class Walk {
 
 async function start()
 {
-    const fail = error => showHint(text.failed(error.message), true);
+    byId("unstarted").remove();
+    const page = document.documentElement, hold = () => page.classList.toggle("held", document.hasFocus());
+    page.classList.toggle("framed", window.top !== window);
+    for (const kind of ["focus", "blur"])
+        window.addEventListener(kind, hold);
+    hold();
+    const fail = error => showProblem(text.failed(error.message));
     window.addEventListener("error", event => fail(event.error || event));
     window.addEventListener("unhandledrejection", event => fail(event.reason));
     showProgress(0.02);
@@ -471,5 +565,5 @@ async function start()
 
 start().catch(error => {
     console.error(error);
-    showHint(text.failed(error.message), true);
+    showProblem(text.failed(error.message), true);
 });

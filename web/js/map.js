@@ -1,8 +1,8 @@
 // The scene from above: points, the photographs' places and directions in the order they were
 // taken, and the viewer.
-import {add, cross, dot, normalize, rotateBack, scale, sub} from "oriel/math.js";
-import {byId} from "oriel/ui.js";
-import {text} from "oriel/strings.js";
+import {add, cross, dot, normalize, rotateBack, scale, sub} from "./math.js";
+import {byId} from "./ui.js";
+import {text} from "./strings.js";
 
 const MARGIN = 0.06;       // of the map's side
 const AROUND = 1.2;        // of the scene's distance: what of the points around photographs shows

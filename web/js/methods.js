@@ -1,7 +1,7 @@
 // Method and options of the frames that a server draws: a form made from the renderer's own table.
 // The server checks what is set, and says what is wrong with it.
-import {text} from "oriel/strings.js";
-import {button, byId, make} from "oriel/ui.js";
+import {text} from "./strings.js";
+import {button, byId, make} from "./ui.js";
 
 export class MethodPanel {
     // methods: manifest.methods; choose(name, settings): asks the server, which answers by told()

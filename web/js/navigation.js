@@ -1,8 +1,8 @@
 // Where the viewer is and how they get on: walk, fly, orbit, and flights from place to place.
 import {add, clamp, distance, dot, length, mix, multiply, normalize, rotate, rotateBack, rotation,
-        scale, sub} from "oriel/math.js";
-import {nearestPhoto} from "oriel/photos.js";
-import {forwardOf, mixViews, photoView, rightOf, upOf, viewFromSaved} from "oriel/view.js";
+        scale, sub} from "./math.js";
+import {nearestPhoto} from "./photos.js";
+import {forwardOf, mixViews, photoView, rightOf, upOf, viewFromSaved} from "./view.js";
 
 const SPEED = 0.35;          // of the scene's distance, a second
 const FASTER = 3;
@@ -10,6 +10,8 @@ const TURN_SPEED = 1.2;      // radians a second
 const SETTLE = 0.12;         // seconds in which speed follows the keys
 const FLIGHT_LEAST = 0.5, FLIGHT_MOST = 1.8; // seconds
 const PITCH_MOST = 1.45;     // radians from the horizon
+const NEAR = 0.35;           // of the way to a point that is left when one goes there
+const UNDERFOOT = 0.3;       // of the eye's height: no more above the ground is the ground
 const ROOM = 0.3;            // of the scene's distance, around photographs, that is free to walk
 const HINT_FROM = 0.6;       // share of the way to the border of that
 export const MODES = ["walk", "fly", "orbit"];
@@ -228,6 +230,18 @@ export class Navigator {
             this.setView(f.to, f.photo);
         }
         return true;
+    }
+
+    // To a point that is seen: onto the ground, or near anything else.
+    approach(point)
+    {
+        const {view, up, ground} = this, walks = this.mode === "walk";
+        const level = v => walks ? sub(v, scale(up, dot(v, up))) : v; // walkers keep the eye's height
+        const underfoot = walks && ground && dot(point, up) + ground.plane[3] < UNDERFOOT * ground.height;
+        let way = scale(level(sub(point, view.eye)), underfoot ? 1 : 1 - NEAR);
+        for (let i = 0; i < 20 && walks && this.apart(add(view.eye, way)) > this.room; i++)
+            way = scale(way, 0.8);
+        this.flyTo({...view, eye: add(view.eye, way)});
     }
 
     goTo(photo) { this.flyTo(photoView(photo), photo); }

@@ -1,17 +1,18 @@
 // Annotations: marks on surfaces with a title and a text, and the view that shows each best. Their
 // maker places them, and says how a walk begins; visitors read them.
-import {MODES} from "oriel/navigation.js";
-import {text} from "oriel/strings.js";
-import {button, byId, make} from "oriel/ui.js";
-import {project, viewFromSaved, viewToSaved} from "oriel/view.js";
+import {MODES} from "./navigation.js";
+import {text} from "./strings.js";
+import {button, byId, make} from "./ui.js";
+import {project, viewFromSaved, viewToSaved} from "./view.js";
 
 export class Notes {
     // seen(point): false where a surface is before it; settings: manifest.walk;
     // pick(x, y): a promise of the point under a CSS pixel, null: none;
     // save(settings): a promise of whether they were saved; null: nothing can be changed
-    constructor(navigator, settings, {canvas, seen, pick, save, wake})
+    // reveal(): shows the card
+    constructor(navigator, settings, {canvas, seen, pick, save, wake, reveal})
     {
-        Object.assign(this, {navigator, canvas, seen, pick, saveAll: save, wake});
+        Object.assign(this, {navigator, canvas, seen, pick, saveAll: save, wake, reveal});
         this.settings = {...settings, notes: [...(settings.notes || [])]};
         this.layer = byId("marks");
         this.card = byId("note");
@@ -64,7 +65,7 @@ export class Notes {
         this.card.replaceChildren(make("h2", {textContent: note.title}),
                                   ...(note.text || "").split("\n").map(line => make("p", {textContent: line})),
                                   close);
-        this.card.hidden = false;
+        this.reveal();
         const view = note.view && viewFromSaved(note.view, this.navigator.home);
         if (view)
             this.navigator.flyTo(view);
@@ -110,16 +111,25 @@ export class Notes {
             make("fieldset", {}, make("legend", {textContent: t.modes}),
                  ...this.modeInputs.map(input => make("label", {}, input, text.actions[input.value]))),
             this.said);
-        this.canvas.addEventListener("click", event => {
-            if (this.placing)
-                this.place(event.clientX, event.clientY);
-        });
+    }
+
+    // A short touch of the picture; a drag looks around for the place.
+    tap(x, y)
+    {
+        if (this.placing)
+            this.place(x, y);
     }
 
     startPlacing()
     {
         this.placing = true;
         this.said.textContent = text.notes.clickSurface;
+    }
+
+    stopPlacing()
+    {
+        this.placing = false;
+        this.said.textContent = "";
     }
 
     async place(x, y)
@@ -156,6 +166,7 @@ export class Notes {
     {
         Object.assign(this.settings, what);
         this.fill();
+        this.said.textContent = text.notes.saving;
         this.said.textContent = await this.saveAll(this.settings) ? text.notes.saved : text.notes.notSaved;
     }
 }

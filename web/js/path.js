@@ -1,9 +1,9 @@
 // A path of the camera through keyframes: recorded, edited, played.
-import {durationOf, secondsFrom, viewAt} from "oriel/keyframes.js";
-import {nerfstudioPath, orielPath, readPath} from "oriel/path_files.js";
-import {text} from "oriel/strings.js";
-import {byId, button, make, save} from "oriel/ui.js";
-import {viewFromKey, viewToKey} from "oriel/view.js";
+import {durationOf, secondsFrom, viewAt} from "./keyframes.js";
+import {nerfstudioPath, orielPath, readPath} from "./path_files.js";
+import {text} from "./strings.js";
+import {byId, button, make, save} from "./ui.js";
+import {viewFromKey, viewToKey} from "./view.js";
 
 export class PathEditor {
     // render(path, format): asks the server for it; null: there is no server

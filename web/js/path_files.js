@@ -1,8 +1,8 @@
 // Files of paths: Oriel's own keyframes, and nerfstudio's camera_path.json.
-import {secondsFrom, SECONDS_A_KEY, viewAt} from "oriel/keyframes.js";
-import {cross, dot, normalize, sub} from "oriel/math.js";
-import {text} from "oriel/strings.js";
-import {photoView, viewFromKey, viewToKey} from "oriel/view.js";
+import {secondsFrom, SECONDS_A_KEY, viewAt} from "./keyframes.js";
+import {cross, dot, normalize, sub} from "./math.js";
+import {text} from "./strings.js";
+import {photoView, viewFromKey, viewToKey} from "./view.js";
 
 const FPS = 24;
 const SIZE = [1280, 720]; // of a video

@@ -1,5 +1,5 @@
 // Photographs: which of them a view can use best, and those that are on the graphics chip.
-import {clamp, distance, dot, rotate, rotateBack, scale, sub} from "oriel/math.js";
+import {clamp, distance, dot, rotate, rotateBack, scale, sub} from "./math.js";
 
 export function makePhotos(manifest)
 {

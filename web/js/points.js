@@ -1,5 +1,5 @@
 // The point cloud: cells in one vertex buffer, coarse parts first, and what of it a view draws.
-import {add, dot, length, rotate, row, scale, sub} from "oriel/math.js";
+import {add, dot, length, rotate, row, scale, sub} from "./math.js";
 
 const MAGIC = 0x504c524f, HEADER_BYTES = 16, CELL_WORDS = 16, POINT_BYTES = 12;
 

@@ -1,7 +1,7 @@
 // A frame: depth from points, then colour from photographs. What each pass does is said in its
 // shader; the same passes, by compute shaders, make Oriel's own frames (src/render).
-import {add, dot, rotate, scale, sub} from "oriel/math.js";
-import {PhotoStore} from "oriel/photos.js";
+import {add, dot, rotate, scale, sub} from "./math.js";
+import {PhotoStore} from "./photos.js";
 
 // The page's own and, in folders, those that it shares with the renderer.
 const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "level0.glsl", "pull.frag",

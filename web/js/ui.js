@@ -1,7 +1,7 @@
 // Everything around the picture: tools, panel, photographs, help, comparison.
-import {icons} from "oriel/icons.js";
-import {text} from "oriel/strings.js";
-import {frameHeight} from "oriel/view.js";
+import {icons} from "./icons.js";
+import {text} from "./strings.js";
+import {frameHeight} from "./view.js";
 
 export const byId = id => document.getElementById(id);
 
@@ -40,6 +40,8 @@ function icon(name)
     return svg;
 }
 
+const BUTTON_LEAST = 28, BUTTON_MOST = 42; // CSS pixels
+
 // actions: {id: {run, key, pressed}}; pressed() for those that are on or off.
 export class Tools {
     constructor(actions)
@@ -47,15 +49,25 @@ export class Tools {
         const bar = byId("tools");
         bar.setAttribute("aria-label", text.toolbar);
         this.toggles = [];
+        this.count = 0;
         for (const [id, action] of Object.entries(actions)) {
             const label = `${text.actions[id]} (${action.key.toUpperCase()})`;
             const button = make("button", {type: "button", title: label, id: `tool-${id}`}, icon(id));
             button.setAttribute("aria-label", label);
             button.addEventListener("click", action.run);
             bar.append(button);
+            this.count++;
             if (action.pressed)
                 this.toggles.push([button, action.pressed]);
         }
+    }
+
+    // In rows of equal length, as few as the window has room for.
+    fit()
+    {
+        const room = window.innerWidth - 30, rows = Math.ceil(this.count * BUTTON_LEAST / room);
+        const wide = rows === 1 && this.count * BUTTON_MOST > room ? 2 : rows;
+        byId("tools").style.gridTemplateColumns = `repeat(${Math.ceil(this.count / wide)}, minmax(0, ${BUTTON_MOST}px))`;
     }
 
     update()
@@ -202,6 +214,8 @@ export class Compare {
         this.image = this.element.querySelector("img");
         this.slider = this.element.querySelector("input");
         this.slider.setAttribute("aria-label", text.compareSlider);
+        byId("left-side").textContent = text.sides.own;
+        byId("right-side").textContent = text.sides.photograph;
         this.slider.addEventListener("input", () => this.split());
         this.on = false;
         this.photo = null;
@@ -256,14 +270,23 @@ export function buildHelp()
     };
 }
 
-export function showHint(message, isError = false)
+export function showHint(message)
 {
     const hint = byId("hint");
-    if (hint.classList.contains("error") && !isError)
-        return;
-    hint.classList.toggle("error", isError);
     if (hint.textContent !== message)
         hint.textContent = message;
+}
+
+const PROBLEM_MS = 12000;
+let problemEnds = 0;
+
+// stays: the page cannot go on.
+export function showProblem(message, stays = false)
+{
+    byId("problem").textContent = message;
+    clearTimeout(problemEnds);
+    if (!stays)
+        problemEnds = setTimeout(() => byId("problem").textContent = "", PROBLEM_MS);
 }
 
 export function showProgress(share)

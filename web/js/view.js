@@ -2,7 +2,7 @@
 // A frame is a picture of height 1: focal lengths and the principal point's offset from the
 // middle in that unit, so that a photograph's own framing survives any window.
 import {dot, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
-        sub} from "oriel/math.js";
+        sub} from "./math.js";
 
 export function photoView(photo)
 {

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# What visitors of comparable viewers report, on a published page and a live walk.
+. "$(dirname "$0")/command_lib"
+needs_browser
+monument_scene || exit 1
+cat >made/walk.json <<JSON
+{"attribution": "Drawn by nobody", "notes": [{"title": "Arch", "text": "One.\nTwo.", "position": [0, 0, 0]},
+                                             {"title": "Wall", "position": [0.3, 0, 0]}]}
+JSON
+runs 0 "$oriel" publish made --out site --quiet
+[ $failed -eq 0 ] || exit 1
+timeout 900 /usr/bin/python3 -B "$source/tests/web/test_visitors.py" "$oriel" \
+    "$tools/bench_web_pictures" "$work/made" "$work/site" 2>&1

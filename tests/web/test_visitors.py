@@ -1,0 +1,285 @@
+#!/usr/bin/python3
+"""What visitors of comparable viewers report, on the published page and the live walk. Made by
+tests/e2e/visitors.sh: test_visitors.py ORIEL TOOL SCENE SITE."""
+import json
+import math
+import re
+import signal
+import socket
+import sys
+import tempfile
+import unittest
+
+from browser import Browser, QuietHandler, Server
+from client import Walk as Program
+
+ORIEL, TOOL, SCENE, SITE = sys.argv[1:5]
+WIDTH, HEIGHT = 360, 240
+SIZES = ((320, 568), (390, 844), (640, 360), (760, 900), (844, 390), (1024, 768), (1440, 900), (2560, 1440))
+
+
+class Visitors(unittest.TestCase):
+    """One browser and one server for all; each test begins with a new document."""
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server(SITE)
+        cls.browser = Browser(WIDTH, HEIGHT)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.server.close()
+
+    def setUp(self):
+        self.errors = 0 # that the console should hold
+
+    def tearDown(self):
+        if not self.errors:
+            self.assertEqual(self.browser.errors(), [])
+        self.browser.errors()
+        self.browser.resize(WIDTH, HEIGHT)
+
+    def open(self, query="", address=None):
+        self.browser.driver.get("about:blank")
+        self.browser.open((address or self.server.address) + "/" + query)
+        self.browser.js("oriel.navigator.calm = true")
+
+    def js(self, script, *args):
+        return self.browser.js(script, *args)
+
+    def eye(self):
+        return self.js("return oriel.navigator.view.eye")
+
+    def moves(self, code, key):
+        """Does a held key move?"""
+        eye = self.eye()
+        self.browser.keys(code, key)
+        self.browser.settle()
+        return self.eye() != eye
+
+    def hint(self):
+        return self.js("return document.getElementById('hint').textContent")
+
+    def hidden(self, id_):
+        return self.js(f"return document.getElementById('{id_}').hidden")
+
+
+class Page(Visitors):
+    def test_resized_at_rest(self):
+        self.open()
+        for width, height in ((300, 400), (400, 300)):
+            self.browser.resize(width, height)
+            self.browser.wait(f"return oriel.picture.renderer.frame.width === {width} && "
+                              f"oriel.picture.canvas.height === {height}", 60)
+
+    def test_other_layouts(self):
+        self.open()
+        for code, key in (("KeyW", "ц"), ("KeyW", ","), ("KeyW", "z")): # Cyrillic, Dvorak, AZERTY
+            self.assertTrue(self.moves(code, key), key)
+        for code, key, id_ in (("KeyT", "е", "thumbs"), ("KeyI", "ш", "panel"), ("KeyM", "ь", "map")):
+            self.browser.keys(code, key)
+            self.assertFalse(self.hidden(id_), id_)
+        at = "return oriel.navigator.at && oriel.navigator.at.number"
+        self.browser.keys("KeyH", "h")
+        start = self.js(at)
+        self.browser.keys("Period", "ю")
+        self.assertNotEqual(self.js(at), start)
+        self.browser.keys("Comma", "б")
+        self.assertEqual(self.js(at), start)
+        self.browser.keys("PageDown", "PageDown")
+        self.assertNotEqual(self.js(at), start)
+
+    def test_command_key_of_a_mac(self):
+        self.open()
+        self.js("""
+            const send = (kind, code, key, more) => window.dispatchEvent(
+                new KeyboardEvent(kind, {code, key, bubbles: true, ...more}));
+            document.body.dispatchEvent(new KeyboardEvent("keydown", {code: "KeyW", key: "w", bubbles: true}));
+            document.body.dispatchEvent(
+                new KeyboardEvent("keydown", {code: "MetaLeft", key: "Meta", metaKey: true, bubbles: true}));
+            oriel.wake();""") # and no keyup of W, which a Mac does not send
+        self.browser.settle() # comes to rest
+
+    def test_keys_after_a_click_into_a_panel(self):
+        self.open()
+        self.browser.keys("KeyI", "i")
+        for selector in ("#panel input[type=radio]", "#panel input[type=range]"):
+            self.js(f"document.querySelector('{selector}').focus()")
+            self.assertTrue(self.moves("KeyW", "w"), selector)
+            eye = self.eye()
+            self.browser.keys("ArrowRight", "ArrowRight")
+            self.browser.settle()
+            self.assertEqual(self.eye(), eye) # sets the slider
+        self.browser.keys("Escape", "Escape")
+        self.assertTrue(self.hidden("panel"))
+        self.assertEqual(self.js("return document.activeElement.id"), "canvas")
+        self.js("document.querySelector('.mark').click()")
+        self.browser.keys("Escape", "Escape")
+        self.assertTrue(self.hidden("note"))
+
+    def test_double_click_goes_there(self):
+        self.open()
+        before = self.js("return oriel.navigator.view")
+        target = self.js("return oriel.pick(200, 130)")
+        self.browser.click(200, 130, times=2)
+        self.browser.wait(f"return oriel.navigator.view.eye[0] !== {before['eye'][0]!r}", 60)
+        self.browser.settle()
+        far = lambda eye: math.dist(eye, target)
+        self.assertLess(far(self.eye()), 0.9 * far(before["eye"]))
+        self.assertLess(self.js("return oriel.navigator.outness"), 1)
+
+    def test_panels_do_not_overlap(self):
+        self.open()
+        for size in SIZES:
+            self.browser.resize(*size)
+            for id_ in ("panel", "map", "path", "thumbs"):
+                self.js(f"document.getElementById('{id_}').hidden = true; oriel.toggle('{id_}')")
+            self.js("document.querySelector('.mark').click()")
+            for id_ in (None, "panel", "map", "path"):
+                if id_ and self.hidden(id_):
+                    self.js(f"oriel.toggle('{id_}')")
+                self.assertEqual(self.js(OVERLAPS), [], (size, id_))
+                self.assertEqual(self.js("return document.documentElement.scrollWidth <= innerWidth"), True)
+            columns = self.js("""
+                const rows = Map.groupBy([...document.querySelectorAll("#tools button")], b => b.offsetTop);
+                return [...rows.values()].map(row => row.length);""")
+            self.assertLess(max(columns) - min(columns), len(columns) + 1, size) # no single one in a row
+            self.assertGreaterEqual(self.js("return document.querySelector('#tools button').offsetWidth"), 24)
+
+    def test_wheel_within_another_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(f"{folder}/index.html", "w") as file:
+                file.write("<!DOCTYPE html><link rel=icon href='data:,'><body style='height: 3000px; margin: 0'>"
+                           f"<iframe src='{self.server.address}/' width=340 height=200></iframe>")
+            museum = Server(folder)
+            self.addCleanup(museum.close)
+            self.browser.driver.get(museum.address)
+            self.browser.driver.switch_to.frame(0)
+            self.browser.settle()
+            eye = self.eye()
+            self.browser.wheel(100, 75, 120)
+            self.browser.wait("return document.getElementById('hint').textContent !== ''")
+            self.browser.driver.switch_to.default_content()
+            self.browser.wait("return scrollY > 0")
+            self.js("scrollTo(0, 0)")
+            self.browser.driver.switch_to.frame(0)
+            self.browser.settle()
+            self.assertEqual(self.eye(), eye)
+            self.browser.click(100, 75)
+            self.browser.wheel(100, 75, -120)
+            self.browser.wait(f"return oriel.navigator.view.eye[2] !== {eye[2]!r}")
+            self.browser.driver.switch_to.default_content()
+            self.assertEqual(self.js("return scrollY"), 0)
+
+    def test_address_of_who_embeds(self):
+        self.open("?start=2&mode=fly&ui=none")
+        self.assertEqual(self.js("return [oriel.navigator.at.number, oriel.navigator.mode]"), [1, "fly"])
+        self.assertEqual(self.js("return getComputedStyle(document.getElementById('tools')).display"), "none")
+        self.assertIn("?start=2&mode=fly&ui=none", self.browser.address())
+
+    def test_strict_policy(self):
+        server = Server(SITE, {"Content-Security-Policy": "default-src 'self'"})
+        self.addCleanup(server.close)
+        self.open(address=server.address)
+        self.assertEqual(self.js("return document.getElementById('unstarted')"), None)
+
+    def test_pages_that_cannot_start_say_so(self):
+        for address, policy in ((f"file://{SITE}/index.html", None), (None, "script-src 'none'")):
+            server = Server(SITE, {"Content-Security-Policy": policy} if policy else {})
+            self.addCleanup(server.close)
+            self.browser.driver.get(address or server.address)
+            self.browser.wait("""
+                return getComputedStyle(document.getElementById("unstarted")).visibility === "visible";""")
+            self.errors = 1
+
+    def test_requests_are_tried_again(self):
+        """Of shaders, points and photographs, each first request is reset."""
+        seen = set()
+
+        class Handler(QuietHandler):
+            def do_GET(self):
+                path = self.path.split("?")[0]
+                if path not in seen and re.search("^/(shaders|points|photos|manifest)", path):
+                    seen.add(path)
+                    self.connection.shutdown(socket.SHUT_RDWR)
+                    self.close_connection = True
+                else:
+                    super().do_GET()
+
+        server = Server(SITE, handler=Handler)
+        self.addCleanup(server.close)
+        self.errors = 1 # the browser tells of each
+        self.open(address=server.address)
+        self.assertGreater(len(seen), 20)
+        self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
+
+
+class Live(Visitors):
+    def walk(self, port=0):
+        walk = Program(ORIEL, SCENE, "--port", str(port))
+        self.addCleanup(lambda: walk.process.poll() is None and walk.close())
+        return walk
+
+    def test_resized_at_rest(self):
+        self.open(address=self.walk().address[:-1])
+        self.browser.resize(300, 400)
+        self.browser.wait("return oriel.picture.shown.width === 300 && oriel.picture.shown.height === 400", 60)
+
+    def test_server_dies_and_returns(self):
+        walk = self.walk()
+        self.errors = 1
+        self.open(address=walk.address[:-1])
+        walk.process.kill()
+        walk.process.wait()
+        self.browser.wait("return document.getElementById('hint').textContent.includes('does not answer')", 20)
+        self.js("window.saved = oriel.picture.save({title: 'Kept'}); saved.then(ok => window.saved = ok)")
+        self.js("oriel.picture.render({keyframes: []}, 'png')")
+        self.assertIn("does not answer", self.js("return oriel.path.said.textContent"))
+        before = self.settings()
+        self.addCleanup(self.restore, before)
+        self.assertNotIn("Kept", before)
+        self.walk(walk.port)
+        self.browser.wait("return window.saved === true", 60)
+        with open(f"{SCENE}/walk.json") as file:
+            self.assertEqual(json.load(file), {"title": "Kept"})
+        self.browser.wait("return document.getElementById('hint').textContent === ''")
+        self.browser.settle()
+        self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
+
+    def settings(self):
+        with open(f"{SCENE}/walk.json") as file:
+            return file.read()
+
+    def restore(self, settings):
+        with open(f"{SCENE}/walk.json", "w") as file:
+            file.write(settings)
+
+    def test_server_hangs(self):
+        walk = self.walk()
+        self.open(address=walk.address[:-1])
+        walk.process.send_signal(signal.SIGSTOP)
+        self.js("oriel.change(() => {})")
+        self.browser.wait("return document.getElementById('hint').textContent.includes('hangs')", 30)
+        walk.process.send_signal(signal.SIGCONT)
+        self.browser.settle()
+        self.assertEqual(self.hint(), "")
+
+
+# Pairs of what lies over the picture that cover one another, and what leaves the window.
+OVERLAPS = """
+const boxes = [...document.querySelectorAll("#over .panel, #tools, #thumbs, #map, #head, #hint, #attribution")]
+    .filter(e => e.offsetWidth && e.textContent + e.id !== "").map(e => [e.id, e.getBoundingClientRect()]);
+const found = [];
+boxes.forEach(([a, p], i) => {
+    if (p.left < 0 || p.top < 0 || p.right > innerWidth + 0.5 || p.bottom > innerHeight + 0.5)
+        found.push(`${a} leaves the window`);
+    for (const [b, q] of boxes.slice(i + 1))
+        if (Math.min(p.right, q.right) - Math.max(p.left, q.left) > 0.5 &&
+            Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 0.5)
+            found.push(`${a} and ${b}`);
+});
+return found;
+"""
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:], verbosity=2)
