@@ -30,8 +30,8 @@ size_t orl_points_drop_flat(struct orl_points *points);
 
 // Reads PLY, ascii or binary little endian: x y z, optional nx ny nz, red green blue, radius,
 // photographs, in any order and scalar type. Other properties and elements are skipped. Files of 3D
-// Gaussian splatting (f_dc_0 .. 2, opacity, scale_0 .. 2) become opaque discs, those without that are
-// more transparent than opaque. Points that
+// and 2D Gaussian splatting (f_dc_0 .. 2, opacity, scale_0 .. 1 or 2) become opaque discs, those
+// without that are more transparent than opaque. Points that
 // are not finite or beyond ORL_WORLD_MAX are dropped, and negative radii are set to 0; a warning
 // counts both.
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,

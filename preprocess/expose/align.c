@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/cholesky.h"
 #include "core/color.h"
 #include "core/memory.h"
-#include "preprocess/expose/cholesky.h"
 
 enum {
     ITERATIONS = 6,

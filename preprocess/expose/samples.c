@@ -7,87 +7,15 @@
 #include "core/color.h"
 #include "core/memory.h"
 #include "io/picture.h"
+#include "scene/depth_buffer.h"
 
 enum {
-    DEPTH_SIDE = 512,     // larger side of the depth buffers
-    SPLAT_MAX = 6,        // largest half side of a splat in the depth buffers
     LEVELS_MAX = 8,       // of a photograph's pyramid
     PHOTOS_PER_POINT = 32, // more observations add little, and the cost of alignment grows with
                            // their square
 };
-// Fraction of depth. Splats are flat and face the camera, unlike the surfaces.
-static const double DEPTH_TOLERANCE = 0.02;
 static const uint8_t CLIPPED = 254, BLACK = 0;
 static const float SPOILT_MAX = 0.02f; // greatest fraction of clipped pixels in a patch
-
-// --- depth of all points from one photograph ---
-
-struct depth_buffer {
-    int width, height;
-    double scale; // depth buffer pixels per pixel of the photograph
-    float *z;     // owned; INFINITY: no surface
-};
-
-static void splat(struct depth_buffer *buffer, const double pixel[2], double depth, double radius)
-{
-    int x = (int)floor(pixel[0] * buffer->scale), y = (int)floor(pixel[1] * buffer->scale);
-    int r = (int)fmin(radius * buffer->scale + 0.5, SPLAT_MAX);
-    for (int j = y - r < 0 ? 0 : y - r; j <= y + r && j < buffer->height; j++)
-        for (int i = x - r < 0 ? 0 : x - r; i <= x + r && i < buffer->width; i++) {
-            float *z = &buffer->z[(size_t)j * (size_t)buffer->width + (size_t)i];
-            *z = fminf(*z, (float)depth);
-        }
-}
-
-static bool in_picture(const struct orl_camera *camera, const double pixel[2])
-{
-    return pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < camera->width &&
-           pixel[1] < camera->height;
-}
-
-static bool project(const struct orl_view *view, const float position[3], double pixel[2],
-                    double *depth)
-{
-    const double world[3] = {(double)position[0], (double)position[1], (double)position[2]};
-    return orl_view_project(view, world, pixel, depth) && in_picture(&view->camera, pixel);
-}
-
-static enum orl_result draw_depth(const struct orl_log *log, const struct orl_view *view,
-                                  const struct orl_points *points, struct depth_buffer *buffer)
-{
-    const struct orl_camera *c = &view->camera;
-    int side = c->width > c->height ? c->width : c->height;
-    buffer->scale = fmin(1, (double)DEPTH_SIDE / side);
-    buffer->width = (int)ceil(c->width * buffer->scale);
-    buffer->height = (int)ceil(c->height * buffer->scale);
-    size_t count = (size_t)buffer->width * (size_t)buffer->height;
-    buffer->z = orl_array(log, count, sizeof *buffer->z);
-    if (!buffer->z)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < count; i++)
-        buffer->z[i] = INFINITY;
-    for (size_t i = 0; i < points->count; i++) {
-        double pixel[2], depth;
-        if (project(view, points->position[i], pixel, &depth))
-            splat(buffer, pixel, depth, (double)points->radius[i] * c->fx / depth);
-    }
-    return ORL_OK;
-}
-
-// True when nothing is clearly nearer at the pixel or within one pixel of it: poses and depths are
-// inexact, and a patch needs room.
-static bool is_visible(const struct depth_buffer *buffer, const double pixel[2], double depth)
-{
-    int x = (int)(pixel[0] * buffer->scale), y = (int)(pixel[1] * buffer->scale);
-    if (x < 1 || y < 1 || x + 1 >= buffer->width || y + 1 >= buffer->height)
-        return false;
-    for (int j = y - 1; j <= y + 1; j++)
-        for (int i = x - 1; i <= x + 1; i++)
-            if ((double)buffer->z[(size_t)j * (size_t)buffer->width + (size_t)i] <
-                depth * (1 - DEPTH_TOLERANCE))
-                return false;
-    return true;
-}
 
 // --- a photograph at several scales ---
 
@@ -248,14 +176,14 @@ static double squared_radius(const struct orl_camera *c, const double pixel[2])
 }
 
 static enum orl_result take_point(struct taking *t, uint32_t photo, const struct orl_view *view,
-                                  const double eye[3], const struct depth_buffer *buffer,
+                                  const double eye[3], const struct orl_depth_buffer *buffer,
                                   const struct pyramid *pyramid, size_t point)
 {
     double pixel[2], depth;
     struct orl_observation item = {.photo = photo};
-    if (!project(view, t->points->position[point], pixel, &depth) ||
+    if (!orl_point_project(view, t->points->position[point], pixel, &depth) ||
         !faces(t->points, point, eye, (double)t->params->cosine_min) ||
-        !is_visible(buffer, pixel, depth))
+        !orl_depth_buffer_shows(buffer, pixel, depth))
         return ORL_OK;
     // The patch covers at least the pixels by which calibration may be wrong.
     double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 3.0);
@@ -277,16 +205,16 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
 static enum orl_result take_photo(struct taking *t, const struct orl_sample_photo *photo,
                                   uint32_t index)
 {
-    struct depth_buffer buffer = {0};
+    struct orl_depth_buffer buffer = {0};
     struct pyramid pyramid = {0};
     double eye[3];
     orl_pose_centre(&photo->view.cam_from_world, eye);
     enum orl_result result = make_pyramid(t->log, photo, &pyramid);
     if (result == ORL_OK)
-        result = draw_depth(t->log, &photo->view, t->points, &buffer);
+        result = orl_depth_buffer_draw(t->log, &photo->view, t->points, &buffer);
     for (size_t i = 0; result == ORL_OK && i < t->points->count; i += t->stride)
         result = take_point(t, index, &photo->view, eye, &buffer, &pyramid, i);
-    free(buffer.z);
+    orl_depth_buffer_finish(&buffer);
     finish_pyramid(&pyramid);
     return result;
 }

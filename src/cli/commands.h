@@ -14,6 +14,7 @@ struct command {
 int cmd_prepare(int argc, char **argv);
 int cmd_calibrate(int argc, char **argv);
 int cmd_densify(int argc, char **argv);
+int cmd_export(int argc, char **argv);
 int cmd_fuse(int argc, char **argv);
 int cmd_hdr(int argc, char **argv);
 int cmd_bench(int argc, char **argv);

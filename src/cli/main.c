@@ -11,6 +11,7 @@ static const struct command commands[] = {
     {"chart", "accuracy against time and memory, all methods", cmd_chart},
     {"densify", "depth maps for a COLMAP workspace", cmd_densify},
     {"eval", "compare renderings with held-out photographs", cmd_eval},
+    {"export", "the scene in the formats of other programs", cmd_export},
     {"fuse", "points of one cluster of a scene's photographs", cmd_fuse},
     {"hdr", "radiance views from photographs of several exposures", cmd_hdr},
     {"import", "make a scene from known cameras, silhouettes, sequences", cmd_import},

@@ -38,6 +38,10 @@ struct orl_ply {
     struct orl_ply_element elements[ORL_PLY_ELEMENTS_MAX];
 };
 
+// The constant spherical harmonic, 1 / (2 sqrt(pi)). In files of Gaussian splatting a colour is
+// this times f_dc, and a half.
+#define ORL_HARMONIC_0 0.28209479177387814
+
 // Reads the file and its header.
 enum orl_result orl_ply_open(const struct orl_log *log, const char *path,
                              struct orl_ply *ply) ORL_CHECK_RESULT;

@@ -1,5 +1,6 @@
-// Reading points from PLY: one point per vertex. Files of 3D Gaussian splatting (Kerbl et al. 2023,
-// "3D Gaussian splatting for real-time radiance field rendering") are read as opaque discs.
+// Reading points from PLY: one point per vertex. Files of 3D and 2D Gaussian splatting (Kerbl et al.
+// 2023, "3D Gaussian splatting for real-time radiance field rendering"; Huang et al. 2024) are read
+// as opaque discs.
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -42,22 +43,23 @@ static void set_normal(const double values[3], float normal[3])
 
 static bool is_gaussian(const int property[ROLE_COUNT])
 {
-    for (int role = DC_RED; role <= SCALE_Z; role++)
+    for (int role = DC_RED; role <= SCALE_Y; role++) // discs have no third scale
         if (property[role] < 0)
             return false;
-    return property[RED] < 0 && property[RADIUS] < 0;
+    return property[RED] < 0;
 }
 
 // Takes a Gaussian as a disc: the colour that the zeroth spherical harmonic gives, and the standard
-// deviation of its two longer axes as the radius. False: it is more transparent than opaque.
-static bool take_gaussian(double values[ROLE_COUNT])
+// deviation of its two longer axes as the radius, unless the file has a radius (oriel export). False:
+// it is more transparent than opaque.
+static bool take_gaussian(double values[ROLE_COUNT], bool has_radius)
 {
-    static const double harmonic = 0.28209479177387814; // 1 / (2 sqrt(pi))
     double shortest = fmin(values[SCALE_X], fmin(values[SCALE_Y], values[SCALE_Z]));
     for (int k = 0; k < 3; k++)
-        values[RED + k] = 255 * (0.5 + harmonic * values[DC_RED + k]);
+        values[RED + k] = 255 * (0.5 + ORL_HARMONIC_0 * values[DC_RED + k]);
     // Scales are logarithms, and the opacity is a logit.
-    values[RADIUS] = exp((values[SCALE_X] + values[SCALE_Y] + values[SCALE_Z] - shortest) / 2);
+    if (!has_radius)
+        values[RADIUS] = exp((values[SCALE_X] + values[SCALE_Y] + values[SCALE_Z] - shortest) / 2);
     return values[OPACITY] >= 0;
 }
 
@@ -88,8 +90,8 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
     size_t kept = 0, bad_radii = 0, transparent = 0;
     bool gaussian = is_gaussian(property);
     double record[ORL_PLY_PROPERTIES_MAX];
-    // Points without colours are mid-grey.
-    double values[ROLE_COUNT] = {[RED] = 128, [GREEN] = 128, [BLUE] = 128};
+    // Points without colours are mid-grey, and discs are thin: their third scale is a logarithm.
+    double values[ROLE_COUNT] = {[RED] = 128, [GREEN] = 128, [BLUE] = 128, [SCALE_Z] = -1000};
     enum orl_result result = ORL_OK;
     for (uint64_t i = 0; i < vertex->count && result == ORL_OK; i++) {
         result = orl_ply_record(ply, vertex, record, -1, NULL);
@@ -99,7 +101,7 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
             bool unit = role >= RED && role <= BLUE && orl_ply_is_float(vertex, property[role]);
             values[role] = record[property[role]] * (unit ? 255 : 1);
         }
-        if (result == ORL_OK && gaussian && !take_gaussian(values))
+        if (result == ORL_OK && gaussian && !take_gaussian(values, property[RADIUS] >= 0))
             transparent++;
         else if (result == ORL_OK && set_point(points, kept, values, &bad_radii))
             kept++;

@@ -204,6 +204,30 @@ static void reads_gaussians_as_discs(void **state)
     test_dir_remove(dir);
 }
 
+// 2D Gaussians have two scales. A radius, which oriel export adds, is exact.
+static void reads_gaussian_discs(void **state)
+{
+    (void)state;
+    char *dir = test_dir_make(), path[4096], text[1024];
+    snprintf(path, sizeof path, "%s/points.ply", dir);
+    for (int has_radius = 0; has_radius < 2; has_radius++) {
+        snprintf(text, sizeof text,
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                 "property float z\nproperty float f_dc_0\nproperty float f_dc_1\n"
+                 "property float f_dc_2\nproperty float opacity\nproperty float scale_0\n"
+                 "property float scale_1\n%send_header\n1 2 3 1.7724539 0 -9 2 -1 -3 %s\n",
+                 has_radius ? "property float radius\n" : "", has_radius ? "7" : "");
+        save(path, text, strlen(text));
+        struct orl_points points;
+        assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
+        assert_int_equal(points.count, 1);
+        assert_int_equal(points.color[0][0], 255);
+        assert_float_equal(points.radius[0], has_radius ? 7 : exp(-2), 1e-6);
+        orl_points_finish(&points);
+    }
+    test_dir_remove(dir);
+}
+
 static void leaves_nothing_when_the_disk_is_full(void **state)
 {
     (void)state;
@@ -241,6 +265,7 @@ int main(void)
         cmocka_unit_test(refuses_truncated),
         cmocka_unit_test(drops_what_is_not_finite),
         cmocka_unit_test(reads_gaussians_as_discs),
+        cmocka_unit_test(reads_gaussian_discs),
         cmocka_unit_test(leaves_nothing_when_the_disk_is_full),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

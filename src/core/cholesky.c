@@ -1,4 +1,4 @@
-#include "preprocess/expose/cholesky.h"
+#include "core/cholesky.h"
 
 #include <math.h>
 

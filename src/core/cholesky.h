@@ -1,6 +1,6 @@
 // Small symmetric systems.
-#ifndef ORL_PREPROCESS_CHOLESKY_H
-#define ORL_PREPROCESS_CHOLESKY_H
+#ifndef ORL_CORE_CHOLESKY_H
+#define ORL_CORE_CHOLESKY_H
 
 #include "oriel/common.h"
 

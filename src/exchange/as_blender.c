@@ -1,0 +1,22 @@
+// nerfstudio's folder and a Python script that opens it in Blender.
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "exchange/kinds.h"
+
+static enum orl_result add_script(const struct orl_log *log, const char *dir)
+{
+    char *path = orl_path_join(log, dir, "open_in_blender.py");
+    enum orl_result result =
+        path ? orl_file_write(log, path, orl_blender_script, strlen(orl_blender_script))
+             : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+ORL_EXPORT_WRITER(orl_export_blender)
+{
+    enum orl_result result = orl_export_nerfstudio(log, progress, scene, params);
+    return result == ORL_OK ? add_script(log, params->out) : result;
+}

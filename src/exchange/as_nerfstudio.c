@@ -1,0 +1,102 @@
+// nerfstudio's folder: transforms.json with the cameras and the split, photographs, masks, points.
+// The world stays that of the scene; only a camera's own axes are OpenGL's.
+#include <jansson.h>
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "exchange/kinds.h"
+
+// world_from_camera, with y up and z backward in the camera.
+static json_t *pack_matrix(const struct orl_pose *pose)
+{
+    double eye[3];
+    orl_pose_centre(pose, eye);
+    json_t *rows = json_array();
+    for (int i = 0; i < 3; i++)
+        json_array_append_new(rows, json_pack("[f, f, f, f]", pose->r[0][i], -pose->r[1][i],
+                                              -pose->r[2][i], eye[i]));
+    json_array_append_new(rows, json_pack("[i, i, i, i]", 0, 0, 0, 1));
+    return rows;
+}
+
+static enum orl_result copy(const struct orl_log *log, char *from, const char *dir,
+                            const char *name)
+{
+    char *to = orl_path_join(log, dir, name);
+    enum orl_result result = from && to ? orl_file_copy(log, from, to) : ORL_ERR_MEMORY;
+    free(from);
+    free(to);
+    return result;
+}
+
+static enum orl_result add_frame(const struct orl_log *log, const struct orl_scene *scene,
+                                 size_t photo, const char *dir, json_t *root)
+{
+    const struct orl_photo *p = &scene->photos[photo];
+    const struct orl_camera *c = &p->view.camera;
+    char *image = orl_format(log, "images/%s", p->name);
+    char *mask = p->masked ? orl_format(log, "masks/%s.png", p->name) : NULL;
+    enum orl_result result = image && (mask || !p->masked) ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        json_t *frame = json_pack(
+            "{s:o, s:i, s:i, s:f, s:f, s:f, s:f, s:o}", "file_path", orl_json_string(image), "w",
+            c->width, "h", c->height, "fl_x", c->fx, "fl_y", c->fy, "cx", c->cx, "cy", c->cy,
+            "transform_matrix", pack_matrix(&p->view.cam_from_world));
+        if (mask)
+            json_object_set_new(frame, "mask_path", orl_json_string(mask));
+        json_array_append_new(json_object_get(root, "frames"), frame);
+        json_array_append_new(json_object_get(root, p->test ? "test_filenames" : "train_filenames"),
+                              orl_json_string(image));
+        if (p->test) // nerfstudio evaluates on these
+            json_array_append_new(json_object_get(root, "val_filenames"), orl_json_string(image));
+        result = copy(log, orl_scene_photo_path(log, scene, photo), dir, image);
+    }
+    if (result == ORL_OK && mask)
+        result = copy(log, orl_scene_mask_path(log, scene, photo), dir, mask);
+    free(image);
+    free(mask);
+    return result;
+}
+
+static enum orl_result fill(const struct orl_log *log, const struct orl_progress *progress,
+                            const struct orl_scene *scene, const char *dir)
+{
+    json_t *root = json_pack("{s:s, s:s, s:[], s:[], s:[], s:[]}", "camera_model", "PINHOLE",
+                             "ply_file_path", "points.ply", "train_filenames", "val_filenames",
+                             "test_filenames", "frames");
+    char *file = orl_path_join(log, dir, "transforms.json");
+    char *points = orl_path_join(log, dir, "points.ply");
+    enum orl_result result = root && file && points ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
+        if (orl_progress_cancelled(progress))
+            result = ORL_ERR_CANCELLED;
+        else
+            result = add_frame(log, scene, i, dir, root);
+        orl_progress_report(progress, "export", (double)(i + 1), (double)scene->photo_count,
+                            scene->photos[i].name);
+    }
+    if (result == ORL_OK)
+        result = orl_points_write(log, points, &scene->points, false);
+    if (result == ORL_OK)
+        result = orl_json_write(log, file, root);
+    json_decref(root);
+    free(points);
+    free(file);
+    return result;
+}
+
+ORL_EXPORT_WRITER(orl_export_nerfstudio)
+{
+    char *part = NULL;
+    enum orl_result result = orl_new_dir_begin(log, params->out, &part);
+    if (result == ORL_OK)
+        result = fill(log, progress, scene, part);
+    if (result == ORL_OK)
+        result = orl_new_dir_finish(log, part, params->out);
+    if (result != ORL_OK && part && orl_dir_remove(log, part) != ORL_OK)
+        orl_logf(log, ORL_LOG_WARNING, "%s is left over", part);
+    free(part);
+    return result;
+}
