@@ -160,6 +160,8 @@ static enum orl_result add_video(struct orl_job *job, const char *path, const ch
     enum orl_result result = problem ? ORL_OK : orl_frames_take(job, path, &dir, &frames);
     if (result == ORL_ERR_DATA || result == ORL_ERR_EXTERNAL)
         problem = "ffmpeg finds no frames in it";
+    if (result == ORL_ERR_UNSUPPORTED)
+        problem = "frames of it cannot be used";
     if (problem) {
         orl_photos_skip(job, path, problem);
         job->given++;

@@ -11,11 +11,12 @@
 #include "core/memory.h"
 #include "core/process.h"
 #include "io/picture.h"
+#include "io/video.h"
 #include "preprocess/photos/look.h"
 
 enum {
     STRETCH = 6, // frames looked at for each that is taken
-    VERSION = 1, // raised when the same video gives other frames
+    VERSION = 2, // raised when the same video gives other frames
 };
 static const double FPS = 2; // frames taken of a second
 
@@ -24,41 +25,19 @@ static const double FPS = 2; // frames taken of a second
 struct clip {
     struct orl_job *job;
     const char *path;
-    double seconds;
+    struct orl_video video;
     double rate;  // frames looked at, of a second
     float *blur;  // owned; per frame looked at
     size_t count, capacity;
     enum orl_result result; // of the callbacks
 };
 
-static void find_duration(void *priv, const char *line)
-{
-    struct clip *clip = priv;
-    double seconds;
-    if (sscanf(line, "duration=%lf", &seconds) == 1 && isfinite(seconds) && seconds > 0)
-        clip->seconds = seconds;
-}
-
 static enum orl_result run_tool(const struct clip *clip, const char *const *argv,
                                 void (*line)(void *priv, const char *line))
 {
-    enum orl_result result = orl_process_run(clip->job->log, &(struct orl_process_params){
+    return orl_process_run(clip->job->log, &(struct orl_process_params){
         .argv = argv, .progress = clip->job->progress, .line = line,
         .line_priv = (void *)clip}, NULL);
-    return result == ORL_ERR_NOT_FOUND
-               ? orl_fail(clip->job->log, result, "%s: ffmpeg is needed to take frames out of a "
-                          "video (Debian: apt install ffmpeg)", clip->path)
-               : result;
-}
-
-static enum orl_result measure_duration(struct clip *clip)
-{
-    const char *const argv[] = {"ffprobe", "-v", "error", "-show_entries", "format=duration",
-                                "-of", "default=noprint_wrappers=1", clip->path, NULL};
-    enum orl_result result = run_tool(clip, argv, find_duration);
-    if (result == ORL_OK && !(clip->seconds > 0))
-        result = orl_fail(clip->job->log, ORL_ERR_DATA, "%s: its length is not known", clip->path);
-    return result;
 }
 
 // ffmpeg prints a line with the frame's number, then one with its blur; a frame without edges has
@@ -75,7 +54,7 @@ static void take_blur(void *priv, const char *line)
         if (clip->result == ORL_OK)
             clip->blur[clip->count++] = INFINITY;
         orl_progress_report(clip->job->progress, "frames", 0.8 * (double)frame,
-                            clip->seconds * clip->rate, NULL);
+                            clip->video.seconds * clip->rate, NULL);
     }
     if (sscanf(line, "lavfi.blur=%f", &blur) == 1 && isfinite(blur) && clip->count)
         clip->blur[clip->count - 1] = blur;
@@ -83,10 +62,11 @@ static void take_blur(void *priv, const char *line)
 
 static enum orl_result measure_blur(struct clip *clip)
 {
-    char *filter = orl_format(clip->job->log, "fps=%.6f,scale='min(960,iw)':-2,blurdetect,"
-                              "metadata=mode=print:key=lavfi.blur:file=-", clip->rate);
+    char *filter = orl_format(clip->job->log, "%sfps=%.6f,scale='min(960,iw)':-2,blurdetect,"
+                              "metadata=mode=print:key=lavfi.blur:file=-", clip->video.first,
+                              clip->rate);
     const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
-                                "-map", "0:v:0", "-vf", filter, "-f", "null", "/dev/null", NULL};
+                                "-map", "0:V:0", "-vf", filter, "-f", "null", "/dev/null", NULL};
     enum orl_result result = filter ? run_tool(clip, argv, take_blur) : ORL_ERR_MEMORY;
     free(filter);
     if (result == ORL_OK)
@@ -117,20 +97,20 @@ static enum orl_result write_frames(const struct clip *clip, const size_t *chose
     // ffmpeg reads long filters from a file.
     char *script = orl_path_join(log, dir, "filter");
     char *pattern = orl_path_join(log, dir, "%05d.jpg");
-    char *text = orl_array(log, 64 + 32 * count, 1);
+    char *text = orl_array(log, 64 + sizeof clip->video + 32 * count, 1);
     enum orl_result result = script && pattern && text ? ORL_OK : ORL_ERR_MEMORY;
     size_t length = 0;
     if (result == ORL_OK)
-        length = (size_t)sprintf(text, "fps=%.6f,select='", clip->rate);
+        length = (size_t)sprintf(text, "%sfps=%.6f,select='", clip->video.first, clip->rate);
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         length += (size_t)sprintf(text + length, "%seq(n,%zu)", i ? "+" : "", chosen[i]);
     if (result == ORL_OK)
-        length += (size_t)sprintf(text + length, "'");
+        length += (size_t)sprintf(text + length, "',%snull", clip->video.colours);
     if (result == ORL_OK)
         result = orl_file_write(log, script, text, length);
     if (result == ORL_OK) {
         const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
-                                    "-map", "0:v:0", "-filter_script:v", script, "-vsync", "0",
+                                    "-map", "0:V:0", "-filter_script:v", script, "-vsync", "0",
                                     "-q:v", "1", "-qmin", "1", pattern, NULL};
         result = run_tool(clip, argv, NULL);
     }
@@ -177,11 +157,14 @@ static enum orl_result drop_still(const struct clip *clip, const char *dir)
 
 static enum orl_result make_frames(struct clip *clip, const char *dir)
 {
-    enum orl_result result = measure_duration(clip);
+    enum orl_result result = orl_video_inspect(clip->job->log, clip->job->progress, clip->path,
+                                               true, &clip->video);
+    if (result == ORL_OK && !(clip->video.seconds > 0))
+        result = orl_fail(clip->job->log, ORL_ERR_DATA, "%s: its length is not known", clip->path);
     if (result != ORL_OK)
         return result;
     const struct orl_prepare_params *params = clip->job->params;
-    double fps = params->frames ? params->frames / clip->seconds
+    double fps = params->frames ? params->frames / clip->video.seconds
                  : params->fps > 0 ? params->fps : FPS;
     clip->rate = fps * STRETCH;
     if ((result = measure_blur(clip)) != ORL_OK)

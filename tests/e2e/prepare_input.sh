@@ -66,6 +66,11 @@ if command -v ffmpeg >/dev/null; then
     says "calibrate: done already"
     run 0 prepare "$work/films/cam1/walk.mkv" --out "$work/few-s" --frames 5 --max-size 96
     [ "$(ls "$work/few-s/images" | wc -l)" = 4 ] || fail "not the frames that were asked for"
+    # Frames have square pixels.
+    ffmpeg -loglevel error -i "$work/films/cam1/walk.mkv" -c:v ffv1 -vf setsar=2/1 "$work/wide.mkv"
+    run 0 prepare "$work/wide.mkv" --out "$work/wide-s" --frames 3 --until collect
+    ffprobe -v error -show_entries stream=width,height -of csv=p=0 \
+        "$work/wide-s/.oriel/photos/wide_00001.jpg" | grep -qx 192,80 || fail "frames are not stretched"
 else
     run 2 prepare "$work/films" --out "$work/s"
     says "ffmpeg is needed"
