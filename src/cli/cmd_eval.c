@@ -251,7 +251,8 @@ static enum orl_result run(struct job *job, const char *scene_dir,
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     if (result != ORL_OK)
         return result;
-    bool array = o->vary || (o->method && strcmp(o->method, "all") == 0);
+    bool array = o->vary || (o->method && (strcmp(o->method, "all") == 0 ||
+                                           strcmp(o->method, "paired") == 0));
     return o->walk ? measure_walk(job, array) : measure_heldout(job, array);
 }
 
@@ -275,7 +276,8 @@ int cmd_eval(int argc, char **argv)
                         .moment = -1};
     const struct arg_option table[] = {
         {"method", ARG_STRING, &o.method, "NAME",
-         "a method, or all; default: the scene's, or else the first of oriel methods", 0, 0},
+         "a method, all, or paired: all, and those of papers again on the proxy of oriel; default: the "
+         "scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "once for each value of an option", 0, 0},
         {"frame", ARG_INT, &o.moment, "N", "moment of a sequence, from 0; default: the first", 0,

@@ -40,6 +40,14 @@ static void add_name(char text[ORL_CHART_SENTENCE_MAX], const struct orl_chart_p
     add(text, "%s%s%s", p->method, p->setting[0] ? " " : "", p->setting);
 }
 
+// A figure of whole pictures and, in brackets, that of covered pixels.
+static void add_db(char text[ORL_CHART_SENTENCE_MAX], double whole, double covered)
+{
+    add(text, "%.2f dB", whole);
+    if (isfinite(covered))
+        add(text, " (covered %.2f)", covered);
+}
+
 // The point's neighbour on the front: the next faster or the next better one.
 static const struct orl_chart_point *neighbour(const struct orl_chart_point *points,
                                                size_t count, const struct orl_chart_point *p,
@@ -66,14 +74,16 @@ static void add_neighbours(char text[ORL_CHART_SENTENCE_MAX],
     if (faster) {
         add(text, " The next faster, ");
         add_name(text, faster);
-        add(text, ", takes %.2f of its time for %.2f dB less.", faster->ms / p->ms,
-            p->db - faster->db);
+        add(text, ", takes %.2f of its time for ", faster->ms / p->ms);
+        add_db(text, p->db - faster->db, p->covered_db - faster->covered_db);
+        add(text, " less.");
     }
     if (better) {
         add(text, " The next better, ");
         add_name(text, better);
-        add(text, ", gains %.2f dB for %.2f times its time.", better->db - p->db,
-            better->ms / p->ms);
+        add(text, ", gains ");
+        add_db(text, better->db - p->db, better->covered_db - p->covered_db);
+        add(text, " for %.2f times its time.", better->ms / p->ms);
     }
 }
 
@@ -99,12 +109,13 @@ void orl_chart_sentence(const struct orl_chart_point *points, size_t count, size
     const struct orl_chart_point *p = &points[index];
     text[0] = '\0';
     add_name(text, p);
+    add(text, ": ");
+    add_db(text, p->db, p->covered_db);
     if (!isfinite(p->ms)) {
-        add(text, ": %.2f dB, in a time that is not known.", p->db);
+        add(text, ", in a time that is not known.");
         return;
     }
-    add(text, p->ms < 1000 ? ": %.2f dB at %.3g ms a frame." : ": %.2f dB at %.0f ms a frame.", p->db,
-        p->ms);
+    add(text, p->ms < 1000 ? " at %.3g ms a frame." : " at %.0f ms a frame.", p->ms);
     if (p->on_front) {
         add_neighbours(text, points, count, p);
         return;
@@ -112,6 +123,8 @@ void orl_chart_sentence(const struct orl_chart_point *points, size_t count, size
     const struct orl_chart_point *q = &points[p->dominated_by];
     add(text, " By PSNR nobody should use it here: ");
     add_name(text, q);
-    add(text, " is %.2f dB better in %.2f of its time.", q->db - p->db, q->ms / p->ms);
+    add(text, " is ");
+    add_db(text, q->db - p->db, q->covered_db - p->covered_db);
+    add(text, " better in %.2f of its time.", q->ms / p->ms);
     add_settings(text, points, count, p);
 }

@@ -8,6 +8,7 @@ struct orl_chart_point {
     const char *method, *setting; // setting "": the method's own values
     double ms; // less is better; NAN: unknown, the point takes no part
     double db; // more is better
+    double covered_db; // of covered pixels, which sentences tell beside it; NAN: unknown
     // Results of orl_chart_find_front:
     bool on_front;
     int dominated_by; // index of the best point that dominates this one; -1: none

@@ -128,17 +128,20 @@ enum orl_result orl_chart_make_plan(struct orl_gpu *gpu, const struct orl_scene 
     memset(plan, 0, sizeof *plan);
     enum orl_result result = ORL_OK;
     if (!params->methods->count)
-        result = orl_names_add(log, &methods, "all");
+        result = orl_names_add(log, &methods, "paired");
     if (result == ORL_OK)
         result = orl_choices_make(log, scene, ORL_SAMPLE_SRGB,
                                   methods.count ? &methods : params->methods, &none, NULL,
                                   &choices);
     for (size_t i = 0; result == ORL_OK && i < choices.count; i++) {
-        const struct chart_config base = {.method = choices.items[i].method,
+        struct chart_config base = {.method = choices.items[i].method,
                                           .render = choices.items[i].params,
                                           .textures = ORL_TEXTURES_AUTO, .photo_divide = 1,
                                           .size_divide = 1};
+        memcpy(base.setting, choices.items[i].setting, sizeof base.setting);
         result = add(log, plan, &base);
+        if (base.setting[0])
+            continue;
         if (result == ORL_OK && params->varied)
             result = add_varied(log, scene, params->varied, &base, plan);
         if (params->quick || !chooses_photographs(&base.render))

@@ -38,7 +38,8 @@ static enum orl_result analyse(const struct orl_log *log, json_t *rows, const ch
         points[count] = (struct orl_chart_point){
             .method = orl_row_text(row, "method"), .setting = orl_row_text(row, "setting"),
             .ms = orl_row_number(row, "frame_ms"),
-            .db = orl_row_number(json_object_get(row, "mean"), "psnr_db")};
+            .db = orl_row_number(json_object_get(row, "mean"), "psnr_db"),
+            .covered_db = orl_row_number(json_object_get(row, "mean"), "psnr_covered_db")};
         of[count++] = row;
     }
     orl_chart_find_front(points, count);

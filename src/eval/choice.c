@@ -6,6 +6,14 @@
 
 #include "core/memory.h"
 
+const char orl_choice_paired[] = "on the proxy of oriel";
+
+void orl_choice_label(const struct orl_choice *choice, char label[ORL_CHOICE_LABEL_MAX])
+{
+    snprintf(label, ORL_CHOICE_LABEL_MAX, "%s%s%s", choice->method->name,
+             choice->setting[0] ? " " : "", choice->setting);
+}
+
 // What all choices of a command have in common.
 struct wish {
     const struct orl_log *log;
@@ -100,6 +108,19 @@ static enum orl_result add_varied(const struct orl_log *log, const struct orl_ch
     return result;
 }
 
+static enum orl_result add_paired(const struct wish *wish, const struct orl_method *method,
+                                  struct orl_choices *choices)
+{
+    struct orl_choice base, choice;
+    enum orl_result result = make(wish, &orl_methods[0], &base);
+    if (result == ORL_OK)
+        result = make(wish, method, &choice);
+    if (result != ORL_OK || !orl_render_params_take_proxy(&base.params, &choice.params))
+        return result;
+    snprintf(choice.setting, sizeof choice.setting, "%s", orl_choice_paired);
+    return add(wish->log, &choice, choices);
+}
+
 static enum orl_result add_method(const struct wish *wish, const struct orl_method *method,
                                   struct orl_choices *choices)
 {
@@ -117,7 +138,8 @@ enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_sce
                                  struct orl_choices *choices)
 {
     const struct wish wish = {log, scene, sample, settings, varied};
-    bool all = orl_names_contain(methods, "all");
+    bool paired = !varied && orl_names_contain(methods, "paired");
+    bool all = paired || orl_names_contain(methods, "all");
     enum orl_result result = ORL_OK;
     memset(choices, 0, sizeof *choices);
     const struct orl_method *preset = NULL;
@@ -127,6 +149,8 @@ enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_sce
     }
     for (const struct orl_method *m = orl_methods; result == ORL_OK && all && m->name; m++)
         result = add_method(&wish, m, choices);
+    for (const struct orl_method *m = orl_methods; result == ORL_OK && paired && m->name; m++)
+        result = add_paired(&wish, m, choices);
     for (size_t i = 0; result == ORL_OK && !all && i < methods->count; i++) {
         const struct orl_method *method = orl_method_find(log, methods->items[i]);
         result = method ? add_method(&wish, method, choices) : ORL_ERR_ARGUMENT;

@@ -10,9 +10,15 @@
 
 struct orl_choice {
     const struct orl_method *method;
-    char setting[64]; // KEY=VALUE in which choices of one method differ; empty: none
+    char setting[64]; // in which choices of one method differ: KEY=VALUE, orl_choice_paired; empty: none
     struct orl_render_params params;
 };
+
+// The setting of a paper's method on the proxy and background of the first method, oriel.
+extern const char orl_choice_paired[];
+enum { ORL_CHOICE_LABEL_MAX = 128 };
+// Method and setting: "airieau on the proxy of oriel".
+void orl_choice_label(const struct orl_choice *choice, char label[ORL_CHOICE_LABEL_MAX]);
 
 // scene: its tuned values are used; NULL: none are. method: a name; NULL: the scene's default.
 // sample: what the renderer samples photographs for, which decides which options may be set.
@@ -32,7 +38,8 @@ struct orl_choices {
     struct orl_choice *items; // owned
     size_t count, capacity;
 };
-// methods: names, which may include "all"; none: the scene's default. varied: "KEY=A,B,..", each
+// methods: names, which may include "all" and "paired": all methods, and those whose weights go with any
+// proxy once more on that of oriel; none: the scene's default. varied: "KEY=A,B,..", each
 // method once with each of the values; NULL: each method once.
 enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_scene *scene,
                                  enum orl_sample sample, const struct orl_names *methods,

@@ -101,8 +101,9 @@ static enum orl_result measure(struct job *job, struct severity *s,
 {
     struct stress_result result_of = {0};
     struct orl_render_params render = choice->params;
-    const char *method = choice->method->name;
+    char method[ORL_CHOICE_LABEL_MAX];
     enum orl_result result = ORL_OK;
+    orl_choice_label(choice, method);
     // The figure has silhouettes, so a method may stand on another proxy than before the monument.
     if (job->base.synth && s->axis->flags & STRESS_NEEDS_MASKS)
         result = orl_render_params_tuned(job->log, choice->method, &s->changed.scene, &render);
@@ -162,7 +163,9 @@ static enum orl_result add_row(struct job *job, struct severity *s,
 {
     char id[ORL_ROW_ID_MAX];
     enum orl_result result = ORL_OK;
-    orl_row_id(s->id, choice->method->name, id);
+    char method[ORL_CHOICE_LABEL_MAX];
+    orl_choice_label(choice, method);
+    orl_row_id(s->id, method, id);
     orl_progress_report(job->params->progress, "stress", job->done++, job->total, id);
     json_t *row = load_row(job, id);
     if (row) {
@@ -181,7 +184,7 @@ static enum orl_result add_row(struct job *job, struct severity *s,
         job->stress->measured += row != NULL;
     }
     if (!row)
-        return leave_out(job, s, choice->method->name, result);
+        return leave_out(job, s, method, result);
     json_t *own = json_copy(row);
     json_decref(row);
     json_object_set_new(own, "axis", json_string(s->axis->name));
@@ -190,6 +193,12 @@ static enum orl_result add_row(struct job *job, struct severity *s,
         job->stress->broken++;
     json_array_append_new(job->rows, own);
     return result;
+}
+
+// Axes of silhouettes ask methods on their hull.
+static bool takes_part(const struct stress_axis *axis, const struct orl_choice *choice)
+{
+    return !choice->setting[0] || !(axis->flags & STRESS_NEEDS_MASKS);
 }
 
 static enum orl_result add_severity(struct job *job, const struct stress_axis *axis, int level)
@@ -202,7 +211,8 @@ static enum orl_result add_severity(struct job *job, const struct stress_axis *a
     enum orl_result result = ORL_OK;
     bool own = orl_row_part_has(&job->params->part, unchanged ? 0 : ++job->severities);
     for (size_t i = 0; own && result == ORL_OK && i < job->choices.count; i++)
-        result = add_row(job, &s, &job->choices.items[i]);
+        if (takes_part(axis, &job->choices.items[i]))
+            result = add_row(job, &s, &job->choices.items[i]);
     finish_severity(&s);
     return result;
 }
@@ -235,8 +245,9 @@ static enum orl_result add_axes(struct job *job, json_t *axes)
     enum orl_result result = ORL_OK;
     for (const struct stress_axis *axis = orl_stress_axes; axis->name; axis++)
         for (int level = 0; level < ORL_STRESS_LEVELS; level++)
-            if (is_served(job, axis) && is_level_wanted(job, level))
-                job->total += (double)job->choices.count;
+            for (size_t i = 0; i < job->choices.count; i++)
+                job->total += is_served(job, axis) && is_level_wanted(job, level) &&
+                              takes_part(axis, &job->choices.items[i]);
     for (const struct stress_axis *axis = orl_stress_axes; axis->name; axis++) {
         json_t *levels = json_array();
         for (int level = 0; result == ORL_OK && level < ORL_STRESS_LEVELS; level++) {
@@ -280,7 +291,7 @@ static enum orl_result check_axes(const struct orl_log *log, const struct orl_na
 
 static enum orl_result open_scene(struct job *job)
 {
-    const struct orl_names none = {0}, all = {1, 1, (char *[]){(char[]){"all"}}};
+    const struct orl_names none = {0}, all = {1, 1, (char *[]){(char[]){"paired"}}};
     const struct orl_stress_params *params = job->params;
     const struct orl_names *methods = params->methods->count ? params->methods : &all;
     struct orl_scene *scene = NULL;
@@ -319,8 +330,11 @@ static json_t *make_root(const struct job *job)
     json_t *methods = json_array();
     for (size_t i = 0; i < base->scene.photo_count; i++)
         training += !base->scene.photos[i].test;
-    for (size_t i = 0; i < job->choices.count; i++)
-        json_array_append_new(methods, json_string(job->choices.items[i].method->name));
+    for (size_t i = 0; i < job->choices.count; i++) {
+        char label[ORL_CHOICE_LABEL_MAX];
+        orl_choice_label(&job->choices.items[i], label);
+        json_array_append_new(methods, json_string(label));
+    }
     return json_pack("{s:i, s:s, s:s, s:s, s:b, s:b, s:{s:s, s:s, s:b, s:I, s:I, s:I, s:[ii], s:I}, "
                      "s:o, s:[], s:[]}",
                      "version", 1, "commit", orl_commit(), "device", caps->renderer, "driver",

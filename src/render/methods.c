@@ -172,6 +172,11 @@ const char *orl_method_default(const struct orl_scene *scene)
     return scene && scene->defaults.method ? scene->defaults.method : orl_methods[0].name;
 }
 
+static bool guesses(const struct orl_render_params *params)
+{
+    return params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND;
+}
+
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params)
 {
@@ -188,6 +193,10 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
     if (painter == &orl_paint_points && !orl_proxy_kind_of(params)->color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "paint=points: proxy=%s has no colours",
                         params->proxy);
+    if (guesses(params) &&
+        (strcmp(params->weight, "normal") == 0 || strcmp(params->weight, "princ") == 0))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "fill=depth and fill=ground do not go with weight=%s, "
+                        "which needs a normal: guessed depth has none", params->weight);
     if (painter == &orl_paint_gather && orl_combine_of(params)->sweeps == 0)
         return orl_fail(log, ORL_ERR_ARGUMENT, "combine=%s goes with paint=tiled alone",
                         params->combine);
@@ -226,6 +235,31 @@ static void suit_scene(const struct orl_scene *scene, struct orl_render_params *
     // Voxels of points have holes where a hull has none.
     if (kind == &orl_proxy_voxels && !has_silhouettes(scene))
         params->fill = ORL_FILL_COLOR;
+}
+
+static void copy_option(const struct orl_render_option *option, const struct orl_render_params *from,
+                        struct orl_render_params *to)
+{
+    size_t size = option->kind == ORL_OPTION_SLOT     ? ORL_OPTION_NAME_BYTES
+                  : option->kind == ORL_OPTION_NUMBER ? sizeof(float)
+                                                      : sizeof(int);
+    memcpy((char *)to + option->offset, (const char *)from + option->offset, size);
+}
+
+bool orl_render_params_take_proxy(const struct orl_render_params *from,
+                                  struct orl_render_params *params)
+{
+    const struct proxy_kind *kind = orl_proxy_kind_of(from);
+    if (orl_painter_of(params) != &orl_paint_gather)
+        return false;
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+        if (strcmp(o->key, "proxy") == 0 || orl_proxy_reads(o, kind))
+            copy_option(o, from, params);
+    enum orl_fill own = params->fill;
+    params->fill = from->fill;
+    if (orl_render_params_check(NULL, params) != ORL_OK)
+        params->fill = own;
+    return true;
 }
 
 static bool has_tuned(const struct orl_scene *scene, const struct orl_method *method)

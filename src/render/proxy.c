@@ -131,8 +131,7 @@ enum orl_result orl_proxy_color(const struct frame *frame, const struct paint_in
     return result;
 }
 
-// True if this option belongs to the proxy.
-static bool is_read_by(const struct orl_render_option *option, const struct proxy_kind *kind)
+bool orl_proxy_reads(const struct orl_render_option *option, const struct proxy_kind *kind)
 {
     size_t length = strlen(kind->name);
     for (const char *at = option->readers; (at = strstr(at, "proxy=")); at++)
@@ -147,7 +146,7 @@ uint64_t orl_proxy_key(const struct proxy *proxy, const struct orl_render_params
                                         proxy->version);
     for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
         char text[ORL_OPTION_NAME_BYTES];
-        if (!is_read_by(o, proxy->kind))
+        if (!orl_proxy_reads(o, proxy->kind))
             continue;
         orl_render_option_print(o, params, text, sizeof text);
         key = XXH3_64bits_withSeed(text, strlen(text), key);

@@ -92,6 +92,8 @@ struct proxy {
     uint64_t version; // how often it changed
 };
 
+// True if this option belongs to proxies of the kind.
+bool orl_proxy_reads(const struct orl_render_option *option, const struct proxy_kind *kind);
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                  const struct proxy_kind *kind, size_t most_bytes,
                                  struct proxy *proxy);

@@ -81,7 +81,7 @@ def name: .scene | split("/") | map(select(length > 0)) | last;
 def size: map(tostring) | join("x");
 # A row for each scene, a column for each method.
 def by_method(value; d): group_by(.scene) as $scenes
-  | table(["scene"] + [$scenes[0][].method];
+  | table(["scene"] + [$scenes[0][] | .method + (if (.setting // "") == "" then "" else " " + .setting end)];
           $scenes[] | [(.[0] | name)] + [.[] | value | fixed(d)]);
 '
 print_table() { # FILE FILTER
@@ -152,13 +152,14 @@ END
 }
 
 page_accuracy() {
-    local all='oriel eval SCENES/NAME --method all --quiet --json -'
+    local all='oriel eval SCENES/NAME --method paired --quiet --json -'
     for_scenes "$work/accuracy.json" "$all" $(scene_names)
     head_of "Accuracy" "$work/accuracy.json"
     cat <<'END'
 
 Held-out photographs, rendered from the others; means over the photographs of a scene. The
-[metrics](../reference/metrics.md) are over the whole picture, holes included, unless they say otherwise.
+[metrics](../reference/metrics.md) are over the whole picture, holes included, unless they say otherwise. The methods of
+papers have two columns: as the paper has them, and *on the proxy of oriel*, with its depth and background.
 END
     command_block "$all"
     printf '**PSNR in dB, whole pictures**\n\n'
@@ -301,20 +302,20 @@ END
         ($r.mean.psnr_db > .best) as $better
         | .rows += [$r + {front: (if $better then "front" else "" end)}]
         | if $better then .best = $r.mean.psnr_db else . end) | .rows'
-    printf '**Methods as they are**\n\n'
+    printf '**Methods as they are**, and those of papers with the depth and background of `oriel`\n\n'
     print_table "$work/chart/chart.json" "($overall)"' as $rows
       | table(["method", "PSNR, dB", "sd", "colours fitted, dB", "covered, dB", "SSIM", "FLIP", "completeness", "flicker",
                "cpu ms", "device, MiB", ""];
-        .overall[] | .method as $m | select(.setting == "")
-          | ["`" + .method + "`", (.mean.psnr_db | fixed(2)), (.sd.psnr_db | fixed(2)), (.mean.psnr_cc_db | fixed(2)),
+        .overall[] | .method as $m | .setting as $s | select($s == "" or ($s | startswith("on the ")))
+          | ["`" + .method + "` " + $s, (.mean.psnr_db | fixed(2)), (.sd.psnr_db | fixed(2)), (.mean.psnr_cc_db | fixed(2)),
              (.mean.psnr_covered_db | fixed(2)), (.mean.ssim | fixed(4)), (.mean.flip | fixed(4)),
              (.mean.completeness | fixed(3)), (.flicker | fixed(2)), (.cpu_ms | fixed(0)),
-             (.device_bytes / 1048576 | fixed(0)), ([$rows[] | select(.method == $m and .setting == "")][0].front)])'
+             (.device_bytes / 1048576 | fixed(0)), ([$rows[] | select(.method == $m and .setting == $s)][0].front)])'
     printf '**Settings**: PSNR, SSIM, FLIP and flicker less those of the method as it is, time as a multiple of its; *scenes*: PSNR from the scene that loses most to the one that gains most\n\n'
     print_table "$work/chart/chart.json" "($overall)"' as $rows
       | .rows as $each
       | table(["method", "setting", "PSNR, dB", "scenes, dB", "SSIM", "FLIP", "flicker", "time", "device, MiB", ""];
-        .overall[] | . as $r | select(.setting != "")
+        .overall[] | . as $r | select(.setting != "" and (.setting | startswith("on the ") | not))
           | ([$rows[] | select(.method == $r.method and .setting == "")][0]) as $own
           | [$each[] | select(.method == $r.method and .setting == $r.setting) | . as $e
               | .mean.psnr_db - ([$each[] | select(.scene == $e.scene and .method == $r.method and .setting == "")][0]
@@ -339,7 +340,7 @@ END
           .overall[] | select(.setting == "") | .method as $m | ["`" + $m + "`"] + [$names[] as $n
             | [$rows[] | select(.scene == $n and .method == $m and .setting == "")][0].cpu_ms | fixed(0)])'
     printf '**What each method buys**, over all scenes\n\n'
-    jq -r '.overall[] | select(.setting == "") | "- " + .sentence' "$work/chart/chart.json"
+    jq -r '.overall[] | select(.setting == "" or (.setting | startswith("on the "))) | "- " + .sentence' "$work/chart/chart.json"
 }
 
 # A row for each method on a scene, with these options: accuracy from eval, processor time and memory of
@@ -350,10 +351,10 @@ method_rows() {
         run "oriel eval $scene --method $method $options --quiet --json -" \
             >"$work/one.json" 2>>"$work/methods.log" &&
             run "oriel bench $scene --method $method $options $methods_bench --quiet --json -" \
-                >"$work/two.json" 2>>"$work/methods.log" || { echo "| \`$method\` | - | - | - | - |"; continue; }
+                >"$work/two.json" 2>>"$work/methods.log" || { echo "| \`$method\` | - | - | - | - | - |"; continue; }
         [ -n "$unit" ] || unit=$(jq '.sizes[0].cpu_ms' "$work/two.json")
         jq -rs --arg m "$method" --argjson u "$unit" "$tables"'
-            ["`\($m)`", (.[0].mean.psnr_db | fixed(2)), (.[0].mean.ssim | fixed(3)),
+            ["`\($m)`", (.[0].mean.psnr_db | fixed(2)), (.[0].mean.psnr_covered_db | fixed(2)), (.[0].mean.ssim | fixed(3)),
              (.[1].sizes[0].cpu_ms / $u | fixed(2)), (.[1].sizes[0].device_bytes / 1048576 | fixed(0))]
             | row' "$work/one.json" "$work/two.json"
     done
@@ -361,7 +362,7 @@ method_rows() {
 
 method_table() { # SCENE OPTIONS
     printf '\n**%s**%s\n\n' "$(basename "$1")" "${2:+, with \`$2\`}"
-    printf '| method | PSNR, dB | SSIM | time | memory, MiB |\n|---|---|---|---|---|\n'
+    printf '| method | PSNR, dB | covered, dB | SSIM | time | memory, MiB |\n|---|---|---|---|---|---|\n'
     method_rows "$1" "$2"
 }
 

@@ -14,10 +14,12 @@ runs 0 "${chart[@]}" --quick
 [ -s stderr.txt ] && fail "--quiet is not quiet"
 methods=$("$oriel" methods | grep -c '^[a-z].* ')
 methods=$((methods - 1)) # its last line is advice
+methods=$((methods + 7)) # the methods of papers but goldluecke, once more on the proxy of oriel
 rows=$(grep -c ' *[0-9.]* .*[0-9]\.[0-9]' stdout.txt)
 [ "$(ls report/rows/ws | wc -l)" = "$methods" ] || fail "not a row for each method"
 grep -q "^$methods rows measured, 0 used again, 0 left out" stdout.txt || fail "no summary"
 grep -q 'front$' stdout.txt || fail "nothing is on the front"
+grep -q '^airieau  *on the proxy of oriel ' stdout.txt || fail "no weights on the same proxy"
 for field in version commit device driver software quick scenes rows overall checksum held_out \
     points prepare_s views picture error_map mean sd psnr_db psnr_cc_db psnr_covered_db ssim flip \
     crumbs coverage completeness flicker frame_ms p95_ms cpu_ms frames open_s device_bytes host_peak_bytes \

@@ -11,13 +11,13 @@ static void front_of_known_points(void **state)
 {
     (void)state;
     struct orl_chart_point points[] = {
-        {"a", "", 10, 20, false, 0},       // the fastest
-        {"b", "", 20, 19, false, 0},       // slower and worse than a
-        {"c", "", 30, 25, false, 0},       // on the front
-        {"c", "x=1", 40, 25, false, 0},    // as good as c, slower
-        {"d", "", 100, 30, false, 0},      // the best
-        {"d", "x=1", 100, 29.5, false, 0}, // as slow as d, worse
-        {"e", "", (double)NAN, 40, false, 0}}; // its time is not known
+        {"a", "", 10, 20, (double)NAN, false, 0},       // the fastest
+        {"b", "", 20, 19, (double)NAN, false, 0},       // slower and worse than a
+        {"c", "", 30, 25, (double)NAN, false, 0},       // on the front
+        {"c", "x=1", 40, 25, (double)NAN, false, 0},    // as good as c, slower
+        {"d", "", 100, 30, (double)NAN, false, 0},      // the best
+        {"d", "x=1", 100, 29.5, (double)NAN, false, 0}, // as slow as d, worse
+        {"e", "", (double)NAN, 40, (double)NAN, false, 0}}; // its time is not known
     static const bool front[] = {true, false, true, false, true, false, false};
     static const int by[] = {-1, 0, -1, 2, -1, 4, -1};
     orl_chart_find_front(points, ORL_COUNT(points));
@@ -38,18 +38,24 @@ static void front_of_known_points(void **state)
                                  "with"));
     orl_chart_sentence(points, ORL_COUNT(points), 6, text);
     assert_non_null(strstr(text, "a time that is not known"));
+    // What covered pixels tell stands beside it: most of a difference may be of the background.
+    points[0].covered_db = 27;
+    points[1].covered_db = 26.5;
+    orl_chart_sentence(points, ORL_COUNT(points), 1, text);
+    assert_string_equal(text, "b: 19.00 dB (covered 26.50) at 20 ms a frame. By PSNR nobody should "
+                              "use it here: a is 1.00 dB (covered 0.50) better in 0.50 of its time.");
 }
 
 // The best of several that are faster and better.
 static void dominated_by_the_best(void **state)
 {
     (void)state;
-    struct orl_chart_point points[] = {{"a", "", 10, 22, false, 0},
-                                       {"b", "", 20, 20, false, 0},
-                                       {"c", "", 15, 25, false, 0}};
+    struct orl_chart_point points[] = {{"a", "", 10, 22, (double)NAN, false, 0},
+                                       {"b", "", 20, 20, (double)NAN, false, 0},
+                                       {"c", "", 15, 25, (double)NAN, false, 0}};
     orl_chart_find_front(points, 3);
     assert_int_equal(points[1].dominated_by, 2);
-    struct orl_chart_point same[] = {{"a", "", 10, 22, false, 0}, {"b", "", 10, 22, false, 0}};
+    struct orl_chart_point same[] = {{"a", "", 10, 22, (double)NAN, false, 0}, {"b", "", 10, 22, (double)NAN, false, 0}};
     orl_chart_find_front(same, 2);
     assert_true(same[0].on_front && same[1].on_front);
 }

@@ -80,6 +80,35 @@ static void lists_of_methods(void **state)
     orl_names_finish(&two);
 }
 
+// Methods of papers once more on the proxy of oriel: what remains of them is weights.
+static void papers_on_one_proxy(void **state)
+{
+    (void)state;
+    struct orl_names none = {0}, paired = names_of("paired", NULL);
+    struct orl_choices choices;
+    const struct orl_render_params *oriel = &orl_methods[0].params;
+    char label[ORL_CHOICE_LABEL_MAX];
+    assert_int_equal(orl_choices_make(NULL, NULL, ORL_SAMPLE_SRGB, &paired, &none, NULL, &choices),
+                     ORL_OK);
+    assert_int_equal(choices.count, count_methods() + 7);
+    for (size_t i = count_methods(); i < choices.count; i++) {
+        const struct orl_choice *c = &choices.items[i];
+        const struct orl_render_params *own = &c->method->params;
+        bool needs_normal = strcmp(own->weight, "normal") == 0 || strcmp(own->weight, "princ") == 0;
+        assert_string_equal(c->params.proxy, oriel->proxy);
+        assert_float_equal(c->params.min_support, oriel->min_support, 0);
+        assert_float_equal(c->params.front_layer, oriel->front_layer, 0);
+        assert_int_equal(c->params.fill, needs_normal ? own->fill : oriel->fill);
+        assert_string_equal(c->params.weight, own->weight);
+        assert_string_equal(c->params.visibility, own->visibility);
+        assert_string_not_equal(c->method->name, "goldluecke");
+    }
+    orl_choice_label(&choices.items[count_methods()], label);
+    assert_string_equal(label, "airieau on the proxy of oriel");
+    orl_choices_finish(&choices);
+    orl_names_finish(&paired);
+}
+
 static void varied(void **state)
 {
     (void)state;
@@ -122,6 +151,7 @@ int main(void)
         cmocka_unit_test(settings_win_over_tuned_over_own),
         cmocka_unit_test(scenes_default_method),
         cmocka_unit_test(lists_of_methods),
+        cmocka_unit_test(papers_on_one_proxy),
         cmocka_unit_test(varied),
         cmocka_unit_test(unknown),
     };

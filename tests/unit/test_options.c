@@ -94,6 +94,13 @@ static void choices_must_go_together(void **state)
     assert_int_equal(orl_render_params_set(NULL, &params, "paint=gather"), ORL_ERR_ARGUMENT);
     static const char *const generic[] = {"paint=gather", "combine=mean", "weight=airieau"};
     assert_int_equal(orl_render_params_assign(NULL, &params, generic, 3), ORL_OK);
+    // Guessed depth has no normal to weigh photographs by.
+    static const char *const normals[] = {"orzan-surface", "orzan-shadow", "princ"};
+    for (size_t i = 0; i < ORL_COUNT(normals); i++) {
+        params = orl_method_find(NULL, normals[i])->params;
+        assert_int_equal(orl_render_params_set(NULL, &params, "fill=ground"), ORL_ERR_ARGUMENT);
+        assert_int_equal(orl_render_params_set(NULL, &params, "fill=none"), ORL_OK);
+    }
 }
 
 // A scene of silhouettes has no points, but a mesh or what makes a hull.
