@@ -48,6 +48,8 @@ bool orl_pose_from_axes(double world_from_cam[3][3], const double centre[3],
 bool orl_pose_from_opengl(const double world_from_cam[16], struct orl_pose *pose);
 // Of the two quaternions of a rotation, gives the one with w >= 0.
 void orl_pose_to_quat(const struct orl_pose *pose, double quat_wxyz[3 + 1]);
+// The same camera in a world whose origin is at `origin` of the pose's world.
+void orl_pose_move(struct orl_pose *pose, const double origin[3]);
 // Camera centre in world space: -r^T t.
 void orl_pose_centre(const struct orl_pose *pose, double centre[3]);
 // Camera at `eye` looking at `target`, image y along -up.

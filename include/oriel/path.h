@@ -16,7 +16,8 @@ struct orl_path {
 //   evenly: centres follow a Catmull-Rom spline, rotations are interpolated by slerp. Without
 //   "frames" the path consists of the keyframes themselves.
 // - nerfstudio camera_path.json, Inria cameras.json, COLMAP images.txt (cameras come from
-//   cameras.txt beside it, or else from the scene's first photograph).
+//   cameras.txt beside it, or else from the scene's first photograph). They are in the coordinates of
+//   the file of cameras that was imported, from which scene->origin is taken off.
 // Keyframes without intrinsics of their own take those of the scene's first photograph.
 // Errors name the file, the entry and the reason.
 enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene *scene,

@@ -36,6 +36,10 @@ size_t orl_points_drop_flat(struct orl_points *points);
 // counts both.
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,
                                 struct orl_points *points) ORL_CHECK_RESULT;
+// As before, and takes `origin` off the positions before they become floats, which hold seven digits.
+enum orl_result orl_points_read_from(const struct orl_log *log, const char *path,
+                                     const double origin[3],
+                                     struct orl_points *points) ORL_CHECK_RESULT;
 // Writes binary little-endian PLY: x y z nx ny nz red green blue radius photographs. small: normals
 // take a byte a component, which is exact to half a degree, and `photographs` is left out.
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,

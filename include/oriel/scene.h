@@ -91,6 +91,7 @@ struct orl_scene {
     bool backdrop_rests; // what lies behind the points stays where it is in photographs, as behind a
                          // turntable
     struct orl_room room;
+    double origin[3]; // coordinates of the imported file minus this are those of the scene
 };
 
 // Opens SCENE (scene.json, points.ply or points.lod) or a plain COLMAP dense workspace with

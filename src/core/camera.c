@@ -94,6 +94,13 @@ bool orl_pose_from_opengl(const double m[16], struct orl_pose *pose)
     return orl_pose_from_axes(axes, centre, pose);
 }
 
+void orl_pose_move(struct orl_pose *pose, const double origin[3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            pose->t[i] += pose->r[i][j] * origin[j];
+}
+
 void orl_pose_to_quat(const struct orl_pose *pose, double q[4])
 {
     // Shepperd's method: dividing by the largest component keeps accuracy.

@@ -67,7 +67,7 @@ json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene)
     free(path);
     json_t *root = result != ORL_OK ? NULL : json_pack(
         "{s:o, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, "
-        "s:O*, s:o, s:o}",
+        "s:O*, s:O*, s:o, s:o}",
         "scene", orl_json_string(scene->dir), "counts", "photographs", (json_int_t)scene->photo_count, "train",
         (json_int_t)(scene->photo_count - test), "test", (json_int_t)test, "points",
         (json_int_t)orl_scene_point_count(scene), "photo_distance", scene->photo_distance, "bounds",
@@ -75,7 +75,7 @@ json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene)
         json_object_get(manifest, "stages"), "settings", json_object_get(manifest, "settings"),
         "left_out", json_object_get(manifest, "left_out"), "tuned",
         json_object_get(manifest, "tuned"), "render",
-        json_object_get(manifest, "render"), "ground", orl_manifest_ground(&scene->ground),
+        json_object_get(manifest, "render"), "origin", json_object_get(manifest, "origin"), "ground", orl_manifest_ground(&scene->ground),
         "backdrop", orl_manifest_backdrop(scene->backdrop_rests));
     json_decref(manifest);
     if (result != ORL_OK)

@@ -266,6 +266,19 @@ enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *pa
     return ORL_OK;
 }
 
+// Absent: nothing was taken off.
+static enum orl_result read_origin(const struct orl_log *log, const char *path, const json_t *root,
+                                   double origin[3])
+{
+    return orl_json_numbers(&(struct orl_json_place){log, path, NULL}, root, "origin", 3,
+                            -ORL_WORLD_MAX, ORL_WORLD_MAX, origin);
+}
+
+json_t *orl_manifest_origin(const double origin[3])
+{
+    return json_pack("[f,f,f]", origin[0], origin[1], origin[2]);
+}
+
 json_t *orl_manifest_room(const struct orl_room *room)
 {
     const double *a = room->low, *b = room->high;
@@ -329,6 +342,8 @@ enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, c
         result = read_backdrop(log, path, root, &scene->backdrop_rests);
     if (result == ORL_OK)
         result = orl_manifest_read_room(log, path, root, &scene->room);
+    if (result == ORL_OK)
+        result = read_origin(log, path, root, scene->origin);
     return result;
 }
 

@@ -71,7 +71,13 @@ static enum orl_result check(const struct orl_log *log, const char *path,
 
 enum orl_result orl_mesh_read(const struct orl_log *log, const char *path, struct orl_mesh *mesh)
 {
-    struct orl_mesh_builder builder = {0};
+    return orl_mesh_read_from(log, path, (const double[3]){0}, mesh);
+}
+
+enum orl_result orl_mesh_read_from(const struct orl_log *log, const char *path,
+                                   const double origin[3], struct orl_mesh *mesh)
+{
+    struct orl_mesh_builder builder = {.origin = {origin[0], origin[1], origin[2]}};
     char magic[4] = "";
     memset(mesh, 0, sizeof *mesh);
     FILE *stream;

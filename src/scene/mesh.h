@@ -23,6 +23,9 @@ void orl_mesh_finish(struct orl_mesh *mesh);
 // vertex that is not finite, or no face.
 enum orl_result orl_mesh_read(const struct orl_log *log, const char *path,
                               struct orl_mesh *mesh) ORL_CHECK_RESULT;
+// As before, and takes `origin` off the positions before they become floats.
+enum orl_result orl_mesh_read_from(const struct orl_log *log, const char *path,
+                                   const double origin[3], struct orl_mesh *mesh) ORL_CHECK_RESULT;
 // Writes binary little-endian PLY, atomically.
 enum orl_result orl_mesh_write(const struct orl_log *log, const char *path,
                                const struct orl_mesh *mesh) ORL_CHECK_RESULT;

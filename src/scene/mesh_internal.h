@@ -7,6 +7,7 @@
 // A mesh of unknown size being read.
 struct orl_mesh_builder {
     struct orl_mesh mesh;
+    double origin[3]; // taken off the positions of the file
     size_t vertex_capacity, color_capacity, triangle_capacity;
 };
 

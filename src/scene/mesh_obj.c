@@ -32,7 +32,7 @@ static enum orl_result read_vertex(struct obj *obj)
     obj->colors = obj->colors && orl_text_numbers(&obj->l, c, 3);
     for (int k = 0; k < 3; k++) {
         double v = obj->colors ? 255 * c[k] : 0;
-        mesh->position[mesh->vertex_count][k] = (float)p[k];
+        mesh->position[mesh->vertex_count][k] = (float)(p[k] - obj->builder->origin[k]);
         mesh->color[mesh->vertex_count][k] = (uint8_t)(v >= 255 ? 255 : v > 0 ? v + 0.5 : 0);
     }
     mesh->vertex_count++;

@@ -17,8 +17,9 @@ static bool find_three(const struct orl_ply_element *element, const char *const 
 }
 
 static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_element *element,
-                                     struct orl_mesh *mesh)
+                                     struct orl_mesh_builder *builder)
 {
+    struct orl_mesh *mesh = &builder->mesh;
     static const char *const position[] = {"x", "y", "z"}, *const normal[] = {"nx", "ny", "nz"},
                              *const color[] = {"red", "green", "blue"};
     double record[ORL_PLY_PROPERTIES_MAX];
@@ -39,7 +40,7 @@ static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_e
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         result = orl_ply_record(ply, element, record, -1, NULL);
         for (int k = 0; result == ORL_OK && k < 3; k++) {
-            mesh->position[i][k] = (float)record[at[k]];
+            mesh->position[i][k] = (float)(record[at[k]] - builder->origin[k]);
             if (normals)
                 mesh->normal[i][k] = (float)record[n_at[k]];
             double c = colors ? record[c_at[k]] * (orl_ply_is_float(element, c_at[k]) ? 255 : 1)
@@ -93,7 +94,7 @@ enum orl_result orl_mesh_read_ply(const struct orl_log *log, const char *path,
         return result;
     result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
     if (result == ORL_OK)
-        result = read_vertices(&ply, vertex, &builder->mesh);
+        result = read_vertices(&ply, vertex, builder);
     if (result == ORL_OK)
         result = orl_ply_seek(&ply, "face", "no faces after the vertices", &face);
     if (result == ORL_OK)

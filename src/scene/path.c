@@ -366,6 +366,7 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
         bool ok = nerfstudio ? read_nerfstudio_view(entry, width, height, &path->views[i])
                              : orl_json_inria_view(entry, &path->views[i]);
         result = check_view(log, file, "camera", i, ok, &path->views[i]);
+        orl_pose_move(&path->views[i].cam_from_world, scene->origin);
     }
     return result;
 }
@@ -383,6 +384,7 @@ static enum orl_result read_colmap_text(const struct orl_log *log, const struct 
         const struct orl_colmap_image *image = &model.images[i];
         const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(&model, image->camera_id);
         path->views[i] = (struct orl_view){scene->photos[0].view.camera, image->cam_from_world};
+        orl_pose_move(&path->views[i].cam_from_world, scene->origin);
         if (camera && camera->model <= 1)
             path->views[i].camera = camera->pinhole;
         else if (model.camera_count)

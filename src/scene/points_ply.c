@@ -65,10 +65,10 @@ static bool take_gaussian(double values[ROLE_COUNT], bool has_radius)
 
 // Stores a point at index i. False when the point must be dropped.
 static bool set_point(struct orl_points *points, size_t i, const double values[ROLE_COUNT],
-                      size_t *bad_radii)
+                      const double origin[3], size_t *bad_radii)
 {
     for (int k = 0; k < 3; k++) {
-        points->position[i][k] = (float)values[X + k];
+        points->position[i][k] = (float)(values[X + k] - origin[k]);
         double c = values[RED + k];
         points->color[i][k] = (uint8_t)(c >= 255 ? 255 : c > 0 ? c + 0.5 : 0);
     }
@@ -85,7 +85,8 @@ static bool set_point(struct orl_points *points, size_t i, const double values[R
 }
 
 static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_element *vertex,
-                                   const int property[ROLE_COUNT], struct orl_points *points)
+                                   const int property[ROLE_COUNT], const double origin[3],
+                                   struct orl_points *points)
 {
     size_t kept = 0, bad_radii = 0, transparent = 0;
     bool gaussian = is_gaussian(property);
@@ -103,7 +104,7 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
         }
         if (result == ORL_OK && gaussian && !take_gaussian(values, property[RADIUS] >= 0))
             transparent++;
-        else if (result == ORL_OK && set_point(points, kept, values, &bad_radii))
+        else if (result == ORL_OK && set_point(points, kept, values, origin, &bad_radii))
             kept++;
     }
     if (result != ORL_OK)
@@ -135,8 +136,16 @@ static enum orl_result find_vertices(struct orl_ply *ply, const struct orl_ply_e
     return ORL_OK;
 }
 
+static const double nowhere[3]; // the origin that files have unless told otherwise
+
 enum orl_result orl_points_read(const struct orl_log *log, const char *path,
                                 struct orl_points *points)
+{
+    return orl_points_read_from(log, path, nowhere, points);
+}
+
+enum orl_result orl_points_read_from(const struct orl_log *log, const char *path,
+                                     const double origin[3], struct orl_points *points)
 {
     memset(points, 0, sizeof *points);
     struct orl_ply ply;
@@ -148,10 +157,14 @@ enum orl_result orl_points_read(const struct orl_log *log, const char *path,
     result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
     if (result == ORL_OK)
         result = find_vertices(&ply, vertex, property);
+    if (result == ORL_OK && memcmp(origin, nowhere, sizeof nowhere) != 0 &&
+        vertex->properties[property[X]].type == ORL_PLY_FLOAT32)
+        orl_logf(log, ORL_LOG_WARNING, "%s: its coordinates are 32-bit floats, which are too coarse so far "
+                 "from 0: write doubles", path);
     if (result == ORL_OK)
         result = orl_points_init(log, points, (size_t)vertex->count);
     if (result == ORL_OK)
-        result = read_points(&ply, vertex, property, points);
+        result = read_points(&ply, vertex, property, origin, points);
     if (result != ORL_OK)
         orl_points_finish(points);
     orl_ply_close(&ply);
@@ -241,5 +254,5 @@ enum orl_result orl_point_stream_next(struct orl_point_stream *s, size_t most,
     s->ply.size = bytes;
     s->ply.at = 0;
     s->next += *read;
-    return read_points(&s->ply, &part, s->property, points);
+    return read_points(&s->ply, &part, s->property, nowhere, points);
 }
