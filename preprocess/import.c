@@ -63,19 +63,36 @@ static void finish(struct import_job *job)
         orl_import_found_finish(&job->views[i].background);
     }
     free(job->views);
+    free(job->why_not);
     free(job->targets);
     free(job->first_empty);
     free(job->dir);
     orl_known_cameras_finish(&job->known);
 }
 
+// Fills in what the file of cameras states and the user leaves open.
+static void resolve(const struct import_job *job, struct orl_import_params *params)
+{
+    const char *stated = job->known.points_file;
+    if (params->points != ORL_IMPORT_STATED_POINTS)
+        return;
+    bool there = stated && orl_path_is_file(stated);
+    if (stated && !there)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: the cloud that the cameras' file names is not here", stated);
+    params->points = there ? ORL_IMPORT_CLOUD : ORL_IMPORT_NO_POINTS;
+    params->points_file = there ? stated : NULL;
+}
+
 enum orl_result orl_import(const struct orl_log *log, const struct orl_import_params *params,
                            const struct orl_progress *progress)
 {
-    struct import_job job = {.log = log, .progress = progress, .params = params};
+    struct orl_import_params resolved = *params;
+    struct import_job job = {.log = log, .progress = progress, .params = &resolved};
     enum orl_result result = check_params(log, params);
     if (result == ORL_OK)
         result = orl_known_cameras_read(log, params->cameras, params->pixel_centre, &job.known);
+    if (result == ORL_OK)
+        resolve(&job, &resolved);
     if (result == ORL_OK)
         result = orl_import_find_all(&job);
     if (result == ORL_OK)

@@ -20,8 +20,8 @@ static bool has_extension(const char *name, const char *const *known)
 
 static bool is_picture(const char *name)
 {
-    static const char *const known[] = {"jpg", "jpeg", "png", "tif", "tiff", "exr", "pbm", "pgm",
-                                        "ppm", "pnm", NULL};
+    static const char *const known[] = {"jpg", "jpeg", "png", "tif", "tiff", "exr", "heic",
+                                        "heif", "avif", "pbm", "pgm", "ppm", "pnm", NULL};
     return has_extension(name, known) || orl_picture_is_raw(name);
 }
 
@@ -198,26 +198,47 @@ static enum orl_result choose_folder(const struct import_job *job, char **dir)
                                             "--images %s: no such folder", *dir);
 }
 
+// True when no other camera's name has the same last part.
+static bool is_only_name(const struct import_job *job, const char *base)
+{
+    const struct orl_colmap_model *model = &job->known.model;
+    size_t count = 0;
+    for (size_t i = 0; i < model->image_count && count < 2; i++)
+        count += strcmp(orl_path_name(model->images[i].name), base) == 0;
+    return count == 1;
+}
+
+// Looks for the last part of a path in the folder that leads to it. A folder that is not there has
+// nothing.
+static enum orl_result find_below(const struct import_job *job, const char *dir, const char *path,
+                                  struct import_found *found)
+{
+    const char *base = orl_path_name(path);
+    char *folder = *path == '/' ? orl_format(job->log, "%.*s", (int)(base - path), path)
+                                : orl_format(job->log, "%s/%.*s", dir, (int)(base - path), path);
+    enum orl_result result = folder ? ORL_OK : ORL_ERR_MEMORY;
+    if (folder && orl_path_is_dir(folder))
+        result = orl_import_find(job->log, folder, base, "video", false, found);
+    free(folder);
+    return result;
+}
+
 // Finds a camera's picture by the camera's name, else by the path in the file of cameras, unless the
-// user named the folder: that file may be a stranger's.
+// user named the folder: that file may be a stranger's. Else the last part of the name will do.
 static enum orl_result find_picture(const struct import_job *job, const char *dir,
                                     const struct orl_colmap_image *image,
                                     struct import_found *found)
 {
     const struct orl_known_cameras *known = &job->known;
-    enum orl_result result = orl_import_find(job->log, dir, image->name, "video", false, found);
-    const char *told = image->id >= 1 && image->id <= known->path_count
-                           ? known->paths[image->id - 1] : NULL;
-    if (result != ORL_OK || found->kind != IMPORT_NOTHING || !told || !strchr(told, '/') ||
-        job->params->images_dir)
-        return result;
-    char *beside = orl_format(job->log, "%s%s%.*s", *told == '/' ? "" : known->folder,
-                              *told == '/' ? "" : "/", (int)(orl_path_name(told) - told), told);
-    if (!beside)
-        return ORL_ERR_MEMORY;
-    if (orl_path_is_dir(beside))
-        result = orl_import_find(job->log, beside, image->name, "video", false, found);
-    free(beside);
+    const char *told = known->pictures ? known->pictures[image->id - 1].path : image->name;
+    const char *base = orl_path_name(image->name);
+    enum orl_result result = find_below(job, dir, image->name, found);
+    if (result == ORL_OK && found->kind == IMPORT_NOTHING && strchr(told, '/') &&
+        !job->params->images_dir)
+        result = find_below(job, known->folder, told, found);
+    if (result == ORL_OK && found->kind == IMPORT_NOTHING && base != image->name &&
+        is_only_name(job, base))
+        result = orl_import_find(job->log, dir, base, "video", false, found);
     return result;
 }
 
@@ -226,22 +247,44 @@ static size_t camera_index(const struct orl_colmap_model *model, uint32_t id)
     return (size_t)(orl_colmap_camera_by_id(model, id) - model->cameras);
 }
 
+static enum orl_known_split split_of(const struct import_job *job,
+                                     const struct orl_colmap_image *image)
+{
+    return job->known.splits ? job->known.pictures[image->id - 1].split : ORL_KNOWN_TRAIN;
+}
+
+// What the user says of held-out photographs replaces what the file of cameras says.
+static bool uses_splits(const struct import_job *job)
+{
+    const struct orl_names *list = job->params->test_list;
+    const struct orl_test_block *block = &job->params->test_block;
+    return job->known.splits && !job->params->test_every && !(list && list->count) &&
+           block->first == block->end;
+}
+
 static enum orl_result find_pictures(struct import_job *job, const char *dir)
 {
     const struct orl_colmap_model *model = &job->known.model;
     enum orl_result result = ORL_OK;
-    size_t missing = 0;
+    size_t missing = 0, unused = 0;
     const char *missed = NULL;
     job->views = orl_array(job->log, model->image_count, sizeof *job->views);
-    if (!job->views)
+    job->why_not = orl_array(job->log, model->image_count, sizeof *job->why_not);
+    if (!job->views || !job->why_not)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
         struct import_view *view = &job->views[job->view_count];
+        if (uses_splits(job) && split_of(job, &model->images[i]) == ORL_KNOWN_UNUSED) {
+            job->why_not[i] = "neither for training nor for testing";
+            unused++;
+            continue;
+        }
         *view = (struct import_view){.image = &model->images[i],
                                      .camera = camera_index(model, model->images[i].camera_id)};
         result = find_picture(job, dir, view->image, &view->picture);
         if (view->picture.kind == IMPORT_NOTHING) {
             missed = view->image->name;
+            job->why_not[i] = "no picture";
             missing++;
         } else {
             job->view_count++;
@@ -254,6 +297,9 @@ static enum orl_result find_pictures(struct import_job *job, const char *dir)
     else if (result == ORL_OK && missing)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: no picture for %zu of %zu cameras, as %s: left "
                  "out", dir, missing, model->image_count, missed);
+    if (result == ORL_OK && unused)
+        orl_logf(job->log, ORL_LOG_INFO, "%zu of %zu photographs are neither for training nor for "
+                 "testing, as the cameras' file says: left out", unused, model->image_count);
     return result;
 }
 
@@ -308,6 +354,8 @@ static enum orl_result hold_out(struct import_job *job)
         return result;
     for (int i = params->test_block.first; i < params->test_block.end; i++)
         job->views[i].test = true;
+    for (size_t i = 0; uses_splits(job) && i < job->view_count; i++)
+        job->views[i].test = split_of(job, job->views[i].image) == ORL_KNOWN_TEST;
     for (size_t i = 0; params->test_every && i < job->view_count; i += (size_t)params->test_every)
         job->views[i].test = true;
     for (size_t n = 0; params->test_list && n < params->test_list->count; n++) {
@@ -326,14 +374,6 @@ static enum orl_result hold_out(struct import_job *job)
                ? ORL_OK
                : orl_fail(job->log, ORL_ERR_ARGUMENT, "%zu of %zu photographs held out: at least "
                           "two must remain", test, job->view_count);
-}
-
-static bool is_only_name(const struct import_job *job, const char *base)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < job->view_count; i++)
-        count += strcmp(orl_path_name(job->views[i].image->name), base) == 0;
-    return count == 1;
 }
 
 // Looks for the companion of the camera "front/0001.jpg" in front/, else for "front_0001", else, where

@@ -32,6 +32,7 @@ struct import_job {
     struct orl_camera *targets; // undistorted, one for each known camera; owned
     struct import_view *views;  // sorted by name; owned
     size_t view_count;
+    const char **why_not; // why a known camera is left out; NULL: it is not; owned
     bool sequence;      // true when the pictures are folders or clips
     size_t frame_count; // frames of the sequence that were written
     size_t mask_count, empty_masks; // silhouettes that were written, and those without a subject

@@ -15,6 +15,7 @@ enum orl_import_silhouettes {
 };
 
 enum orl_import_points {
+    ORL_IMPORT_STATED_POINTS, // the cloud that the cameras' file names, else none
     ORL_IMPORT_NO_POINTS,
     ORL_IMPORT_CLOUD,   // points_file
     ORL_IMPORT_DENSIFY, // as orl_prepare does

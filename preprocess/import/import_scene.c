@@ -131,7 +131,8 @@ enum orl_result orl_import_write_points(const struct import_job *job, size_t *co
     char *path = orl_import_path(job, "points.ply");
     enum orl_result result = !path ? ORL_ERR_MEMORY
                              : job->params->points_file
-                                 ? orl_points_read(job->log, job->params->points_file, &points)
+                                 ? orl_points_read_from(job->log, job->params->points_file,
+                                                        job->known.origin, &points)
                                  : orl_points_init(job->log, &points, 0);
     if (result == ORL_OK) {
         if (job->params->points_file && !points.count)
@@ -189,7 +190,8 @@ static enum orl_result write_mesh(struct import_job *job, const char *folder,
                                   size_t *triangles)
 {
     struct orl_mesh mesh = {0};
-    enum orl_result result = job->params->mesh ? orl_mesh_read(job->log, job->params->mesh, &mesh)
+    enum orl_result result = job->params->mesh ? orl_mesh_read_from(job->log, job->params->mesh,
+                                                                    job->known.origin, &mesh)
                                                : carve_mesh(job, folder, &mesh);
     if (result == ORL_OK && !mesh.normal)
         result = orl_mesh_set_normals(job->log, &mesh);
@@ -250,14 +252,10 @@ static json_t *left_out(const struct import_job *job)
 {
     const struct orl_colmap_model *known = &job->known.model;
     json_t *list = json_array();
-    for (size_t i = 0; i < known->image_count; i++) {
-        bool used = false;
-        for (size_t k = 0; k < job->view_count && !used; k++)
-            used = job->views[k].image == &known->images[i];
-        if (!used)
+    for (size_t i = 0; i < known->image_count; i++)
+        if (job->why_not[i])
             json_array_append_new(list, json_pack("{s:s, s:s}", "name", known->images[i].name,
-                                                  "why", "no picture"));
-    }
+                                                  "why", job->why_not[i]));
     return list;
 }
 
@@ -279,7 +277,8 @@ static json_t *settings(const struct import_job *job)
     static const char *const silhouettes[] = {
         [ORL_SILHOUETTES_NONE] = "none", [ORL_SILHOUETTES_GIVEN] = "given",
         [ORL_SILHOUETTES_DARK] = "dark", [ORL_SILHOUETTES_BACKGROUND] = "background"};
-    static const char *const points[] = {[ORL_IMPORT_NO_POINTS] = "none",
+    static const char *const points[] = {[ORL_IMPORT_STATED_POINTS] = "none",
+                                         [ORL_IMPORT_NO_POINTS] = "none",
                                          [ORL_IMPORT_CLOUD] = "file",
                                          [ORL_IMPORT_DENSIFY] = "densify"};
     const struct orl_import_params *p = job->params;
@@ -289,9 +288,24 @@ static json_t *settings(const struct import_job *job)
 }
 
 // The room that the user states, else the one of the file of cameras.
-static const struct orl_room *room_of(const struct import_job *job)
+static json_t *room_json(const struct import_job *job)
 {
-    return job->params->room.known ? &job->params->room : &job->known.room;
+    struct orl_room room = job->params->room;
+    for (int k = 0; k < 3; k++) {
+        room.low[k] -= job->known.origin[k];
+        room.high[k] -= job->known.origin[k];
+    }
+    return orl_manifest_room(room.known ? &room : &job->known.room);
+}
+
+// Sets what import states besides the stages: of scenes of either kind.
+static void set_import(const struct import_job *job, json_t *root)
+{
+    const double *o = job->known.origin;
+    json_object_set_new(root, "import", settings(job));
+    json_object_set_new(root, "room", room_json(job));
+    if (o[0] != 0 || o[1] != 0 || o[2] != 0)
+        json_object_set_new(root, "origin", orl_manifest_origin(o));
 }
 
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
@@ -304,10 +318,12 @@ enum orl_result orl_import_write_manifest(const struct import_job *job, size_t p
     if (result == ORL_OK) {
         json_t *sums = json_pack("{s:o}", "points.ply", json_sprintf("xxh3:%016" PRIx64, hash));
         json_t *root = json_pack(
-            "{s:s, s:i, s:s, s:o, s:o, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
-            ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "import", settings(job),
-            "room", orl_manifest_room(room_of(job)), "counts", counts(job, points, triangles), "photographs", photographs(job), "left_out",
-            left_out(job), "stages", "checksums", sums);
+            "{s:s, s:i, s:s, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
+            ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "counts",
+            counts(job, points, triangles), "photographs", photographs(job), "left_out", left_out(job),
+            "stages", "checksums", sums);
+        if (root)
+            set_import(job, root);
         result = root ? orl_json_write(job->log, path, root)
                       : orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
         json_decref(root);
@@ -324,8 +340,7 @@ enum orl_result orl_import_complete_manifest(const struct import_job *job, size_
     enum orl_result result = path ? orl_json_read(job->log, path, &root) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
         json_t *numbers = json_object_get(root, "counts");
-        json_object_set_new(root, "import", settings(job));
-        json_object_set_new(root, "room", orl_manifest_room(room_of(job)));
+        set_import(job, root);
         json_object_set_new(root, "left_out", json_incref(missing));
         json_object_set_new(numbers, "given",
                             json_integer((json_int_t)job->known.model.image_count));

@@ -6,7 +6,9 @@
 
 #include "cli/commands.h"
 #include "cli/summary.h"
+#include "core/memory.h"
 #include "preprocess/import.h"
+#include "scene/known_cameras.h"
 
 struct options {
     const char *silhouettes, *points, *mesh, *frames, *quality, *room, *test_block;
@@ -63,8 +65,11 @@ static enum orl_result parse_points(const struct orl_log *log, const struct opti
                                     struct orl_import_params *params)
 {
     bool densify = o->points && strcmp(o->points, "densify") == 0;
-    bool none = !o->points || strcmp(o->points, "none") == 0;
-    params->points = densify ? ORL_IMPORT_DENSIFY : none ? ORL_IMPORT_NO_POINTS : ORL_IMPORT_CLOUD;
+    bool none = o->points && strcmp(o->points, "none") == 0;
+    params->points = !o->points ? ORL_IMPORT_STATED_POINTS
+                     : densify  ? ORL_IMPORT_DENSIFY
+                     : none     ? ORL_IMPORT_NO_POINTS
+                                : ORL_IMPORT_CLOUD;
     params->points_file = params->points == ORL_IMPORT_CLOUD ? o->points : NULL;
     for (int i = 0; o->quality && orl_quality_names[i]; i++)
         if (strcmp(o->quality, orl_quality_names[i]) == 0) {
@@ -165,7 +170,7 @@ int cmd_import(int argc, char **argv)
         {"max-size", ARG_INT, &p->max_size, "PX",
          "larger side of photographs in the scene (any)", 64, 16384},
         {"points", ARG_STRING, &o.points, "none|densify|FILE",
-         "a cloud as PLY, or made as prepare does (none)", 0, 0},
+         "a cloud as PLY, or made as prepare does (what the file of cameras names)", 0, 0},
         {"quality", ARG_STRING, &o.quality, "NAME", "of densify: draft, standard or high", 0, 0},
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
          1 << 20},
@@ -177,13 +182,16 @@ int cmd_import(int argc, char **argv)
          "coordinate of the first pixel's centre, 0 or 0.5 (as is the format's custom)", 0, 0.5},
         {0},
     };
+    char *formats = orl_known_formats_text(NULL);
+    char *summary = formats ? orl_format(NULL, "Makes a scene from known cameras. CAMERAS is one of these "
+                                         "files, or a folder that has one:\n%s", formats) : NULL;
     const struct arg_command command = {
         .name = "import", .usage = "CAMERAS --out SCENE [options]",
-        .summary = "Makes a scene from known cameras: a COLMAP workspace, cameras.json (also "
-                   "Inria's),\ntransforms.json, bundle.out, NAME_par.txt, or a folder with one of "
-                   "these.",
+        .summary = summary ? summary : "Makes a scene from known cameras.",
         .options = options, .positionals_min = 1, .positionals_max = 1};
     int status = command_main(&command, argc, argv, run, &o);
     orl_names_finish(&o.test_list);
+    free(formats);
+    free(summary);
     return status;
 }

@@ -14,7 +14,11 @@ enum orl_result orl_json_parse(const struct orl_log *log, const char *path, cons
                                size_t size, json_t **out)
 {
     json_error_t error;
-    *out = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
+    size_t mark = orl_utf8_mark_length(text, size);
+    *out = NULL;
+    if (orl_is_utf16(text, size))
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: is UTF-16: save it as UTF-8", path);
+    *out = json_loadb((const char *)text + mark, size - mark, JSON_REJECT_DUPLICATES, &error);
     return *out ? ORL_OK
                 : orl_fail(log, ORL_ERR_FORMAT, "%s: line %d (byte %d): %s", path, error.line,
                            error.position, error.text);

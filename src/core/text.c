@@ -57,3 +57,13 @@ void orl_text_escape(const char *text, char *out, size_t size)
     if (size)
         out[used] = '\0';
 }
+
+size_t orl_utf8_mark_length(const void *text, size_t size)
+{
+    return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+}
+
+bool orl_is_utf16(const void *text, size_t size)
+{
+    return size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0);
+}

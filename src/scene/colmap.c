@@ -156,18 +156,18 @@ enum orl_result orl_colmap_check(const struct orl_log *log, const char *dir,
     return ORL_OK;
 }
 
+bool orl_colmap_has(const struct orl_log *log, const char *dir, const char *name)
+{
+    char *path = orl_path_join(log, dir, name);
+    bool there = path && orl_path_is_file(path);
+    free(path);
+    return there;
+}
+
 // 1: the model is binary; 0: text; -1: there is no model.
 static int find_kind(const struct orl_log *log, const char *dir)
 {
-    static const char *const names[] = {"cameras.txt", "cameras.bin"};
-    for (int kind = 1; kind >= 0; kind--) {
-        char *path = orl_path_join(log, dir, names[kind]);
-        bool there = path && orl_path_is_file(path);
-        free(path);
-        if (there)
-            return kind;
-    }
-    return -1;
+    return orl_colmap_has(log, dir, "cameras.bin") ? 1 : orl_colmap_has(log, dir, "cameras.txt") ? 0 : -1;
 }
 
 enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,

@@ -208,11 +208,14 @@ enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *di
     static const struct {
         const char *name;
         enum orl_result (*read)(struct reader *, struct orl_colmap_model *);
-    } files[] = {
-        {"cameras.bin", read_cameras}, {"points3D.bin", read_points}, {"images.bin", read_images}};
+        bool optional;
+    } files[] = {{"cameras.bin", read_cameras, false}, {"points3D.bin", read_points, true},
+                 {"images.bin", read_images, false}};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; i < ORL_COUNT(files) && result == ORL_OK; i++) {
         struct reader r;
+        if (files[i].optional && !orl_colmap_has(log, dir, files[i].name))
+            continue;
         result = reader_open(log, dir, files[i].name, &r);
         if (result == ORL_OK)
             result = files[i].read(&r, model);

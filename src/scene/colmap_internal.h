@@ -11,6 +11,9 @@ int orl_colmap_model_focal_lengths(int model);
 // COLMAP's id of a model's name, -1 when it is unknown.
 int orl_colmap_model_id(const char *name);
 
+// True when a folder has a file of this name.
+bool orl_colmap_has(const struct orl_log *log, const char *dir, const char *name);
+
 // Fills camera->pinhole from model and params. NULL, or the problem in words.
 const char *orl_colmap_camera_set(struct orl_colmap_camera *camera, uint64_t width,
                                   uint64_t height);
@@ -32,7 +35,8 @@ enum orl_result orl_colmap_check(const struct orl_log *log, const char *file,
 enum orl_result orl_colmap_sort_cameras(const struct orl_log *log, const char *path,
                                         struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
-// Read all three files, points before images, since images refer to points.
+// Read all three files, points before images, since images refer to points. A model without the file
+// of points has none.
 enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,
                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;
 enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,

@@ -100,6 +100,21 @@ static enum orl_result read_observations(struct orl_text_lines *l, const struct 
     return *l->at ? orl_text_bad(l, "not a number") : ORL_OK;
 }
 
+// True when a line is that of a picture rather than of observations, which are numbers by threes.
+static bool is_picture(const struct orl_text_lines *at)
+{
+    struct orl_text_lines l = *at;
+    uint64_t id;
+    double numbers[7];
+    size_t count = 0;
+    if (!orl_text_id(&l, UINT32_MAX, &id) || !orl_text_numbers(&l, numbers, 7) ||
+        !orl_text_id(&l, UINT32_MAX, &id) || !*(l.at += strspn(l.at, " \t")))
+        return false;
+    for (l = *at; orl_text_number(&l, numbers); count++)
+        ;
+    return *l.at || count % 3 != 0;
+}
+
 static enum orl_result read_image(struct orl_text_lines *l, const struct orl_colmap_model *model,
                                   struct orl_colmap_image *image)
 {
@@ -119,7 +134,14 @@ static enum orl_result read_image(struct orl_text_lines *l, const struct orl_col
     image->name = orl_strdup(l->log, l->at);
     if (!image->name)
         return ORL_ERR_MEMORY;
-    return orl_text_next_raw(l) ? read_observations(l, model, image) : ORL_OK;
+    // Some programs write no lines of observations.
+    if (!orl_text_next_raw(l))
+        return ORL_OK;
+    if (is_picture(l)) {
+        orl_text_back(l);
+        return ORL_OK;
+    }
+    return read_observations(l, model, image);
 }
 
 static enum orl_result read_images(struct orl_text_lines *l, struct orl_colmap_model *model)
@@ -144,11 +166,14 @@ enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,
     static const struct {
         const char *name;
         enum orl_result (*read)(struct orl_text_lines *, struct orl_colmap_model *);
-    } files[] = {
-        {"cameras.txt", read_cameras}, {"points3D.txt", read_points}, {"images.txt", read_images}};
+        bool optional;
+    } files[] = {{"cameras.txt", read_cameras, false}, {"points3D.txt", read_points, true},
+                 {"images.txt", read_images, false}};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; i < ORL_COUNT(files) && result == ORL_OK; i++) {
         struct orl_text_lines l;
+        if (files[i].optional && !orl_colmap_has(log, dir, files[i].name))
+            continue;
         char *path = orl_path_join(log, dir, files[i].name);
         result = path ? orl_text_open(log, path, &l) : ORL_ERR_MEMORY;
         free(path);

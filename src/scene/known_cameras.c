@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "scene/colmap_internal.h"
 #include "scene/known_internal.h"
@@ -16,9 +17,12 @@ void orl_known_cameras_finish(struct orl_known_cameras *known)
         return;
     orl_colmap_finish(&known->model);
     free(known->gaps);
-    for (size_t i = 0; known->paths && i < known->path_count; i++)
-        free(known->paths[i]);
-    free(known->paths);
+    for (size_t i = 0; known->pictures && i < known->picture_count; i++) {
+        free(known->pictures[i].path);
+        free(known->pictures[i].mask);
+    }
+    free(known->pictures);
+    free(known->points_file);
     free(known->folder);
     memset(known, 0, sizeof *known);
 }
@@ -65,7 +69,7 @@ static const char *camera_problem(const struct orl_known_camera *given)
             return "a camera parameter is absurd";
     if (!(given->gap.fov_x_rad > 0 ? given->gap.fov_x_rad < 3.1 : given->params[0] > 0))
         return "the focal length is absurd";
-    return orl_colmap_name_problem(orl_path_name(given->path));
+    return *given->path ? NULL : "its picture has no name";
 }
 
 static enum orl_result add_camera(const struct orl_log *log, const char *file, const char *place,
@@ -100,6 +104,19 @@ static enum orl_result add_camera(const struct orl_log *log, const char *file, c
     return problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: %s: %s", file, place, problem) : ORL_OK;
 }
 
+// A copy of a stated path, as other systems write them, too: '/' between its parts, no "./" ahead of
+// them. NULL for NULL.
+static char *plain_path(const struct orl_log *log, const char *stated)
+{
+    char *path = stated ? orl_strdup(log, stated) : NULL;
+    for (char *at = path; at && *at; at++)
+        if (*at == '\\')
+            *at = '/';
+    while (path && strncmp(path, "./", 2) == 0)
+        memmove(path, path + 2, strlen(path + 2) + 1);
+    return path;
+}
+
 enum orl_result orl_known_add(const struct orl_log *log, const char *file, const char *place,
                               const struct orl_known_camera *given,
                               struct orl_known_cameras *known)
@@ -115,22 +132,221 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
     void *images = realloc(model->images, (count + 1) * sizeof *model->images);
     if (images)
         model->images = images;
-    void *paths = realloc(known->paths, (count + 1) * sizeof *known->paths);
-    if (paths)
-        known->paths = paths;
-    char *name = orl_strdup(log, orl_path_name(given->path));
-    char *path = orl_strdup(log, given->path);
-    if (!images || !paths || !name || !path) {
-        free(name);
+    void *pictures = realloc(known->pictures, (count + 1) * sizeof *known->pictures);
+    if (pictures)
+        known->pictures = pictures;
+    char *path = plain_path(log, given->path), *mask = plain_path(log, given->mask);
+    if (!images || !pictures || !path || (given->mask && !mask)) {
         free(path);
+        free(mask);
         return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its cameras", file);
     }
     model->images[count] = (struct orl_colmap_image){
-        .id = (uint32_t)count + 1, .camera_id = (uint32_t)model->camera_count, .name = name,
+        .id = (uint32_t)count + 1, .camera_id = (uint32_t)model->camera_count,
         .cam_from_world = given->pose};
-    known->paths[count] = path;
-    known->path_count = ++model->image_count;
+    known->pictures[count] = (struct orl_known_picture){path, mask, given->split};
+    known->picture_count = ++model->image_count;
     return ORL_OK;
+}
+
+enum orl_result orl_known_add_point(const struct orl_log *log, const double position[3],
+                                    const double rgb[3], size_t *capacity,
+                                    struct orl_colmap_model *model)
+{
+    struct orl_colmap_point point = {.id = model->point_count + 1};
+    for (int k = 0; k < 3; k++) {
+        if (!(fabs(position[k]) <= ORL_WORLD_MAX) || model->point_count == UINT32_MAX)
+            return ORL_OK;
+        point.position[k] = position[k];
+        point.rgb[k] = (uint8_t)(rgb[k] >= 255 ? 255 : rgb[k] > 0 ? rgb[k] : 0);
+    }
+    enum orl_result result = orl_grow(log, (void **)&model->points, capacity, model->point_count + 1,
+                                      sizeof *model->points);
+    if (result == ORL_OK)
+        model->points[model->point_count++] = point;
+    return result;
+}
+
+enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
+                                   size_t *capacities, struct orl_colmap_model *model)
+{
+    struct orl_colmap_image *seen_by = &model->images[image];
+    enum orl_result result = orl_grow(log, (void **)&seen_by->points, &capacities[image],
+                                      seen_by->point_count + 1, sizeof *seen_by->points);
+    if (result != ORL_OK)
+        return result;
+    seen_by->points[seen_by->point_count++] = point;
+    model->points[point].track_length++;
+    return ORL_OK;
+}
+
+// --- values in JSON ---
+
+bool orl_known_json_number(const json_t *object, const char *key, double *value)
+{
+    const json_t *item = json_object_get(object, key);
+    const char *text = json_string_value(item);
+    char *end = NULL;
+    *value = text ? strtod(text, &end) : json_number_value(item);
+    return (text ? end != text && !*end : json_is_number(item)) && isfinite(*value);
+}
+
+bool orl_known_pose_from_camera(const double rows[9], const double centre[3], struct orl_pose *pose)
+{
+    double axes[3][3];
+    memcpy(axes, rows, sizeof axes);
+    return orl_pose_from_axes(axes, centre, pose);
+}
+
+void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *object)
+{
+    enum { MOST = 20 };
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)object, key, value) {
+        bool used = false;
+        for (size_t i = 0; unused->used[i] && !used; i++)
+            used = strcmp(unused->used[i], key) == 0;
+        if (!used && unused->names.count < MOST && !orl_names_contain(&unused->names, key) &&
+            orl_names_add(NULL, &unused->names, key) != ORL_OK)
+            return; // the line is shorter, no more
+    }
+}
+
+void orl_known_say_unused(const struct orl_known_source *source, struct orl_known_unused *unused)
+{
+    char text[512] = "";
+    size_t at = 0;
+    orl_names_sort(&unused->names);
+    for (size_t i = 0; i < unused->names.count && at < sizeof text; i++)
+        at += (size_t)snprintf(text + at, sizeof text - at, "%s%.64s", i ? ", " : "",
+                               unused->names.items[i]);
+    if (unused->names.count)
+        orl_logf(source->log, ORL_LOG_INFO, "%s: not used: %s", source->path, text);
+    orl_names_finish(&unused->names);
+}
+
+// --- names ---
+
+// Length of the folders, with the last '/', that all pictures' paths have in common.
+static size_t common_folders(const struct orl_known_cameras *known)
+{
+    const char *first = known->pictures[0].path;
+    size_t length = (size_t)(orl_path_name(first) - first);
+    for (size_t i = 1; i < known->picture_count; i++) {
+        size_t same = 0;
+        for (size_t k = 0; k < length && known->pictures[i].path[k] == first[k]; k++)
+            if (first[k] == '/')
+                same = k + 1;
+        length = same;
+    }
+    return length;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+static enum orl_result any_alike(const struct orl_log *log, const struct orl_known_cameras *known,
+                                 bool *alike)
+{
+    const char **names = orl_array(log, known->picture_count, sizeof *names);
+    if (!names)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < known->picture_count; i++)
+        names[i] = orl_path_name(known->pictures[i].path);
+    qsort(names, known->picture_count, sizeof *names, compare_names);
+    *alike = false;
+    for (size_t i = 1; i < known->picture_count && !*alike; i++)
+        *alike = strcmp(names[i], names[i - 1]) == 0;
+    free(names);
+    return ORL_OK;
+}
+
+enum orl_result orl_known_name_images(const struct orl_log *log, const char *file,
+                                      struct orl_known_cameras *known)
+{
+    struct orl_colmap_model *model = &known->model;
+    bool alike = false;
+    enum orl_result result = any_alike(log, known, &alike);
+    size_t common = result == ORL_OK && alike ? common_folders(known) : 0;
+    for (size_t i = 0; result == ORL_OK && i < known->picture_count; i++) {
+        const char *path = known->pictures[i].path;
+        char *name = orl_strdup(log, alike ? path + common : orl_path_name(path));
+        model->images[i].name = name;
+        const char *problem = name ? orl_colmap_name_problem(name) : NULL;
+        if (!name)
+            result = ORL_ERR_MEMORY;
+        else if (problem)
+            result = orl_fail(log, ORL_ERR_FORMAT, "%s: camera %zu (%s): %s", file, i, path, problem);
+    }
+    return result;
+}
+
+// --- their place in the world ---
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, size_t count)
+{
+    qsort(values, count, sizeof *values, compare_doubles);
+    return values[count / 2];
+}
+
+// Scenes are drawn with 32-bit floats, which have some seven digits. Survey coordinates spend most of
+// them on the distance from 0, so the median of the cameras' places is taken off where it is more than
+// FAR times as far away as the cameras are from each other. It is rounded to a few digits, so that
+// scene.json states it exactly.
+static enum orl_result choose_origin(const struct orl_log *log, struct orl_known_cameras *known)
+{
+    enum { FAR = 100 };
+    size_t count = known->model.image_count;
+    double *values = orl_array(log, count, sizeof *values), spread = 0, far = 0, middle[3];
+    if (!values)
+        return ORL_ERR_MEMORY;
+    for (int k = 0; k < 3; k++) {
+        for (size_t i = 0; i < count; i++) {
+            double centre[3];
+            orl_pose_centre(&known->model.images[i].cam_from_world, centre);
+            values[i] = centre[k];
+        }
+        middle[k] = median(values, count);
+        far = fmax(far, fabs(middle[k]));
+        for (size_t i = 0; i < count; i++)
+            values[i] = fabs(values[i] - middle[k]);
+        spread = fmax(spread, median(values, count));
+    }
+    free(values);
+    if (!(spread > 0) || far < FAR * spread)
+        return ORL_OK;
+    double step = pow(10, fmax(floor(log10(spread)), floor(log10(far)) - ORL_JSON_DIGITS + 2));
+    for (int k = 0; k < 3; k++)
+        known->origin[k] = rint(middle[k] / step) * step;
+    orl_logf(log, ORL_LOG_INFO, "the cameras are far from 0: the scene's origin is at %.9g %.9g %.9g of "
+             "their coordinates", known->origin[0], known->origin[1], known->origin[2]);
+    return ORL_OK;
+}
+
+enum orl_result orl_known_place(const struct orl_log *log, struct orl_known_cameras *known)
+{
+    struct orl_colmap_model *model = &known->model;
+    enum orl_result result = choose_origin(log, known);
+    const double *o = known->origin;
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
+        orl_pose_move(&model->images[i].cam_from_world, o);
+    for (size_t i = 0; result == ORL_OK && i < model->point_count; i++)
+        for (int k = 0; k < 3; k++)
+            model->points[i].position[k] -= o[k];
+    for (int k = 0; k < 3 && known->room.known; k++) {
+        known->room.low[k] -= o[k];
+        known->room.high[k] -= o[k];
+    }
+    return result;
 }
 
 // --- completing them ---
@@ -161,117 +377,4 @@ enum orl_result orl_known_camera_settle(const struct orl_log *log,
     *gap = (struct orl_known_gap){0};
     const char *problem = orl_colmap_camera_set(camera, (uint64_t)width, (uint64_t)height);
     return problem ? orl_fail(log, ORL_ERR_DATA, "%s: %s", name, problem) : ORL_OK;
-}
-
-// --- file formats ---
-
-static bool ends_with(const char *text, const char *end)
-{
-    size_t length = strlen(text), tail = strlen(end);
-    return length >= tail && strcmp(text + length - tail, end) == 0;
-}
-
-static enum orl_result read_colmap(const struct orl_log *log, const char *dir,
-                                   struct orl_known_cameras *known)
-{
-    enum orl_result result = orl_colmap_read(log, dir, &known->model);
-    if (result == ORL_OK) {
-        known->gaps = orl_array(log, known->model.camera_count, sizeof *known->gaps);
-        result = known->gaps ? ORL_OK : ORL_ERR_MEMORY;
-    }
-    return result;
-}
-
-static enum orl_result read_file(const struct orl_log *log, const char *path, double pixel_centre,
-                                 struct orl_known_cameras *known)
-{
-    const char *name = orl_path_name(path);
-    bool colmap = strcmp(name, "cameras.bin") == 0 || strcmp(name, "images.bin") == 0 ||
-                  strcmp(name, "cameras.txt") == 0 || strcmp(name, "images.txt") == 0;
-    int length = (int)(name - path);
-    known->folder = orl_format(log, "%.*s", length ? length : 1, length ? path : ".");
-    if (!known->folder)
-        return ORL_ERR_MEMORY;
-    if (colmap)
-        return read_colmap(log, known->folder, known);
-    if (ends_with(name, ".json"))
-        return orl_known_read_json(log, path, pixel_centre, known);
-    if (ends_with(name, ".out"))
-        return orl_known_read_bundler(log, path, pixel_centre, known);
-    if (ends_with(name, ".txt"))
-        return orl_known_read_middlebury(log, path, pixel_centre, known);
-    return orl_fail(log, ORL_ERR_FORMAT, "%s: not a file of cameras that is known: .json, "
-                    "bundle.out, NAME_par.txt or a COLMAP model", path);
-}
-
-// Sets *file to the path of the file of cameras in a folder, or to NULL when there is none.
-// ORL_ERR_DATA: there are several.
-static enum orl_result find_file(const struct orl_log *log, const char *dir, char **file)
-{
-    static const char *const known[] = {
-        "sparse/0/cameras.bin", "sparse/0/cameras.txt", "sparse/cameras.bin",
-        "sparse/cameras.txt", "cameras.bin", "cameras.txt", "cameras.json", "transforms.json",
-        "bundle/bundle.out", "bundle.out"};
-    struct orl_names names = {0};
-    enum orl_result result = ORL_OK;
-    *file = NULL;
-    for (size_t i = 0; i < ORL_COUNT(known); i++) {
-        char *path = orl_path_join(log, dir, known[i]);
-        if (!path)
-            return ORL_ERR_MEMORY;
-        if (orl_path_is_file(path)) {
-            *file = path;
-            return ORL_OK;
-        }
-        free(path);
-    }
-    result = orl_dir_list(log, dir, &names);
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        if (!ends_with(names.items[i], "_par.txt"))
-            continue;
-        if (*file)
-            result = orl_fail(log, ORL_ERR_DATA, "%s: several files of cameras, %s and %s: name "
-                              "one", dir, orl_path_name(*file), names.items[i]);
-        else if (!(*file = orl_path_join(log, dir, names.items[i])))
-            result = ORL_ERR_MEMORY;
-    }
-    orl_names_finish(&names);
-    if (result != ORL_OK) {
-        free(*file);
-        *file = NULL;
-    }
-    return result;
-}
-
-static enum orl_result read_folder(const struct orl_log *log, const char *dir,
-                                   double pixel_centre, struct orl_known_cameras *known)
-{
-    char *file = NULL;
-    enum orl_result result = find_file(log, dir, &file);
-    if (result == ORL_OK && !file)
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no cameras here: neither a COLMAP model, "
-                          "nor cameras.json, transforms.json, bundle.out, or NAME_par.txt", dir);
-    if (result == ORL_OK)
-        result = read_file(log, file, pixel_centre, known);
-    // Pictures are relative to the folder that the user named, not to sparse/.
-    free(known->folder);
-    known->folder = orl_strdup(log, dir);
-    free(file);
-    return result == ORL_OK && !known->folder ? ORL_ERR_MEMORY : result;
-}
-
-enum orl_result orl_known_cameras_read(const struct orl_log *log, const char *path,
-                                       double pixel_centre, struct orl_known_cameras *known)
-{
-    memset(known, 0, sizeof *known);
-    enum orl_result result = orl_path_is_dir(path)
-                                 ? read_folder(log, path, pixel_centre, known)
-                                 : read_file(log, path, pixel_centre, known);
-    if (result == ORL_OK && !known->model.image_count)
-        result = orl_fail(log, ORL_ERR_DATA, "%s: no camera in it", path);
-    if (result == ORL_OK)
-        result = orl_colmap_check(log, path, &known->model);
-    if (result != ORL_OK)
-        orl_known_cameras_finish(known);
-    return result;
 }

@@ -12,33 +12,48 @@ struct orl_known_gap {
     double fov_x_rad; // > 0: the focal length follows from this horizontal field of view
 };
 
+// Where a photograph goes, as the file of cameras says.
+enum orl_known_split { ORL_KNOWN_TRAIN, ORL_KNOWN_TEST, ORL_KNOWN_UNUSED };
+
+// What a file states about a picture.
+struct orl_known_picture {
+    char *path; // '/' between its parts, relative to the file's folder; owned
+    char *mask; // path of its mask; NULL: none is stated; owned
+    enum orl_known_split split;
+};
+
 struct orl_known_cameras {
-    // Cameras may be distorted. `pinhole` is unset while the picture's size is missing.
+    const char *format; // its name
+    // Cameras may be distorted. `pinhole` is unset while the picture's size is missing. Images are
+    // named by the last part of their paths; where two of these are equal, by the paths without the
+    // folders that all have in common.
     struct orl_colmap_model model;
     struct orl_known_gap *gaps; // one for each camera of the model; owned
-    // paths[i] is the stated path of the picture of the image with id i + 1, relative to
-    // `folder`. Entries and the array may be NULL; owned.
-    char **paths;
-    size_t path_count;
+    // pictures[i] is that of the image with id i + 1; NULL where files name no paths; owned.
+    struct orl_known_picture *pictures;
+    size_t picture_count;
+    bool splits;       // the file states which photographs are held out
+    bool alpha;        // where pictures have alpha, it is the subject's silhouette
+    char *points_file; // a cloud in the cameras' world; NULL: none is stated; owned
+    // The file's coordinates minus `origin` are those of the model and the room.
+    double origin[3];
     struct orl_room room; // that the file states
     char *folder; // owned; base of the paths, where pictures are searched for
 };
 
-// Reads cameras. The format is recognised by content:
-// - a COLMAP model, or a folder that has one (sparse/0, sparse, or the folder itself);
-// - cameras.json: {"pixel_centre": 0, "room": [[x, y, z], [x, y, z]], "cameras": [{"name", "width", "height", "K": 3 rows,
-//   "R": 3 rows, "t", "dist": [k1, k2, p1, p2, k3, k4, k5, k6] or fewer}]}, x_cam = R x + t;
-// - Inria's cameras.json; nerfstudio's transforms.json;
-// - Bundler's bundle.out, with list.txt beside it; Middlebury's NAME_par.txt;
-// - a folder with one of these files.
+// Reads cameras of any format in the table of known_formats.c, which is recognised by names of files
+// and by their content. `path` is a file or a folder that has one. An info names the format.
 // `pixel_centre`: coordinate of the centre of the top left pixel in the file, 0 or 0.5. Negative:
 // the format's convention, which is 0 for Middlebury and for a cameras.json without
 // "pixel_centre", and 0.5 for other formats.
+// Where cameras are far from 0 compared with their distances, `origin` is taken off.
 // Errors name the file, the line or camera, and the reason.
 enum orl_result orl_known_cameras_read(const struct orl_log *log, const char *path,
                                        double pixel_centre,
                                        struct orl_known_cameras *known) ORL_CHECK_RESULT;
 void orl_known_cameras_finish(struct orl_known_cameras *known);
+// A table of the formats for a command's help, released with free().
+char *orl_known_formats_text(const struct orl_log *log);
 
 // Completes camera `index` for a picture of this size. Where the file states a size, the picture
 // must have its aspect ratio, and the camera is scaled to the picture. `name` is for messages.

@@ -2,6 +2,9 @@
 #ifndef ORL_SCENE_KNOWN_INTERNAL_H
 #define ORL_SCENE_KNOWN_INTERNAL_H
 
+#include <jansson.h>
+
+#include "oriel/names.h"
 #include "scene/known_cameras.h"
 
 // COLMAP's ids of the camera models that other programs' cameras are converted to.
@@ -13,7 +16,9 @@ enum { ORL_COLMAP_PINHOLE = 1, ORL_COLMAP_RADIAL = 3, ORL_COLMAP_OPENCV = 4,
 
 // One camera of a file.
 struct orl_known_camera {
-    const char *path; // of the picture, as the file states it; the last part is the name
+    const char *path; // of the picture, as the file states it
+    const char *mask; // likewise; NULL: none
+    enum orl_known_split split;
     int width, height; // 0 0: not stated
     int model;
     double params[12];
@@ -31,14 +36,45 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
                               const struct orl_known_camera *camera,
                               struct orl_known_cameras *known) ORL_CHECK_RESULT;
 
-enum orl_result orl_known_read_json(const struct orl_log *log, const char *path,
-                                    double pixel_centre,
-                                    struct orl_known_cameras *known) ORL_CHECK_RESULT;
-enum orl_result orl_known_read_bundler(const struct orl_log *log, const char *path,
-                                       double pixel_centre,
-                                       struct orl_known_cameras *known) ORL_CHECK_RESULT;
-enum orl_result orl_known_read_middlebury(const struct orl_log *log, const char *path,
-                                          double pixel_centre,
-                                          struct orl_known_cameras *known) ORL_CHECK_RESULT;
+// Appends a point, unless it is not finite or absurdly far. *capacity is that of model->points.
+enum orl_result orl_known_add_point(const struct orl_log *log, const double position[3],
+                                    const double rgb[3], size_t *capacity,
+                                    struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// Notes that an image sees a point. capacities[i] is that of the list of image i.
+enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
+                                   size_t *capacities, struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// Sets the images' names from the pictures' paths.
+enum orl_result orl_known_name_images(const struct orl_log *log, const char *file,
+                                      struct orl_known_cameras *known) ORL_CHECK_RESULT;
+// Chooses known->origin and takes it off.
+enum orl_result orl_known_place(const struct orl_log *log,
+                                struct orl_known_cameras *known) ORL_CHECK_RESULT;
+
+// What a reader is given.
+struct orl_known_source {
+    const struct orl_log *log;
+    const char *path;    // of the file or, for formats of many files, the folder
+    double pixel_centre; // negative: the format's convention
+    const json_t *root;  // of a file in JSON
+};
+// Appends the cameras of a source, and sets what else the file states.
+typedef enum orl_result orl_known_reader(const struct orl_known_source *source,
+                                         struct orl_known_cameras *known);
+orl_known_reader orl_known_read_own, orl_known_read_inria,
+    orl_known_read_transforms, orl_known_read_splits, orl_known_read_bundler,
+    orl_known_read_middlebury, orl_known_read_opensfm, orl_known_read_meshroom;
+
+// Names, in one line, the keys of `objects` that are not in the NULL-terminated list `used`.
+struct orl_known_unused {
+    const char *const *used;
+    struct orl_names names;
+};
+void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *object);
+void orl_known_say_unused(const struct orl_known_source *source, struct orl_known_unused *unused);
+
+// The number of a key, which may be written as a string. False when it is missing or not finite.
+bool orl_known_json_number(const json_t *object, const char *key, double *value);
+// Sets the pose of a camera with COLMAP's axes from its row-major rotation world_from_cam and centre.
+bool orl_known_pose_from_camera(const double rows[9], const double centre[3], struct orl_pose *pose);
 
 #endif

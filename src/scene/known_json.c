@@ -1,4 +1,5 @@
-// Cameras in JSON: Oriel's cameras.json, Inria's, and nerfstudio's transforms.json.
+// Cameras in JSON: Oriel's cameras.json, Inria's, nerfstudio's transforms.json, and Blender's sets of
+// such files.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/json.h"
+#include "core/memory.h"
 #include "scene/json_views.h"
 #include "scene/known_internal.h"
 #include "scene/manifest.h"
@@ -97,7 +99,9 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
     static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"};
     static const char *const fisheye[] = {"k1", "k2", "k3", "k4"};
     double rows[16], f_c[4], terms[5] = {0}, width = 0, height = 0;
-    if (!orl_json_rows(json_object_get(frame, "transform_matrix"), 4, 4, rows) ||
+    // Some programs leave out the last row, which is always 0 0 0 1.
+    const json_t *matrix = json_object_get(frame, "transform_matrix");
+    if (!orl_json_rows(matrix, json_array_size(matrix) == 3 ? 3 : 4, 4, rows) ||
         !orl_pose_from_opengl(rows, &camera->pose))
         return bad(e, "\"transform_matrix\" is not 4 rows of 4 numbers with a rotation");
     const char *model = camera_model(root, frame);
@@ -133,66 +137,180 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
     return ORL_OK;
 }
 
-// --- the file ---
+// --- lists of cameras ---
 
-enum schema { OWN, INRIA, NERFSTUDIO };
-static const struct {
-    const char *name_key;
-    double pixel_centre; // the format's convention
-} schemas[] = {[OWN] = {"name", 0}, [INRIA] = {"img_name", 0.5}, [NERFSTUDIO] = {"file_path", 0.5}};
+// Gets the coordinate of the first pixel's centre.
+static enum orl_result begin(const struct orl_known_source *source, double custom, struct entry *e)
+{
+    const json_t *told = json_object_get(source->root, "pixel_centre");
+    double centre = source->pixel_centre >= 0 ? source->pixel_centre
+                    : json_is_number(told)    ? json_number_value(told)
+                                              : custom;
+    *e = (struct entry){.log = source->log, .file = source->path, .shift = 0.5 - centre};
+    return centre >= 0 && centre <= 0.5
+               ? ORL_OK
+               : orl_fail(source->log, ORL_ERR_FORMAT, "%s: \"pixel_centre\" is not from 0 to 0.5",
+                          source->path);
+}
 
-static enum orl_result read_items(struct entry *e, enum schema schema, const json_t *root,
-                                  const json_t *list, struct orl_known_cameras *known)
+static enum orl_result read_list(struct entry *e, const json_t *list, const char *name_key,
+                                 enum orl_result (*read)(const struct entry *, const json_t *,
+                                                         struct orl_known_camera *),
+                                 struct orl_known_cameras *known)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < json_array_size(list); i++) {
         const json_t *item = json_array_get(list, i);
-        struct orl_known_camera camera = {
-            .path = json_string_value(json_object_get(item, schemas[schema].name_key))};
+        struct orl_known_camera camera = {.path = orl_json_text(item, name_key)};
         set_place(e, i, camera.path);
         if (!camera.path)
             return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s has no \"%s\"", e->file, e->place,
-                            schemas[schema].name_key);
-        result = schema == OWN     ? read_own(e, item, &camera)
-                 : schema == INRIA ? read_inria(e, item, &camera)
-                                   : read_nerfstudio(e, root, item, &camera);
+                            name_key);
+        result = read(e, item, &camera);
         if (result == ORL_OK)
             result = orl_known_add(e->log, e->file, e->place, &camera, known);
     }
     return result;
 }
 
-enum orl_result orl_known_read_json(const struct orl_log *log, const char *path,
-                                    double pixel_centre, struct orl_known_cameras *known)
+enum orl_result orl_known_read_own(const struct orl_known_source *source,
+                                   struct orl_known_cameras *known)
 {
-    struct entry e = {.log = log, .file = path};
-    uint8_t *data = NULL;
-    size_t size;
-    enum orl_result result = orl_file_read(log, path, ORL_KNOWN_FILE_MAX, &data, &size);
-    if (result != ORL_OK)
-        return result;
-    json_t *root;
-    result = orl_json_parse(log, path, data, size, &root);
-    free(data);
-    if (result != ORL_OK)
-        return result;
-    const json_t *own = json_object_get(root, "cameras"), *frames = json_object_get(root, "frames");
-    const json_t *told = json_object_get(root, "pixel_centre");
-    enum schema schema = json_is_array(root) ? INRIA : frames ? NERFSTUDIO : OWN;
-    const json_t *list = json_is_array(root) ? root : frames ? frames : own;
-    double centre = pixel_centre >= 0   ? pixel_centre
-                    : json_is_number(told) ? json_number_value(told)
-                                           : schemas[schema].pixel_centre;
-    e.shift = 0.5 - centre;
-    if (!json_is_array(list))
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: neither cameras.json (\"cameras\"), nor "
-                          "Inria's (an array), nor nerfstudio's (\"frames\")", path);
-    else if (!(centre >= 0 && centre <= 0.5))
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: \"pixel_centre\" is not from 0 to 0.5", path);
-    else
-        result = read_items(&e, schema, root, list, known);
+    static const char *const used[] = {"pixel_centre", "room", "cameras", "name", "width", "height",
+                                       "K", "R", "t", "dist", NULL};
+    struct orl_known_unused unused = {.used = used};
+    const json_t *list = json_object_get(source->root, "cameras");
+    struct entry e;
+    enum orl_result result = begin(source, 0, &e);
     if (result == ORL_OK)
-        result = orl_manifest_read_room(log, path, root, &known->room);
-    json_decref(root);
+        result = read_list(&e, list, "name", read_own, known);
+    if (result == ORL_OK)
+        result = orl_manifest_read_room(source->log, source->path, source->root, &known->room);
+    orl_known_look_for_unused(&unused, source->root);
+    for (size_t i = 0; i < json_array_size(list); i++)
+        orl_known_look_for_unused(&unused, json_array_get(list, i));
+    orl_known_say_unused(source, &unused);
+    return result;
+}
+
+enum orl_result orl_known_read_inria(const struct orl_known_source *source,
+                                     struct orl_known_cameras *known)
+{
+    struct entry e;
+    enum orl_result result = begin(source, 0.5, &e);
+    return result == ORL_OK ? read_list(&e, source->root, "img_name", read_inria, known) : result;
+}
+
+// --- transforms.json ---
+
+// True when a list of file names, as "train_filenames", has a frame's path.
+static bool is_listed(const json_t *root, const char *key, const char *path)
+{
+    const json_t *list = json_object_get(root, key);
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const char *name = json_string_value(json_array_get(list, i));
+        name = name && strncmp(name, "./", 2) == 0 ? name + 2 : name;
+        if (name && strcmp(name, strncmp(path, "./", 2) == 0 ? path + 2 : path) == 0)
+            return true;
+    }
+    return false;
+}
+
+// Where the file has lists of photographs, those on none of them are not used. Photographs for
+// validation are held out where there are none for testing.
+static enum orl_known_split split_of(const json_t *root, const char *path)
+{
+    bool tests = json_array_size(json_object_get(root, "test_filenames")) > 0;
+    if (is_listed(root, "test_filenames", path) ||
+        (!tests && is_listed(root, "val_filenames", path)))
+        return ORL_KNOWN_TEST;
+    return !json_object_get(root, "train_filenames") || is_listed(root, "train_filenames", path)
+               ? ORL_KNOWN_TRAIN : ORL_KNOWN_UNUSED;
+}
+
+static void say_unused_of_frames(const struct orl_known_source *source, const json_t *frames)
+{
+    static const char *const used[] = {
+        "frames", "file_path", "transform_matrix", "mask_path", "camera_model", "w", "h", "fl_x", "fl_y",
+        "cx", "cy", "k1", "k2", "k3", "k4", "p1", "p2", "camera_angle_x", "camera_angle_y",
+        "is_fisheye", "train_filenames", "val_filenames", "test_filenames", "ply_file_path", NULL};
+    struct orl_known_unused unused = {.used = used};
+    orl_known_look_for_unused(&unused, source->root);
+    for (size_t i = 0; i < json_array_size(frames); i++)
+        orl_known_look_for_unused(&unused, json_array_get(frames, i));
+    orl_known_say_unused(source, &unused);
+}
+
+// `split`: of all frames; ORL_KNOWN_TRAIN: as the file says.
+static enum orl_result read_frames(const struct orl_known_source *source,
+                                   enum orl_known_split split, struct orl_known_cameras *known)
+{
+    const json_t *root = source->root, *frames = json_object_get(root, "frames");
+    struct entry e;
+    enum orl_result result = begin(source, 0.5, &e);
+    for (size_t i = 0; result == ORL_OK && i < json_array_size(frames); i++) {
+        const json_t *frame = json_array_get(frames, i);
+        struct orl_known_camera camera = {.path = orl_json_text(frame, "file_path"),
+                                          .mask = orl_json_text(frame, "mask_path"),
+                                          .split = split};
+        set_place(&e, i, camera.path);
+        if (!camera.path)
+            return bad(&e, "no \"file_path\"");
+        if (split == ORL_KNOWN_TRAIN)
+            camera.split = split_of(root, camera.path);
+        known->splits = known->splits || camera.split != ORL_KNOWN_TRAIN;
+        result = read_nerfstudio(&e, root, frame, &camera);
+        if (result == ORL_OK)
+            result = orl_known_add(e.log, e.file, e.place, &camera, known);
+    }
+    if (result == ORL_OK)
+        say_unused_of_frames(source, frames);
+    known->alpha = true;
+    return result;
+}
+
+enum orl_result orl_known_read_transforms(const struct orl_known_source *source,
+                                          struct orl_known_cameras *known)
+{
+    const char *points = orl_json_text(source->root, "ply_file_path");
+    enum orl_result result = read_frames(source, ORL_KNOWN_TRAIN, known);
+    if (result != ORL_OK || !points)
+        return result;
+    // The path is relative to the file.
+    known->points_file = *points == '/' ? orl_strdup(source->log, points)
+                                        : orl_path_join(source->log, known->folder, points);
+    return known->points_file ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+// --- Blender's sets: a folder with a transforms.json for each split ---
+
+enum orl_result orl_known_read_splits(const struct orl_known_source *source,
+                                      struct orl_known_cameras *known)
+{
+    // Photographs for validation are used where there are none for testing.
+    static const struct {
+        const char *name;
+        enum orl_known_split split;
+    } files[] = {{"transforms_train.json", ORL_KNOWN_TRAIN}, {"transforms_test.json", ORL_KNOWN_TEST},
+                 {"transforms_val.json", ORL_KNOWN_UNUSED}};
+    enum orl_result result = ORL_OK;
+    bool tests = false;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++) {
+        json_t *root = NULL;
+        char *path = orl_path_join(source->log, source->path, files[i].name);
+        struct orl_known_source part = {source->log, path, source->pixel_centre, NULL};
+        enum orl_known_split split = files[i].split == ORL_KNOWN_UNUSED && !tests ? ORL_KNOWN_TEST
+                                                                                  : files[i].split;
+        result = path ? ORL_OK : ORL_ERR_MEMORY;
+        if (path && orl_path_is_file(path)) {
+            result = orl_json_read(source->log, path, &root);
+            part.root = root;
+            if (result == ORL_OK)
+                result = read_frames(&part, split, known);
+            tests = tests || split == ORL_KNOWN_TEST;
+        }
+        json_decref(root);
+        free(path);
+    }
     return result;
 }

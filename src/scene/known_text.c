@@ -38,13 +38,13 @@ static enum orl_result read_par(struct orl_text_lines *l, double shift,
     return result;
 }
 
-enum orl_result orl_known_read_middlebury(const struct orl_log *log, const char *path,
-                                          double pixel_centre, struct orl_known_cameras *known)
+enum orl_result orl_known_read_middlebury(const struct orl_known_source *source,
+                                          struct orl_known_cameras *known)
 {
     struct orl_text_lines l;
     uint64_t count = 0;
-    double shift = 0.5 - (pixel_centre >= 0 ? pixel_centre : 0);
-    enum orl_result result = orl_text_open(log, path, &l);
+    double shift = 0.5 - (source->pixel_centre >= 0 ? source->pixel_centre : 0);
+    enum orl_result result = orl_text_open(source->log, source->path, &l);
     if (result != ORL_OK)
         return result;
     if (!orl_text_next(&l) || !orl_text_id(&l, 1000000, &count) || *l.at)
@@ -52,8 +52,8 @@ enum orl_result orl_known_read_middlebury(const struct orl_log *log, const char 
     while (result == ORL_OK && known->model.image_count < count && orl_text_next(&l))
         result = read_par(&l, shift, known);
     if (result == ORL_OK && known->model.image_count < count)
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: line %zu: the file ends after %zu cameras of "
-                          "%llu", path, l.number, known->model.image_count,
+        result = orl_fail(l.log, ORL_ERR_FORMAT, "%s: line %zu: the file ends after %zu cameras of "
+                          "%llu", l.path, l.number, known->model.image_count,
                           (unsigned long long)count);
     orl_text_close(&l);
     return result;
@@ -70,7 +70,22 @@ struct bundler {
     size_t *capacity;  // owned; of each image's list of points
 };
 
-// Reads the list of pictures: one name per line; text after the name is ignored.
+// Ends a line of the list after the picture's name, which may have spaces: Bundler writes " 0 FOCAL"
+// after it, or nothing.
+static void cut_focal_length(char *line)
+{
+    char *focal = strrchr(line, ' '), *end;
+    if (!focal || strtod(focal, &end) < 0 || end == focal || *end)
+        return;
+    *focal = '\0';
+    char *zero = strrchr(line, ' ');
+    if (zero && strcmp(zero, " 0") == 0)
+        *zero = '\0';
+    else
+        *focal = ' '; // a name that ends with a number
+}
+
+// Reads the list of pictures, one a line.
 static enum orl_result read_list(const struct orl_log *log, const char *folder,
                                  struct orl_names *pictures)
 {
@@ -91,7 +106,7 @@ static enum orl_result read_list(const struct orl_log *log, const char *folder,
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: Bundler's cameras need list.txt, the names of "
                         "their pictures, beside them", folder);
     while (result == ORL_OK && orl_text_next(&l)) {
-        l.at[strcspn(l.at, " \t")] = '\0';
+        cut_focal_length(l.at);
         result = orl_names_add(log, pictures, l.at);
     }
     orl_text_close(&l);
@@ -149,17 +164,11 @@ static enum orl_result read_views(struct bundler *b, uint32_t point,
         if (!orl_text_id(&b->l, UINT32_MAX, &camera) || !orl_text_id(&b->l, UINT32_MAX, &key) ||
             !orl_text_numbers(&b->l, xy, 2) || camera >= b->camera_count)
             return orl_text_bad(&b->l, "a view needs a camera that is there, key, x and y");
-        int64_t image = b->image_of[camera];
-        if (image < 0)
-            continue;
-        struct orl_colmap_image *seen_by = &model->images[image];
-        enum orl_result result = orl_grow(b->l.log, (void **)&seen_by->points,
-                                          &b->capacity[image], seen_by->point_count + 1,
-                                          sizeof *seen_by->points);
+        enum orl_result result = ORL_OK;
+        if (b->image_of[camera] >= 0)
+            result = orl_known_add_view(b->l.log, (size_t)b->image_of[camera], point, b->capacity, model);
         if (result != ORL_OK)
             return result;
-        seen_by->points[seen_by->point_count++] = point;
-        model->points[point].track_length++;
     }
     return ORL_OK;
 }
@@ -208,14 +217,14 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
     return result;
 }
 
-enum orl_result orl_known_read_bundler(const struct orl_log *log, const char *path,
-                                       double pixel_centre, struct orl_known_cameras *known)
+// The principal point is always the picture's centre, so that the custom of pixel centres is of no use.
+enum orl_result orl_known_read_bundler(const struct orl_known_source *source,
+                                       struct orl_known_cameras *known)
 {
-    (void)pixel_centre; // the principal point is always the picture's centre
     struct bundler b = {0};
-    enum orl_result result = orl_text_open(log, path, &b.l);
+    enum orl_result result = orl_text_open(source->log, source->path, &b.l);
     if (result == ORL_OK)
-        result = read_list(log, known->folder, &b.pictures);
+        result = read_list(source->log, known->folder, &b.pictures);
     if (result == ORL_OK)
         result = read_bundle(&b, known);
     orl_text_close(&b.l);

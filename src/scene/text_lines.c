@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/text.h"
 
 enum orl_result orl_text_bad(const struct orl_text_lines *l, const char *what)
 {
@@ -23,6 +24,10 @@ enum orl_result orl_text_open(const struct orl_log *log, const char *path,
     enum orl_result result = orl_file_read(log, l->path, SIZE_MAX / 2, &l->data, &size);
     l->next = l->at = (char *)l->data;
     l->end = l->next ? l->next + size : NULL;
+    if (result == ORL_OK)
+        l->next += orl_utf8_mark_length(l->data, size);
+    if (result == ORL_OK && orl_is_utf16(l->data, size))
+        result = orl_fail(log, ORL_ERR_FORMAT, "%s: is UTF-16: save it as UTF-8", path);
     if (result != ORL_OK)
         orl_text_close(l);
     return result;
@@ -35,8 +40,18 @@ void orl_text_close(struct orl_text_lines *l)
     memset(l, 0, sizeof *l);
 }
 
+void orl_text_back(struct orl_text_lines *l)
+{
+    l->again = true;
+}
+
 bool orl_text_next_raw(struct orl_text_lines *l)
 {
+    if (l->again) {
+        l->again = false;
+        l->at = l->line;
+        return true;
+    }
     if (l->next >= l->end)
         return false;
     char *line = l->next;
@@ -46,7 +61,7 @@ bool orl_text_next_raw(struct orl_text_lines *l)
     while (stop > line && (stop[-1] == '\r' || stop[-1] == ' ' || stop[-1] == '\t'))
         stop--;
     *stop = '\0'; // orl_file_read adds a byte after the last one
-    l->at = line;
+    l->line = l->at = line;
     l->number++;
     return true;
 }

@@ -9,7 +9,8 @@ struct orl_text_lines {
     char *path;         // owned
     uint8_t *data;      // owned
     char *next, *end;   // start of the next line; end of the text
-    char *at;           // position in the current line
+    char *line, *at;    // start of the current line; position in it
+    bool again;         // the next line is the current one
     size_t number;      // of the current line, from 1
 };
 
@@ -21,6 +22,8 @@ enum orl_result orl_text_bad(const struct orl_text_lines *l, const char *what);
 
 // Goes to the next line, which may be empty. False at the end of the text.
 bool orl_text_next_raw(struct orl_text_lines *l);
+// Makes the current line the next one.
+void orl_text_back(struct orl_text_lines *l);
 // Goes to the next line that is neither empty nor a comment, which starts with '#'.
 bool orl_text_next(struct orl_text_lines *l);
 

@@ -39,7 +39,7 @@ static void read_cameras(const char *path, double pixel_centre)
         fuzz_require(orl_colmap_camera_by_id(&known.model, image->camera_id) != NULL,
                      "a picture has a camera");
         fuzz_require(orl_pose_valid(&image->cam_from_world), "a pose is a pose");
-        fuzz_require(!known.paths || (image->id >= 1 && image->id <= known.path_count),
+        fuzz_require(!known.pictures || (image->id >= 1 && image->id <= known.picture_count),
                      "a picture has a path");
         for (size_t k = 0; k < image->point_count; k++)
             fuzz_require(image->points[k] < known.model.point_count, "observed points are there");

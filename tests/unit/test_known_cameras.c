@@ -110,7 +110,7 @@ static void reads_nerfstudio(void **state)
     assert_int_equal(read(NULL, dir, NULL, -1, &known), ORL_OK);
     check_pose(&known, 1);
     assert_string_equal(known.model.images[0].name, "a.jpg");
-    assert_string_equal(known.paths[known.model.images[0].id - 1], "images/a.jpg");
+    assert_string_equal(known.pictures[known.model.images[0].id - 1].path, "images/a.jpg");
     check_params(&known.model.cameras[0], 4, (double[]){500, 510, 320, 240, 0.1, 0, 0.01, 0}, 8);
     assert_float_equal(known.model.cameras[1].params[0], 600, 0);
     orl_known_cameras_finish(&known);
@@ -244,8 +244,8 @@ static void refuses_damage(void **state)
     } cases[] = {
         {"cameras.json", "{\"cameras\": [\n{]}", "line 2 (byte ", ORL_ERR_FORMAT},
         {"cameras.json", "", "byte 0", ORL_ERR_FORMAT},
-        {"cameras.json", "{}", "neither cameras.json", ORL_ERR_FORMAT},
-        {"cameras.json", "{\"cameras\": 3}", "neither cameras.json", ORL_ERR_FORMAT},
+        {"cameras.json", "{}", "not a file of cameras that is known", ORL_ERR_FORMAT},
+        {"cameras.json", "{\"cameras\": 3}", "not a file of cameras that is known", ORL_ERR_FORMAT},
         {"cameras.json", "{\"cameras\": []}", "no camera in it", ORL_ERR_DATA},
         {"cameras.json", "{\"cameras\": [7]}", "camera 0 has no \"name\"", ORL_ERR_FORMAT},
         {"cameras.json", "{\"cameras\": [{\"name\": 3}]}", "no \"name\"", ORL_ERR_FORMAT},

@@ -1,0 +1,385 @@
+// The formats of known cameras, and how each is recognised.
+#include <fnmatch.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "scene/colmap_internal.h"
+#include "scene/known_internal.h"
+
+// --- recognised by content ---
+
+static const json_t *first_of(const json_t *array)
+{
+    return json_array_get(array, 0);
+}
+
+static bool is_own(const json_t *root)
+{
+    return json_is_array(json_object_get(root, "cameras")) && !json_object_get(root, "shots");
+}
+
+static bool is_inria(const json_t *root)
+{
+    return json_is_array(root) && !json_object_get(first_of(root), "shots");
+}
+
+static bool is_transforms(const json_t *root)
+{
+    return json_is_array(json_object_get(root, "frames"));
+}
+
+static bool is_opensfm(const json_t *root)
+{
+    return json_is_array(root) && json_is_object(json_object_get(first_of(root), "shots"));
+}
+
+static bool is_meshroom(const json_t *root)
+{
+    return json_is_array(json_object_get(root, "views")) &&
+           json_is_array(json_object_get(root, "intrinsics"));
+}
+
+// --- COLMAP ---
+
+// Names of pictures as other systems write them.
+static enum orl_result mend_names(const struct orl_known_source *source,
+                                  struct orl_colmap_model *model)
+{
+    for (size_t i = 0; i < model->image_count; i++) {
+        char *name = model->images[i].name;
+        if (!strchr(name, '\\'))
+            continue;
+        for (char *at = name; *at; at++)
+            if (*at == '\\')
+                *at = '/';
+        // What a drive's letter begins is a place of another machine.
+        if (name[1] == ':' && name[2] == '/')
+            memmove(name, name + 3, strlen(name + 3) + 1);
+        const char *problem = orl_colmap_name_problem(name);
+        if (problem)
+            return orl_fail(source->log, ORL_ERR_FORMAT, "%s: picture %s: %s", source->path, name, problem);
+    }
+    return ORL_OK;
+}
+
+static enum orl_result read_colmap(const struct orl_known_source *source,
+                                   struct orl_known_cameras *known)
+{
+    char *dir = orl_format(source->log, "%.*s", (int)(orl_path_name(source->path) - source->path),
+                           source->path);
+    enum orl_result result = dir ? orl_colmap_read(source->log, *dir ? dir : ".", &known->model)
+                                 : ORL_ERR_MEMORY;
+    free(dir);
+    if (result == ORL_OK)
+        result = mend_names(source, &known->model);
+    if (result == ORL_OK) {
+        known->gaps = orl_array(source->log, known->model.camera_count, sizeof *known->gaps);
+        result = known->gaps ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    return result;
+}
+
+// --- the table ---
+
+// A format. Files that are JSON, whatever their names, are recognised by `is_json`, others by the
+// last part of a pattern.
+struct format {
+    const char *name;
+    const char *files; // what a folder is searched for: patterns of names, separated by spaces
+    bool (*is_json)(const json_t *root);
+    bool of_folder; // the reader takes the folder, not the file found in it
+    orl_known_reader *read;
+};
+
+// A folder that has several is read as the first of them.
+static const struct format formats[] = {
+    {"COLMAP model", "cameras.bin cameras.txt images.bin images.txt", NULL, false,
+     read_colmap},
+    {"Oriel's cameras.json", "cameras.json", is_own, false, orl_known_read_own},
+    {"Inria's cameras.json", "cameras.json", is_inria, false, orl_known_read_inria},
+    {"transforms.json (nerfstudio, instant-ngp, Blender)", "transforms.json", is_transforms, false,
+     orl_known_read_transforms},
+    {"Blender's set", "transforms_train.json", NULL, true, orl_known_read_splits},
+    {"OpenSfM", "reconstruction.json opensfm/reconstruction.json", is_opensfm, false,
+     orl_known_read_opensfm},
+    {"Meshroom", "*.sfm", is_meshroom, false, orl_known_read_meshroom},
+    {"Bundler", "bundle/bundle.out bundle.out *.out", NULL, false, orl_known_read_bundler},
+    {"Middlebury", "*_par.txt", NULL, false, orl_known_read_middlebury},
+};
+
+char *orl_known_formats_text(const struct orl_log *log)
+{
+    char *text = orl_strdup(log, "");
+    for (size_t i = 0; text && i < ORL_COUNT(formats); i++) {
+        char *longer = orl_format(log, "%s  %-52s %s\n", text, formats[i].name, formats[i].files);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+static bool matches(const struct format *format, const char *name)
+{
+    for (const char *at = format->files; *at; at += strspn(at, " ")) {
+        size_t length = strcspn(at, " ");
+        char pattern[64];
+        snprintf(pattern, sizeof pattern, "%.*s", (int)length, at);
+        if (!format->of_folder && fnmatch(orl_path_name(pattern), name, 0) == 0)
+            return true;
+        at += length;
+    }
+    return false;
+}
+
+static enum orl_result unknown(const struct orl_log *log, const char *path)
+{
+    return orl_fail(log, ORL_ERR_FORMAT, "%s: not a file of cameras that is known: oriel import --help "
+                    "lists the formats", path);
+}
+
+// --- a file ---
+
+static enum orl_result read_with(const struct format *format,
+                                 const struct orl_known_source *source,
+                                 struct orl_known_cameras *known)
+{
+    known->format = format->name;
+    enum orl_result result = format->read(source, known);
+    if (result != ORL_OK)
+        return result;
+    orl_logf(source->log, ORL_LOG_INFO, "%s: %s: %zu cameras, %zu points", source->path,
+             format->name, known->model.image_count, known->model.point_count);
+    return ORL_OK;
+}
+
+static enum orl_result read_json(const struct orl_known_source *source,
+                                 struct orl_known_cameras *known)
+{
+    struct orl_known_source with_root = *source;
+    uint8_t *data = NULL;
+    size_t size;
+    json_t *root = NULL;
+    enum orl_result result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &size);
+    if (result == ORL_OK)
+        result = orl_json_parse(source->log, source->path, data, size, &root);
+    free(data);
+    if (result != ORL_OK)
+        return result;
+    const struct format *found = NULL;
+    for (size_t i = 0; i < ORL_COUNT(formats) && !found; i++)
+        if (formats[i].is_json && formats[i].is_json(root))
+            found = &formats[i];
+    with_root.root = root;
+    result = found ? read_with(found, &with_root, known) : unknown(source->log, source->path);
+    json_decref(root);
+    return result;
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+    size_t length = strlen(text), tail = strlen(end);
+    return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
+static enum orl_result read_file(const struct orl_known_source *source,
+                                 struct orl_known_cameras *known)
+{
+    const char *path = source->path, *name = orl_path_name(path);
+    int length = (int)(name - path);
+    known->folder = orl_format(source->log, "%.*s", length ? length : 1, length ? path : ".");
+    if (!known->folder)
+        return ORL_ERR_MEMORY;
+    if (ends_with(name, ".json") || ends_with(name, ".sfm"))
+        return read_json(source, known);
+    for (size_t i = 0; i < ORL_COUNT(formats); i++)
+        if (matches(&formats[i], name))
+            return read_with(&formats[i], source, known);
+    return unknown(source->log, path);
+}
+
+// --- a folder ---
+
+// Number of photographs of the COLMAP model in a folder; 0: there is none, or it cannot be told.
+static size_t count_images(const char *dir)
+{
+    struct orl_colmap_model model;
+    size_t count = 0;
+    uint64_t told = 0;
+    FILE *stream = NULL;
+    char *binary = orl_path_join(NULL, dir, "images.bin"), *text = orl_path_join(NULL, dir, "images.txt");
+    if (binary && orl_path_is_file(binary)) {
+        if (orl_file_open(NULL, binary, &stream) == ORL_OK) {
+            count = fread(&told, sizeof told, 1, stream) == 1 && told < SIZE_MAX ? (size_t)told : 0;
+            fclose(stream);
+        }
+    } else if (text && orl_path_is_file(text) &&
+               orl_colmap_read_poses(NULL, text, &model) == ORL_OK) {
+        count = model.image_count;
+        orl_colmap_finish(&model);
+    }
+    free(binary);
+    free(text);
+    return count;
+}
+
+// The models that a folder is searched for.
+struct models {
+    const struct orl_log *log;
+    char *best; // folder of the largest; owned
+    size_t most, count;
+};
+
+static enum orl_result try_model(struct models *models, const char *dir)
+{
+    if (!orl_colmap_has(models->log, dir, "cameras.bin") &&
+        !orl_colmap_has(models->log, dir, "cameras.txt"))
+        return ORL_OK;
+    size_t images = count_images(dir);
+    models->count++;
+    if (models->best && images <= models->most)
+        return ORL_OK;
+    free(models->best);
+    models->best = orl_strdup(models->log, dir);
+    models->most = images;
+    return models->best ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+// Looks into the numbered folders, then into the folder itself.
+static enum orl_result try_models(struct models *models, const char *dir)
+{
+    struct orl_names names = {0};
+    enum orl_result result = orl_dir_list(models->log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        if (names.items[i][strspn(names.items[i], "0123456789")])
+            continue;
+        char *sub = orl_path_join(models->log, dir, names.items[i]);
+        result = sub ? ORL_OK : ORL_ERR_MEMORY;
+        if (sub && orl_path_is_dir(sub))
+            result = try_model(models, sub);
+        free(sub);
+    }
+    orl_names_finish(&names);
+    return result == ORL_OK ? try_model(models, dir) : result;
+}
+
+// Sets *file to the cameras of the largest COLMAP model, or to NULL when there is none. COLMAP makes
+// several when not all photographs could be placed together.
+static enum orl_result find_model(const struct orl_log *log, const char *dir, char **file)
+{
+    static const char *const bases[] = {"sparse", "colmap/sparse", "distorted/sparse",
+                                        "dense/sparse", "."};
+    struct models models = {.log = log};
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && !models.best && i < ORL_COUNT(bases); i++) {
+        char *base = strcmp(bases[i], ".") == 0 ? orl_strdup(log, dir)
+                                                 : orl_path_join(log, dir, bases[i]);
+        result = base ? ORL_OK : ORL_ERR_MEMORY;
+        if (base && orl_path_is_dir(base))
+            result = try_models(&models, base);
+        free(base);
+    }
+    if (result == ORL_OK && models.count > 1)
+        orl_logf(log, ORL_LOG_WARNING, "%s: %zu COLMAP models; taking the largest, %s, with %zu "
+                 "photographs", dir, models.count, models.best, models.most);
+    *file = result == ORL_OK && models.best ? orl_path_join(log, models.best, "cameras.bin") : NULL;
+    if (result == ORL_OK && models.best && !*file)
+        result = ORL_ERR_MEMORY;
+    free(models.best);
+    return result;
+}
+
+// Sets *file to the path of a pattern's file in a folder, or leaves it. ORL_ERR_DATA: there are several.
+static enum orl_result find_pattern(const struct orl_log *log, const char *dir, const char *pattern,
+                                    char **file)
+{
+    struct orl_names names = {0};
+    if (!strchr(pattern, '*')) {
+        char *path = orl_path_join(log, dir, pattern);
+        bool there = path && (orl_path_is_file(path) || orl_path_is_dir(path));
+        *file = there ? path : NULL;
+        if (!there)
+            free(path);
+        return path ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    enum orl_result result = orl_dir_list(log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        if (fnmatch(pattern, names.items[i], FNM_PERIOD) != 0)
+            continue;
+        if (*file)
+            result = orl_fail(log, ORL_ERR_DATA, "%s: several files of cameras, %s and %s: name "
+                              "one", dir, orl_path_name(*file), names.items[i]);
+        else if (!(*file = orl_path_join(log, dir, names.items[i])))
+            result = ORL_ERR_MEMORY;
+    }
+    orl_names_finish(&names);
+    if (result != ORL_OK) {
+        free(*file);
+        *file = NULL;
+    }
+    return result;
+}
+
+// Sets *file to the path of the file of cameras in a folder, or to NULL when there is none.
+static enum orl_result find_file(const struct orl_log *log, const char *dir, char **file,
+                                 const struct format **format)
+{
+    enum orl_result result = find_model(log, dir, file);
+    for (size_t i = 1; result == ORL_OK && !*file && i < ORL_COUNT(formats); i++) {
+        *format = &formats[i];
+        for (const char *at = formats[i].files; result == ORL_OK && !*file && *at;) {
+            size_t length = strcspn(at, " ");
+            char pattern[64];
+            snprintf(pattern, sizeof pattern, "%.*s", (int)length, at);
+            result = find_pattern(log, dir, pattern, file);
+            at += length + strspn(at + length, " ");
+        }
+    }
+    return result;
+}
+
+static enum orl_result read_folder(const struct orl_known_source *source,
+                                   struct orl_known_cameras *known)
+{
+    char *file = NULL;
+    const struct orl_log *log = source->log;
+    const struct format *format = &formats[0];
+    enum orl_result result = find_file(log, source->path, &file, &format);
+    if (result == ORL_OK && !file)
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no cameras here: oriel import --help lists the "
+                          "files that are searched for", source->path);
+    struct orl_known_source found = *source;
+    found.path = file;
+    // Pictures are relative to the folder that the user named, not to sparse/.
+    if (result == ORL_OK && format->of_folder)
+        result = read_with(format, source, known);
+    else if (result == ORL_OK)
+        result = read_file(&found, known);
+    free(known->folder);
+    known->folder = orl_strdup(log, source->path);
+    free(file);
+    return result == ORL_OK && !known->folder ? ORL_ERR_MEMORY : result;
+}
+
+enum orl_result orl_known_cameras_read(const struct orl_log *log, const char *path,
+                                       double pixel_centre, struct orl_known_cameras *known)
+{
+    const struct orl_known_source source = {.log = log, .path = path, .pixel_centre = pixel_centre};
+    memset(known, 0, sizeof *known);
+    enum orl_result result = orl_path_is_dir(path) ? read_folder(&source, known)
+                                                   : read_file(&source, known);
+    if (result == ORL_OK && !known->model.image_count)
+        result = orl_fail(log, ORL_ERR_DATA, "%s: no camera in it", path);
+    if (result == ORL_OK && known->pictures)
+        result = orl_known_name_images(log, path, known);
+    if (result == ORL_OK)
+        result = orl_colmap_check(log, path, &known->model);
+    if (result == ORL_OK)
+        result = orl_known_place(log, known);
+    if (result != ORL_OK)
+        orl_known_cameras_finish(known);
+    return result;
+}

@@ -1,0 +1,348 @@
+// Cameras in JSON of programs that calibrate: OpenSfM's reconstruction.json and Meshroom's cameras.sfm.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/json.h"
+#include "core/memory.h"
+#include "scene/colmap_internal.h"
+#include "scene/json_views.h"
+#include "scene/known_internal.h"
+
+static enum orl_result bad(const struct orl_known_source *source, const char *what, const char *name,
+                           const char *why)
+{
+    return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s %.120s: %s", source->path, what, name, why);
+}
+
+// --- OpenSfM: lengths are in units of the picture's larger side, measured from its centre ---
+
+static double term(const json_t *camera, const char *key)
+{
+    double value;
+    return orl_known_json_number(camera, key, &value) ? value : 0;
+}
+
+static const char *read_opensfm_lens(const json_t *camera, struct orl_known_camera *out)
+{
+    const char *type = orl_json_text(camera, "projection_type");
+    double side, f_c[4], single;
+    bool opencv_fisheye = type && strcmp(type, "fisheye_opencv") == 0;
+    bool fisheye = type && (opencv_fisheye || strcmp(type, "fisheye") == 0);
+    static const char *const flat[] = {"perspective", "brown", "simple_radial", "radial"};
+    bool known = fisheye;
+    for (size_t i = 0; type && i < ORL_COUNT(flat); i++)
+        known = known || strcmp(type, flat[i]) == 0;
+    if (!known)
+        return "its projection_type is none of perspective, brown, simple_radial, radial, fisheye and "
+               "fisheye_opencv";
+    out->width = orl_json_side(camera, "width");
+    out->height = orl_json_side(camera, "height");
+    side = out->width > out->height ? out->width : out->height;
+    bool one = orl_known_json_number(camera, "focal", &single);
+    f_c[0] = side * (one ? single : term(camera, "focal_x"));
+    f_c[1] = side * (one ? single : term(camera, "focal_y"));
+    f_c[2] = 0.5 * out->width + side * term(camera, "c_x");
+    f_c[3] = 0.5 * out->height + side * term(camera, "c_y");
+    const double terms[] = {term(camera, "k1"), term(camera, "k2"), term(camera, "p1"),
+                            term(camera, "p2"), term(camera, "k3")};
+    orl_known_set_opencv(out, f_c, terms, fisheye ? 0 : ORL_COUNT(terms));
+    if (fisheye) {
+        out->model = ORL_COLMAP_OPENCV_FISHEYE;
+        out->params[4] = terms[0];
+        out->params[5] = terms[1];
+        out->params[6] = opencv_fisheye ? terms[4] : 0;
+        out->params[7] = opencv_fisheye ? term(camera, "k4") : 0;
+    }
+    return NULL;
+}
+
+// Rodrigues' formula: a rotation by |v| about v.
+static void rotation_about(const double v[3], double r[3][3])
+{
+    double angle = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    double s = angle > 1e-12 ? sin(angle) / angle : 1;
+    double c = angle > 1e-12 ? (1 - cos(angle)) / (angle * angle) : 0.5;
+    const double cross[3][3] = {{0, -v[2], v[1]}, {v[2], 0, -v[0]}, {-v[1], v[0], 0}};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            double square = 0;
+            for (int k = 0; k < 3; k++)
+                square += cross[i][k] * cross[k][j];
+            r[i][j] = (i == j) + s * cross[i][j] + c * square;
+        }
+}
+
+static enum orl_result read_shot(const struct orl_known_source *source, const json_t *cameras,
+                                 const char *name, const json_t *shot,
+                                 struct orl_known_cameras *known)
+{
+    struct orl_known_camera camera = {.path = name};
+    double axis[3];
+    const char *lens = orl_json_text(shot, "camera");
+    const json_t *found = lens ? json_object_get(cameras, lens) : NULL;
+    if (!found)
+        return bad(source, "shot", name, "its camera is not there");
+    const char *problem = read_opensfm_lens(found, &camera);
+    if (problem)
+        return bad(source, "camera", lens, problem);
+    if (!orl_json_read_numbers(json_object_get(shot, "rotation"), 3, axis) ||
+        !orl_json_read_numbers(json_object_get(shot, "translation"), 3, camera.pose.t))
+        return bad(source, "shot", name, "rotation or translation is not 3 numbers");
+    rotation_about(axis, camera.pose.r);
+    return orl_known_add(source->log, source->path, name, &camera, known);
+}
+
+static enum orl_result read_opensfm_points(const struct orl_known_source *source, json_t *points,
+                                           struct orl_known_cameras *known)
+{
+    size_t capacity = 0;
+    const char *id;
+    json_t *entry;
+    enum orl_result result = ORL_OK;
+    json_object_foreach(points, id, entry) {
+        double at[3], rgb[3] = {128, 128, 128};
+        if (!orl_json_read_numbers(json_object_get(entry, "coordinates"), 3, at))
+            return bad(source, "point", id, "its coordinates are not 3 numbers");
+        (void)orl_json_read_numbers(json_object_get(entry, "color"), 3, rgb);
+        result = orl_known_add_point(source->log, at, rgb, &capacity, &known->model);
+        if (result != ORL_OK)
+            break;
+    }
+    return result;
+}
+
+enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
+                                       struct orl_known_cameras *known)
+{
+    const json_t *all = source->root, *best = json_array_get(all, 0);
+    for (size_t i = 1; i < json_array_size(all); i++) {
+        const json_t *other = json_array_get(all, i);
+        if (json_object_size(json_object_get(other, "shots")) >
+            json_object_size(json_object_get(best, "shots")))
+            best = other;
+    }
+    json_t *shots = json_object_get(best, "shots");
+    if (json_array_size(all) > 1)
+        orl_logf(source->log, ORL_LOG_WARNING, "%s: %zu reconstructions; taking the largest, with %zu "
+                 "photographs", source->path, json_array_size(all), json_object_size(shots));
+    enum orl_result result = ORL_OK;
+    const char *name;
+    json_t *shot;
+    json_object_foreach(shots, name, shot) {
+        result = read_shot(source, json_object_get(best, "cameras"), name, shot, known);
+        if (result != ORL_OK)
+            return result;
+    }
+    return read_opensfm_points(source, json_object_get(best, "points"), known);
+}
+
+// --- Meshroom ---
+
+// The text of an id, which some versions write as a number.
+static char *id_text(const struct orl_log *log, const json_t *entry, const char *key)
+{
+    const json_t *id = json_object_get(entry, key);
+    return json_is_integer(id) ? orl_format(log, "%lld", (long long)json_integer_value(id))
+                               : orl_strdup(log, json_is_string(id) ? json_string_value(id) : "");
+}
+
+// The entries of a list by their ids: a new reference, or NULL.
+static json_t *index_by(const struct orl_log *log, const json_t *list, const char *key)
+{
+    json_t *index = json_object();
+    for (size_t i = 0; index && i < json_array_size(list); i++) {
+        json_t *entry = json_array_get(list, i);
+        char *id = id_text(log, entry, key);
+        if (!id || json_object_set(index, id, entry) != 0)
+            json_decref(index), index = NULL;
+        free(id);
+    }
+    return index;
+}
+
+// Reads numbers that are written as strings.
+static bool read_texts(const json_t *array, size_t count, double *values)
+{
+    if (json_array_size(array) != count)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *item = json_array_get(array, i);
+        char *end;
+        values[i] = json_is_string(item) ? strtod(json_string_value(item), &end)
+                                         : json_number_value(item);
+        if (!isfinite(values[i]) || (!json_is_string(item) && !json_is_number(item)) ||
+            (json_is_string(item) && (end == json_string_value(item) || *end)))
+            return false;
+    }
+    return true;
+}
+
+// Sets f_c from the versions' different fields: a focal length in pixels up to 1.2.0, for x and y from
+// 1.2.0, in millimetres of the sensor later. The principal point counts from the picture's corner before
+// 1.2.1, and from its centre since.
+static const char *read_meshroom_pinhole(const json_t *root, const json_t *lens,
+                                         struct orl_known_camera *camera, double f_c[4])
+{
+    double version[3] = {0}, width, height, focal, sensor, ratio, centre[2];
+    if (!orl_known_json_number(lens, "width", &width) || !orl_known_json_number(lens, "height", &height) ||
+        width < 1 || height < 1 || width > ORL_IMAGE_MAX_SIDE || height > ORL_IMAGE_MAX_SIDE)
+        return "its size is missing";
+    camera->width = (int)width;
+    camera->height = (int)height;
+    (void)read_texts(json_object_get(root, "version"), 3, version);
+    if (read_texts(json_object_get(lens, "pxFocalLength"), 2, f_c)) {
+        // as it is
+    } else if (orl_known_json_number(lens, "pxFocalLength", &f_c[0])) {
+        f_c[1] = f_c[0];
+    } else if (orl_known_json_number(lens, "focalLength", &focal) &&
+               orl_known_json_number(lens, "sensorWidth", &sensor) && sensor > 0) {
+        f_c[0] = focal / sensor * width;
+        f_c[1] = orl_known_json_number(lens, "pixelRatio", &ratio) && ratio > 0 ? f_c[0] * ratio : f_c[0];
+    } else {
+        return "its focal length is missing";
+    }
+    bool of_centre = version[0] * 1e6 + version[1] * 1e3 + version[2] >= 1002001;
+    bool told = read_texts(json_object_get(lens, "principalPoint"), 2, centre);
+    f_c[2] = told ? centre[0] + (of_centre ? 0.5 * width : 0) : 0.5 * width;
+    f_c[3] = told ? centre[1] + (of_centre ? 0.5 * height : 0) : 0.5 * height;
+    return NULL;
+}
+
+static const char *read_meshroom_lens(const json_t *root, const json_t *lens,
+                                      struct orl_known_camera *camera)
+{
+    static const struct {
+        const char *type;
+        size_t terms;
+        int place[5]; // of each term among k1 k2 p1 p2 k3
+        bool fisheye;
+    } kinds[] = {{"pinhole", 0, {0}, false},        {"none", 0, {0}, false},
+                 {"radial1", 1, {0}, false},        {"radialk1", 1, {0}, false},
+                 {"radial3", 3, {0, 1, 4}, false},  {"radialk3", 3, {0, 1, 4}, false},
+                 {"brown", 5, {0, 1, 4, 2, 3}, false},
+                 {"fisheye", 4, {0}, true},         {"fisheye4", 4, {0}, true}};
+    double f_c[4], given[5], terms[5] = {0};
+    const char *type = orl_json_text(lens, "distortionType");
+    const json_t *list = json_object_get(lens, "distortionParams");
+    type = type ? type : orl_json_text(lens, "type");
+    const char *problem = read_meshroom_pinhole(root, lens, camera, f_c);
+    for (size_t i = 0; !problem && type && i < ORL_COUNT(kinds); i++) {
+        if (strcmp(kinds[i].type, type) != 0)
+            continue;
+        size_t count = json_array_size(list) && kinds[i].terms ? kinds[i].terms : 0;
+        if (!read_texts(list, count, given) && count)
+            return "its distortionParams are not as many numbers as its type has";
+        for (size_t k = 0; k < count && !kinds[i].fisheye; k++)
+            terms[kinds[i].place[k]] = given[k];
+        orl_known_set_opencv(camera, f_c, terms, ORL_COUNT(terms));
+        if (kinds[i].fisheye) {
+            camera->model = ORL_COLMAP_OPENCV_FISHEYE;
+            for (size_t k = 0; k < 4; k++)
+                camera->params[4 + k] = k < count ? given[k] : 0;
+        }
+        return NULL;
+    }
+    return problem ? problem : "its type is none of pinhole, radial1, radial3, brown and fisheye4";
+}
+
+struct meshroom {
+    const struct orl_known_source *source;
+    json_t *lenses, *poses, *images; // by their ids; images: their indices in the model
+    size_t without;                  // views that were not placed
+};
+
+static enum orl_result read_view(struct meshroom *m, const json_t *view,
+                                 struct orl_known_cameras *known)
+{
+    struct orl_known_camera camera = {.path = orl_json_text(view, "path")};
+    double rows[9], centre[3];
+    const struct orl_known_source *source = m->source;
+    char *id = id_text(source->log, view, "viewId");
+    char *pose_id = id_text(source->log, view, "poseId"), *lens_id = id_text(source->log, view, "intrinsicId");
+    enum orl_result result = id && pose_id && lens_id ? ORL_OK : ORL_ERR_MEMORY;
+    const json_t *pose = pose_id ? json_object_get(m->poses, pose_id) : NULL;
+    const json_t *lens = lens_id ? json_object_get(m->lenses, lens_id) : NULL;
+    const json_t *transform = json_object_get(json_object_get(pose, "pose"), "transform");
+    if (result == ORL_OK && (!pose || !lens)) {
+        m->without++;
+    } else if (result == ORL_OK) {
+        const char *problem = read_meshroom_lens(source->root, lens, &camera);
+        // The rotation cam_from_world is written column by column: its rows are those of the inverse.
+        if (problem)
+            result = bad(source, "intrinsic", lens_id, problem);
+        else if (!camera.path)
+            result = bad(source, "view", id, "no path");
+        else if (json_object_get(view, "subPoseId"))
+            result = bad(source, "view", id, "rigs of cameras are not supported");
+        else if (!read_texts(json_object_get(transform, "rotation"), 9, rows) ||
+                 !read_texts(json_object_get(transform, "center"), 3, centre) ||
+                 !orl_known_pose_from_camera(rows, centre, &camera.pose))
+            result = bad(source, "pose", pose_id, "no rotation and center");
+        else
+            result = orl_known_add(source->log, source->path, id, &camera, known);
+        if (result == ORL_OK &&
+            json_object_set_new(m->images, id,
+                                json_integer((json_int_t)known->model.image_count - 1)) != 0)
+            result = ORL_ERR_MEMORY;
+    }
+    free(id);
+    free(pose_id);
+    free(lens_id);
+    return result;
+}
+
+static enum orl_result read_landmark(const struct meshroom *m, const json_t *landmark,
+                                     size_t *capacity, size_t *capacities,
+                                     struct orl_colmap_model *model)
+{
+    double at[3], rgb[3] = {128, 128, 128};
+    const json_t *seen = json_object_get(landmark, "observations");
+    size_t before = model->point_count;
+    if (!read_texts(json_object_get(landmark, "X"), 3, at))
+        return bad(m->source, "landmark", "", "no X of 3 numbers");
+    (void)read_texts(json_object_get(landmark, "color"), 3, rgb);
+    enum orl_result result = orl_known_add_point(m->source->log, at, rgb, capacity, model);
+    for (size_t i = 0; result == ORL_OK && model->point_count > before && i < json_array_size(seen); i++) {
+        char *id = id_text(m->source->log, json_array_get(seen, i), "observationId");
+        const json_t *image = id ? json_object_get(m->images, id) : NULL;
+        if (image)
+            result = orl_known_add_view(m->source->log, (size_t)json_integer_value(image),
+                                        (uint32_t)before, capacities, model);
+        free(id);
+    }
+    return result;
+}
+
+static enum orl_result read_structure(const struct meshroom *m, struct orl_colmap_model *model)
+{
+    const json_t *list = json_object_get(m->source->root, "structure");
+    size_t capacity = 0, *capacities = orl_array(m->source->log, model->image_count, sizeof *capacities);
+    enum orl_result result = capacities ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < json_array_size(list); i++)
+        result = read_landmark(m, json_array_get(list, i), &capacity, capacities, model);
+    free(capacities);
+    return result;
+}
+
+enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
+                                        struct orl_known_cameras *known)
+{
+    const json_t *views = json_object_get(source->root, "views");
+    struct meshroom m = {
+        source, index_by(source->log, json_object_get(source->root, "intrinsics"), "intrinsicId"),
+        index_by(source->log, json_object_get(source->root, "poses"), "poseId"), json_object(), 0};
+    enum orl_result result = m.lenses && m.poses && m.images ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < json_array_size(views); i++)
+        result = read_view(&m, json_array_get(views, i), known);
+    if (result == ORL_OK && m.without)
+        orl_logf(source->log, ORL_LOG_WARNING, "%s: %zu of %zu photographs have no pose: left out",
+                 source->path, m.without, json_array_size(views));
+    if (result == ORL_OK)
+        result = read_structure(&m, &known->model);
+    json_decref(m.lenses);
+    json_decref(m.poses);
+    json_decref(m.images);
+    return result;
+}
