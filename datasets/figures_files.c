@@ -6,8 +6,8 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/new_dir.h"
 #include "datasets/figures.h"
-#include "datasets/synth_files.h"
 #include "io/exr.h"
 #include "io/picture.h"
 #include "scene/manifest.h"
@@ -20,7 +20,7 @@ struct job {
     const struct orl_progress *progress;
     const struct orl_figures_params *params;
     const struct orl_view *views; // params->cameras
-    char *dir;                    // being filled, owned
+    const char *dir;              // being filled
 };
 
 // "DIR/<folder>/camNN<ending>", or of a sequence "DIR/<folder>/camNN/NNNNN<ending>".
@@ -95,9 +95,7 @@ static enum orl_result make_folders(const struct job *job)
 {
     static const char *const folders[] = {"images", "masks", "depth", "background", "mesh"};
     bool sequence = job->params->frames > 1;
-    enum orl_result result = orl_dir_remove(job->log, job->dir);
-    if (result == ORL_OK)
-        result = orl_dir_make(job->log, job->dir);
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
         // Backgrounds are one a camera, meshes one a moment.
         bool per_camera = sequence && i < 3;
@@ -180,14 +178,15 @@ enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_prog
                                 const struct orl_figures_params *params, const char *out)
 {
     struct job job = {.log = log, .progress = progress, .params = params};
+    struct orl_new_dir dir;
     enum orl_result result = orl_figures_check(log, params);
     if (result == ORL_OK)
-        result = orl_synth_check_free(log, out);
+        result = orl_new_dir_begin(log, out, &dir);
     if (result != ORL_OK)
         return result;
     struct orl_view *views = orl_array(log, (size_t)params->cameras, sizeof *views);
-    job.dir = orl_format(log, "%s.part", out);
-    if (!views || !job.dir) {
+    job.dir = dir.path;
+    if (!views) {
         result = ORL_ERR_MEMORY;
         goto end;
     }
@@ -195,11 +194,9 @@ enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_prog
     job.views = views;
     result = write_all(&job);
     if (result == ORL_OK)
-        result = orl_synth_move_folder(log, job.dir, out);
-    if (result != ORL_OK && orl_dir_remove(log, job.dir) != ORL_OK)
-        orl_logf(log, ORL_LOG_WARNING, "%s is left over", job.dir);
+        result = orl_new_dir_finish(log, &dir);
 end:
-    free(job.dir);
+    orl_new_dir_abort(log, &dir);
     free(views);
     return result;
 }

@@ -1,5 +1,4 @@
 // Writes a synthetic set as files: the photographs and their ground truth.
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,8 +8,8 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/new_dir.h"
 #include "datasets/synth.h"
-#include "datasets/synth_files.h"
 #include "io/exr.h"
 #include "io/picture.h"
 #include "scene/colmap.h"
@@ -24,7 +23,7 @@ struct job {
     const struct orl_log *log;
     const struct orl_synth_params *params;
     const struct orl_view *views; // params->count
-    char *photos, *truth;         // folders that are being filled, owned
+    const char *photos, *truth;   // folders that are being filled
 };
 
 // "<dir>/<folder>/<NNNN><ending>", to be released with free(). NULL after a logged error.
@@ -238,43 +237,17 @@ static enum orl_result write_cameras(const struct job *job)
 
 // --- folders ---
 
-enum orl_result orl_synth_check_free(const struct orl_log *log, const char *path)
-{
-    if (orl_path_is_file(path))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", path);
-    if (!orl_path_is_dir(path))
-        return ORL_OK;
-    struct orl_names names;
-    enum orl_result result = orl_dir_list(log, path, &names);
-    if (result == ORL_OK && names.count)
-        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: this folder is not empty", path);
-    orl_names_finish(&names);
-    return result;
-}
-
 static enum orl_result make_folders(const struct job *job)
 {
     static const char *const folders[] = {"sparse", "depth", "normal", "radiance",
                                           "stereo/depth_maps", "stereo/normal_maps"};
-    enum orl_result result = orl_dir_remove(job->log, job->photos);
-    if (result == ORL_OK)
-        result = orl_dir_remove(job->log, job->truth);
-    if (result == ORL_OK)
-        result = orl_dir_make(job->log, job->photos);
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
         char *path = orl_path_join(job->log, job->truth, folders[i]);
         result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
         free(path);
     }
     return result;
-}
-
-enum orl_result orl_synth_move_folder(const struct orl_log *log, const char *from,
-                                      const char *to)
-{
-    if (rename(from, to) == 0)
-        return ORL_OK;
-    return orl_fail(log, ORL_ERR_IO, "%s: %s", to, strerror(errno));
 }
 
 static enum orl_result draw_all(struct orl_gpu *gpu, const struct orl_progress *progress,
@@ -302,18 +275,19 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
                               const char *truth)
 {
     struct job job = {.log = orl_gpu_log(gpu), .params = params};
+    struct orl_new_dir photos_dir = {.fd = -1}, truth_dir = {.fd = -1};
     struct orl_view *views = NULL;
     enum orl_result result = orl_synth_check(job.log, params);
     if (result == ORL_OK)
-        result = orl_synth_check_free(job.log, photos);
+        result = orl_new_dir_begin(job.log, photos, &photos_dir);
     if (result == ORL_OK)
-        result = orl_synth_check_free(job.log, truth);
+        result = orl_new_dir_begin(job.log, truth, &truth_dir);
     if (result != ORL_OK)
-        return result;
+        goto end;
     views = orl_array(job.log, (size_t)params->count, sizeof *views);
-    job.photos = orl_format(job.log, "%s.part", photos);
-    job.truth = orl_format(job.log, "%s.part", truth);
-    if (!views || !job.photos || !job.truth) {
+    job.photos = photos_dir.path;
+    job.truth = truth_dir.path;
+    if (!views) {
         result = ORL_ERR_MEMORY;
         goto end;
     }
@@ -325,16 +299,12 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
     if (result == ORL_OK)
         result = draw_all(gpu, progress, &job);
     if (result == ORL_OK)
-        result = orl_synth_move_folder(job.log, job.truth, truth);
+        result = orl_new_dir_finish(job.log, &truth_dir);
     if (result == ORL_OK)
-        result = orl_synth_move_folder(job.log, job.photos, photos);
+        result = orl_new_dir_finish(job.log, &photos_dir);
 end:
-    if (result != ORL_OK && job.photos && job.truth &&
-        (orl_dir_remove(job.log, job.photos) != ORL_OK ||
-         orl_dir_remove(job.log, job.truth) != ORL_OK))
-        orl_logf(job.log, ORL_LOG_WARNING, "%s and %s are left over", job.photos, job.truth);
-    free(job.photos);
-    free(job.truth);
+    orl_new_dir_abort(job.log, &photos_dir);
+    orl_new_dir_abort(job.log, &truth_dir);
     free(views);
     return result;
 }

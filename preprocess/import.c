@@ -51,7 +51,7 @@ static enum orl_result fill(struct import_job *job)
         result = job->params->points == ORL_IMPORT_DENSIFY
                      ? orl_import_complete_manifest(job, triangles)
                      : orl_import_write_manifest(job, points, triangles);
-    return result == ORL_OK ? orl_new_dir_finish(job->log, job->dir, job->params->out) : result;
+    return result == ORL_OK ? orl_new_dir_finish(job->log, &job->new_dir) : result;
 }
 
 static void finish(struct import_job *job)
@@ -66,7 +66,6 @@ static void finish(struct import_job *job)
     free(job->why_not);
     free(job->targets);
     free(job->first_empty);
-    free(job->dir);
     orl_known_cameras_finish(&job->known);
 }
 
@@ -96,11 +95,11 @@ enum orl_result orl_import(const struct orl_log *log, const struct orl_import_pa
     if (result == ORL_OK)
         result = orl_import_find_all(&job);
     if (result == ORL_OK)
-        result = orl_new_dir_begin(log, params->out, &job.dir);
+        result = orl_new_dir_begin(log, params->out, &job.new_dir);
+    job.dir = job.new_dir.path;
     if (result == ORL_OK)
         result = fill(&job);
-    if (result != ORL_OK && job.dir && orl_dir_remove(log, job.dir) != ORL_OK)
-        orl_logf(log, ORL_LOG_WARNING, "%s is left over", job.dir);
+    orl_new_dir_abort(log, &job.new_dir);
     finish(&job);
     return result;
 }

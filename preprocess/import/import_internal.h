@@ -2,6 +2,7 @@
 #ifndef ORL_PREPROCESS_IMPORT_INTERNAL_H
 #define ORL_PREPROCESS_IMPORT_INTERNAL_H
 
+#include "core/new_dir.h"
 #include "oriel/image.h"
 #include "oriel/progress.h"
 #include "preprocess/import/import_params.h"
@@ -27,7 +28,8 @@ struct import_job {
     const struct orl_log *log;
     const struct orl_progress *progress;
     const struct orl_import_params *params;
-    char *dir; // the folder that is filled; owned
+    struct orl_new_dir new_dir;
+    const char *dir; // the folder that is filled, of new_dir
     struct orl_known_cameras known;
     struct orl_camera *targets; // undistorted, one for each known camera; owned
     struct import_view *views;  // sorted by name; owned

@@ -17,19 +17,19 @@
 enum {
     LINKS_MAX = 40,     // Linux's own limit
     NAME_TAIL_MAX = 64, // bytes of the final name kept in the temporary name (below NAME_MAX)
+    NUMBER_DIGITS = 16,
     TRIES_MAX = 16,
     STALE_AFTER_S = 60, // a writer locks its temporary file only after creating it
 };
 
-static const char part_prefix[] = ".oriel-part-";
+const char orl_part_prefix[] = ".oriel-part-";
 
 static enum orl_result fail_errno(const struct orl_log *log, const char *path)
 {
     return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
 }
 
-// The name at the end of a chain of symbolic links. The file may be missing.
-static enum orl_result follow_links(const struct orl_log *log, const char *path, char **target)
+enum orl_result orl_path_follow(const struct orl_log *log, const char *path, char **target)
 {
     char *current = orl_strdup(log, path), to[PATH_MAX];
     for (int links = 0; current; links++) {
@@ -74,19 +74,41 @@ static enum orl_result begin_direct(const struct orl_log *log, const char *path,
     return file->fd >= 0 ? ORL_OK : fail_errno(log, path);
 }
 
-static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_file *file)
+// The final name comes last and keeps the extension, since writers may choose a format by it.
+static const char *name_tail(const char *path)
 {
-    // The final name comes last and keeps the extension, since writers may choose a format by it.
-    const char *name = orl_path_name(file->path);
+    const char *name = orl_path_name(path);
     size_t length = strlen(name), cut = length > NAME_TAIL_MAX ? length - NAME_TAIL_MAX : 0;
     while (((unsigned char)name[cut] & 0xc0) == 0x80) // some file systems refuse partial characters
         cut++;
+    return name + cut;
+}
+
+char *orl_temp_name(const struct orl_log *log, const char *prefix, const char *path)
+{
+    unsigned long long number;
+    if (getrandom(&number, sizeof number, 0) != sizeof number) {
+        (void)!fail_errno(log, path);
+        return NULL;
+    }
+    return orl_format(log, "%.*s%s%0*llx-%s", (int)(orl_path_name(path) - path), path, prefix,
+                      NUMBER_DIGITS, number, name_tail(path));
+}
+
+bool orl_temp_is_of(const char *name, const char *prefix, const char *path)
+{
+    size_t length = strlen(prefix);
+    if (strncmp(name, prefix, length) != 0 ||
+        strspn(name + length, "0123456789abcdef") != NUMBER_DIGITS)
+        return false;
+    const char *rest = name + length + NUMBER_DIGITS;
+    return *rest == '-' && (!path || strcmp(rest + 1, name_tail(path)) == 0);
+}
+
+static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_file *file)
+{
     for (int tries = 0; tries < TRIES_MAX; tries++) {
-        unsigned long long number;
-        if (getrandom(&number, sizeof number, 0) != sizeof number)
-            return fail_errno(log, file->path);
-        file->temp = orl_format(log, "%.*s%s%016llx-%s", (int)(name - file->path), file->path,
-                                part_prefix, number, name + cut);
+        file->temp = orl_temp_name(log, orl_part_prefix, file->path);
         if (!file->temp)
             return ORL_ERR_MEMORY;
         file->fd = open(file->temp, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -114,7 +136,7 @@ enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
     enum orl_result result;
     if (there && !S_ISDIR(st.st_mode) && (!S_ISREG(st.st_mode) || is_standard_stream(&st)))
         result = begin_direct(log, path, file);
-    else if ((result = follow_links(log, path, &file->path)) == ORL_OK)
+    else if ((result = orl_path_follow(log, path, &file->path)) == ORL_OK)
         result = open_part(log, file);
     if (result == ORL_OK && there && !file->direct)
         (void)!fchmod(file->fd, st.st_mode & 0777); // the new file keeps the old permissions
@@ -216,12 +238,14 @@ enum orl_result orl_file_write(const struct orl_log *log, const char *path, cons
     return result;
 }
 
-// True when no writer is active: the file is old enough and its lock is free.
+// True when no writer is active: the file or folder is old enough and its lock is free.
 static bool is_stale(const char *path)
 {
     struct stat st;
     int fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    bool stale = fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) &&
+    if (fd < 0 && errno == EISDIR)
+        fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    bool stale = fd >= 0 && fstat(fd, &st) == 0 && (S_ISREG(st.st_mode) || S_ISDIR(st.st_mode)) &&
                  time(NULL) - st.st_mtime > STALE_AFTER_S && flock(fd, LOCK_EX | LOCK_NB) == 0;
     if (fd >= 0)
         close(fd);
@@ -233,12 +257,12 @@ enum orl_result orl_dir_sweep(const struct orl_log *log, const char *dir)
     struct orl_names names;
     enum orl_result result = orl_dir_list(log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        if (strncmp(names.items[i], part_prefix, sizeof part_prefix - 1) != 0)
+        if (!orl_temp_is_of(names.items[i], orl_part_prefix, NULL))
             continue;
         char *path = orl_path_join(log, dir, names.items[i]);
         if (!path)
             result = ORL_ERR_MEMORY;
-        else if (is_stale(path) && unlink(path) == 0)
+        else if (is_stale(path) && orl_dir_remove(NULL, path) == ORL_OK)
             orl_logf(log, ORL_LOG_DEBUG, "%s: removed, its writer is gone", path);
         free(path);
     }

@@ -58,28 +58,23 @@ enum orl_result orl_flush(const struct orl_log *log, const char *path) ORL_CHECK
 // Copies a regular file, making the folders that lead to `to`.
 enum orl_result orl_file_copy(const struct orl_log *log, const char *from,
                               const char *to) ORL_CHECK_RESULT;
-// Removes temporary files that killed writers left in this folder.
+// The name at the end of a chain of symbolic links, released with free(). The file may be missing.
+enum orl_result orl_path_follow(const struct orl_log *log, const char *path,
+                                char **target) ORL_CHECK_RESULT;
+// "PREFIX, a random number, the name": a new temporary name beside `path`, released with free().
+// NULL, logged: an error.
+char *orl_temp_name(const struct orl_log *log, const char *prefix, const char *path);
+// True for such a name; with a path, for one that was made for this path.
+bool orl_temp_is_of(const char *name, const char *prefix, const char *path);
+extern const char orl_part_prefix[]; // of what orl_dir_sweep removes when no writer holds it
+
+// Removes temporary files and folders that killed writers left in this folder.
 enum orl_result orl_dir_sweep(const struct orl_log *log, const char *dir) ORL_CHECK_RESULT;
 
 // Creates the folder and its parents. An existing folder is accepted and swept (orl_dir_sweep).
 enum orl_result orl_dir_make(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 // Creates the folder that a file is in, and its parents.
 enum orl_result orl_file_make_folder(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
-// A folder that is filled under the name "OUT.part" and takes its own name once it is whole and
-// flushed. Refuses
-// an `out` that is a file or not empty; removes an unfinished folder of an earlier run. *part is
-// owned by the caller, who removes the folder if it is not finished.
-enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,
-                                  char **part) ORL_CHECK_RESULT;
-enum orl_result orl_new_dir_finish(const struct orl_log *log, const char *part,
-                                   const char *out) ORL_CHECK_RESULT;
-// Flushes the folder `part` and gives it the name `out`, which a folder may have that is then removed.
-// At every moment one of the two is whole under that name; on drives that cannot exchange two names
-// the old one is "OUT.old.part" for a moment, and orl_dir_restore gives it its name back if the
-// program ends just then.
-enum orl_result orl_dir_replace(const struct orl_log *log, const char *part,
-                                const char *out) ORL_CHECK_RESULT;
-enum orl_result orl_dir_restore(const struct orl_log *log, const char *out) ORL_CHECK_RESULT;
 // Removes the folder and everything in it; a missing folder counts as success. Links are
 // removed, never followed.
 enum orl_result orl_dir_remove(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/new_dir.h"
 #include "core/process.h"
 #include "eval/trim_search.h"
 #include "eval/tune.h"
@@ -282,26 +283,25 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: trim needs all points in memory, and they "
                         "are in points.lod: remove it, and where there is no points.ply, oriel "
                         "prepare --resume with a larger --max-ram writes one", scene->dir);
-    char *part = NULL, *work = NULL;
+    struct orl_new_dir part = {.fd = -1};
+    char *work = NULL;
     enum orl_result result = ORL_OK;
     if (!params->settings_only)
         result = orl_new_dir_begin(log, params->out, &part);
-    if (part)
-        work = orl_path_join(log, part, ".trials");
+    if (part.path)
+        work = orl_path_join(log, part.path, ".trials");
     struct trim_search s = {.source = {.gpu = gpu, .log = log, .scene = scene, .work = work},
-                            .params = params, .trim = trim, .part = part,
+                            .params = params, .trim = trim, .part = part.path,
                             .start_s = orl_time_s()};
     if (result == ORL_OK)
         result = run(&s);
     finish(&s);
     if (result == ORL_OK && work)
         result = orl_dir_remove(log, work);
-    if (result == ORL_OK && part)
-        result = orl_new_dir_finish(log, part, params->out);
-    else if (part && orl_dir_remove(log, part) != ORL_OK)
-        orl_logf(log, ORL_LOG_WARNING, "%s: could not be removed", part);
+    if (result == ORL_OK && part.path)
+        result = orl_new_dir_finish(log, &part);
+    orl_new_dir_abort(log, &part);
     free(work);
-    free(part);
     if (result != ORL_OK)
         orl_trim_finish(trim);
     return result;

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/new_dir.h"
 #include "hdr/internal.h"
 #include "io/picture.h"
 #include "scene/linear.h"
@@ -21,7 +22,8 @@ struct replacement {
     const struct orl_scene *scene;
     const struct orl_replace_params *params;
     const struct orl_progress *progress;
-    char *dir;      // the unfinished scene
+    struct orl_new_dir new_dir;
+    const char *dir; // where its files go, of new_dir
     bool *keep;     // per photograph
     size_t count;   // photographs to be replaced
     json_t *manifest;
@@ -152,7 +154,8 @@ enum orl_result orl_hdr_replace_series(struct orl_hdr *hdr,
                             .params = params, .progress = progress};
     enum orl_result result = choose(&r);
     if (result == ORL_OK)
-        result = orl_new_dir_begin(r.log, params->out, &r.dir);
+        result = orl_new_dir_begin(r.log, params->out, &r.new_dir);
+    r.dir = r.new_dir.path;
     if (result == ORL_OK)
         result = orl_subset_begin(r.log, r.scene, r.keep, r.dir, &r.manifest);
     if (result == ORL_OK)
@@ -160,11 +163,9 @@ enum orl_result orl_hdr_replace_series(struct orl_hdr *hdr,
     if (result == ORL_OK)
         result = write_manifest(&r);
     if (result == ORL_OK)
-        result = orl_new_dir_finish(r.log, r.dir, params->out);
-    if (result != ORL_OK && r.dir && orl_dir_remove(r.log, r.dir) != ORL_OK)
-        orl_logf(r.log, ORL_LOG_WARNING, "%s is left over", r.dir);
+        result = orl_new_dir_finish(r.log, &r.new_dir);
+    orl_new_dir_abort(r.log, &r.new_dir);
     json_decref(r.manifest);
     free(r.keep);
-    free(r.dir);
     return result;
 }

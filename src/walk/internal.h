@@ -17,7 +17,7 @@ struct site {
     struct orl_gpu *gpu;
     struct orl_renderer *renderer;
     struct orl_render_params render; // options of the method oriel, as tuned for the scene
-    char *dir;                       // owned: the folder that is written to
+    const char *dir;                 // the folder that is written to
     json_t *settings;                // owned: settings.h
     size_t start;                    // the photograph at which the walk begins unless they say
     struct orl_publish_report *report;
@@ -69,8 +69,19 @@ char *orl_walk_index(const struct orl_log *log, const char *title, const char *p
 // Adds the paths of the data files of a finished site, which the page requests by name: all but page
 // and modules.
 enum orl_result orl_site_data(const struct orl_log *log, const char *dir, struct orl_names *paths);
+// Adds the paths of all its files.
+enum orl_result orl_site_files(const struct orl_log *log, const char *dir, struct orl_names *paths);
 // Writes the finished site as one HTML file.
 enum orl_result orl_site_pack(struct site *site, const char *file);
+
+// --- what a site holds that Oriel did not write (site_keep.c) ---
+
+// Writes files.json: the names of the finished site's files.
+enum orl_result orl_site_list(const struct site *site);
+// Puts into the new site what its owner has put into the earlier one at `old`: all that its
+// files.json does not name, such as .git and CNAME. ORL_ERR_ARGUMENT: such a file has the name of
+// one of the new site's.
+enum orl_result orl_site_keep(const struct site *site, const char *old);
 
 // --- the server's frames (frames.c) ---
 

@@ -231,9 +231,9 @@ static bool is_data(const char *path)
            strcmp(path, "icon.svg") != 0 && strncmp(path, "js/", 3) != 0;
 }
 
-// Adds the paths of all data files below `folder` of the site ("": the site itself).
-static enum orl_result list_data(const struct orl_log *log, const char *dir, const char *folder,
-                                 struct orl_names *paths)
+// Adds the paths of the files below `folder` of the site ("": the site itself), perhaps of data alone.
+static enum orl_result list_files(const struct orl_log *log, const char *dir, const char *folder,
+                                  bool data, struct orl_names *paths)
 {
     struct orl_names names = {0};
     char *here = orl_path_join(log, dir, folder);
@@ -244,8 +244,8 @@ static enum orl_result list_data(const struct orl_log *log, const char *dir, con
         if (!full)
             result = ORL_ERR_MEMORY;
         else if (orl_path_is_dir(full))
-            result = list_data(log, dir, path, paths);
-        else if (is_data(path))
+            result = list_files(log, dir, path, data, paths);
+        else if (!data || is_data(path))
             result = orl_names_add(log, paths, path);
         free(full);
         free(path);
@@ -257,7 +257,12 @@ static enum orl_result list_data(const struct orl_log *log, const char *dir, con
 
 enum orl_result orl_site_data(const struct orl_log *log, const char *dir, struct orl_names *paths)
 {
-    return list_data(log, dir, "", paths);
+    return list_files(log, dir, "", true, paths);
+}
+
+enum orl_result orl_site_files(const struct orl_log *log, const char *dir, struct orl_names *paths)
+{
+    return list_files(log, dir, "", false, paths);
 }
 
 static void add_file(const struct site *site, const char *path, struct text *text)

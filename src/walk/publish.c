@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/new_dir.h"
 #include "walk/internal.h"
 
 char *orl_site_path(const struct site *site, const char *path)
@@ -68,7 +69,7 @@ static enum orl_result make_folders(struct site *site)
 {
     static const char *const folders[] = {"js", "shaders/gather/sample", "shaders/proxy",
                                           "shaders/shared", "points", "photos", "depth", "thumbs"};
-    enum orl_result result = orl_dir_remove(site->log, site->dir);
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
         char *path = orl_site_path(site, folders[i]);
         result = path ? orl_dir_make(site->log, path) : ORL_ERR_MEMORY;
@@ -134,6 +135,14 @@ static enum orl_result make_renderer(struct site *site)
                : result;
 }
 
+static enum orl_result replace_site(const struct site *site, struct orl_new_dir *dir)
+{
+    enum orl_result result = orl_site_list(site);
+    if (result == ORL_OK)
+        result = orl_site_keep(site, dir->out);
+    return result == ORL_OK ? orl_new_dir_replace(site->log, dir) : result;
+}
+
 enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
                             const struct orl_publish_params *asked,
                             struct orl_publish_report *report)
@@ -144,7 +153,8 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
     *report = (struct orl_publish_report){0};
     struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
                         .report = report};
-    enum orl_result result = params.single_file ? ORL_OK : orl_dir_restore(log, params.out);
+    struct orl_new_dir dir;
+    enum orl_result result = orl_new_dir_begin_over(log, params.out, &dir);
     if (result == ORL_OK)
         result = check_out(log, params.out, params.single_file);
     if (result == ORL_OK)
@@ -152,21 +162,19 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
     if (result != ORL_OK)
         goto end;
     params.title = title = orl_walk_title(log, scene, asked->title, site.settings);
-    site.dir = orl_path_append(log, params.out, ".part"); // the unfinished site
-    result = site.dir && title ? make_renderer(&site) : ORL_ERR_MEMORY;
+    site.dir = dir.path;
+    result = title ? make_renderer(&site) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = write_site(&site);
     if (result == ORL_OK)
         report->bytes = folder_bytes(&site, site.dir);
     if (result == ORL_OK)
         result = params.single_file ? orl_site_pack(&site, params.out)
-                                    : orl_dir_replace(log, site.dir, params.out);
-    if (site.dir && orl_dir_remove(log, site.dir) != ORL_OK && result == ORL_OK)
-        result = ORL_ERR_IO;
+                                    : replace_site(&site, &dir);
 end:
+    orl_new_dir_abort(log, &dir);
     orl_renderer_destroy(&site.renderer);
     json_decref(site.settings);
-    free(site.dir);
     free(title);
     return result;
 }

@@ -15,7 +15,7 @@ for file in index.html style.css manifest.json poster.jpg js/main.js shaders/gat
     depth/00000.png thumbs/00000.jpg; do
     [ -s "$site/$file" ] || fail "the site lacks $file"
 done
-[ -e "$site.part" ] && fail "$site.part is left behind"
+[ "$(ls -A served/path)" = site ] || fail "something is left behind beside the site"
 grep -q '<title>A &quot;test&quot; &amp; &lt;more></title>' "$site/index.html" ||
     fail "the title is not in the page as text"
 grep -q '{{' "$site/index.html" && fail "the page has unfilled places"
@@ -24,8 +24,28 @@ first=$(find "$site" \( -path '*/js/*' -o -path '*/shaders/*' -o -path '*/points
     -path "$site/*" ! -path "$site/*/*" \) -type f -exec cat {} + | wc -c)
 [ "$first" -le 1000000 ] || fail "$first bytes until the first picture"
 
-# An earlier site is replaced, and nothing else.
-runs 0 "$oriel" publish made --out served/path/site --quiet
+# Of an earlier site what Oriel wrote is replaced, and nothing else.
+mkdir -p served/path/site.part served/path/site.old.part $site/.git/refs
+touch served/path/site.part/precious served/path/site.old.part/precious $site/.git/refs/precious
+echo walk.example >$site/CNAME
+ln -s CNAME $site/link
+ln -s path/site served/link
+echo old >$site/js/main.js
+mv $site/photos/00000.jpg $site/photos/my.jpg
+runs 0 "$oriel" publish made --out served/link --quiet
+[ -e served/path/site.part/precious ] && [ -e served/path/site.old.part/precious ] ||
+    fail "a folder of the user's beside the site is gone"
+[ -e $site/.git/refs/precious ] && [ "$(cat $site/link)" = walk.example ] && [ -s $site/photos/my.jpg ] ||
+    fail "files that the user put into the site are gone"
+[ -L served/link ] && [ "$(cat $site/js/main.js)" != old ] && [ -s $site/photos/00000.jpg ] ||
+    fail "a link as output is not written to"
+[ "$(ls -A served/path | tr '\n' ' ')" = "site site.old.part site.part " ] || fail "something is left behind"
+grep -v '"style.css"' $site/files.json >files.json && cp files.json $site/files.json
+runs 2 "$oriel" publish made --out $site
+grep -q 'style.css: was not written by Oriel' stderr.txt || fail "a file of the user's would be replaced"
+rm $site/files.json # as sites of earlier versions are
+runs 0 "$oriel" publish made --out $site --quiet
+[ -e $site/.git/refs/precious ] && [ -e $site/files.json ] || fail "a site without a list loses files"
 mkdir foreign && touch foreign/precious
 runs 2 "$oriel" publish made --out foreign
 [ -e foreign/precious ] || fail "a folder that is no site was emptied"
@@ -40,7 +60,7 @@ runs 2 "$oriel" publish no-such-scene --out other
 [ -e other ] && fail "a site of no scene"
 runs 2 "$oriel" publish made --out foreign --single-file
 runs 0 "$oriel" publish made --out single.html --single-file --max-points 4000 --max-size 120
-[ -e single.html.part ] && fail "single.html.part is left behind"
+ls -d .oriel-* 2>/dev/null && fail "something is left behind"
 grep -q 'src="photos\|href="style.css"' single.html && fail "the single file names other files"
 runs 0 "$oriel" publish made --out single.html --single-file
 [ $failed -eq 0 ] || exit 1

@@ -236,9 +236,9 @@ static void a_cut_write_leaves_nothing(void **state)
 static void sweeping(void **state)
 {
     (void)state;
-    char *stale = test_path(dir, ".oriel-part-0000-a.png");
-    char *young = test_path(dir, ".oriel-part-0001-a.png");
-    char *link = test_path(dir, ".oriel-part-0002-a.png"), *path = test_path(dir, "a.png");
+    char *stale = test_path(dir, ".oriel-part-0000000000000000-a.png");
+    char *young = test_path(dir, ".oriel-part-0000000000000001-a.png");
+    char *link = test_path(dir, ".oriel-part-0000000000000002-a.png"), *path = test_path(dir, "a.png");
     struct timespec old[2] = {{.tv_sec = time(NULL) - 3600}, {.tv_sec = time(NULL) - 3600}};
     struct orl_atomic_file file;
     assert_int_equal(orl_file_write(NULL, stale, "x", 1), ORL_OK);

@@ -173,37 +173,6 @@ static void folders(void **state)
     free(precious);
 }
 
-// As a kill between two renames leaves it, where names cannot be exchanged.
-static void replaced_folders(void **state)
-{
-    (void)state;
-    char *out = test_path(dir, "out"), *part = test_path(dir, "out.part");
-    char *slashed = test_path(dir, "out//"), *old = test_path(dir, "out.old.part");
-    char *file = test_path(out, "file"), *part_file = test_path(part, "file");
-    for (int round = 0; round < 2; round++) { // a new name, then one that is there
-        assert_int_equal(orl_dir_make(NULL, part), ORL_OK);
-        assert_int_equal(orl_file_write(NULL, part_file, round ? "b" : "a", 1), ORL_OK);
-        assert_int_equal(orl_dir_replace(NULL, part, slashed), ORL_OK);
-        test_expect_text(file, round ? "b" : "a");
-        assert_int_equal(test_count_entries(dir), 1);
-    }
-    assert_int_equal(rename(out, old), 0);
-    assert_int_equal(orl_dir_restore(NULL, slashed), ORL_OK);
-    test_expect_text(file, "b");
-    assert_int_equal(orl_dir_make(NULL, old), ORL_OK); // or not yet removed
-    assert_int_equal(orl_dir_restore(NULL, out), ORL_OK);
-    test_expect_text(file, "b");
-    assert_int_equal(test_count_entries(dir), 1);
-    assert_int_equal(orl_dir_remove(NULL, out), ORL_OK);
-    assert_int_equal(orl_dir_restore(NULL, out), ORL_OK); // nothing to do
-    free(out);
-    free(part);
-    free(slashed);
-    free(old);
-    free(file);
-    free(part_file);
-}
-
 static void listing(void **state)
 {
     (void)state;
@@ -256,7 +225,7 @@ int main(void)
         cmocka_unit_test(atomic_files),
         cmocka_unit_test(failed_writes_leave_nothing),
         cmocka_unit_test(folders),
-        cmocka_unit_test(replaced_folders),
+        
         cmocka_unit_test(listing),
         cmocka_unit_test(hashes),
     };

@@ -1,0 +1,218 @@
+#include "core/new_dir.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+static const char old_prefix[] = ".oriel-old-";
+enum { TRIES_MAX = 16, WAITS_MAX = 500, WAIT_NS = 10000000 };
+
+static char *parent_of(const struct orl_log *log, const char *path)
+{
+    const char *name = orl_path_name(path);
+    return name == path ? orl_strdup(log, ".")
+                        : orl_format(log, "%.*s", (int)(name - path), path);
+}
+
+// Whoever looks for other runs and then makes a folder does so alone. -1: there are no locks here,
+// or another program holds this one for long.
+static int lock_parent(const char *parent)
+{
+    int fd = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    for (int i = 0; fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) != 0; i++) {
+        if (errno == EWOULDBLOCK && i < WAITS_MAX) {
+            nanosleep(&(struct timespec){.tv_nsec = WAIT_NS}, NULL);
+            continue;
+        }
+        close(fd);
+        fd = -1;
+    }
+    return fd;
+}
+
+static bool is_locked(const char *path)
+{
+    int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    bool locked = fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (fd >= 0)
+        close(fd);
+    return locked;
+}
+
+static enum orl_result name_dir(const struct orl_log *log, const char *from, const char *to)
+{
+    return rename(from, to) == 0
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_IO, "%s: cannot be named %s: %s", from, to, strerror(errno));
+}
+
+// The folder that a run moved out of the way before it ended.
+static enum orl_result restore(const struct orl_log *log, const char *old, const char *out)
+{
+    struct stat st;
+    if (lstat(out, &st) != 0 && errno == ENOENT)
+        return name_dir(log, old, out);
+    orl_logf(log, ORL_LOG_WARNING, "%s: an earlier %s, left by a run that was ended: remove it if "
+             "nothing in it is missed", old, out);
+    return ORL_OK;
+}
+
+static enum orl_result meet_others(const struct orl_log *log, const char *parent, const char *out,
+                                   bool over)
+{
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(log, parent, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        char *path = orl_path_join(log, parent, names.items[i]);
+        if (!path)
+            result = ORL_ERR_MEMORY;
+        else if (over && orl_temp_is_of(names.items[i], old_prefix, out))
+            result = restore(log, path, out);
+        else if (orl_temp_is_of(names.items[i], orl_part_prefix, out) && is_locked(path))
+            result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: another oriel is making it", out);
+        free(path);
+    }
+    orl_names_finish(&names);
+    return result == ORL_OK && orl_dir_sweep(log, parent) == ORL_ERR_MEMORY ? ORL_ERR_MEMORY
+                                                                            : result;
+}
+
+static enum orl_result make(const struct orl_log *log, struct orl_new_dir *dir)
+{
+    for (int tries = 0; !dir->outer && tries < TRIES_MAX; tries++) {
+        char *outer = orl_temp_name(log, orl_part_prefix, dir->out);
+        if (!outer)
+            return ORL_ERR_MEMORY;
+        if (mkdir(outer, 0777) == 0) {
+            dir->outer = outer;
+            break;
+        }
+        free(outer);
+        if (errno != EEXIST)
+            break;
+    }
+    if (!dir->outer)
+        return orl_fail(log, ORL_ERR_IO, "%s: no folder can be made beside it: %s", dir->out,
+                        strerror(errno));
+    dir->fd = open(dir->outer, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (dir->fd >= 0)
+        (void)!flock(dir->fd, LOCK_EX | LOCK_NB);
+    dir->path = orl_path_join(log, dir->outer, "new");
+    return dir->path ? orl_dir_make(log, dir->path) : ORL_ERR_MEMORY;
+}
+
+static enum orl_result begin(const struct orl_log *log, const char *out, bool over,
+                             struct orl_new_dir *dir)
+{
+    char *named = orl_path_append(log, out, ""); // without slashes at its end
+    *dir = (struct orl_new_dir){.fd = -1};
+    enum orl_result result = named ? orl_path_follow(log, named, &dir->out) : ORL_ERR_MEMORY;
+    char *parent = result == ORL_OK ? parent_of(log, dir->out) : NULL;
+    if (result == ORL_OK)
+        result = parent ? orl_dir_make(log, parent) : ORL_ERR_MEMORY;
+    int lock = result == ORL_OK ? lock_parent(parent) : -1;
+    if (result == ORL_OK)
+        result = meet_others(log, parent, dir->out, over);
+    if (result == ORL_OK)
+        result = make(log, dir);
+    if (lock >= 0)
+        close(lock);
+    if (result != ORL_OK)
+        orl_new_dir_abort(log, dir);
+    free(parent);
+    free(named);
+    return result;
+}
+
+enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,
+                                  struct orl_new_dir *dir)
+{
+    struct orl_names names = {0};
+    enum orl_result result = ORL_OK;
+    *dir = (struct orl_new_dir){.fd = -1};
+    if (orl_path_is_file(out))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", out);
+    if (orl_path_is_dir(out))
+        result = orl_dir_list(log, out, &names);
+    if (result == ORL_OK && names.count)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: not empty; choose another folder", out);
+    orl_names_finish(&names);
+    return result == ORL_OK ? begin(log, out, false, dir) : result;
+}
+
+enum orl_result orl_new_dir_begin_over(const struct orl_log *log, const char *out,
+                                       struct orl_new_dir *dir)
+{
+    return begin(log, out, true, dir);
+}
+
+static void close_dir(const struct orl_log *log, struct orl_new_dir *dir)
+{
+    if (dir->outer && orl_dir_remove(log, dir->outer) != ORL_OK)
+        orl_logf(log, ORL_LOG_WARNING, "%s is left over", dir->outer);
+    if (dir->fd >= 0)
+        close(dir->fd);
+    free(dir->path);
+    free(dir->out);
+    free(dir->outer);
+    *dir = (struct orl_new_dir){.fd = -1};
+}
+
+enum orl_result orl_new_dir_finish(const struct orl_log *log, struct orl_new_dir *dir)
+{
+    enum orl_result result = orl_flush(log, dir->path);
+    if (result == ORL_OK)
+        result = name_dir(log, dir->path, dir->out);
+    if (result == ORL_OK)
+        close_dir(log, dir);
+    return result;
+}
+
+// Where names cannot be exchanged. The old folder may be swept once nothing needs it.
+static enum orl_result replace_aside(const struct orl_log *log, const struct orl_new_dir *dir)
+{
+    char *old = orl_temp_name(log, old_prefix, dir->out);
+    enum orl_result result = old ? name_dir(log, dir->out, old) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && (result = name_dir(log, dir->path, dir->out)) != ORL_OK)
+        (void)!rename(old, dir->out);
+    else if (result == ORL_OK)
+        result = name_dir(log, old, dir->path);
+    free(old);
+    return result;
+}
+
+enum orl_result orl_new_dir_replace(const struct orl_log *log, struct orl_new_dir *dir)
+{
+    struct stat st;
+    if (lstat(dir->out, &st) != 0 && errno == ENOENT)
+        return orl_new_dir_finish(log, dir);
+    enum orl_result result = orl_flush(log, dir->path);
+    if (result != ORL_OK)
+        return result;
+    (void)!chmod(dir->path, st.st_mode & 07777); // the new folder keeps the old permissions
+    if (renameat2(AT_FDCWD, dir->path, AT_FDCWD, dir->out, RENAME_EXCHANGE) != 0)
+        result = errno == EINVAL || errno == ENOSYS || errno == ENOTSUP
+                     ? replace_aside(log, dir)
+                     : orl_fail(log, ORL_ERR_IO, "%s: cannot be named %s: %s", dir->path, dir->out,
+                                strerror(errno));
+    if (result == ORL_OK) {
+        result = orl_dir_remove(log, dir->path); // which is the old one now
+        close_dir(log, dir);
+    }
+    return result;
+}
+
+void orl_new_dir_abort(const struct orl_log *log, struct orl_new_dir *dir)
+{
+    if (dir->outer || dir->out)
+        close_dir(log, dir);
+}

@@ -1,0 +1,36 @@
+// Folders that appear under their final name only when they are complete.
+#ifndef ORL_CORE_NEW_DIR_H
+#define ORL_CORE_NEW_DIR_H
+
+#include "oriel/log.h"
+
+// A folder that is filled beside its final place, in a folder whose random name nobody else has, and
+// takes its own name once it is whole and flushed. Where the final name is a symbolic link, the
+// link stays and the folder takes the name that it leads to. Two runs do not fill the same folder
+// at once: the second is refused.
+struct orl_new_dir {
+    char *path;  // owned: where its files go until it is finished
+    char *out;   // owned: its final name
+    char *outer; // owned: the folder around `path`
+    int fd;      // of `outer`, which is locked: no other run takes it for one that was left
+};
+
+// Refuses an `out` that is a file or a folder that is not empty.
+enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,
+                                  struct orl_new_dir *dir) ORL_CHECK_RESULT;
+// The same, but whatever there is at `out` is accepted, for orl_new_dir_replace. Where names cannot
+// be exchanged and an earlier run ended between two renames, this gives `out` its name back.
+enum orl_result orl_new_dir_begin_over(const struct orl_log *log, const char *out,
+                                       struct orl_new_dir *dir) ORL_CHECK_RESULT;
+// Gives the folder its final name, which an empty folder may have.
+enum orl_result orl_new_dir_finish(const struct orl_log *log,
+                                   struct orl_new_dir *dir) ORL_CHECK_RESULT;
+// Gives the folder its final name; a folder that has that name is removed. At every moment one of
+// the two is whole under that name, except between two renames on drives that cannot exchange names.
+enum orl_result orl_new_dir_replace(const struct orl_log *log,
+                                    struct orl_new_dir *dir) ORL_CHECK_RESULT;
+// Removes a folder that has not been finished, with a warning if that fails. Does nothing to one
+// that has been, and to a zeroed struct.
+void orl_new_dir_abort(const struct orl_log *log, struct orl_new_dir *dir);
+
+#endif
