@@ -384,6 +384,10 @@ enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, s
             json_object_del(json_object_get(root, "checksums"), "points.ply");
         *files = json_object_size(json_object_get(root, "checksums"));
         result = check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
+        if (result == ORL_OK && orl_path_is_file(levels)) {
+            *files += 1;
+            *bad += orl_lod_check(log, levels) != ORL_OK;
+        }
     }
     json_decref(root);
     free(path);

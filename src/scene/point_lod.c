@@ -65,7 +65,7 @@ static enum orl_result read_header(struct orl_lod *lod, struct lod_header *h)
     if (result != ORL_OK)
         return result;
     if (memcmp(h->magic, LOD_MAGIC, sizeof h->magic) != 0)
-        return bad(lod, "not a file of levels of detail");
+        return bad(lod, "not a file of levels of detail, or of another version");
     if (h->block_points != ORL_BLOCK_POINTS || h->page_blocks != ORL_LOD_BLOCKS ||
         h->children != ORL_LOD_CHILDREN)
         return bad(lod, "its blocks have another size");
@@ -91,6 +91,11 @@ static enum orl_result read_table(struct orl_lod *lod, const struct lod_header *
                                         : ORL_ERR_MEMORY;
     if (result == ORL_OK && XXH3_64bits(lod->pages, size) != h->table_hash)
         result = bad(lod, "its table of pages is damaged");
+    uint64_t points = 0;
+    for (size_t i = 0; i < lod->levels[0].count; i++)
+        points += lod->pages ? lod->pages[i].count : 0;
+    if (result == ORL_OK && points != lod->points)
+        result = bad(lod, "its number of points is not that of its pages");
     for (size_t i = 0; result == ORL_OK && i < lod->page_count; i++) {
         const struct orl_lod_page *page = &lod->pages[i];
         bool sound = page->density >= 0 && isfinite(page->density);
@@ -144,6 +149,8 @@ enum orl_result orl_lod_read(const struct orl_lod *lod, size_t page, struct orl_
 {
     ORL_REQUIRE(lod->log, page < lod->page_count);
     enum orl_result result = read_at(lod, LOD_PAGES_AT + page * sizeof *data, data, sizeof *data);
+    if (result == ORL_OK && XXH3_64bits(data, sizeof *data) != lod->pages[page].hash)
+        result = bad(lod, "a page is damaged");
     for (size_t b = 0; result == ORL_OK && b < ORL_LOD_BLOCKS; b++) {
         const float *texels = &data->blocks[b][0][0];
         float count = data->blocks[b][1][3];
@@ -153,6 +160,20 @@ enum orl_result orl_lod_read(const struct orl_lod *lod, size_t page, struct orl_
         if (!sound)
             result = bad(lod, "a block is damaged");
     }
+    return result;
+}
+
+enum orl_result orl_lod_check(const struct orl_log *log, const char *path)
+{
+    struct orl_lod *lod = NULL;
+    enum orl_result result = orl_lod_open(log, path, &lod);
+    struct orl_lod_data *data = result == ORL_OK ? orl_array(log, 1, sizeof *data) : NULL;
+    if (result == ORL_OK && !data)
+        result = ORL_ERR_MEMORY;
+    for (size_t page = 0; result == ORL_OK && page < lod->page_count; page++)
+        result = orl_lod_read(lod, page, data);
+    free(data);
+    orl_lod_close(&lod);
     return result;
 }
 

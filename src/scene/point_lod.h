@@ -34,6 +34,7 @@ struct orl_lod_page {
     float middle[3], extent[3]; // of its bounds, world: centre and half size
     float density;              // points per unit of area; 0: unknown
     uint32_t count;             // points
+    uint64_t hash;              // of the page; XXH3
 };
 
 struct orl_lod_level {
@@ -55,9 +56,11 @@ struct orl_lod {
 enum orl_result orl_lod_open(const struct orl_log *log, const char *path,
                              struct orl_lod **lod) ORL_CHECK_RESULT;
 void orl_lod_close(struct orl_lod **lod);
-// Reads and checks a page.
+// Reads a page and checks it by its hash.
 enum orl_result orl_lod_read(const struct orl_lod *lod, size_t page,
                              struct orl_lod_data *data) ORL_CHECK_RESULT;
+// Reads all pages.
+enum orl_result orl_lod_check(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 // The level of a page, and its children: *count pages from *first on; none of level 0.
 int orl_lod_children(const struct orl_lod *lod, size_t page, size_t *first, size_t *count);
 // The finest level of at most `most` points as a cloud, which stands for all points where a few are

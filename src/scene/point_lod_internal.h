@@ -8,7 +8,7 @@
 #include "scene/point_blocks.h"
 #include "scene/point_lod.h"
 
-#define LOD_MAGIC "ORLLOD2\n"
+#define LOD_MAGIC "ORLLOD3\n"
 enum { LOD_PAGES_AT = 4096 }; // a multiple of common sectors, as the size of a page is
 
 struct lod_header {
@@ -32,7 +32,7 @@ enum orl_result orl_lod_levels_end(struct lod_levels *levels) ORL_CHECK_RESULT;
 void orl_lod_levels_destroy(struct lod_levels **levels);
 
 static_assert(sizeof(struct orl_lod_data) == 94208, "a page has no padding");
-static_assert(sizeof(struct orl_lod_page) == 32, "an entry of the table has no padding");
+static_assert(sizeof(struct orl_lod_page) == 40, "an entry of the table has no padding");
 static_assert(sizeof(struct lod_header) <= LOD_PAGES_AT, "the header lies before the pages");
 
 #endif

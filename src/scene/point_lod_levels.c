@@ -137,6 +137,7 @@ static enum orl_result flush_page(struct lod_levels *l, struct level *level)
     if (result != ORL_OK)
         return result;
     struct orl_lod_page entry = describe_page(&level->page);
+    entry.hash = XXH3_64bits(&level->page, sizeof level->page);
     level->points += entry.count;
     level->pages[level->page_count++] = entry;
     if (fwrite(&level->page, sizeof level->page, 1, level->file) != 1)

@@ -36,6 +36,12 @@ runs 0 "$oriel" publish made --out site --max-points 5000
 sent=$(grep -o '[0-9]* points' stdout.txt | grep -o '[0-9]*')
 [ "${sent:-0}" -ge 1000 ] && [ "$sent" -le 6000 ] || fail "a site of ${sent:-no} points"
 # A damaged file is named, with what to do.
+cp made/points.lod sound.lod
+printf '\125' | dd of=made/points.lod bs=1 seek=60000 conv=notrunc 2>/dev/null
+runs 1 "$oriel" info made --check
+grep -q "points.lod: a page is damaged" stderr.txt || fail "info --check does not see a changed page"
+runs 2 "$oriel" render made --at "$name" --out damaged.png
+mv sound.lod made/points.lod
 head -c 100000 made/points.lod >cut && mv cut made/points.lod
 runs 2 "$oriel" render made --at "$name" --out cut.png
 grep -q "points.lod: .*oriel lod" stderr.txt || fail "a file that is cut off is not told"

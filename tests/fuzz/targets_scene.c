@@ -1,9 +1,11 @@
 // Models, maps, clouds, manifests and camera paths.
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -13,7 +15,7 @@
 #include "scene/colmap.h"
 #include "scene/manifest.h"
 #include "oriel/path.h"
-#include "scene/point_lod.h"
+#include "scene/point_lod_internal.h"
 #include "scene/radius_limits.h"
 #include "scene/tuned_settings.h"
 
@@ -158,6 +160,21 @@ static enum orl_result write_lod(void)
     return result;
 }
 
+// The hashes of a changed file are made anew, so that what lies behind them is tried.
+static void seal_lod(uint8_t *file, size_t length)
+{
+    size_t pages = (length - LOD_PAGES_AT) / (sizeof(struct orl_lod_data) + sizeof(struct orl_lod_page));
+    uint8_t *table = file + LOD_PAGES_AT + pages * sizeof(struct orl_lod_data);
+    for (size_t i = 0; i < pages; i++) {
+        uint64_t hash = XXH3_64bits(file + LOD_PAGES_AT + i * sizeof(struct orl_lod_data),
+                                    sizeof(struct orl_lod_data));
+        memcpy(table + i * sizeof(struct orl_lod_page) + offsetof(struct orl_lod_page, hash), &hash,
+               sizeof hash);
+    }
+    uint64_t hash = XXH3_64bits(table, pages * sizeof(struct orl_lod_page));
+    memcpy(file + offsetof(struct lod_header, table_hash), &hash, sizeof hash);
+}
+
 // Saves the levels of detail of a cloud, in which each five bytes of the input change one: its
 // place and its value.
 static void save_changed_lod(size_t count, const uint8_t *data, size_t size)
@@ -181,6 +198,7 @@ static void save_changed_lod(size_t count, const uint8_t *data, size_t size)
         memcpy(&at, data, sizeof at);
         file[at % length] = data[4];
     }
+    seal_lod(file, length);
     fuzz_save(ORL_LOD_NAME, file, length - size); // 0 to 4 bytes left over: the file is cut
     free(file);
     orl_points_finish(&points);

@@ -2,8 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
-#include "scene/point_lod.h"
+#include "scene/point_lod_internal.h"
 #include "test.h"
 
 static char *dir, *ply, *file;
@@ -238,7 +239,17 @@ static void radii_in_parts_are_those_of_the_whole(void **state)
     orl_lod_close(&lod);
 }
 
-static enum orl_result open_changed(size_t at, const void *bytes, size_t size, size_t cut)
+// Makes the hashes of the first page and of the table fit what a stranger has changed.
+static void seal(uint8_t *data, size_t length)
+{
+    size_t pages = (length - LOD_PAGES_AT) / (sizeof(struct orl_lod_data) + sizeof(struct orl_lod_page));
+    struct orl_lod_page *table = (void *)(data + LOD_PAGES_AT + pages * sizeof(struct orl_lod_data));
+    table[0].hash = XXH3_64bits(data + LOD_PAGES_AT, sizeof(struct orl_lod_data));
+    ((struct lod_header *)(void *)data)->table_hash = XXH3_64bits(table, pages * sizeof *table);
+}
+
+static enum orl_result open_changed_file(size_t at, const void *bytes, size_t size, size_t cut,
+                                         bool sealed)
 {
     uint8_t *data;
     size_t length;
@@ -246,6 +257,8 @@ static enum orl_result open_changed(size_t at, const void *bytes, size_t size, s
     assert_int_equal(orl_file_read(NULL, file, SIZE_MAX / 2, &data, &length), ORL_OK);
     assert_true(at + size <= length && cut < length);
     memcpy(data + at, bytes, size);
+    if (sealed)
+        seal(data, length);
     char *changed = orl_path_join(NULL, dir, "changed.lod");
     assert_int_equal(orl_file_write(NULL, changed, data, length - cut), ORL_OK);
     enum orl_result result = orl_lod_open(NULL, changed, &lod);
@@ -258,6 +271,11 @@ static enum orl_result open_changed(size_t at, const void *bytes, size_t size, s
     free(changed);
     free(data);
     return result;
+}
+
+static enum orl_result open_changed(size_t at, const void *bytes, size_t size, size_t cut)
+{
+    return open_changed_file(at, bytes, size, cut, false);
 }
 
 static void damage_is_told(void **state)
@@ -278,8 +296,12 @@ static void damage_is_told(void **state)
     assert_int_equal(open_changed(0, "", 0, 1), ORL_ERR_FORMAT);     // cut off
     size_t table = 4096 + pages * sizeof(struct orl_lod_data);
     assert_int_equal(open_changed(table + 5, "?", 1, 0), ORL_ERR_FORMAT);
-    assert_int_equal(open_changed(4096 + 4, &nan, 4, 0), ORL_ERR_FORMAT);    // a block's centre
-    assert_int_equal(open_changed(4096 + 28, &crowd, 4, 0), ORL_ERR_FORMAT); // its points
+    assert_int_equal(open_changed(24, &many, 4, 0), ORL_ERR_FORMAT); // points
+    assert_int_equal(open_changed(4096 + 94208 / 2, "?", 1, 0), ORL_ERR_FORMAT); // a position
+    assert_int_equal(open_changed(table - 2, "?", 1, 0), ORL_ERR_FORMAT); // a colour
+    assert_int_equal(open_changed_file(4096, "", 0, 0, true), ORL_OK);
+    assert_int_equal(open_changed_file(4096 + 4, &nan, 4, 0, true), ORL_ERR_FORMAT); // a centre
+    assert_int_equal(open_changed_file(4096 + 28, &crowd, 4, 0, true), ORL_ERR_FORMAT); // points
 }
 
 static size_t count_files(void)
