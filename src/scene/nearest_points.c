@@ -5,10 +5,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "scene/alike_points.h"
+
 enum { CHUNK = 1 << 15 };
 
 static enum orl_result search(const struct orl_log *log, flann_index_t index,
-                              struct FLANNParameters *flann, const struct orl_points *points,
+                              struct FLANNParameters *flann, const struct few_alike *points,
                               const struct orl_points *queries, int *found, float *dist2)
 {
     for (size_t first = 0; first < queries->count; first += CHUNK) {
@@ -19,7 +21,7 @@ static enum orl_result search(const struct orl_log *log, flann_index_t index,
             return orl_fail(log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
     }
     for (size_t i = 0; i < queries->count; i++)
-        if (found[i] < 0 || (size_t)found[i] >= points->count)
+        if ((found[i] = orl_few_alike_point(points, found[i])) < 0)
             return orl_fail(log, ORL_ERR_EXTERNAL, "FLANN found a point that is not there");
     return ORL_OK;
 }
@@ -38,11 +40,16 @@ enum orl_result orl_points_nearest(const struct orl_log *log, const struct orl_p
     flann.leaf_max_size = 10;
     flann.log_level = FLANN_LOG_NONE;
     flann.cores = cores > 0 && cores < 256 ? (int)cores : 2;
-    flann_index_t index = flann_build_index(&points->position[0][0], (int)points->count, 3,
+    struct few_alike few;
+    enum orl_result result = orl_points_few_alike(log, points, 1, &few);
+    if (result != ORL_OK)
+        return result;
+    flann_index_t index = flann_build_index((float *)(uintptr_t)few.position, (int)few.count, 3,
                                             &speedup, &flann);
-    if (!index)
-        return orl_fail(log, ORL_ERR_EXTERNAL, "FLANN cannot index %zu points", points->count);
-    enum orl_result result = search(log, index, &flann, points, queries, found, dist2);
-    flann_free_index(index, &flann);
+    result = index ? search(log, index, &flann, &few, queries, found, dist2)
+                   : orl_fail(log, ORL_ERR_EXTERNAL, "FLANN cannot index %zu points", few.count);
+    if (index)
+        flann_free_index(index, &flann);
+    orl_few_alike_finish(&few);
     return result;
 }

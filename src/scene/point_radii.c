@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "core/memory.h"
+#include "scene/alike_points.h"
 
 enum { CHUNK = 1 << 15 }; // points between two reports of progress and checks for cancellation
 
@@ -19,6 +20,7 @@ struct search {
     int neighbours; // excluding the point itself
     float overlap;
     struct FLANNParameters flann;
+    struct few_alike few; // what is searched among
     flann_index_t index;
     int *found;   // CHUNK * (neighbours + 1)
     float *dist2; // squared distances, as many
@@ -113,8 +115,12 @@ static enum orl_result search_open(struct search *s)
     s->flann.log_level = FLANN_LOG_NONE;
     s->flann.cores = cores > 0 && cores < 256 ? (int)cores : 2;
     float speedup;
-    s->index = flann_build_index(&s->points->position[0][0], (int)s->points->count, 3, &speedup,
-                                 &s->flann);
+    enum orl_result result = orl_points_few_alike(s->log, s->points, (unsigned)s->neighbours + 1,
+                                                  &s->few);
+    if (result != ORL_OK)
+        return result;
+    s->index = flann_build_index((float *)(uintptr_t)s->few.position, (int)s->few.count, 3,
+                                 &speedup, &s->flann);
     if (!s->index)
         return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot index %zu points",
                         s->points->count);
@@ -127,6 +133,7 @@ static void search_close(struct search *s)
 {
     if (s->index)
         flann_free_index(s->index, &s->flann);
+    orl_few_alike_finish(&s->few);
     free(s->found);
     free(s->dist2);
 }
@@ -139,7 +146,7 @@ static enum orl_result search_chunk(struct search *s, size_t first, size_t count
                                            s->found, s->dist2, (int)columns, &s->flann) != 0)
         return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
     for (size_t i = 0; i < count * columns; i++)
-        if (s->found[i] < 0 || (size_t)s->found[i] >= s->points->count)
+        if ((s->found[i] = orl_few_alike_point(&s->few, s->found[i])) < 0)
             return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN found a point that is not there");
     for (size_t i = 0; i < count; i++) {
         // The point itself is found too, at distance zero, so the last column is the k-th

@@ -1,7 +1,9 @@
 // Radii and normals against brute force and known surfaces.
 #include <math.h>
 #include <string.h>
+#include <time.h>
 
+#include "scene/nearest_points.h"
 #include "scene/radius_limits.h"
 #include "test.h"
 
@@ -45,6 +47,61 @@ static void agrees_with_brute_force(void **state)
         assert_float_equal(points.radius[i], 1.5 * all[K], 1e-5);
     }
     orl_points_finish(&points);
+}
+
+// Depth cameras write a miss as 0, 0, 0. The search is exact beside such a heap, also for those
+// that coincide with fewer points than they have neighbours.
+static void a_heap_changes_no_other_radius(void **state)
+{
+    (void)state;
+    enum { COUNT = 300, HEAP = 5000, K = 6 };
+    struct orl_points alone, points;
+    assert_int_equal(orl_points_init(NULL, &alone, COUNT), ORL_OK);
+    assert_int_equal(orl_points_init(NULL, &points, COUNT + HEAP), ORL_OK);
+    uint32_t seed = 7;
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < 3; k++)
+            alone.position[i][k] = points.position[HEAP + i][k] = (float)random_unit(&seed) + 9;
+    for (int i = 1; i < 6; i++) { // six at one place
+        memcpy(alone.position[i], alone.position[0], sizeof alone.position[0]);
+        memcpy(points.position[HEAP + i], alone.position[0], sizeof alone.position[0]);
+    }
+    points.position[3][0] = -0.0f;
+    const struct orl_radii_params params = {.neighbours = K, .overlap = 1};
+    assert_int_equal(orl_points_set_radii(NULL, NULL, &params, NULL, 0, &alone), ORL_OK);
+    assert_int_equal(orl_points_set_radii(NULL, NULL, &params, NULL, 0, &points), ORL_OK);
+    for (int i = 0; i < COUNT; i++)
+        assert_float_equal(points.radius[HEAP + i], alone.radius[i], 1e-6);
+    assert_true(points.radius[HEAP] > 0 && points.radius[0] > 0);
+    orl_points_finish(&alone);
+    orl_points_finish(&points);
+}
+
+static double seconds_of_a_heap(int count)
+{
+    struct orl_points heap, queries;
+    struct timespec from, to;
+    int *found = calloc((size_t)count, sizeof *found);
+    float *dist2 = calloc((size_t)count, sizeof *dist2);
+    assert_true(found && dist2);
+    assert_int_equal(orl_points_init(NULL, &heap, (size_t)count), ORL_OK);
+    assert_int_equal(orl_points_init(NULL, &queries, (size_t)count), ORL_OK);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
+    assert_int_equal(orl_points_set_radii(NULL, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
+                                          NULL, 0, &heap), ORL_OK);
+    assert_int_equal(orl_points_nearest(NULL, &heap, &queries, found, dist2), ORL_OK);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
+    orl_points_finish(&heap);
+    orl_points_finish(&queries);
+    free(found);
+    free(dist2);
+    return (double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec);
+}
+
+static void identical_points_take_their_number(void **state)
+{
+    (void)state;
+    test_grows_in_proportion(seconds_of_a_heap);
 }
 
 // A tilted plane: each missing normal is its own, towards the nearest viewer; one
@@ -259,6 +316,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(agrees_with_brute_force),
+        cmocka_unit_test(a_heap_changes_no_other_radius),
+        cmocka_unit_test(identical_points_take_their_number),
         cmocka_unit_test(fits_normals),
         cmocka_unit_test(gives_coinciding_points_the_median),
         cmocka_unit_test(drops_points_beyond_the_world),
