@@ -41,7 +41,7 @@ static void print_photos(const struct orl_scene *scene)
 static enum orl_result print_json(const struct orl_log *log, const struct orl_scene *scene)
 {
     json_t *root = orl_scene_info(log, scene);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
+    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(9)) : NULL;
     if (text)
         printf("%s\n", text);
     enum orl_result result = text ? ORL_OK : ORL_ERR_FORMAT;

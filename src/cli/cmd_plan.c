@@ -102,7 +102,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         return result;
     }
     const json_t *jobs = json_object_get(plan, "jobs");
-    char *text = o->json ? json_dumps(plan, JSON_INDENT(1)) : NULL;
+    char *text = o->json ? json_dumps(plan, JSON_INDENT(1) | JSON_ENSURE_ASCII) : NULL;
     if (o->json && !text)
         result = ORL_ERR_MEMORY;
     else if (text)

@@ -57,6 +57,8 @@ static void print_adapted(const json_t *record)
                count(record, "views"));
 }
 
+enum { LEFT_OUT_SHOWN = 20 };
+
 static void print_left_out(const json_t *list)
 {
     size_t i;
@@ -66,6 +68,10 @@ static void print_left_out(const json_t *list)
         const char *why = json_string_value(json_object_get(entry, "why"));
         char shown[ORL_TEXT_SHOWN];
         orl_text_escape(name ? name : "?", shown, sizeof shown);
+        if (i == LEFT_OUT_SHOWN) {
+            printf("left out     and %zu more, which scene.json names\n", json_array_size(list) - i);
+            break;
+        }
         printf("left out     %s: %s\n", shown, why ? why : "?");
     }
 }
@@ -76,7 +82,9 @@ enum orl_result summary_print(const struct orl_log *log, const char *dir)
     char *path = orl_path_join(log, dir, "scene.json");
     enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
-        printf("scene        %s\n", dir);
+        char shown[ORL_TEXT_SHOWN];
+        orl_text_escape(dir, shown, sizeof shown);
+        printf("scene        %s\n", shown);
         print_counts(root);
         print_left_out(json_object_get(root, "left_out"));
         print_stages(json_object_get(root, "stages"));

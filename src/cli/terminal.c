@@ -98,6 +98,7 @@ void terminal_init(struct terminal *t, enum orl_log_level level, bool quiet)
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN); // a write beyond ulimit -f fails instead, and is told
 }
 
 void terminal_finish(struct terminal *t)

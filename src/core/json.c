@@ -6,9 +6,12 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/memory.h"
 #include "core/text.h"
 
-enum { JSON_MAX_BYTES = 64 << 20 };
+// TEXT_SHARE: jansson collects a string in a buffer that it doubles, then copies. A buffer that cannot
+// grow makes it read past its end, or abort (jansson 2.14), so that its memory must be there before.
+enum { JSON_MAX_BYTES = 64 << 20, TEXT_SHARE = 8 };
 
 enum orl_result orl_json_parse(const struct orl_log *log, const char *path, const void *text,
                                size_t size, json_t **out)
@@ -18,6 +21,9 @@ enum orl_result orl_json_parse(const struct orl_log *log, const char *path, cons
     *out = NULL;
     if (orl_is_utf16(text, size))
         return orl_fail(log, ORL_ERR_FORMAT, "%s: is UTF-16: save it as UTF-8", path);
+    if (size > orl_memory_available() / TEXT_SHARE)
+        return orl_fail(log, ORL_ERR_MEMORY, "%s: %zu bytes of JSON are more than the memory left "
+                        "can hold", path, size);
     *out = json_loadb((const char *)text + mark, size - mark, JSON_REJECT_DUPLICATES, &error);
     return *out ? ORL_OK
                 : orl_fail(log, ORL_ERR_FORMAT, "%s: line %d (byte %d): %s", path, error.line,

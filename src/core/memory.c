@@ -69,15 +69,19 @@ uint64_t orl_memory_available(void)
         uint64_t left = minus(most, minus(used, cached != UINT64_MAX ? cached : 0));
         bytes = left < bytes ? left : bytes;
     }
+    uint64_t left = orl_address_space_left();
+    return left < bytes ? left : bytes;
+}
+
+uint64_t orl_address_space_left(void)
+{
     struct rlimit limit;
     uint64_t pages = read_number("/proc/self/statm", "");
     long page = sysconf(_SC_PAGE_SIZE);
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && page > 0 &&
-        pages < UINT64_MAX / (uint64_t)page) {
-        uint64_t left = minus(limit.rlim_cur, pages * (uint64_t)page);
-        bytes = left < bytes ? left : bytes;
-    }
-    return bytes;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || page <= 0 ||
+        pages >= UINT64_MAX / (uint64_t)page)
+        return UINT64_MAX;
+    return minus(limit.rlim_cur, pages * (uint64_t)page);
 }
 
 char *orl_strdup(const struct orl_log *log, const char *text)

@@ -19,6 +19,9 @@ enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capaci
 // control group and of its address space. UINT64_MAX: unknown.
 uint64_t orl_memory_available(void);
 
+// Bytes of address space that the limit of this process (ulimit -v) leaves. UINT64_MAX: no limit.
+uint64_t orl_address_space_left(void);
+
 // These return new strings, released with free(); NULL, logged, when memory runs out.
 char *orl_strdup(const struct orl_log *log, const char *text);
 char *orl_format(const struct orl_log *log, const char *format, ...) ORL_PRINTF(2, 3);

@@ -73,6 +73,7 @@ static void exec_child(const struct orl_process_params *params, int output_fd)
     // signal settings: a program that ignores SIGPIPE would write to a closed pipe for ever.
     close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
     signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_DFL);
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, NULL);

@@ -28,10 +28,21 @@ bool orl_utf8_valid(const char *text)
     return true;
 }
 
+// Marks, embeddings and isolates of direction (Unicode Standard Annex 9), by which a name shows as
+// another one, and the separators of lines and paragraphs.
+static bool turns_text(const unsigned char *c)
+{
+    if (c[0] == 0xd8)
+        return c[1] == 0x9c; // U+061C
+    return c[0] == 0xe2 && ((c[1] == 0x80 && (c[2] == 0x8e || c[2] == 0x8f || // U+200E, U+200F
+                                              (c[2] >= 0xa8 && c[2] <= 0xae))) || // to U+202E
+                            (c[1] == 0x81 && c[2] >= 0xa6 && c[2] <= 0xa9)); // U+2066 to U+2069
+}
+
 static bool controls_terminal(const unsigned char *c)
 {
     return (c[0] < 0x20 && c[0] != '\n' && c[0] != '\t') || c[0] == 0x7f ||
-           (c[0] == 0xc2 && c[1] < 0xa0); // C1 controls, U+0080 to U+009F
+           (c[0] == 0xc2 && c[1] < 0xa0) || turns_text(c); // C1 controls, U+0080 to U+009F
 }
 
 void orl_text_escape(const char *text, char *out, size_t size)
@@ -43,7 +54,7 @@ void orl_text_escape(const char *text, char *out, size_t size)
         char coded[5];
         const char *from = text;
         bool escaped = length == 0 || controls_terminal(c);
-        if (escaped) { // the second byte of a C1 control is invalid alone: escaped next
+        if (escaped) { // further bytes are invalid alone: escaped next
             snprintf(coded, sizeof coded, "\\x%02x", c[0]);
             from = coded;
         }

@@ -75,7 +75,7 @@ char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench
         runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),
         "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION), "gl_points",
         rasters_json(bench));
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(6)) : NULL;
+    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(6)) : NULL;
     if (!text)
         orl_logf(log, ORL_LOG_ERROR, "no memory for the JSON text");
     json_decref(root);

@@ -83,7 +83,7 @@ char *orl_reports_to_text(const struct orl_log *log, json_t *all, bool whole, bo
     char *text = NULL;
     if (whole)
         text = json_dumps(array ? all : json_array_get(all, 0),
-                          JSON_INDENT(1) | JSON_REAL_PRECISION(digits));
+                          JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(digits));
     if (!text)
         orl_logf(log, ORL_LOG_ERROR, "the report cannot be made: out of memory or a name that is "
                                      "not UTF-8");

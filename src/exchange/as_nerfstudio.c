@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/new_dir.h"
 #include "exchange/kinds.h"
 
 // world_from_camera, with y up and z backward in the camera.
@@ -89,14 +90,12 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
 
 ORL_EXPORT_WRITER(orl_export_nerfstudio)
 {
-    char *part = NULL;
-    enum orl_result result = orl_new_dir_begin(log, params->out, &part);
+    struct orl_new_dir dir;
+    enum orl_result result = orl_new_dir_begin(log, params->out, &dir);
     if (result == ORL_OK)
-        result = fill(log, progress, scene, part);
+        result = fill(log, progress, scene, dir.path);
     if (result == ORL_OK)
-        result = orl_new_dir_finish(log, part, params->out);
-    if (result != ORL_OK && part && orl_dir_remove(log, part) != ORL_OK)
-        orl_logf(log, ORL_LOG_WARNING, "%s is left over", part);
-    free(part);
+        result = orl_new_dir_finish(log, &dir);
+    orl_new_dir_abort(log, &dir);
     return result;
 }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/memory.h"
 #include "gpu/check.h"
@@ -119,6 +120,21 @@ static void query_caps(struct orl_gpu_caps *caps)
     glGetIntegerv(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, &caps->max_texture_units);
 }
 
+// A software driver that gets no memory for a thread ends the program by a segmentation fault. Each
+// thread takes a stack and, of the C library, an arena.
+static enum orl_result check_address_space(const struct orl_log *log)
+{
+    const uint64_t mib = 1 << 20, driver = 512 * mib, thread = 72 * mib;
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    uint64_t need = driver + thread * (uint64_t)(cores < 1 ? 1 : cores < 16 ? cores : 16);
+    uint64_t left = orl_address_space_left();
+    if (left >= need)
+        return ORL_OK;
+    return orl_fail(log, ORL_ERR_MEMORY, "the address space that ulimit -v leaves, %llu MiB, does not "
+                    "suffice for a device, which needs about %llu MiB: raise the limit",
+                    (unsigned long long)(left / mib), (unsigned long long)(need / mib));
+}
+
 enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_params *params,
                                struct orl_gpu **out)
 {
@@ -135,6 +151,8 @@ enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_p
         result = ORL_ERR_MEMORY;
         goto fail;
     }
+    if ((result = check_address_space(log)) != ORL_OK)
+        goto fail;
     orl_mesa_cache_guard(log);
     if (!open_any_context(gpu, params && params->debug)) {
         result = orl_fail(log, ORL_ERR_GPU, "no usable OpenGL device (EGL error 0x%04x). %s",

@@ -1,4 +1,5 @@
 // Writing OpenEXR: one part, scanlines, ZIP or PIZ.
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,7 +39,8 @@ static enum orl_result check(const struct exr_writer *writer, exr_result_t code)
         return ORL_OK;
     return orl_fail(writer->log, code == EXR_ERR_OUT_OF_MEMORY ? ORL_ERR_MEMORY : ORL_ERR_IO,
                     "%s: cannot write OpenEXR: %s", writer->path,
-                    exr_get_default_error_message(code));
+                    code == EXR_ERR_WRITE_IO && errno ? strerror(errno)
+                                                      : exr_get_default_error_message(code));
 }
 
 // --- camera attributes ---
@@ -280,6 +282,7 @@ enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
     enum orl_result result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         return result;
+    errno = 0; // it tells why OpenEXR cannot write
     result = check(&writer, exr_start_write(&writer.context, file.temp, EXR_WRITE_FILE_DIRECTLY,
                                             &init));
     if (result == ORL_OK)

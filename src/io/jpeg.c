@@ -1,6 +1,7 @@
 // JPEG through libjpeg-turbo. libjpeg reports errors by longjmp. State that must
 // survive a longjmp is in struct jpeg_job, owned by the caller of the function that
 // calls setjmp.
+#include <errno.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -262,13 +263,13 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
         goto end;
     out.stream = orl_atomic_stream(&file);
     if (!out.stream) {
-        result = orl_fail(log, ORL_ERR_IO, "%s: cannot write here", path);
+        result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
         goto end;
     }
     result = encode(&job, &info, &out);
     jpeg_destroy_compress(&info);
     if (fclose(out.stream) != 0 && result == ORL_OK)
-        result = orl_fail(log, ORL_ERR_IO, "%s: cannot write all of it", path);
+        result = orl_fail(log, ORL_ERR_IO, "%s: cannot write all of it: %s", path, strerror(errno));
     if (result == ORL_OK)
         result = orl_atomic_commit(log, &file);
 end:

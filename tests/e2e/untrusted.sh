@@ -54,6 +54,38 @@ rm "evil/images/$evil"
 runs 2 "$oriel" info evil
 grep -qF "$esc" stderr.txt && fail "a name in an error reaches the terminal as it is"
 
+turned=$'\u202egpj.exe' # shown, it would end in "exe.jpg"
+sed -i "s|[^ ]*owned.*|$turned.jpg|" evil/sparse/images.txt
+cp "ws/images/${names[0]}" "evil/images/$turned.jpg"
+for form in '' --json; do
+    runs 0 "$oriel" info evil $form
+    grep -qF $'\u202e' stdout.txt stderr.txt && fail "a name turns the text of info $form"
+done
+
+# Limits of the shell are told of, and leave nothing behind.
+(ulimit -f 1 && runs 1 "$oriel" render ws --at 0001 --out large.exr && exit $failed) || failed=1
+grep -qi 'large.exr.*too large' stderr.txt || fail "a file beyond ulimit -f is not told of"
+[ -z "$(find . -name '.oriel-part-*')" ] && [ ! -e large.exr ] || fail "a cut file stays"
+(ulimit -v 400000 && runs 1 "$oriel" render ws --at 0001 --out small.png && exit $failed) || failed=1
+grep -q 'ulimit -v' stderr.txt || fail "too little address space is not told of"
+
+# Many photographs that are left out are not told one by one.
+{
+    comma=
+    printf '{"fl_x": 90, "fl_y": 90, "cx": 48, "cy": 32, "w": 96, "h": 64, "frames": ['
+    for ((i = 0; i < 300; i++)); do
+        file=images/none$i.jpg
+        [ $i -lt 2 ] && file=${names[i]}
+        printf '%s{"file_path": "%s", "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}' \
+            "$comma" "$file"
+        comma=,
+    done
+    echo ']}'
+} >photos/many.json
+runs 0 "$oriel" import photos/many.json --out many --quiet
+[ "$(cat stdout.txt stderr.txt | wc -l)" -lt 40 ] || fail "--quiet is not quiet"
+grep -q 'and 278 more' stdout.txt || fail "how many are left out is not told"
+
 # No file of this machine is shown through a scene.
 cp -r ws linked
 mv "linked/images/${names[1]}" secret

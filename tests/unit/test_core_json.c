@@ -1,6 +1,8 @@
 // JSON values are checked as they are read, and errors name file, thing, key and range.
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -85,12 +87,40 @@ static void refuses_files(void **state)
     test_dir_remove(dir);
 }
 
+// A string whose buffer cannot grow would be read past its end.
+static void refuses_what_memory_cannot_hold(void **state)
+{
+    (void)state;
+    enum { SIZE = 24 << 20, ROOM = 64 << 20 };
+    char *text = malloc(SIZE);
+    assert_non_null(text);
+    memset(text, 'a', SIZE);
+    memcpy(text, "{\"k\": \"", 7);
+    memcpy(text + SIZE - 2, "\"}", 2);
+    struct rlimit before, tight;
+    assert_int_equal(getrlimit(RLIMIT_AS, &before), 0);
+    FILE *file = fopen("/proc/self/statm", "r");
+    unsigned long pages = 0;
+    assert_true(file && fscanf(file, "%lu", &pages) == 1);
+    fclose(file);
+    tight = (struct rlimit){.rlim_cur = pages * (rlim_t)sysconf(_SC_PAGE_SIZE) + ROOM,
+                            .rlim_max = before.rlim_max};
+    json_t *value = NULL;
+    assert_int_equal(setrlimit(RLIMIT_AS, &tight), 0);
+    enum orl_result result = orl_json_parse(NULL, "text", text, SIZE, &value);
+    assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
+    free(text);
+    assert_int_equal(result, ORL_ERR_MEMORY);
+    assert_null(value);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_values),
         cmocka_unit_test(refuses_values),
         cmocka_unit_test(refuses_files),
+        cmocka_unit_test(refuses_what_memory_cannot_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,6 +29,9 @@ static void escaping(void **state)
         {"\x1b[2J\x07\x7f\r", "\\x1b[2J\\x07\\x7f\\x0d"},
         {"\xe9t\xe9", "\\xe9t\\xe9"},
         {"\xc2\x9b" "31m", "\\xc2\\x9b" "31m"}, // the C1 form of ESC [
+        {"a\xe2\x80\xaegpj.exe", "a\\xe2\\x80\\xaegpj.exe"}, // U+202E turns what follows
+        {"\xe2\x81\xa6|\xe2\x80\x8f|\xd8\x9c", "\\xe2\\x81\\xa6|\\xe2\\x80\\x8f|\\xd8\\x9c"},
+        {"\xd8\xa7\xe2\x80\x9c\xe2\x80\x8d", "\xd8\xa7\xe2\x80\x9c\xe2\x80\x8d"}, // letters, quotes, joiners
     };
     for (size_t i = 0; i < ORL_COUNT(rows); i++) {
         orl_text_escape(rows[i][0], out, sizeof out);
