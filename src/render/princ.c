@@ -75,7 +75,7 @@ static size_t project(const struct proxy *proxy, const struct orl_view *view, do
 }
 
 // The photograph's direction, through the centroid of the corners of the convex hull, and the
-// share of the picture that the hull covers. Without vertices: its own axis, and nothing.
+// hull's area. Without vertices: its own axis, and nothing.
 static void describe(const struct orl_view *view, double (*hull)[2], size_t count,
                      struct photo_aspect *aspect)
 {
@@ -94,7 +94,7 @@ static void describe(const struct orl_view *view, double (*hull)[2], size_t coun
     for (int k = 0; k < 3; k++)
         aspect->direction[k] = through[k] - eye[k];
     orl_normalize3(aspect->direction);
-    aspect->share = fabs(area) / ((double)c->width * c->height);
+    aspect->area_px = fabs(area);
 }
 
 static enum orl_result find_aspects(const struct frame *frame)
@@ -250,7 +250,7 @@ static size_t cluster(double (*normals)[3], size_t count, size_t clusters, doubl
     return found;
 }
 
-// One photograph for each of the most frequent directions of what is not covered.
+// One photograph for each cluster of the normals of what is not covered.
 static enum orl_result add_extras(struct frame *frame, bool *taken)
 {
     size_t clusters = (size_t)(frame->params->extras + 0.5f), count;
@@ -284,7 +284,7 @@ static void weigh(struct frame *frame, const double direction[3], bool *extra)
         const struct photo_aspect *aspect = &frame->proxy->aspects[frame->chosen[i]];
         double agrees = fmax(orl_dot3(direction, aspect->direction), 1e-3);
         float *selected = frame->selected[i];
-        selected[0] = (float)(agrees * aspect->share) * (extra[frame->chosen[i]] ? EXTRA_WEIGHT : 1);
+        selected[0] = (float)(agrees * aspect->area_px) * (extra[frame->chosen[i]] ? EXTRA_WEIGHT : 1);
         for (int k = 0; k < 3; k++)
             selected[1 + k] =
                 (float)orl_dot3(frame->view->cam_from_world.r[k], aspect->direction);

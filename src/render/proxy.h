@@ -77,7 +77,7 @@ enum orl_result orl_vertices_range(const struct orl_log *log, const float (*vert
 // What a photograph shows of the proxy (Princ 2014, 2.3.2).
 struct photo_aspect {
     double direction[3]; // world, unit length: through the middle of the vertices' convex hull
-    double share;        // of the picture that the hull covers, [0, 1]
+    double area_px;      // of this hull in the photograph, pixels
 };
 
 // A proxy of the scene, with one target for views and one for photographs.

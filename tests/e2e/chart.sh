@@ -109,7 +109,7 @@ for name in "${names[@]:3}"; do
     cp "ws/images/$name" "perfect/ws/$name"
 done
 runs 0 "${chart[@]}" --quick --method points --peer best=perfect,ms=0.001,MIB=2
-awk '$1 == "best" && $3 == "100.00" && $6 == "2.0" && $NF == "front" { found = 1 }
+awk '$1 == "best" && $3 == "100.00" && $7 == "2.0" && $NF == "front" { found = 1 }
      END { exit !found }' stdout.txt || fail "the photographs themselves are not perfect"
 runs 0 "${chart[@]}" --quick --method points --peer best=perfect
 awk '$1 == "best" && $2 == "-" { found = 1 } END { exit !found }' stdout.txt ||

@@ -87,6 +87,23 @@ static void extras_paint_oblique_surfaces(void **state)
     teardown(&f);
 }
 
+// s of equation 2.8 is an area: of two photographs alike, the one of twice as many pixels each way has
+// four times the weight.
+static void a_larger_photograph_weighs_more(void **state)
+{
+    (void)state;
+    static const char *const mean[] = {"combine=mean", "extras=0"};
+    struct fixture f;
+    setup(&f, false);
+    add_photo(&f, look_from(0, 0, -8, SIDE, 40), red);
+    add_photo(&f, look_from(0, 0, -8, 2 * SIDE, 80), green);
+    struct orl_frame frame = draw_with(&f, mean, 2);
+    const float *middle = color_at(&frame, MIDDLE, MIDDLE);
+    assert_float_equal(middle[1] / middle[0], 4, 0.05);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // Equation 2.8: 4.04 for a frontal photograph, 3.04 at 70 degrees. By the mean of all, the shares of
 // two photographs in a pixel are their weights; both show the whole wall in as large a part.
 static void weights_are_those_of_the_equation(void **state)
@@ -157,6 +174,7 @@ int main(void)
 {
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_larger_photograph_weighs_more),
         cmocka_unit_test(one_photograph_paints_a_pixel),
         cmocka_unit_test(extras_paint_oblique_surfaces),
         cmocka_unit_test(weights_are_those_of_the_equation),

@@ -1,5 +1,5 @@
 // Princ 2014, equation 2.8: how well a photograph's direction agrees with the view's, times how
-// directly it looks at the surface, times the share of the photograph that shows the model.
+// directly it looks at the surface, times the area of the hull of the model in it.
 // shot.selected has the first and the last factor, and the photograph's direction.
 
 const float LIMIT_COS = 0.34202014; // of 70 degrees, beyond which a surface is not painted
