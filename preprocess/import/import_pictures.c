@@ -48,12 +48,16 @@ static enum orl_result undistort(const struct import_job *job, const struct impo
     return orl_undistort(job->log, from, &job->targets[view->camera], image, out);
 }
 
-// A picture that needs no change is copied byte for byte, without loss.
+// A picture that needs no change is copied byte for byte, without loss. COLMAP, which may read it from
+// the scene, takes PNG of 8 bits alone, and colours as sRGB.
 static bool may_copy(const struct import_job *job, const struct import_view *view)
 {
+    struct orl_picture_info info;
     return view->picture.kind == IMPORT_PICTURE &&
            strcmp(orl_path_name(view->picture.path), orl_path_name(view->name)) == 0 &&
-           orl_import_is_same(camera_of(job, view), &job->targets[view->camera]);
+           orl_import_is_same(camera_of(job, view), &job->targets[view->camera]) &&
+           orl_picture_inspect(NULL, view->picture.path, &info) == ORL_OK && info.bits <= 8 &&
+           !info.profiled;
 }
 
 static enum orl_result write_photo(const struct import_job *job, const struct import_view *view,
@@ -318,6 +322,15 @@ static enum orl_result import_sequence(struct import_job *job, struct import_vie
     return result;
 }
 
+// The pixels stay as they are stored; what is upright is known to the scene alone.
+static enum orl_result read_orientation(const struct import_job *job, struct import_view *view)
+{
+    struct orl_exif exif;
+    enum orl_result result = orl_exif_read(job->log, view->picture.path, &exif);
+    view->orientation = result == ORL_OK ? exif.orientation : 0;
+    return result;
+}
+
 static enum orl_result import_view(struct import_job *job, struct import_view *view)
 {
     struct orl_background background = {0};
@@ -333,6 +346,8 @@ static enum orl_result import_view(struct import_job *job, struct import_view *v
                                     &background);
         if (result == ORL_OK)
             result = write_linear(job, view);
+        if (result == ORL_OK)
+            result = read_orientation(job, view);
     }
     if (result == ORL_OK && background.count)
         result = write_background(job, view, &background);

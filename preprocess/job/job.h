@@ -44,6 +44,7 @@ struct orl_source {
     int clip;       // the video that it is a frame of, from 1 on; 0: a photograph
     bool test;
     bool deep;      // more than 8 bits a sample
+    bool profiled;  // JPEG and PNG: colours of another profile than sRGB
     bool unbounded; // floating point without a fixed white
 };
 

@@ -157,6 +157,7 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
     source->width = info.width;
     source->height = info.height;
     source->deep = info.bits > 8;
+    source->profiled = info.profiled;
     source->unbounded = info.unbounded;
     if (source->width < 64 || source->height < 64) {
         snprintf(reason->text, sizeof reason->text, "%dx%d pixels are too few", source->width,

@@ -124,6 +124,12 @@ enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_sou
 
 // --- 8-bit twins ---
 
+// COLMAP reads PNG of 8 bits alone, and drops colour profiles.
+static bool needs_twin(const struct orl_source *source)
+{
+    return orl_develop_wanted(source->given) || source->deep || source->profiled;
+}
+
 static enum orl_result write_twin(const struct orl_job *job, const struct orl_source *source,
                                   const char *path)
 {
@@ -135,7 +141,9 @@ static enum orl_result write_twin(const struct orl_job *job, const struct orl_so
     for (size_t i = 0; i < count; i++)
         twin.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(linear.f32[i]));
     if (result == ORL_OK)
-        result = orl_jpeg_write(job->log, path, &twin, TWIN_QUALITY, &source->exif);
+        result = orl_picture_is_png(source->name)
+                     ? orl_png_write(job->log, path, &twin)
+                     : orl_jpeg_write(job->log, path, &twin, TWIN_QUALITY, &source->exif);
     orl_image_finish(&linear);
     orl_image_finish(&twin);
     return result;
@@ -143,7 +151,8 @@ static enum orl_result write_twin(const struct orl_job *job, const struct orl_so
 
 static enum orl_result develop(const struct orl_job *job, struct orl_source *source)
 {
-    char end[64] = ".jpg";
+    char end[64];
+    snprintf(end, sizeof end, "%s", orl_picture_is_png(source->name) ? ".png" : ".jpg");
     if (source->unbounded)
         snprintf(end, sizeof end, ".%d.jpg", (int)log2(job->linear_scale));
     char *path = cache_path(job, source, end);
@@ -163,7 +172,7 @@ enum orl_result orl_develop(struct orl_job *job)
 {
     size_t count = 0, done = 0;
     for (size_t i = 0; i < job->source_count; i++)
-        count += orl_develop_wanted(job->sources[i].given);
+        count += needs_twin(&job->sources[i]);
     if (!count)
         return ORL_OK;
     char *dir = orl_job_path(job, ".oriel/developed");
@@ -173,7 +182,7 @@ enum orl_result orl_develop(struct orl_job *job)
         result = choose_scale(job);
     for (size_t i = 0; i < job->source_count && result == ORL_OK; i++) {
         struct orl_source *source = &job->sources[i];
-        if (!orl_develop_wanted(source->given))
+        if (!needs_twin(source))
             continue;
         if (orl_progress_cancelled(job->progress))
             return ORL_ERR_CANCELLED;

@@ -1,5 +1,5 @@
-// Develop: 8-bit twins of photographs that COLMAP cannot read, and the linear light of those
-// with more than 8 bits (docs/reference/files.md, images_linear).
+// Develop: 8-bit sRGB twins of photographs that COLMAP cannot read, or whose colour profile it would
+// drop, and the linear light of those with more than 8 bits (docs/reference/files.md, images_linear).
 #ifndef ORL_PREPROCESS_DEVELOP_H
 #define ORL_PREPROCESS_DEVELOP_H
 

@@ -146,6 +146,10 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
     exif->focal_35mm = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM);
     double turn = get_positive(data, EXIF_IFD_0, EXIF_TAG_ORIENTATION);
     exif->orientation = turn <= 8 ? (int)turn : 0;
+    char interoperability[8];
+    get_text(data, EXIF_IFD_INTEROPERABILITY, EXIF_TAG_INTEROPERABILITY_INDEX, interoperability,
+             sizeof interoperability);
+    exif->adobe_rgb = strcmp(interoperability, "R03") == 0;
     exif->taken_s = get_time(data);
     get_place(data, exif);
     exif_data_unref(data);

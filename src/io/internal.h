@@ -22,11 +22,12 @@ enum orl_result orl_picture_check_memory(const struct orl_log *log, const char *
                                          uint64_t bytes_per_pixel);
 
 // The header of a picture, read from a stream at its start. exif: the EXIF block ("Exif\0\0" and
-// TIFF data), released with free(); NULL when the file has none before its pixels.
+// TIFF data), released with free(); NULL when the file has none before its pixels. The same of
+// icc, a colour profile.
 struct orl_picture_header {
     int width, height;
-    uint8_t *exif;
-    size_t exif_size;
+    uint8_t *exif, *icc;
+    size_t exif_size, icc_size;
     int bits; // of a sample
 };
 enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
@@ -50,8 +51,9 @@ enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path,
 enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                size_t size, int channels, struct orl_image *image);
 // Decodes 8 or 16 bits to linear light, F32 x3. Samples are sRGB unless the file's gamma is 1.
+// as_stored: they are only scaled to [0, 1].
 enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
-                                      const uint8_t *data, size_t size,
+                                      const uint8_t *data, size_t size, bool as_stored,
                                       struct orl_image *image);
 
 // TIFF, RAW and HEIF are read from the file at `path`, as their libraries require. Values are linear
@@ -72,11 +74,15 @@ enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
 enum orl_result orl_heif_decode_linear(const struct orl_log *log, const char *path,
                                        struct orl_image *image);
 
-// A conversion from the RGB space of a colour profile (ICC) to linear light, Rec. 709 primaries.
+// A conversion from the RGB or grey space of a colour profile (ICC) to linear light, Rec. 709
+// primaries.
 struct orl_profile;
-// NULL, with a warning, for a profile that cannot be used; the caller then assumes sRGB.
+// NULL for a profile that is sRGB's within two steps of 8 bits, and, with a warning, for one that
+// cannot be used: the caller then assumes sRGB.
 struct orl_profile *orl_profile_create(const struct orl_log *log, const char *path,
                                        const void *icc, size_t size);
+// That of Adobe RGB (1998), which cameras name in EXIF alone. NULL when memory runs out.
+struct orl_profile *orl_profile_create_adobe(const struct orl_log *log);
 void orl_profile_destroy(struct orl_profile **profile);
 // Converts stored samples in [0, 1], F32 x3, to linear light. Colours outside the Rec. 709 gamut
 // are clipped to it.

@@ -102,6 +102,7 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
         return fail(job);
     jpeg_create_decompress(info);
     jpeg_save_markers(info, JPEG_APP0 + 1, 0xffff);
+    jpeg_save_markers(info, JPEG_APP0 + 2, 0xffff);
     jpeg_stdio_src(info, stream);
     jpeg_read_header(info, TRUE);
     enum orl_result result =
@@ -120,6 +121,9 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
         memcpy(header->exif, marker->data, marker->data_length);
         header->exif_size = marker->data_length;
     }
+    unsigned icc_size = 0;
+    if (jpeg_read_icc_profile(info, &header->icc, &icc_size))
+        header->icc_size = icc_size;
     return ORL_OK;
 }
 

@@ -115,6 +115,20 @@ static bool has_exif_head(const struct orl_picture_header *header)
     return header->exif_size > 6 && memcmp(header->exif, "Exif\0", 6) == 0;
 }
 
+// NULL: the colours are taken as sRGB.
+static struct orl_profile *make_profile(const struct orl_log *log, const char *path,
+                                        const struct orl_picture_header *header)
+{
+    struct orl_exif exif = {0};
+    if (header->icc)
+        return orl_profile_create(log, path, header->icc, header->icc_size);
+    if (!has_exif_head(header) ||
+        orl_exif_decode(NULL, path, header->exif, header->exif_size, &exif) != ORL_OK ||
+        !exif.adobe_rgb)
+        return NULL;
+    return orl_profile_create_adobe(log);
+}
+
 static enum orl_result read_stream_header(const struct orl_log *log, const char *path,
                                           FILE *stream, enum format format,
                                           struct orl_picture_info *info, struct orl_exif *exif)
@@ -127,9 +141,13 @@ static enum orl_result read_stream_header(const struct orl_log *log, const char 
     if (result == ORL_OK)
         *info = (struct orl_picture_info){.width = header.width, .height = header.height,
                                           .bits = header.bits};
+    struct orl_profile *profile = result == ORL_OK ? make_profile(NULL, path, &header) : NULL;
+    info->profiled = profile != NULL;
+    orl_profile_destroy(&profile);
     if (result == ORL_OK && exif && has_exif_head(&header))
         result = orl_exif_decode(log, path, header.exif, header.exif_size, exif);
     free(header.exif);
+    free(header.icc);
     return result;
 }
 
@@ -215,14 +233,31 @@ static enum orl_result read_exr(const struct orl_log *log, const char *path,
     return result;
 }
 
+// The colour profile of a JPEG or PNG file, read from its stream; NULL: the colours are taken as sRGB.
+// Damage is left to the decoder to find.
+static struct orl_profile *find_profile(const struct orl_log *log, const char *path, FILE *stream,
+                                        enum format format)
+{
+    struct orl_picture_header header = {0};
+    struct orl_profile *profile = NULL;
+    if (format == FORMAT_JPEG && orl_jpeg_read_header(NULL, path, stream, &header) == ORL_OK)
+        profile = make_profile(log, path, &header);
+    if (format == FORMAT_PNG && orl_png_read_header(NULL, path, stream, &header) == ORL_OK)
+        profile = make_profile(log, path, &header);
+    free(header.exif);
+    free(header.icc);
+    return profile;
+}
+
+// as_stored: samples are only scaled to [0, 1].
 static enum orl_result decode_eight(const struct orl_log *log, const struct orl_image *from,
-                                    struct orl_image *image)
+                                    bool as_stored, struct orl_image *image)
 {
     enum orl_result result = orl_image_init(log, image, from->width, from->height, 3,
                                             ORL_PIXEL_F32);
     float table[256];
     for (int v = 0; v < 256; v++)
-        table[v] = orl_srgb_decode((float)v / 255);
+        table[v] = as_stored ? (float)v / 255 : orl_srgb_decode((float)v / 255);
     size_t count = orl_image_bytes(from);
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         image->f32[i] = table[from->u8[i]];
@@ -230,7 +265,8 @@ static enum orl_result decode_eight(const struct orl_log *log, const struct orl_
 }
 
 static enum orl_result decode_linear(const struct orl_log *log, const char *path,
-                                     enum format format, struct orl_image *image)
+                                     enum format format, const struct orl_profile *profile,
+                                     struct orl_image *image)
 {
     if (format == FORMAT_EXR)
         return read_exr(log, path, image);
@@ -245,7 +281,7 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
     size_t size = 0;
     enum orl_result result = orl_file_read(log, path, max_file_bytes, &data, &size);
     if (result == ORL_OK && format == FORMAT_PNG)
-        result = orl_png_decode_linear(log, path, data, size, image);
+        result = orl_png_decode_linear(log, path, data, size, profile != NULL, image);
     else if (result == ORL_OK && format == FORMAT_PNM)
         result = orl_pnm_decode(log, path, data, size, 3, &eight);
     else if (result == ORL_OK)
@@ -254,7 +290,9 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
         result = orl_picture_check_memory(log, path, (uint64_t)eight.width,
                                           (uint64_t)eight.height, 3 * sizeof(float));
     if (result == ORL_OK && eight.data)
-        result = decode_eight(log, &eight, image);
+        result = decode_eight(log, &eight, profile != NULL, image);
+    if (result == ORL_OK && profile)
+        orl_profile_apply(profile, image);
     orl_image_finish(&eight);
     free(data);
     return result;
@@ -269,9 +307,11 @@ enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *p
     enum orl_result result = open_file(log, path, &stream, &format);
     if (result != ORL_OK)
         return result;
+    struct orl_profile *profile = find_profile(log, path, stream, format);
     fclose(stream);
     result = format == FORMAT_UNKNOWN ? fail_unknown(log, path)
-                                      : decode_linear(log, path, format, image);
+                                      : decode_linear(log, path, format, profile, image);
+    orl_profile_destroy(&profile);
     if (result != ORL_OK)
         orl_image_finish(image);
     return result;
@@ -309,17 +349,21 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     enum orl_result result = open_file(log, path, &stream, &format);
     if (result != ORL_OK)
         return result;
+    struct orl_profile *profile = find_profile(NULL, path, stream, format);
+    bool eight = !profile && (format == FORMAT_JPEG || format == FORMAT_PNG ||
+                              format == FORMAT_PNM);
+    orl_profile_destroy(&profile);
     fclose(stream);
-    if (format == FORMAT_JPEG || format == FORMAT_PNG || format == FORMAT_PNM)
+    if (eight)
         result = orl_file_read(log, path, max_file_bytes, &data, &size);
-    if (result == ORL_OK && format == FORMAT_JPEG)
+    if (result == ORL_OK && !eight)
+        result = orl_picture_read_linear(log, path, &linear);
+    else if (result == ORL_OK && format == FORMAT_JPEG)
         result = orl_jpeg_decode(log, path, data, size, channels, image);
     else if (result == ORL_OK && format == FORMAT_PNG)
         result = orl_png_decode(log, path, data, size, channels, image);
-    else if (result == ORL_OK && format == FORMAT_PNM)
-        result = orl_pnm_decode(log, path, data, size, channels, image);
     else if (result == ORL_OK)
-        result = orl_picture_read_linear(log, path, &linear);
+        result = orl_pnm_decode(log, path, data, size, channels, image);
     if (result == ORL_OK && linear.data)
         result = encode_eight(log, &linear, channels, image);
     if (result != ORL_OK)

@@ -11,6 +11,7 @@ struct orl_picture_info {
     int width, height;
     int bits;       // per sample, uncompressed; more than 8: a deep picture
     bool unbounded; // float samples, which may exceed white
+    bool profiled;  // JPEG and PNG: the colours are not those of sRGB
 };
 enum orl_result orl_picture_inspect(const struct orl_log *log, const char *path,
                                     struct orl_picture_info *info) ORL_CHECK_RESULT;
@@ -18,14 +19,14 @@ enum orl_result orl_picture_inspect(const struct orl_log *log, const char *path,
 enum orl_result orl_picture_size(const struct orl_log *log, const char *path, int *width,
                                  int *height) ORL_CHECK_RESULT;
 // Reads 8-bit samples; `channels` is 1 (luma) or 3 (RGB). Alpha is dropped, 16-bit samples are
-// rounded, linear light is clipped and sRGB-encoded. EXIF orientation is ignored: pixels stay in
+// rounded, linear light is clipped and sRGB-encoded; so are colours of another profile. EXIF orientation is ignored: pixels stay in
 // the stored order; only HEIF files are turned as they ask, and have orientation 1. A truncated file
 // is an error.
 enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
                                  struct orl_image *image) ORL_CHECK_RESULT;
 // Reads linear light, F32 x3, Rec. 709 primaries. 8- and 16-bit samples are taken as sRGB with
-// white at 1, except that the colour profile of a TIFF or HEIF file is applied and a PNG file with a
-// gamma of 1 is linear. Float TIFF and EXR samples (R, G, B, or Y) are taken unchanged. RAW files get the
+// white at 1, except that the file's colour profile is applied (of JPEG also Adobe RGB by EXIF) and a
+// PNG file with a gamma of 1 is linear. Float TIFF and EXR samples (R, G, B, or Y) are taken unchanged. RAW files get the
 // camera's white balance and are 1 where the sensor saturates.
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image) ORL_CHECK_RESULT;
@@ -48,6 +49,7 @@ struct orl_exif {
     double exposure_s, aperture, iso, bias_ev;
     double focal_mm, focal_35mm;
     int orientation; // 1 to 8
+    bool adobe_rgb;  // the colours are those of Adobe RGB (DCF 2.0)
     double taken_s;  // when, by the camera's own clock, in seconds; 0: unknown
     bool placed;     // is its position known?
     double latitude, longitude; // degrees, north and east positive

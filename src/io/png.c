@@ -91,6 +91,17 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
         header->exif_size = (size_t)size + 6;
     }
 #endif
+    png_charp name;
+    png_bytep icc;
+    int compression;
+    png_uint_32 icc_size = 0;
+    if (png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size) && icc_size) {
+        header->icc = orl_array(job->log, icc_size, 1);
+        if (!header->icc)
+            return ORL_ERR_MEMORY;
+        memcpy(header->icc, icc, icc_size);
+        header->icc_size = icc_size;
+    }
     return ORL_OK;
 }
 
@@ -217,7 +228,8 @@ static void to_floats(const struct png_job *job, struct orl_image *image)
 }
 
 enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
-                                      const uint8_t *data, size_t size, struct orl_image *image)
+                                      const uint8_t *data, size_t size, bool as_stored,
+                                      struct orl_image *image)
 {
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
@@ -228,7 +240,7 @@ enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *pat
         return result;
     to_floats(&job, image);
     size_t count = orl_image_bytes(image) / sizeof(float);
-    for (size_t i = 0; !job.linear && i < count; i++)
+    for (size_t i = 0; !job.linear && !as_stored && i < count; i++)
         image->f32[i] = orl_srgb_decode(image->f32[i]);
     return ORL_OK;
 }

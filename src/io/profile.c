@@ -1,22 +1,25 @@
 // Colour profiles through Little CMS.
+#include <math.h>
 #include <stdlib.h>
 
 #include <lcms2.h>
 
+#include "core/color.h"
 #include "core/memory.h"
 #include "io/internal.h"
 
 struct orl_profile {
     cmsContext context;
     cmsHTRANSFORM transform;
+    bool grey; // one channel
 };
 
-// A profile with white point D65, Rec. 709 primaries and a linear curve.
-static cmsHPROFILE linear_rec709(cmsContext context)
+// A profile with white point D65, the blue and red of Rec. 709, this green, and a power as curve.
+static cmsHPROFILE make_rgb(cmsContext context, const cmsCIExyY *green, double gamma)
 {
     const cmsCIExyY white = {0.3127, 0.3290, 1};
-    const cmsCIExyYTRIPLE primaries = {{0.64, 0.33, 1}, {0.30, 0.60, 1}, {0.15, 0.06, 1}};
-    cmsToneCurve *line = cmsBuildGamma(context, 1);
+    const cmsCIExyYTRIPLE primaries = {{0.64, 0.33, 1}, *green, {0.15, 0.06, 1}};
+    cmsToneCurve *line = cmsBuildGamma(context, gamma);
     cmsToneCurve *const curves[3] = {line, line, line};
     cmsHPROFILE profile =
         line ? cmsCreateRGBProfileTHR(context, &white, &primaries, curves) : NULL;
@@ -25,17 +28,17 @@ static cmsHPROFILE linear_rec709(cmsContext context)
     return profile;
 }
 
-static bool make_transform(struct orl_profile *profile, const void *icc, size_t size)
+// Takes `from`, which may be NULL.
+static bool make_transform(struct orl_profile *profile, cmsHPROFILE from)
 {
-    profile->context = cmsCreateContext(NULL, NULL); // without a handler messages are dropped
-    if (!profile->context || size > UINT32_MAX)
-        return false;
-    cmsHPROFILE from = cmsOpenProfileFromMemTHR(profile->context, icc, (cmsUInt32Number)size);
-    cmsHPROFILE to = linear_rec709(profile->context);
-    if (from && to && cmsGetColorSpace(from) == cmsSigRgbData)
-        profile->transform = cmsCreateTransformTHR(profile->context, from, TYPE_RGB_FLT, to,
-                                                   TYPE_RGB_FLT, INTENT_RELATIVE_COLORIMETRIC,
-                                                   cmsFLAGS_NOCACHE);
+    const cmsCIExyY green = {0.30, 0.60, 1};
+    cmsHPROFILE to = make_rgb(profile->context, &green, 1);
+    cmsColorSpaceSignature space = from ? cmsGetColorSpace(from) : cmsSigLabData;
+    profile->grey = space == cmsSigGrayData;
+    if (to && (profile->grey || space == cmsSigRgbData))
+        profile->transform = cmsCreateTransformTHR(
+            profile->context, from, profile->grey ? TYPE_GRAY_FLT : TYPE_RGB_FLT, to, TYPE_RGB_FLT,
+            INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE);
     if (from)
         cmsCloseProfile(from);
     if (to)
@@ -43,15 +46,53 @@ static bool make_transform(struct orl_profile *profile, const void *icc, size_t 
     return profile->transform != NULL;
 }
 
+// Compares colours over the whole cube, whatever the profile is called.
+static bool is_srgb(const struct orl_profile *profile)
+{
+    enum { STEPS = 6 };
+    const float tolerance = 2.0f / 255;
+    for (int i = 0; i < STEPS * STEPS * STEPS; i++) {
+        const float stored[3] = {(float)(i % STEPS) / (STEPS - 1),
+                                 (float)(i / STEPS % STEPS) / (STEPS - 1),
+                                 (float)(i / STEPS / STEPS) / (STEPS - 1)};
+        float linear[3];
+        if (profile->grey && !(stored[0] == stored[1] && stored[1] == stored[2]))
+            continue;
+        cmsDoTransform(profile->transform, stored, linear, 1);
+        for (int c = 0; c < 3; c++)
+            if (fabsf(orl_srgb_encode(linear[c]) - stored[c]) > tolerance)
+                return false;
+    }
+    return true;
+}
+
 struct orl_profile *orl_profile_create(const struct orl_log *log, const char *path,
                                        const void *icc, size_t size)
 {
     struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
-    if (profile && !make_transform(profile, icc, size)) {
+    if (!profile)
+        return NULL;
+    profile->context = cmsCreateContext(NULL, NULL); // without a handler messages are dropped
+    bool usable = profile->context && size <= UINT32_MAX &&
+                  make_transform(profile, cmsOpenProfileFromMemTHR(profile->context, icc,
+                                                                   (cmsUInt32Number)size));
+    if (!usable)
         orl_logf(log, ORL_LOG_WARNING, "%s: its colour profile cannot be used; taken as sRGB",
                  path);
+    if (!usable || is_srgb(profile))
         orl_profile_destroy(&profile);
-    }
+    return profile;
+}
+
+struct orl_profile *orl_profile_create_adobe(const struct orl_log *log)
+{
+    const cmsCIExyY green = {0.21, 0.71, 1};
+    struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
+    if (profile)
+        profile->context = cmsCreateContext(NULL, NULL);
+    if (profile && (!profile->context ||
+                    !make_transform(profile, make_rgb(profile->context, &green, 563.0 / 256))))
+        orl_profile_destroy(&profile);
     return profile;
 }
 
@@ -73,7 +114,11 @@ void orl_profile_apply(const struct orl_profile *profile, struct orl_image *imag
     size_t width = (size_t)image->width;
     for (size_t y = 0; y < (size_t)image->height; y++) {
         float *row = image->f32 + 3 * y * width;
-        cmsDoTransform(profile->transform, row, row, (cmsUInt32Number)width);
+        // The one channel of grey goes to the row's end, where three floats overwrite it once read.
+        float *from = profile->grey ? row + 2 * width : row;
+        for (size_t i = 0; profile->grey && i < width; i++)
+            from[i] = row[3 * i];
+        cmsDoTransform(profile->transform, from, row, (cmsUInt32Number)width);
         for (size_t i = 0; i < 3 * width; i++)
             row[i] = row[i] > 0 ? row[i] : 0;
     }

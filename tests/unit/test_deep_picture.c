@@ -2,9 +2,12 @@
 #include "test.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include <jpeglib.h>
 #include <lcms2.h>
+#include <png.h>
 #include <tiffio.h>
 
 #include "core/color.h"
@@ -216,22 +219,45 @@ static void floats_are_light_as_it_is(void **state)
     orl_image_finish(&from);
 }
 
+static const double gamma_adobe = 563.0 / 256;
+static uint8_t icc[8192];
+
+// Takes `profile` and writes it to icc; returns its size.
+static cmsUInt32Number save_profile(cmsHPROFILE profile)
+{
+    cmsUInt32Number size = 0;
+    assert_true(cmsSaveProfileToMem(profile, NULL, &size));
+    assert_true(size <= sizeof icc && cmsSaveProfileToMem(profile, icc, &size));
+    cmsCloseProfile(profile);
+    return size;
+}
+
 // Adobe RGB (1998), whose matrix to Rec. 709 is well known: both have D65 and the same red
 // and blue.
+static cmsUInt32Number make_adobe(void)
+{
+    const cmsCIExyY white = {0.3127, 0.3290, 1};
+    const cmsCIExyYTRIPLE primaries = {{0.64, 0.33, 1}, {0.21, 0.71, 1}, {0.15, 0.06, 1}};
+    cmsToneCurve *curve = cmsBuildGamma(NULL, gamma_adobe);
+    cmsToneCurve *const curves[3] = {curve, curve, curve};
+    cmsHPROFILE adobe = cmsCreateRGBProfile(&white, &primaries, curves);
+    cmsFreeToneCurve(curve);
+    return save_profile(adobe);
+}
+
+static void want_adobe(const double stored[3], double want[3])
+{
+    double r = pow(stored[0], gamma_adobe), g = pow(stored[1], gamma_adobe);
+    double b = pow(stored[2], gamma_adobe);
+    want[0] = 1.39836 * r - 0.39836 * g;
+    want[1] = g;
+    want[2] = -0.04293 * g + 1.04293 * b;
+}
+
 static void tiff_profiles_are_applied(void **state)
 {
     (void)state;
-    const cmsCIExyY white = {0.3127, 0.3290, 1};
-    const cmsCIExyYTRIPLE primaries = {{0.64, 0.33, 1}, {0.21, 0.71, 1}, {0.15, 0.06, 1}};
-    const double gamma = 563.0 / 256;
-    cmsToneCurve *curve = cmsBuildGamma(NULL, gamma), *const curves[3] = {curve, curve, curve};
-    cmsHPROFILE adobe = cmsCreateRGBProfile(&white, &primaries, curves);
-    static uint8_t icc[8192];
-    cmsUInt32Number size = sizeof icc;
-    assert_true(cmsSaveProfileToMem(adobe, icc, &size));
-    cmsCloseProfile(adobe);
-    cmsFreeToneCurve(curve);
-
+    cmsUInt32Number size = make_adobe();
     const struct variety v = {16, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"};
     const double stored[3] = {0.5, 0.6, 0.3};
     const char *path = in_dir("p.tif");
@@ -248,14 +274,136 @@ static void tiff_profiles_are_applied(void **state)
         TIFFClose(t);
         struct orl_image image;
         assert_int_equal(orl_picture_read_linear(&log, path, &image), ORL_OK);
-        double r = pow(0.5, gamma), g = pow(0.6, gamma), b = pow(0.3, gamma);
-        const double want[3] = {1.39836 * r - 0.39836 * g, g, -0.04293 * g + 1.04293 * b};
+        double want[3];
+        want_adobe(stored, want);
         for (int c = 0; c < 3; c++)
             assert_float_equal(image.f32[3 * 1000 + c],
                                broken ? (double)orl_srgb_decode((float)stored[c]) : want[c], 1e-3);
         assert_int_equal(strstr(said.text, "its colour profile cannot be used") != NULL, broken);
         orl_image_finish(&image);
     }
+}
+
+// A JPEG of one colour, with a profile of `size` bytes where there is one.
+static void write_jpeg(const char *path, const uint8_t *pixel, int channels,
+                       cmsUInt32Number size, const uint8_t *exif, unsigned exif_size)
+{
+    struct jpeg_compress_struct info;
+    struct jpeg_error_mgr error;
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    info.err = jpeg_std_error(&error);
+    jpeg_create_compress(&info);
+    jpeg_stdio_dest(&info, out);
+    info.image_width = W;
+    info.image_height = H;
+    info.input_components = channels;
+    info.in_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_set_defaults(&info);
+    jpeg_set_quality(&info, 100, TRUE);
+    jpeg_start_compress(&info, TRUE);
+    if (exif)
+        jpeg_write_marker(&info, JPEG_APP0 + 1, exif, exif_size);
+    if (size)
+        jpeg_write_icc_profile(&info, icc, size);
+    uint8_t row[W * 3];
+    for (int i = 0; i < W * channels; i++)
+        row[i] = pixel[i % channels];
+    while (info.next_scanline < info.image_height) {
+        JSAMPROW rows[1] = {row};
+        jpeg_write_scanlines(&info, rows, 1);
+    }
+    jpeg_finish_compress(&info);
+    jpeg_destroy_compress(&info);
+    fclose(out);
+}
+
+static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUInt32Number size)
+{
+    FILE *out = fopen(path, "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    assert_non_null(out);
+    assert_int_equal(setjmp(png_jmpbuf(png)), 0);
+    png_init_io(png, out);
+    png_set_IHDR(png, info, W, H, depth, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_iCCP(png, info, "profile", 0, icc, size);
+    png_write_info(png, info);
+    static uint8_t row[W * 6];
+    size_t bytes = (size_t)depth / 8;
+    for (size_t i = 0; i < W * 3 * bytes; i++)
+        row[i] = pixel[i / bytes % 3];
+    for (int y = 0; y < H; y++)
+        png_write_row(png, row);
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    fclose(out);
+}
+
+// The picture has this light, and of 8 bits its sRGB value.
+static void expect_light(const char *path, const double want[3], bool profiled)
+{
+    struct orl_picture_info info;
+    struct orl_image light, eight;
+    assert_int_equal(orl_picture_inspect(NULL, path, &info), ORL_OK);
+    assert_int_equal(info.profiled, profiled);
+    assert_int_equal(orl_picture_read_linear(NULL, path, &light), ORL_OK);
+    assert_int_equal(orl_picture_read(NULL, path, 3, &eight), ORL_OK);
+    for (int c = 0; c < 3; c++) {
+        assert_float_equal(light.f32[3 * 1000 + c], want[c], 6e-3);
+        assert_float_equal(eight.u8[3 * 1000 + c], 255 * orl_srgb_encode((float)want[c]), 3);
+    }
+    orl_image_finish(&light);
+    orl_image_finish(&eight);
+}
+
+static void jpeg_and_png_profiles_are_applied(void **state)
+{
+    (void)state;
+    const uint8_t pixel[3] = {128, 153, 77}, grey[1] = {128};
+    double stored[3], want[3], plain[3];
+    for (int c = 0; c < 3; c++) {
+        stored[c] = pixel[c] / 255.0;
+        plain[c] = (double)orl_srgb_decode((float)stored[c]);
+    }
+    want_adobe(stored, want);
+    cmsUInt32Number size = make_adobe();
+    write_jpeg(in_dir("p.jpg"), pixel, 3, size, NULL, 0);
+    expect_light(in_dir("p.jpg"), want, true);
+    write_png(in_dir("p.png"), pixel, 8, size);
+    expect_light(in_dir("p.png"), want, true);
+    write_png(in_dir("p.png"), pixel, 16, size);
+    expect_light(in_dir("p.png"), want, true);
+    // sRGB itself, under whatever name, changes nothing.
+    size = save_profile(cmsCreate_sRGBProfile());
+    write_jpeg(in_dir("p.jpg"), pixel, 3, size, NULL, 0);
+    expect_light(in_dir("p.jpg"), plain, false);
+    // Grey of another gamma.
+    cmsToneCurve *curve = cmsBuildGamma(NULL, 1.8);
+    size = save_profile(cmsCreateGrayProfile(cmsD50_xyY(), curve));
+    cmsFreeToneCurve(curve);
+    write_jpeg(in_dir("p.jpg"), grey, 1, size, NULL, 0);
+    for (int c = 0; c < 3; c++)
+        want[c] = pow(128 / 255.0, 1.8);
+    expect_light(in_dir("p.jpg"), want, true);
+}
+
+// Cameras that are set to Adobe RGB say so in EXIF (DCF 2.0), without a profile.
+static void adobe_rgb_by_exif_is_applied(void **state)
+{
+    (void)state;
+    static const uint8_t exif[] = {
+        'E', 'x', 'i', 'f', 0, 0, 'I', 'I', 42, 0, 8, 0, 0, 0,
+        1, 0, 0x69, 0x87, 4, 0, 1, 0, 0, 0, 26, 0, 0, 0, 0, 0, 0, 0, // the EXIF IFD at 26
+        1, 0, 0x05, 0xa0, 4, 0, 1, 0, 0, 0, 44, 0, 0, 0, 0, 0, 0, 0, // of interoperability at 44
+        1, 0, 0x01, 0x00, 2, 0, 4, 0, 0, 0, 'R', '0', '3', 0, 0, 0, 0, 0};
+    const uint8_t pixel[3] = {128, 153, 77};
+    const double stored[3] = {128 / 255.0, 153 / 255.0, 77 / 255.0};
+    double want[3];
+    want_adobe(stored, want);
+    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, exif, sizeof exif);
+    expect_light(in_dir("p.jpg"), want, true);
 }
 
 static void damaged_tiff_is_an_error(void **state)
@@ -404,6 +552,8 @@ int main(void)
         cmocka_unit_test(floats_are_light_as_it_is),
         cmocka_unit_test(tiff_varieties),
         cmocka_unit_test(tiff_profiles_are_applied),
+        cmocka_unit_test(jpeg_and_png_profiles_are_applied),
+        cmocka_unit_test(adobe_rgb_by_exif_is_applied),
         cmocka_unit_test(damaged_tiff_is_an_error),
         cmocka_unit_test(unusual_tiff_is_refused_with_advice),
         cmocka_unit_test(raw_is_linear_with_the_cameras_white_balance),

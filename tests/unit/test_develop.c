@@ -162,6 +162,12 @@ static void deep_photographs_get_twins_and_linear_light(void **state)
     check_photo(scene, "c.jpg", 0.125f, false);
     check_photo(scene, "d.jpg", 0.05f, true);
     check_photo(scene, "e.png", 0.05f, true);
+    // COLMAP reads no PNG of 16 bits.
+    struct orl_picture_info info;
+    char *deep = orl_scene_photo_path(NULL, scene, (size_t)orl_scene_find_photo(scene, "e.png"));
+    assert_int_equal(orl_picture_inspect(NULL, deep, &info), ORL_OK);
+    assert_int_equal(info.bits, 8);
+    free(deep);
     int plain = orl_scene_find_photo(scene, "f.jpg");
     struct orl_image none;
     bool clips;

@@ -262,6 +262,22 @@ static void holds_out_a_block(void **state)
     }
 }
 
+// The source's mask is a copy of dir/NAME, in black and white.
+static void expect_mask(const struct orl_source *source, const char *dir, const char *name)
+{
+    uint64_t hash;
+    struct orl_image mask;
+    char *path = test_path(dir, name);
+    assert_int_equal(orl_file_hash(NULL, path, &hash), ORL_OK);
+    assert_int_equal(source->mask_hash, hash);
+    assert_non_null(strstr(source->mask, "/.oriel/masks/"));
+    assert_int_equal(orl_picture_read(NULL, source->mask, 1, &mask), ORL_OK);
+    for (size_t i = 0; i < orl_image_bytes(&mask); i++)
+        assert_true(mask.u8[i] == 0 || mask.u8[i] == 255);
+    orl_image_finish(&mask);
+    free(path);
+}
+
 static void finds_masks(void **state)
 {
     (void)state;
@@ -272,11 +288,11 @@ static void finds_masks(void **state)
     save_photo(w.photos, "1.jpg", 1);
     save_photo(w.photos, "2.jpg", 2);
     save_photo(masks.photos, "0.png", 0);
-    save_photo(masks.photos, "1.jpg.png", 0);
+    save_photo(masks.photos, "1.jpg.png", 1);
     w.params.masks_dir = masks.photos;
     assert_int_equal(orl_stage_collect(&w.job), ORL_OK);
-    assert_non_null(strstr(w.job.sources[0].mask, "/0.png"));
-    assert_non_null(strstr(w.job.sources[1].mask, "/1.jpg.png"));
+    expect_mask(&w.job.sources[0], masks.photos, "0.png");
+    expect_mask(&w.job.sources[1], masks.photos, "1.jpg.png");
     assert_null(w.job.sources[2].mask);
     assert_non_null(strstr(w.said.text, "1 of 3 photographs have no mask"));
     world_close(&w);
