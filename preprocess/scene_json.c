@@ -77,6 +77,8 @@ static json_t *list_photos(const struct orl_job *job, const json_t *photos, cons
         json_t *entry = json_copy(items[i]);
         if (source && source->mask)
             json_object_set_new(entry, "mask", json_true());
+        if (source && source->exif.orientation > 1)
+            json_object_set_new(entry, "orientation", json_integer(source->exif.orientation));
         if (source && source->exif.placed)
             json_object_set_new(entry, "gps", json_pack("[f,f]", source->exif.latitude,
                                                         source->exif.longitude));

@@ -11,7 +11,8 @@ struct orl_names;
 
 struct orl_photo {
     char *name;           // owned; file SCENE/images/<name>
-    struct orl_view view; // size and intrinsics as of the undistorted file
+    struct orl_view view; // size and intrinsics as of the undistorted file, pixels as stored
+    int orientation;      // by EXIF, 1 to 8: how the stored picture is turned; 0: not known
     bool test;            // held out: used for calibration only
     bool linear;          // has a linear version (orl_scene_read_linear)
     bool radiance;        // its linear version is radiance (oriel hdr --replace-series): no value

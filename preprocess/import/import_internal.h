@@ -21,6 +21,7 @@ struct import_view {
     size_t camera;                        // index of its camera in the known cameras' model
     char *name;                           // name of the photograph in the scene; owned
     struct import_found picture, mask, background;
+    int orientation; // by EXIF; 0: not known
     bool test;
 };
 

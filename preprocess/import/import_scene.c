@@ -241,9 +241,10 @@ static json_t *photographs(const struct import_job *job)
     json_t *list = json_array();
     for (size_t i = 0; i < job->view_count; i++)
         json_array_append_new(
-            list, json_pack("{s:s, s:s, s:n, s:i, s:[i,i,i], s:b}", "name", job->views[i].name,
+            list, json_pack("{s:s, s:s, s:n, s:i, s:[i,i,i], s:i, s:b}", "name", job->views[i].name,
                             "split", job->views[i].test ? "test" : "train", "exposure_ev",
-                            "series", 0, "gain", 1, 1, 1, "mask",
+                            "series", 0, "gain", 1, 1, 1, "orientation",
+                            job->views[i].orientation, "mask",
                             job->params->silhouettes != ORL_SILHOUETTES_NONE));
     return list;
 }

@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "hdr/internal.h"
+#include "scene/sky.h"
 
 enum { FACES = 6 };
 
@@ -66,15 +67,7 @@ static bool panorama_axes(const struct orl_panorama *p, double axes[3][3])
 
 void orl_scene_up(const struct orl_scene *scene, double up[3])
 {
-    for (int i = 0; i < 3; i++) {
-        up[i] = 0;
-        for (size_t k = 0; k < scene->photo_count; k++)
-            up[i] -= scene->photos[k].view.cam_from_world.r[1][i];
-    }
-    if (!normalize(up)) { // upside-down and upright photographs cancel: assume y down
-        up[0] = up[2] = 0;
-        up[1] = -1;
-    }
+    orl_scene_mean_up(scene, up);
 }
 
 enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_scene *scene,

@@ -118,6 +118,8 @@ static enum orl_result read_photo(const struct orl_json_place *place, const json
 {
     enum orl_result result = read_split(place, entry, photo);
     if (result == ORL_OK)
+        result = orl_json_integer(place, entry, "orientation", 0, 8, &photo->orientation);
+    if (result == ORL_OK)
         result = read_exposure(place, entry, photo);
     if (result == ORL_OK)
         result = read_optics(place, entry, scene, photo);

@@ -11,6 +11,7 @@
 #include "core/vec3.h"
 #include "scene/colmap.h"
 #include "scene/json_views.h"
+#include "scene/sky.h"
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
 
@@ -145,7 +146,7 @@ enum orl_result orl_path_through_photos(const struct orl_log *log, const struct 
     if (result != ORL_OK)
         return result;
     for (size_t i = 0; i < scene->photo_count; i++)
-        keys.views[i] = scene->photos[i].view;
+        keys.views[i] = orl_photo_upright(&scene->photos[i]);
     result = spread_frames(log, &(struct keys){&keys, NULL}, frames, path);
     orl_path_finish(&keys);
     return result;
@@ -197,10 +198,7 @@ static bool find_circle(const struct orl_scene *scene, struct circle *circle)
     memset(circle, 0, sizeof *circle);
     if (!meet_axes(scene, circle->middle))
         return false;
-    for (size_t n = 0; n < scene->photo_count; n++)
-        for (int k = 0; k < 3; k++)
-            circle->up[k] -= scene->photos[n].view.cam_from_world.r[1][k];
-    if (!(orl_normalize3(circle->up) > 0))
+    if (!orl_scene_mean_up(scene, circle->up))
         return false;
     for (size_t n = 0; n < scene->photo_count; n++) {
         const struct orl_pose *pose = &scene->photos[n].view.cam_from_world;
@@ -235,7 +233,7 @@ enum orl_result orl_path_around(const struct orl_log *log, const struct orl_scen
         for (int k = 0; k < 3; k++)
             eye[k] = circle.middle[k] + circle.height * circle.up[k] +
                      circle.radius * (cos(angle) * circle.ahead[k] + sin(angle) * circle.aside[k]);
-        path->views[i].camera = scene->photos[0].view.camera;
+        path->views[i].camera = orl_photo_upright(&scene->photos[0]).camera;
         path->views[i].cam_from_world = orl_pose_look_at(eye, circle.middle, circle.up);
     }
     if (result == ORL_OK && (result = check_made(log, path)) != ORL_OK)

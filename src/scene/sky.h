@@ -4,6 +4,12 @@
 
 #include "oriel/scene.h"
 
+// The photograph's view, turned by quarters about its axis so that it is upright as the orientation
+// says; the same pixels, none mirrored.
+struct orl_view orl_photo_upright(const struct orl_photo *photo);
+// The mean upward direction of the upright photographs, world. False, and 0 -1 0, where they cancel
+// each other.
+bool orl_scene_mean_up(const struct orl_scene *scene, double up[3]);
 // The direction upwards, world, of length 1: away from the ground, or where no ground is known, the
 // one to which the horizontal axes of the cameras are perpendicular. A camera may stand on its side.
 void orl_scene_upwards(const struct orl_scene *scene, double up[3]);

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "scene/manifest.h"
+#include "scene/sky.h"
 #include "walk/internal.h"
 
 // The method's numeric options by their keys.
@@ -27,14 +28,10 @@ static json_t *options_json(const struct orl_render_params *params)
 // The ground's normal, or the photographs' mean upward direction.
 static json_t *up_json(const struct orl_scene *scene)
 {
-    double up[3] = {0};
-    for (size_t i = 0; i < scene->photo_count; i++)
-        for (int k = 0; k < 3; k++)
-            up[k] -= scene->photos[i].view.cam_from_world.r[1][k];
+    double up[3];
+    orl_scene_mean_up(scene, up);
     if (scene->ground.height > 0)
         memcpy(up, scene->ground.plane, sizeof up);
-    if (!(orl_normalize3(up) > 0))
-        up[1] = -1;
     return json_pack("[f,f,f]", up[0], up[1], up[2]);
 }
 
@@ -97,9 +94,10 @@ static json_t *pose_json(const struct orl_pose *pose)
 
 json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *c)
 {
-    return json_pack("{s:s, s:i, s:i, s:f, s:f, s:f, s:f, s:o}", "name", photo->name, "width",
+    return json_pack("{s:s, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:i}", "name", photo->name, "width",
                      c->width, "height", c->height, "fx", c->fx, "fy", c->fy, "cx", c->cx, "cy",
-                     c->cy, "cam_from_world", pose_json(&photo->view.cam_from_world));
+                     c->cy, "cam_from_world", pose_json(&photo->view.cam_from_world),
+                     "orientation", photo->orientation);
 }
 
 json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,

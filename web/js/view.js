@@ -4,11 +4,18 @@
 import {dot, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
         sub} from "./math.js";
 
+// Quarters, clockwise, that turn a picture of each EXIF orientation upright (orl_photo_upright).
+const QUARTERS = [0, 0, 0, 2, 2, 1, 1, 3, 3];
+
 export function photoView(photo)
 {
-    const h = photo.height;
-    return {eye: photo.eye, r: photo.r, frame: {aspect: photo.width / h, fx: photo.fx / h,
-            fy: photo.fy / h, x: (photo.cx - photo.width / 2) / h, y: photo.cy / h - 0.5}};
+    let {r, width, height, fx, fy, cx, cy} = photo;
+    for (let i = QUARTERS[photo.orientation] || 0; i > 0; i--) {
+        r = [-r[3], -r[4], -r[5], r[0], r[1], r[2], r[6], r[7], r[8]];
+        [width, height, fx, fy, cx, cy] = [height, width, fy, fx, height - cy, cx];
+    }
+    return {eye: photo.eye, r, frame: {aspect: width / height, fx: fx / height, fy: fy / height,
+            x: (cx - width / 2) / height, y: cy / height - 0.5}};
 }
 
 // Pixels of the frame's height in a window: all of the frame shows, but in upright windows, where
