@@ -503,6 +503,28 @@ static void another_proxy_stands_in(void **state)
     teardown(&f);
 }
 
+// A photograph that sees the wall at less than 6 degrees does not colour it: here at 4.6 and at 11.
+// What lies between is not in question.
+static void tangent_surfaces_are_not_coloured(void **state)
+{
+    (void)state;
+    static const char *const opaque[] = {"visibility=opaque", "fill=none", "depth_tolerance=0.2"};
+    for (int i = 0; i < 2; i++) {
+        struct fixture f;
+        setup(&f, false);
+        struct orl_view along = look_from(0, 0, 0, SIDE, 40);
+        along.cam_from_world = (struct orl_pose){.r = {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}},
+                                                 .t = {i ? 3.4 : 3.76, 0, 3}};
+        add_photo(&f, along, green);
+        struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+        assert_int_equal(orl_render_params_assign(NULL, &params, opaque, 3), ORL_OK);
+        struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE + 1, 40), &params, 0);
+        assert_float_equal(frame.coverage.f32[SIDE / 2 * (SIDE + 1) + SIDE / 2], i, 0);
+        orl_frame_finish(&frame);
+        teardown(&f);
+    }
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -511,6 +533,7 @@ int main(void)
         cmocka_unit_test(precision_can_be_tuned),
         cmocka_unit_test(near_and_far_are_tight),
         cmocka_unit_test(photographs_count_alike),
+        cmocka_unit_test(tangent_surfaces_are_not_coloured),
         cmocka_unit_test(fat_outlines_stop_leaks),
         cmocka_unit_test(the_room_has_its_pictures),
         cmocka_unit_test(unseen_places_take_colors_of_their_own),

@@ -130,6 +130,38 @@ static void both_sides_have_one_penalty(void **state)
     teardown(&f);
 }
 
+// What a photograph elsewhere weighs beside one at the view's own place, in a pixel of their mean. From
+// (3, 0, 0) the wall's middle is 5 away, at an angle whose cosine is 0.8; from (0, 0, -2) 6 away.
+static void weights_are_those_of_their_formulas(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *weight;
+        double x, z, expected;
+    } rows[] = {
+        {"weight=equal", 3, 0, 1},      {"weight=cos", 3, 0, 0.8},
+        {"weight=cos", 0, -2, 1},       {"weight=distance", 3, 0, 1 / 1.25},
+        {"weight=distance", 0, -2, 1 / 1.5},
+        {"weight=airieau", 3, 0, 0.8 * 0.01 / (0.25 + 0.01)},
+        {"weight=airieau", 0, -2, 0.01 / (0.5 + 0.01)},
+    };
+    for (size_t i = 0; i < ORL_COUNT(rows); i++) {
+        const char *const choices[] = {rows[i].weight, "visibility=none", "combine=mean"};
+        struct fixture f;
+        setup(&f, false);
+        add_photo(&f, look_from(0, 0, 0, SIDE, 20), red);
+        add_photo(&f, look_from(rows[i].x, 0, rows[i].z, SIDE, 20), green);
+        struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+        assert_int_equal(orl_render_params_assign(NULL, &params, choices, 3), ORL_OK);
+        params.distance_floor = 0.01f;
+        struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE + 1, 40), &params, 0);
+        const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
+        assert_float_equal(middle[1] / middle[0], rows[i].expected, 0.01 * rows[i].expected);
+        orl_frame_finish(&frame);
+        teardown(&f);
+    }
+}
+
 // PSNR of the covered pixels of a view beside the first photograph, dB.
 static double likeness(struct fixture *f, struct orl_view view,
                        const struct orl_render_params *params)
@@ -283,6 +315,7 @@ int main(void)
         cmocka_unit_test(few_photographs_paint_too),
         cmocka_unit_test(turns_change_nothing),
         cmocka_unit_test(both_sides_have_one_penalty),
+        cmocka_unit_test(weights_are_those_of_their_formulas),
         cmocka_unit_test(at_its_own_place_a_photograph_shows),
         cmocka_unit_test(oriel_shows_a_photograph_near_its_own_place_alone),
         cmocka_unit_test(without_depth_a_photograph_is_rejected),

@@ -133,13 +133,52 @@ static void what_faces_away_is_not_seen(void **state)
     behind.cam_from_world = (struct orl_pose){.r = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
                                               .t = {0, 0, 8}};
     add_photo(&f, behind, green);
-    struct orl_frame facing = draw_with(&f, "orzan-surface", NULL, 0);
+    static const char *const methods[] = {"orzan-surface", "orzan-shadow"};
+    for (size_t m = 0; m < ORL_COUNT(methods); m++) {
+        struct orl_frame facing = draw_with(&f, methods[m], NULL, 0);
+        assert_float_equal(color_at(&facing, MIDDLE, MIDDLE)[1], 0, 1e-6);
+        assert_float_equal(color_at(&facing, MIDDLE, MIDDLE)[0], 1, 1e-4);
+        orl_frame_finish(&facing);
+    }
     struct orl_frame all = draw_with(&f, "orzan-surface", blind, 2);
-    assert_float_equal(color_at(&facing, MIDDLE, MIDDLE)[1], 0, 1e-6);
-    assert_float_equal(color_at(&facing, MIDDLE, MIDDLE)[0], 1, 1e-4);
     assert_float_equal(color_at(&all, MIDDLE, MIDDLE)[1], 0.5, 1e-3);
-    orl_frame_finish(&facing);
     orl_frame_finish(&all);
+    teardown(&f);
+}
+
+// The plate stands between the wall's middle and a photograph, which only a shadow map tells.
+static void shadow_maps_see_what_stands_between(void **state)
+{
+    (void)state;
+    static const char *const equal[] = {"weight=equal", "fill=none"};
+    struct fixture f;
+    setup(&f, true);
+    add_photo(&f, look_from(1.4, 0, 0, SIDE, 20), red);
+    add_photo(&f, look_from(-0.5, 0, 0, SIDE, 20), green);
+    struct orl_frame facing = draw_with(&f, "orzan-surface", equal, 2);
+    struct orl_frame shadow = draw_with(&f, "orzan-shadow", equal, 2);
+    assert_float_equal(color_at(&facing, MIDDLE, MIDDLE)[0], 0.5, 1e-3);
+    assert_float_equal(color_at(&shadow, MIDDLE, MIDDLE)[0], 0, 1e-6);
+    assert_float_equal(color_at(&shadow, MIDDLE, MIDDLE)[1], 1, 1e-3);
+    orl_frame_finish(&facing);
+    orl_frame_finish(&shadow);
+    teardown(&f);
+}
+
+// Of six photographs, five paint.
+static void shadow_asks_the_best_five(void **state)
+{
+    (void)state;
+    static const char *const mean[] = {"combine=mean"};
+    struct fixture f;
+    setup(&f, false);
+    for (int i = 0; i < 5; i++)
+        add_photo(&f, look_from(0.1 * i - 0.2, 0, 0, SIDE, 20), red);
+    add_photo(&f, look_from(1.5, 0, 0, SIDE, 20), blue);
+    struct orl_frame frame = draw_with(&f, "orzan-shadow", mean, 1);
+    assert_float_equal(color_at(&frame, MIDDLE, MIDDLE)[0], 1, 1e-3);
+    assert_float_equal(color_at(&frame, MIDDLE, MIDDLE)[2], 0, 1e-6);
+    orl_frame_finish(&frame);
     teardown(&f);
 }
 
@@ -175,6 +214,38 @@ static void medians_fill_small_holes(void **state)
         more += is && !was;
     }
     assert_true(more > 10);
+    orl_frame_finish(&open);
+    orl_frame_finish(&filled);
+    teardown(&f);
+}
+
+// Where two colours meet at a hole, a filled pixel has one of them: a mean would have both. The
+// photograph's rows are the view's.
+static void medians_mix_no_colours(void **state)
+{
+    (void)state;
+    static const char *const none[] = {"median=off", "fill=none"}, *const holes[] = {"fill=none"};
+    struct fixture f;
+    setup(&f, true);
+    add_photo(&f, look_from(1.2, 0, 0, SIDE, 40), red);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        image.u8[3 * i + (i / SIDE < MIDDLE ? 0 : 1)] = 255;
+    repaint_photo(&f, &image);
+    struct orl_frame open = draw_with(&f, "orzan-shadow", none, 2);
+    struct orl_frame filled = draw_with(&f, "orzan-shadow", holes, 1);
+    int more = 0;
+    for (int y = MIDDLE - 2; y < MIDDLE + 2; y++)
+        for (int x = 0; x < SIDE; x++) {
+            const float *before = color_at(&open, x, y), *c = color_at(&filled, x, y);
+            if (before[0] + before[1] > 0 || !(c[0] + c[1] > 0))
+                continue;
+            assert_true(c[0] > 0.99f || c[1] > 0.99f);
+            assert_true(c[0] < 0.01f || c[1] < 0.01f);
+            more++;
+        }
+    assert_true(more >= 4);
     orl_frame_finish(&open);
     orl_frame_finish(&filled);
     teardown(&f);
@@ -221,6 +292,9 @@ int main(void)
         cmocka_unit_test(what_faces_away_is_not_seen),
         cmocka_unit_test(weights_follow_the_normal),
         cmocka_unit_test(medians_fill_small_holes),
+        cmocka_unit_test(medians_mix_no_colours),
+        cmocka_unit_test(shadow_maps_see_what_stands_between),
+        cmocka_unit_test(shadow_asks_the_best_five),
         cmocka_unit_test(medians_keep_edges),
     };
     int failed = cmocka_run_group_tests_name("Orzan", tests, NULL, NULL);

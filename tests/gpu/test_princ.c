@@ -34,11 +34,17 @@ static struct orl_view from_above(void)
     return view;
 }
 
-static struct orl_frame draw_with(struct fixture *f, const char *const *settings, size_t count)
+static struct orl_frame draw_from(struct fixture *f, struct orl_view view,
+                                  const char *const *settings, size_t count)
 {
     struct orl_render_params params = orl_method_find(NULL, "princ")->params;
     assert_int_equal(orl_render_params_assign(NULL, &params, settings, count), ORL_OK);
-    return draw(gpu, f, look_from(0, 0, 0, SIDE, 40), &params, 0);
+    return draw(gpu, f, view, &params, 0);
+}
+
+static struct orl_frame draw_with(struct fixture *f, const char *const *settings, size_t count)
+{
+    return draw_from(f, look_from(0, 0, 0, SIDE, 40), settings, count);
 }
 
 // No pixel mixes photographs.
@@ -100,6 +106,109 @@ static void a_larger_photograph_weighs_more(void **state)
     struct orl_frame frame = draw_with(&f, mean, 2);
     const float *middle = color_at(&frame, MIDDLE, MIDDLE);
     assert_float_equal(middle[1] / middle[0], 4, 0.05);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// An extra photograph that also sees the wall, larger than the nearest does, paints the floor alone.
+static void extras_give_way(void **state)
+{
+    (void)state;
+    static const char *const one[] = {"nearest=1", "extras=1", "fill=none"};
+    const double h = sqrt(0.5);
+    struct fixture f;
+    setup_corner(&f);
+    add_photo(&f, look_from(0, 0, -0.1, SIDE, 10), red);
+    struct orl_view aslant = look_from(0, 0, 0, SIDE, 30); // at the corner from 4 away, down by 45 degrees
+    aslant.cam_from_world = (struct orl_pose){.r = {{1, 0, 0}, {0, h, -h}, {0, h, h}},
+                                              .t = {0, 3 * h, 4 - 5 * h}};
+    add_photo(&f, aslant, green);
+    struct orl_frame frame = draw_with(&f, one, 3);
+    assert_float_equal(color_at(&frame, 24, 38)[1], 1, 1e-3);
+    assert_float_equal(color_at(&frame, 24, 24)[0], 1, 1e-3);
+    assert_float_equal(color_at(&frame, 24, 24)[1], 0, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Of what no photograph covers, most is floor, and the ceiling comes first in the picture: the one
+// extra photograph is that which looks down.
+static void extras_look_at_what_is_most(void **state)
+{
+    (void)state;
+    static const char *const one[] = {"nearest=1", "extras=1", "fill=none"};
+    struct fixture f;
+    setup_corner(&f);
+    struct orl_points all, *points = &f.scene.points;
+    assert_int_equal(orl_points_init(NULL, &all, 3 * GRID * GRID), ORL_OK);
+    for (size_t i = 0; i < 3 * GRID * GRID; i++) {
+        size_t from = i % (2 * GRID * GRID);
+        memcpy(all.position[i], points->position[from], sizeof *all.position);
+        memcpy(all.normal[i], points->normal[from], sizeof *all.normal);
+        all.radius[i] = points->radius[from];
+        if (i < 2 * GRID * GRID)
+            continue;
+        all.position[i][1] = -1; // the ceiling, 4 units wide and from 2.7 to 3.3 away
+        all.position[i][2] = 3 + 0.15f * points->position[from][1];
+        all.normal[i][1] = 1;
+        all.normal[i][2] = 0;
+    }
+    orl_points_finish(points);
+    *points = all;
+    struct orl_view from_below = look_from(0, 0, 0, SIDE, 20);
+    from_below.cam_from_world = (struct orl_pose){.r = {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+                                                  .t = {0, -3, 3}};
+    add_photo(&f, look_from(0, 0, -0.1, SIDE, 40), red);
+    add_photo(&f, from_below, blue);
+    add_photo(&f, from_above(), green);
+    struct orl_frame frame = draw_with(&f, one, 3);
+    assert_true(frame.depth.f32[10 * SIDE + 24] > 0);
+    assert_float_equal(frame.coverage.f32[10 * SIDE + 24], 0, 0);
+    assert_float_equal(color_at(&frame, 24, 38)[1], 1, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// From outside, the photograph is taken that looks as one would look at the model's middle, not as
+// the view does, which looks 30 degrees aside, as the other photograph does.
+static void outside_the_middle_decides(void **state)
+{
+    (void)state;
+    static const char *const one[] = {"nearest=1", "extras=0", "fill=none"};
+    const double c = cos(0.5235987755982988), s = 0.5;
+    const struct orl_pose aside = {.r = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}}};
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look_from(0, 0, 0, SIDE, 40);
+    view.cam_from_world = aside;
+    add_photo(&f, view, green);
+    add_photo(&f, look_from(0, 0, 0, SIDE, 20), red);
+    struct orl_frame frame = draw_from(&f, view, one, 3);
+    assert_float_equal(color_at(&frame, MIDDLE, MIDDLE)[0], 1, 1e-3);
+    assert_float_equal(color_at(&frame, MIDDLE, MIDDLE)[1], 0, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Between two walls, and nearer to one, the photograph is taken that looks as the view does.
+static void inside_the_axis_decides(void **state)
+{
+    (void)state;
+    static const char *const one[] = {"nearest=1", "extras=0", "fill=none"};
+    struct fixture f;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, 2 * GRID * GRID), ORL_OK);
+    set_square(&f.scene.points, 0, GRID, 6, 0, 4, red);
+    set_square(&f.scene.points, GRID * GRID, GRID, 6, 0, -4, red);
+    for (size_t i = GRID * GRID; i < 2 * GRID * GRID; i++)
+        f.scene.points.normal[i][2] = 1;
+    struct orl_view back = look_from(0, 0, 0, SIDE, 20);
+    back.cam_from_world.r[0][0] = back.cam_from_world.r[2][2] = -1;
+    add_photo(&f, back, green);
+    add_photo(&f, look_from(0, 0, 0, SIDE, 20), red);
+    struct orl_frame frame = draw_from(&f, look_from(0, 0, 2, SIDE, 40), one, 3);
+    assert_float_equal(frame.coverage.f32[MIDDLE * SIDE + MIDDLE], 1, 0);
+    assert_float_equal(color_at(&frame, MIDDLE, MIDDLE)[0], 1, 1e-3);
     orl_frame_finish(&frame);
     teardown(&f);
 }
@@ -177,6 +286,10 @@ int main(void)
         cmocka_unit_test(a_larger_photograph_weighs_more),
         cmocka_unit_test(one_photograph_paints_a_pixel),
         cmocka_unit_test(extras_paint_oblique_surfaces),
+        cmocka_unit_test(extras_give_way),
+        cmocka_unit_test(extras_look_at_what_is_most),
+        cmocka_unit_test(outside_the_middle_decides),
+        cmocka_unit_test(inside_the_axis_decides),
         cmocka_unit_test(weights_are_those_of_the_equation),
         cmocka_unit_test(depth_maps_take_no_memory),
     };
