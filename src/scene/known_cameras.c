@@ -51,6 +51,7 @@ static bool same_camera(const struct orl_colmap_camera *a, const struct orl_know
     return !b->gap.size && !gap->size && a->model == b->model && a->pinhole.width == b->width &&
            a->pinhole.height == b->height && gap->centre == b->gap.centre &&
            gap->fov_x_rad <= b->gap.fov_x_rad && gap->fov_x_rad >= b->gap.fov_x_rad &&
+           gap->side <= 0 && b->gap.side <= 0 &&
            memcmp(a->params, b->params, sizeof a->params) == 0;
 }
 
@@ -322,7 +323,8 @@ static enum orl_result choose_origin(const struct orl_log *log, struct orl_known
         spread = fmax(spread, median(values, count));
     }
     free(values);
-    if (!(spread > 0) || far < FAR * spread)
+    // Cameras at one place differ by rounding alone.
+    if (spread < 1e-9 * far || far < FAR * spread)
         return ORL_OK;
     double step = pow(10, fmax(floor(log10(spread)), floor(log10(far)) - ORL_JSON_DIGITS + 2));
     for (int k = 0; k < 3; k++)
@@ -367,6 +369,13 @@ enum orl_result orl_known_camera_settle(const struct orl_log *log,
         if (fabs(sx - sy) * told_height > 1 && fabs(sx - sy) * told_width > 1)
             return orl_fail(log, ORL_ERR_DATA, "%s: %dx%d pixels, but its camera has %dx%d", name,
                             width, height, told_width, told_height);
+    }
+    if (gap->side > 0) {
+        double unit = (width > height ? width : height) / gap->side;
+        for (int i = 0; i < focals + 2; i++)
+            p[i] *= unit;
+        p[focals] += 0.5 * width;
+        p[focals + 1] += 0.5 * height;
     }
     if (gap->fov_x_rad > 0)
         p[0] = p[focals - 1] = 0.5 * width / tan(0.5 * gap->fov_x_rad);

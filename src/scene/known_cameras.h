@@ -9,6 +9,8 @@
 struct orl_known_gap {
     bool size;        // the picture's size is missing
     bool centre;      // the principal point is missing: the picture's centre is used
+    double side;      // > 0: lengths are in units in which the larger side is so long, and the principal
+                      // point is measured from the picture's centre
     double fov_x_rad; // > 0: the focal length follows from this horizontal field of view
 };
 

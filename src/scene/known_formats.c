@@ -43,6 +43,11 @@ static bool is_meshroom(const json_t *root)
            json_is_array(json_object_get(root, "intrinsics"));
 }
 
+static bool is_record3d(const json_t *root)
+{
+    return json_is_array(json_object_get(root, "poses")) && json_is_array(json_object_get(root, "K"));
+}
+
 // --- COLMAP ---
 
 // Names of pictures as other systems write them.
@@ -106,9 +111,16 @@ static const struct format formats[] = {
     {"Blender's set", "transforms_train.json", NULL, true, orl_known_read_splits},
     {"OpenSfM", "reconstruction.json opensfm/reconstruction.json", is_opensfm, false,
      orl_known_read_opensfm},
-    {"Meshroom", "*.sfm", is_meshroom, false, orl_known_read_meshroom},
     {"Bundler", "bundle/bundle.out bundle.out *.out", NULL, false, orl_known_read_bundler},
+    {"LLFF", "poses_bounds.npy", NULL, false, orl_known_read_llff},
+    {"Record3D", "metadata.json EXR_RGBD/metadata.json", is_record3d, false, orl_known_read_record3d},
+    {"Polycam", "keyframes/cameras keyframes/corrected_cameras cameras corrected_cameras", NULL, true,
+     orl_known_read_polycam},
     {"Middlebury", "*_par.txt", NULL, false, orl_known_read_middlebury},
+    {"Meshroom", "*.sfm", is_meshroom, false, orl_known_read_meshroom},
+    {"VisualSFM", "*.nvm", NULL, false, orl_known_read_nvm},
+    {"Metashape", "*.xml", NULL, false, orl_known_read_metashape},
+    {"RealityScan", "*.csv", NULL, false, orl_known_read_realityscan},
 };
 
 char *orl_known_formats_text(const struct orl_log *log)

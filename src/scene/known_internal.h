@@ -62,7 +62,9 @@ typedef enum orl_result orl_known_reader(const struct orl_known_source *source,
                                          struct orl_known_cameras *known);
 orl_known_reader orl_known_read_own, orl_known_read_inria,
     orl_known_read_transforms, orl_known_read_splits, orl_known_read_bundler,
-    orl_known_read_middlebury, orl_known_read_opensfm, orl_known_read_meshroom;
+    orl_known_read_middlebury, orl_known_read_opensfm, orl_known_read_meshroom,
+    orl_known_read_polycam, orl_known_read_record3d, orl_known_read_llff, orl_known_read_nvm,
+    orl_known_read_realityscan, orl_known_read_metashape;
 
 // Names, in one line, the keys of `objects` that are not in the NULL-terminated list `used`.
 struct orl_known_unused {

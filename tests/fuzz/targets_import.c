@@ -70,6 +70,43 @@ void fuzz_middlebury(const uint8_t *data, size_t size)
     read_cameras(fuzz_path("."), -1);
 }
 
+void fuzz_metashape(const uint8_t *data, size_t size)
+{
+    fuzz_save("cameras.xml", data, size);
+    read_cameras(fuzz_path("cameras.xml"), -1);
+}
+
+void fuzz_realityscan(const uint8_t *data, size_t size)
+{
+    fuzz_save("cameras.csv", data, size);
+    read_cameras(fuzz_path("cameras.csv"), -1);
+}
+
+void fuzz_visualsfm(const uint8_t *data, size_t size)
+{
+    fuzz_save("model.nvm", data, size);
+    read_cameras(fuzz_path("model.nvm"), -1);
+}
+
+// The file does not name its pictures: there are two.
+void fuzz_llff(const uint8_t *data, size_t size)
+{
+    if (orl_dir_make(&fuzz_log, fuzz_path("llff/images")) != ORL_OK)
+        abort();
+    fuzz_save("llff/images/a.jpg", data, 0);
+    fuzz_save("llff/images/b.jpg", data, 0);
+    fuzz_save("llff/poses_bounds.npy", data, size);
+    read_cameras(fuzz_path("llff/poses_bounds.npy"), -1);
+}
+
+void fuzz_polycam(const uint8_t *data, size_t size)
+{
+    if (orl_dir_make(&fuzz_log, fuzz_path("phone/keyframes/cameras")) != ORL_OK)
+        abort();
+    fuzz_save("phone/keyframes/cameras/1.json", data, size);
+    read_cameras(fuzz_path("phone"), -1);
+}
+
 static void use_scene(const char *dir)
 {
     struct orl_scene *scene;

@@ -330,6 +330,146 @@ static void reads_meshroom(void **state)
     says(w, "intrinsic 7: its type is none of");
 }
 
+#define XML(sensor, cameras) "<?xml version=\"1.0\"?><document><chunk><sensors><sensor id=\"3\" type=\"frame\">" \
+    "<resolution width=\"640\" height=\"480\"/><calibration class=\"initial\"><f>1</f></calibration>" \
+    "<calibration type=\"frame\" class=\"adjusted\"><f>500</f><cx>10</cx>" sensor \
+    "</calibration></sensor></sensors><components><component id=\"1\"><transform><rotation>0 -1 0 1 0 0 0 0 " \
+    "1</rotation><translation>5 0 1</translation><scale>2</scale></transform></component></components>" \
+    "<cameras><group>" cameras "</group></cameras></chunk></document>"
+// In the component's frame: axes turned back by 90 degrees, and (1, 2, 3) = 2 R (1, 2, 1) + (5, 0, 1).
+#define PLACED(attributes) "<camera id=\"0\" sensor_id=\"3\" component_id=\"1\" label=\"a\"" attributes ">" \
+    "<transform>-1 0 0 1 0 -1 0 2 0 0 1 1 0 0 0 1</transform></camera>"
+
+static void reads_metashape(void **state)
+{
+    struct work *w = *state;
+    save(w, "cameras.xml", XML("<b1>2</b1><k1>0.1</k1><p1>0.3</p1><p2>0.4</p2>", PLACED("")
+         "<camera id=\"1\" sensor_id=\"3\" label=\"b\"/>"));
+    assert_int_equal(read(w, ""), ORL_OK);
+    assert_int_equal(w->known.model.image_count, 1);
+    check_pose(w, 0);
+    // p1 and p2 have each other's place in OpenCV's model.
+    check_params(w, 4, (double[]){502, 500, 330, 240, 0.1, 0, 0.4, 0.3}, 8);
+    says(w, "1 of 2 cameras are not aligned: left out");
+    save(w, "cameras.xml", XML("", PLACED(" enabled=\"false\"")));
+    assert_int_equal(read(w, ""), ORL_ERR_DATA);
+    says(w, "1 of 1 cameras are disabled: left out");
+    save(w, "cameras.xml", XML("<k4>0.1</k4>", PLACED("")));
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "camera a: its calibration has b2, k4, p3 or p4");
+    save(w, "cameras.xml", XML("<k1>x</k1>", PLACED("")));
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    save(w, "cameras.xml", "<document>\n<chunk>");
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "cameras.xml: line 2 (byte ");
+}
+
+#define HEADS "#name,x,y,alt,heading,pitch,roll,f,px,py,k1,k2,k3,k4,t1,t2\n"
+
+// A rotation that RealityCapture wrote both as XMP, cam_from_world, and as angles:
+// https://forums.unrealengine.com/t/different-rotation-of-cameras-in-xmp-and-csv/710449
+static void reads_realityscan(void **state)
+{
+    static const double rotation[9] = {0.982594073038806, 0.185426733553445, -0.0112166890261935,
+                                       -0.032113633044729, 0.11008102707942, -0.993403685341366,
+                                       -0.18296885582437, 0.976472781986697, 0.1141196904};
+    struct work *w = *state;
+    save(w, "cameras.csv", "#cameras 2\r\n" HEADS
+         "a.jpg,1,2,3,163.736597399311,83.4154313461628,174.386496244756,28.125,0.015625,0,0.1,0,0,0,0.3,0\r\n"
+         "\"b, c.jpg\",1,2,3,0,0,0,28.125,0,0,0,0,0,0,0,0\r\n");
+    assert_int_equal(read(w, ""), ORL_OK);
+    assert_string_equal(name_of(w, 1), "b, c.jpg");
+    const struct orl_pose *pose = &w->known.model.images[0].cam_from_world;
+    double centre[3];
+    orl_pose_centre(pose, centre);
+    assert_float_equal(centre[1], 2, 1e-9);
+    for (int i = 0; i < 9; i++)
+        assert_float_equal(pose->r[i / 3][i % 3], rotation[i], 1e-6);
+    // 28.125 mm of a picture 36 mm wide, whatever its size: 28.125 / 36 * 640 = 500.
+    assert_int_equal(orl_known_camera_settle(NULL, &w->known, 0, "a.jpg", 640, 480), ORL_OK);
+    check_params(w, 4, (double[]){500, 500, 330, 240, 0.1, 0, 0.3, 0}, 8);
+    save(w, "cameras.csv", HEADS "a.jpg,1,2,3,0,0,0,28,0,0,0,0,0,0.1,0,0\n");
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "line 2 (byte ");
+    save(w, "cameras.csv", "#name,x,y,alt\na.jpg,1,2,3\n");
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "export \"Internal/External camera parameters\"");
+}
+
+static void reads_nvm(void **state)
+{
+    struct work *w = *state;
+    // A quarter turn about z: w x y z.
+    save(w, "model.nvm", "NVM_V3\n\n2\nmy photos/a 1.jpg 500 0.7071067811865476 0 0 0.7071067811865476 1 2 3 -0.1 0\n"
+         "c\"2.jpg\t500 1 0 0 0 4 2 3 0 0\n\n1\n1 2 9 255 128 0 2 0 5 10 10 1 6 11 11\n\n0\n");
+    assert_int_equal(read(w, ""), ORL_OK);
+    assert_string_equal(name_of(w, 0), "a 1.jpg");
+    assert_string_equal(name_of(w, 1), "c 2.jpg");
+    check_pose(w, 0);
+    assert_int_equal(orl_known_camera_settle(NULL, &w->known, 0, "a.jpg", 640, 480), ORL_OK);
+    // The distortion maps the other way: a point undistorted to u is projected to d, u = d (1 - 0.1 d^2).
+    double pixel[2];
+    orl_colmap_camera_project(&w->known.model.cameras[0], (double[]){0.4 * (1 - 0.1 * 0.16), 0}, pixel);
+    assert_float_equal(pixel[0], 320 + 500 * 0.4, 0.05);
+    assert_int_equal(w->known.model.point_count, 1);
+    assert_int_equal(w->known.model.points[0].track_length, 2);
+    save(w, "model.nvm", "NVM_V3\n2\na.jpg 500 1 0 0 0 1 2 3 0 0\n");
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "fewer cameras than the file says");
+}
+
+// Axes down, right, backwards.
+static void reads_llff(void **state)
+{
+    struct work *w = *state;
+    const double numbers[17] = {1, 0, 0, 1, 480, 0, -1, 0, 2, 640, 0, 0, -1, 3, 500, 1, 9};
+    char header[129], data[128 + sizeof numbers] = "\x93NUMPY\1\0\x76", *path;
+    snprintf(header, sizeof header, "%-117s\n", "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 17), }");
+    memcpy(data + 10, header, 118);
+    memcpy(data + 128, numbers, sizeof numbers);
+    path = test_path(w->dir, "poses_bounds.npy");
+    assert_int_equal(orl_file_write(NULL, path, data, sizeof data), ORL_OK);
+    assert_int_equal(read(w, ""), ORL_ERR_NOT_FOUND);
+    says(w, "its pictures must be in");
+    save(w, "images/a.jpg", "");
+    assert_int_equal(read(w, ""), ORL_OK);
+    assert_string_equal(name_of(w, 0), "a.jpg");
+    check_pose(w, 0);
+    check_params(w, 1, (double[]){500, 500, 320, 240}, 4);
+    save(w, "images/b.jpg", "");
+    assert_int_equal(read(w, ""), ORL_ERR_DATA);
+    says(w, "1 cameras, but images/ has 2 files");
+    assert_int_equal(orl_file_write(NULL, path, data, sizeof data - 1), ORL_OK);
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    free(path);
+}
+
+#define PHONE "{\"fx\": 500, \"fy\": 510, \"cx\": 330, \"cy\": 240, \"width\": 640, \"height\": 480, " \
+    "\"t_00\": 0, \"t_01\": -1, \"t_02\": 0, \"t_03\": 1, \"t_10\": -1, \"t_11\": 0, \"t_12\": 0, " \
+    "\"t_13\": 2, \"t_20\": 0, \"t_21\": 0, \"t_22\": -1, \"t_23\": 3}"
+
+static void reads_telephones(void **state)
+{
+    struct work *w = *state;
+    save(w, "keyframes/cameras/123.json", PHONE);
+    assert_int_equal(read(w, ""), ORL_OK);
+    says(w, "Polycam: 1 cameras");
+    assert_string_equal(w->known.pictures[0].path, "keyframes/images/123");
+    check_pose(w, 0);
+    check_params(w, 1, (double[]){500, 510, 330, 240}, 4);
+    save(w, "keyframes/corrected_cameras/124.json", PHONE);
+    assert_int_equal(read(w, ""), ORL_OK);
+    assert_string_equal(w->known.pictures[0].path, "keyframes/corrected_images/124");
+    // x y z w of the same pose with OpenGL's axes: half a turn about x - y.
+    save(w, "r3d/metadata.json", "{\"poses\": [[0.7071067811865476, -0.7071067811865476, 0, 0, 1, 2, 3]], \"K\": "
+         "[500, 0, 0, 0, 510, 0, 330, 240, 1], \"w\": 640, \"h\": 480, \"fps\": 30}");
+    assert_int_equal(read(w, "r3d"), ORL_OK);
+    assert_string_equal(w->known.pictures[0].path, "rgbd/0");
+    check_pose(w, 0);
+    check_params(w, 1, (double[]){500, 510, 330, 240}, 4);
+    says(w, "not used: fps");
+}
+
 // --- far away ---
 
 static void takes_a_far_origin_off(void **state)
@@ -407,7 +547,8 @@ int main(void)
         TEST(takes_the_largest_model), TEST(reads_models_without_points), TEST(reads_images_of_one_line),
         TEST(reads_names_of_other_systems), TEST(takes_what_transforms_state),
         TEST(names_pictures_by_what_tells_them_apart), TEST(reads_blender_sets),
-        TEST(reads_lists_with_spaces), TEST(refuses_utf16), TEST(reads_opensfm), TEST(reads_meshroom),
+        TEST(reads_lists_with_spaces), TEST(refuses_utf16), TEST(reads_opensfm), TEST(reads_meshroom), TEST(reads_metashape), TEST(reads_realityscan), TEST(reads_nvm),
+        TEST(reads_llff), TEST(reads_telephones),
         TEST(takes_a_far_origin_off), TEST(reads_far_points_and_meshes), TEST(lists_formats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

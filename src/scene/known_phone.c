@@ -1,0 +1,143 @@
+// Cameras of telephones with a depth sensor: Polycam's folder of keyframes and Record3D's
+// metadata.json. Both have OpenGL's axes and the world of the telephone, y up.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "scene/json_views.h"
+#include "scene/known_internal.h"
+
+static enum orl_result bad(const struct orl_known_source *source, const char *place, const char *why)
+{
+    return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s: %s", source->path, place, why);
+}
+
+static double shift_of(const struct orl_known_source *source)
+{
+    return 0.5 - (source->pixel_centre >= 0 ? source->pixel_centre : 0.5);
+}
+
+// --- Polycam: cameras/TIME.json beside images/TIME.jpg ---
+
+static enum orl_result read_keyframe(const struct orl_known_source *source, const char *file,
+                                     const char *picture, struct orl_known_cameras *known)
+{
+    static const char *const lens[] = {"fx", "fy", "cx", "cy"};
+    struct orl_known_camera camera = {.path = picture};
+    double f_c[4], rows[16] = {0};
+    json_t *root = NULL;
+    enum orl_result result = orl_json_read(source->log, file, &root);
+    bool good = result == ORL_OK;
+    for (int i = 0; good && i < 4; i++)
+        good = orl_known_json_number(root, lens[i], &f_c[i]);
+    for (int i = 0; good && i < 12; i++) {
+        char key[8];
+        snprintf(key, sizeof key, "t_%d%d", i / 4, i % 4);
+        good = orl_known_json_number(root, key, &rows[i]);
+    }
+    if (result == ORL_OK && (!good || !orl_pose_from_opengl(rows, &camera.pose)))
+        result = bad(source, orl_path_name(file), "fx, fy, cx, cy or the rows t_00 to t_23 are missing or "
+                                                  "not a pose");
+    if (result == ORL_OK) {
+        f_c[2] += shift_of(source);
+        f_c[3] += shift_of(source);
+        camera.width = orl_json_side(root, "width");
+        camera.height = orl_json_side(root, "height");
+        orl_known_set_opencv(&camera, f_c, NULL, 0);
+        result = orl_known_add(source->log, source->path, orl_path_name(file), &camera, known);
+    }
+    json_decref(root);
+    return result;
+}
+
+// Folders of cameras, in order of preference, and of their pictures. Polycam corrects its cameras where
+// it has closed loops.
+static const char *const polycam[][2] = {
+    {"keyframes/corrected_cameras", "keyframes/corrected_images"},
+    {"keyframes/cameras", "keyframes/images"},
+    {"corrected_cameras", "corrected_images"},
+    {"cameras", "images"}};
+
+enum orl_result orl_known_read_polycam(const struct orl_known_source *source,
+                                       struct orl_known_cameras *known)
+{
+    struct orl_names names = {0};
+    enum orl_result result = ORL_OK;
+    char *dir = NULL;
+    size_t which = 0;
+    for (; which < ORL_COUNT(polycam); which++) {
+        dir = orl_path_join(source->log, source->path, polycam[which][0]);
+        if (!dir)
+            return ORL_ERR_MEMORY;
+        if (orl_path_is_dir(dir))
+            break;
+        free(dir);
+        dir = NULL;
+    }
+    if (dir)
+        result = orl_dir_list(source->log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        const char *name = names.items[i], *dot = strrchr(name, '.');
+        if (*name == '.' || !dot || strcmp(dot, ".json") != 0)
+            continue;
+        char *file = orl_path_join(source->log, dir, name);
+        char *picture = orl_format(source->log, "%s/%.*s", polycam[which][1], (int)(dot - name), name);
+        result = file && picture ? read_keyframe(source, file, picture, known) : ORL_ERR_MEMORY;
+        free(file);
+        free(picture);
+    }
+    orl_names_finish(&names);
+    free(dir);
+    return result;
+}
+
+// --- Record3D: "poses" of qx qy qz qw tx ty tz, and K column by column ---
+
+enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
+                                        struct orl_known_cameras *known)
+{
+    static const char *const used[] = {"poses", "K", "w", "h", "perFrameIntrinsicCoeffs", NULL};
+    struct orl_known_unused unused = {.used = used};
+    const json_t *poses = json_object_get(source->root, "poses");
+    char *rgb = orl_path_join(source->log, known->folder, "rgb");
+    if (!rgb)
+        return ORL_ERR_MEMORY;
+    const char *folder = orl_path_is_dir(rgb) ? "rgb" : "rgbd"; // of the two kinds of export
+    free(rgb);
+    const json_t *lenses = json_object_get(source->root, "perFrameIntrinsicCoeffs");
+    double k[9];
+    if (!orl_json_read_numbers(json_object_get(source->root, "K"), 9, k))
+        return bad(source, "K", "not 9 numbers");
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < json_array_size(poses); i++) {
+        char place[32], path[32];
+        double v[7], of_frame[4], rows[16] = {0};
+        struct orl_pose turn;
+        snprintf(place, sizeof place, "pose %zu", i);
+        snprintf(path, sizeof path, "%s/%zu", folder, i);
+        struct orl_known_camera camera = {.path = path, .width = orl_json_side(source->root, "w"),
+                                          .height = orl_json_side(source->root, "h")};
+        if (!orl_json_read_numbers(json_array_get(poses, i), 7, v) ||
+            !orl_pose_from_quat((double[]){v[3], v[0], v[1], v[2]}, (double[3]){0}, &turn))
+            return bad(source, place, "not a quaternion and a position");
+        for (int r = 0; r < 3; r++) {
+            memcpy(rows + 4 * r, turn.r[r], sizeof turn.r[r]);
+            rows[4 * r + 3] = v[4 + r];
+        }
+        if (!orl_pose_from_opengl(rows, &camera.pose))
+            return bad(source, place, "not a pose");
+        // fx fy cx cy of each frame, where the telephone focuses anew.
+        bool own = orl_json_read_numbers(json_array_get(lenses, i), 4, of_frame);
+        const double f_c[4] = {own ? of_frame[0] : k[0], own ? of_frame[1] : k[4],
+                               (own ? of_frame[2] : k[6]) + shift_of(source),
+                               (own ? of_frame[3] : k[7]) + shift_of(source)};
+        orl_known_set_opencv(&camera, f_c, NULL, 0);
+        result = orl_known_add(source->log, source->path, place, &camera, known);
+    }
+    orl_known_look_for_unused(&unused, source->root);
+    orl_known_say_unused(source, &unused);
+    return result;
+}

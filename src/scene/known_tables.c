@@ -1,0 +1,235 @@
+// Cameras as tables: VisualSFM's NVM and RealityScan's "Internal/External camera parameters" in CSV.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/memory.h"
+#include "scene/colmap_internal.h"
+#include "scene/known_internal.h"
+#include "scene/text_lines.h"
+
+// --- NVM (http://ccwu.me/vsfm/doc.html#nvm) ---
+
+// VisualSFM's distortion maps the picture to the undistorted one: u = d (1 + r d^2). The series of the
+// inverse gives the terms of ours, which maps the other way: d = u (1 - r u^2 + 3 r^2 u^4 - 12 r^3 u^6 + ...).
+static void set_inverse_radial(struct orl_known_camera *camera, const double f_c[4], double r)
+{
+    const double terms[] = {-r, 3 * r * r, 0, 0, -12 * r * r * r, 0, 0, 0};
+    orl_known_set_opencv(camera, f_c, terms, ORL_COUNT(terms));
+}
+
+// Finds the last `count` words of a line, which are numbers, and ends the line ahead of them: names may
+// have spaces.
+static bool cut_numbers(char *line, double *values, size_t count)
+{
+    char *end = line + strlen(line);
+    for (size_t i = count; i-- > 0;) {
+        while (end > line && strchr(" \t", end[-1]))
+            end--;
+        *end = '\0';
+        char *word = end, *stop;
+        while (word > line && !strchr(" \t", word[-1]))
+            word--;
+        values[i] = strtod(word, &stop);
+        if (word == line || stop == word || *stop)
+            return false;
+        end = word;
+    }
+    while (end > line && strchr(" \t", end[-1]))
+        end--;
+    *end = '\0';
+    return end > line;
+}
+
+static enum orl_result read_nvm_camera(struct orl_text_lines *l, const double fixed[5],
+                                       struct orl_known_cameras *known)
+{
+    double v[10]; // focal length, quaternion w x y z, place, distortion, 0
+    char place[64];
+    snprintf(place, sizeof place, "line %zu", l->number);
+    if (!cut_numbers(l->at, v, ORL_COUNT(v)))
+        return orl_text_bad(l, "a camera needs a name and 10 numbers");
+    for (char *c = l->at; *c; c++) // VisualSFM's way to write a space
+        if (*c == '"')
+            *c = ' ';
+    struct orl_known_camera camera = {.path = l->at, .gap = {.size = true, .centre = fixed[0] <= 0}};
+    if (!orl_pose_from_quat(v + 1, (double[3]){0}, &camera.pose))
+        return orl_text_bad(l, "a camera's quaternion is zero or not finite");
+    orl_pose_move(&camera.pose, (double[]){-v[5], -v[6], -v[7]});
+    const double f_c[4] = {fixed[0] > 0 ? fixed[0] : v[0], fixed[0] > 0 ? fixed[2] : v[0], fixed[1], fixed[3]};
+    set_inverse_radial(&camera, f_c, fixed[0] > 0 ? fixed[4] : v[8]);
+    return orl_known_add(l->log, l->path, place, &camera, known);
+}
+
+static enum orl_result read_nvm_point(struct orl_text_lines *l, size_t *capacity, size_t *capacities,
+                                      struct orl_colmap_model *model)
+{
+    double at[3], rgb[3], pixel[2];
+    uint64_t views, image, feature;
+    size_t before = model->point_count;
+    if (!orl_text_numbers(l, at, 3) || !orl_text_numbers(l, rgb, 3) ||
+        !orl_text_id(l, UINT32_MAX, &views))
+        return orl_text_bad(l, "a point needs a position, a colour and the number of its views");
+    enum orl_result result = orl_known_add_point(l->log, at, rgb, capacity, model);
+    for (uint64_t i = 0; result == ORL_OK && i < views; i++) {
+        if (!orl_text_id(l, UINT32_MAX, &image) || !orl_text_id(l, UINT32_MAX, &feature) ||
+            !orl_text_numbers(l, pixel, 2) || image >= model->image_count)
+            return orl_text_bad(l, "a view needs a camera that is there, a feature, x and y");
+        if (model->point_count > before)
+            result = orl_known_add_view(l->log, (size_t)image, (uint32_t)before, capacities, model);
+    }
+    return result;
+}
+
+// The first model of the file; others are of photographs that could not be placed with it.
+static enum orl_result read_nvm(struct orl_text_lines *l, struct orl_known_cameras *known)
+{
+    double fixed[5] = {0}; // f cx f cy r of all cameras, after "FixedK"
+    uint64_t cameras = 0, points = 0;
+    size_t capacity = 0;
+    if (!orl_text_next(l) || strncmp(l->at, "NVM_V3", 6) != 0)
+        return orl_text_bad(l, "not NVM_V3");
+    const char *lens = strstr(l->at, "FixedK");
+    if (lens) {
+        l->at = (char *)lens + strlen("FixedK");
+        if (!orl_text_numbers(l, fixed, 5) || !(fixed[0] > 0))
+            return orl_text_bad(l, "FixedK needs 5 numbers");
+    }
+    if (!orl_text_next(l) || !orl_text_id(l, 1000000, &cameras))
+        return orl_text_bad(l, "not the number of cameras");
+    enum orl_result result = ORL_OK;
+    for (uint64_t i = 0; result == ORL_OK && i < cameras; i++)
+        result = orl_text_next(l) ? read_nvm_camera(l, fixed, known)
+                                  : orl_text_bad(l, "fewer cameras than the file says");
+    size_t *capacities = orl_array(l->log, known->model.image_count, sizeof *capacities);
+    if (!capacities)
+        result = ORL_ERR_MEMORY;
+    if (result == ORL_OK && orl_text_next(l) && !orl_text_id(l, UINT32_MAX - 1, &points))
+        result = orl_text_bad(l, "not the number of points");
+    for (uint64_t i = 0; result == ORL_OK && i < points; i++)
+        result = orl_text_next(l) ? read_nvm_point(l, &capacity, capacities, &known->model)
+                                  : orl_text_bad(l, "fewer points than the file says");
+    free(capacities);
+    return result;
+}
+
+enum orl_result orl_known_read_nvm(const struct orl_known_source *source,
+                                   struct orl_known_cameras *known)
+{
+    struct orl_text_lines l;
+    enum orl_result result = orl_text_open(source->log, source->path, &l);
+    if (result == ORL_OK)
+        result = read_nvm(&l, known);
+    orl_text_close(&l);
+    return result;
+}
+
+// --- RealityScan ---
+
+enum column { NAME, X, Y, ALT, HEADING, PITCH, ROLL, F, PX, PY, K1, K2, K3, K4, T1, T2, COLUMNS };
+static const char *const columns[COLUMNS] = {"#name", "x", "y", "alt", "heading", "pitch", "roll", "f",
+                                             "px", "py", "k1", "k2", "k3", "k4", "t1", "t2"};
+enum { FIELDS_MAX = 64 };
+
+// Cuts a line at its commas or semicolons; quotes around a field are left out. Number of fields.
+static size_t split(char *line, char *fields[FIELDS_MAX])
+{
+    size_t count = 0;
+    char *at = line, *stop;
+    for (; count < FIELDS_MAX; at = stop + 1) {
+        at += strspn(at, " \t");
+        bool quoted = *at == '"';
+        fields[count++] = at += quoted;
+        stop = quoted ? at + strcspn(at, "\"") : at + strcspn(at, ",;");
+        char *end = stop;
+        stop += strcspn(stop, ",;");
+        bool last = !*stop;
+        while (end > at && strchr(" \t", end[-1]))
+            end--;
+        *end = '\0';
+        if (last)
+            break;
+    }
+    return count;
+}
+
+// The axes of a camera that looks down with its top to the north (y), turned by heading (clockwise), then
+// pitch and roll: Rz(-heading) Rx(pitch) Ry(roll), OpenGL's axes.
+static void set_pose(const double value[COLUMNS], double rows[16])
+{
+    const double degree = 3.14159265358979323846 / 180;
+    double ch = cos(-value[HEADING] * degree), sh = sin(-value[HEADING] * degree);
+    double cp = cos(value[PITCH] * degree), sp = sin(value[PITCH] * degree);
+    double cr = cos(value[ROLL] * degree), sr = sin(value[ROLL] * degree);
+    const double turned[12] = {ch * cr - sh * sp * sr, -sh * cp, ch * sr + sh * sp * cr, value[X],
+                               sh * cr + ch * sp * sr, ch * cp, sh * sr - ch * sp * cr, value[Y],
+                               -cp * sr, sp, cp * cr, value[ALT]};
+    memcpy(rows, turned, sizeof turned);
+}
+
+// Lengths are those of a picture whose larger side is 36 mm, or 1 for the principal point, whatever its size.
+static enum orl_result read_row(struct orl_text_lines *l, const int at[COLUMNS],
+                                struct orl_known_cameras *known)
+{
+    char *fields[FIELDS_MAX], place[64];
+    double value[COLUMNS] = {0}, rows[16] = {0};
+    size_t count = split(l->at, fields);
+    snprintf(place, sizeof place, "line %zu", l->number);
+    for (int c = X; c < COLUMNS; c++) {
+        char *end = NULL;
+        if (at[c] < 0)
+            continue;
+        value[c] = at[c] < (int)count ? strtod(fields[at[c]], &end) : NAN;
+        if (!isfinite(value[c]) || end == fields[at[c]] || *end)
+            return orl_text_bad(l, "a camera has a value that is not a number");
+    }
+    if (value[K4] < 0 || value[K4] > 0)
+        return orl_text_bad(l, "a lens with k4: export without it, or undistorted pictures");
+    struct orl_known_camera camera = {.path = at[NAME] < (int)count ? fields[at[NAME]] : "",
+                                      .gap = {.size = true, .side = 1}};
+    set_pose(value, rows);
+    if (!orl_pose_from_opengl(rows, &camera.pose))
+        return orl_text_bad(l, "a camera's place is absurdly far");
+    const double f_c[4] = {value[F] / 36, value[F] / 36, value[PX], value[PY]};
+    const double terms[] = {value[K1], value[K2], value[T1], value[T2], value[K3]};
+    orl_known_set_opencv(&camera, f_c, terms, ORL_COUNT(terms));
+    return orl_known_add(l->log, l->path, place, &camera, known);
+}
+
+static enum orl_result read_heads(struct orl_text_lines *l, int at[COLUMNS])
+{
+    char *fields[FIELDS_MAX];
+    while (orl_text_next_raw(l)) {
+        if (strncasecmp(l->at, "#name", 5) == 0)
+            break;
+        if (*l->at && *l->at != '#')
+            return orl_text_bad(l, "the line of column names, \"#name,x,y,alt,heading,...\", is missing");
+    }
+    size_t count = split(l->at, fields);
+    for (int c = 0; c < COLUMNS; c++) {
+        at[c] = -1;
+        for (size_t i = 0; i < count && at[c] < 0; i++)
+            if (strcasecmp(fields[i], columns[c]) == 0)
+                at[c] = (int)i;
+        if (at[c] < 0 && c <= F)
+            return orl_text_bad(l, "a column of name, x, y, alt, heading, pitch, roll or f is missing: "
+                                   "export \"Internal/External camera parameters\"");
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_known_read_realityscan(const struct orl_known_source *source,
+                                           struct orl_known_cameras *known)
+{
+    struct orl_text_lines l;
+    int at[COLUMNS];
+    enum orl_result result = orl_text_open(source->log, source->path, &l);
+    if (result == ORL_OK)
+        result = read_heads(&l, at);
+    while (result == ORL_OK && orl_text_next(&l))
+        result = read_row(&l, at, known);
+    orl_text_close(&l);
+    return result;
+}
