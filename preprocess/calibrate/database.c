@@ -161,7 +161,7 @@ static enum orl_result find_features(struct orl_database *db, const char *name,
 enum orl_result orl_database_descriptors(struct orl_database *db, const char *name, size_t limit,
                                          uint8_t **descriptors, size_t *count)
 {
-    struct table keypoints, all;
+    struct table keypoints = {0}, all = {0};
     *descriptors = NULL;
     *count = 0;
     enum orl_result result = find_features(db, name, &keypoints, &all);
@@ -174,7 +174,7 @@ enum orl_result orl_database_descriptors(struct orl_database *db, const char *na
 enum orl_result orl_database_features(struct orl_database *db, const char *name,
                                       struct orl_features *features)
 {
-    struct table keypoints, all;
+    struct table keypoints = {0}, all = {0};
     *features = (struct orl_features){0};
     enum orl_result result = find_features(db, name, &keypoints, &all);
     if (result == ORL_OK && !(features->descriptors = orl_array(db->log, all.rows, ORL_SIFT_SIZE)))
@@ -284,20 +284,16 @@ enum orl_result orl_database_detach(struct orl_database *db)
     return run_sql(db, "DETACH part");
 }
 
-// Rigs and frames of COLMAP 3.12 refer to cameras and photographs; they are not renumbered here.
-static enum orl_result refuse_rigs(struct orl_database *db)
+// Databases of COLMAP 3.12 and later have rigs of cameras and frames of photographs that rigs take.
+// Photographs of one camera each have a rig a camera and a frame a photograph.
+static bool has_rigs(sqlite3 *handle)
 {
     sqlite3_stmt *statement = NULL;
-    int step = SQLITE_ERROR;
-    if (sqlite3_prepare_v2(db->handle, "SELECT 1 FROM sqlite_master WHERE name = 'frames'", -1,
-                           &statement, NULL) == SQLITE_OK)
-        step = sqlite3_step(statement);
+    bool has = sqlite3_prepare_v2(handle, "SELECT 1 FROM main.sqlite_master WHERE name = 'frames'",
+                                  -1, &statement, NULL) == SQLITE_OK &&
+               sqlite3_step(statement) == SQLITE_ROW;
     sqlite3_finalize(statement);
-    return step == SQLITE_ROW
-               ? orl_fail(db->log, ORL_ERR_UNSUPPORTED, "%s: jobs cannot share features of a COLMAP "
-                          "that has rigs (3.12 and later); run oriel prepare without them",
-                          db->path)
-               : step == SQLITE_DONE ? ORL_OK : fail(db);
+    return has;
 }
 
 // Runs `sql` on the attached database, at once or not at all.
@@ -321,24 +317,45 @@ static enum orl_result add_part(struct orl_database *db, const char *path, const
 #define MOVED(table, moves) \
     "CREATE TEMP TABLE moved AS SELECT * FROM part." table "; UPDATE moved SET " moves ";" \
     "INSERT INTO main." table " SELECT * FROM moved; DROP TABLE moved;"
-#define PAST(id, table) id " = " id " + (SELECT past FROM " table ")"
+#define PAST(id, table) id " = " id " + (SELECT past FROM " table "_past)"
+#define BEGIN_MOVES(table, id) \
+    "CREATE TEMP TABLE " table "_past AS SELECT coalesce(max(" id "), 0) AS past FROM main." table ";"
+#define MOVES \
+    BEGIN_MOVES("cameras", "camera_id") BEGIN_MOVES("images", "image_id") \
+    MOVED("cameras", PAST("camera_id", "cameras")) \
+    MOVED("images", PAST("image_id", "images") ", " PAST("camera_id", "cameras")) \
+    MOVED("keypoints", PAST("image_id", "images")) MOVED("descriptors", PAST("image_id", "images"))
+#define RIG_MOVES \
+    BEGIN_MOVES("rigs", "rig_id") BEGIN_MOVES("frames", "frame_id") \
+    MOVED("rigs", PAST("rig_id", "rigs") ", " PAST("ref_sensor_id", "cameras")) \
+    MOVED("frames", PAST("frame_id", "frames") ", " PAST("rig_id", "rigs")) \
+    MOVED("frame_data", PAST("frame_id", "frames") ", " PAST("data_id", "images") ", " \
+                        PAST("sensor_id", "cameras"))
+#define END_MOVES "DROP TABLE cameras_past; DROP TABLE images_past;"
+#define END_RIG_MOVES "DROP TABLE rigs_past; DROP TABLE frames_past;"
 
 enum orl_result orl_database_add_photographs(struct orl_database *db, const char *path)
 {
-    enum orl_result result = refuse_rigs(db);
-    return result == ORL_OK
-               ? add_part(db, path,
-                     "CREATE TEMP TABLE cameras_past AS"
-                     " SELECT coalesce(max(camera_id), 0) AS past FROM main.cameras;"
-                     "CREATE TEMP TABLE images_past AS"
-                     " SELECT coalesce(max(image_id), 0) AS past FROM main.images;"
-                     MOVED("cameras", PAST("camera_id", "cameras_past"))
-                     MOVED("images", PAST("image_id", "images_past") ", "
-                                     PAST("camera_id", "cameras_past"))
-                     MOVED("keypoints", PAST("image_id", "images_past"))
-                     MOVED("descriptors", PAST("image_id", "images_past"))
-                     "DROP TABLE cameras_past; DROP TABLE images_past;")
-               : result;
+    return add_part(db, path, has_rigs(db->handle) ? MOVES RIG_MOVES END_MOVES END_RIG_MOVES
+                                                   : MOVES END_MOVES);
+}
+
+// The photograph `name` goes to the rig of the camera that it has.
+static enum orl_result share_rig(struct orl_database *db, const char *name)
+{
+    enum orl_result result = run_with_text(
+        db, "UPDATE frame_data SET sensor_id = (SELECT camera_id FROM images "
+            "WHERE image_id = data_id) "
+            "WHERE data_id = (SELECT image_id FROM images WHERE name = ?)", name, NULL);
+    if (result == ORL_OK)
+        result = run_with_text(
+            db, "UPDATE frames SET rig_id = (SELECT rig_id FROM rigs WHERE ref_sensor_id = "
+                "(SELECT camera_id FROM images WHERE name = ?1)) "
+                "WHERE frame_id = (SELECT frame_id FROM frame_data WHERE data_id = "
+                "(SELECT image_id FROM images WHERE name = ?1))", name, NULL);
+    return result == ORL_OK ? run_sql(db, "DELETE FROM rigs WHERE rig_id NOT IN "
+                                          "(SELECT rig_id FROM frames)")
+                            : result;
 }
 
 enum orl_result orl_database_share_camera(struct orl_database *db, const char *first,
@@ -347,6 +364,8 @@ enum orl_result orl_database_share_camera(struct orl_database *db, const char *f
     enum orl_result result = run_with_text(
         db, "UPDATE images SET camera_id = (SELECT camera_id FROM images WHERE name = ?) "
             "WHERE name = ?", first, name);
+    if (result == ORL_OK && has_rigs(db->handle))
+        result = share_rig(db, name);
     return result == ORL_OK ? run_sql(db, "DELETE FROM cameras WHERE camera_id NOT IN "
                                           "(SELECT camera_id FROM images)")
                             : result;
@@ -371,6 +390,8 @@ static int run_first(sqlite3 *handle, const char *sql)
     return code;
 }
 
+#define COPIED(table) "INSERT INTO main." table " SELECT * FROM part." table ";"
+
 // Makes the tables of the attached database, its cameras and its photographs.
 static int copy_tables(sqlite3 *handle)
 {
@@ -384,11 +405,12 @@ static int copy_tables(sqlite3 *handle)
     sqlite3_finalize(statement);
     if (code == SQLITE_OK && step != SQLITE_DONE)
         code = SQLITE_ERROR;
-    return code == SQLITE_OK
-               ? sqlite3_exec(handle, "INSERT INTO main.cameras SELECT * FROM part.cameras;"
-                                      "INSERT INTO main.images SELECT * FROM part.images;",
-                              NULL, NULL, NULL)
-               : code;
+    if (code == SQLITE_OK)
+        code = sqlite3_exec(handle, COPIED("cameras") COPIED("images"), NULL, NULL, NULL);
+    if (code == SQLITE_OK && has_rigs(handle))
+        code = sqlite3_exec(handle, COPIED("rigs") COPIED("frames") COPIED("frame_data"), NULL, NULL,
+                            NULL);
+    return code;
 }
 
 enum orl_result orl_database_create_like(const struct orl_log *log, const char *path,

@@ -37,7 +37,6 @@ enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide) ORL
 // --- databases of parts (parts.h) ---
 
 // Adds the photographs of another database with their cameras and features, under new ids.
-// ORL_ERR_UNSUPPORTED: the database has rigs.
 enum orl_result orl_database_add_photographs(struct orl_database *db,
                                              const char *path) ORL_CHECK_RESULT;
 // Gives the photograph `name` the camera of `first`. Cameras that no photograph has are removed.

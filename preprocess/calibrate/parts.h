@@ -26,8 +26,7 @@ extern const char *const orl_part_step_names[]; // NULL after the last
 // Runs a job of the calibration that has begun in `scene`: the features of one part of the
 // photographs; the choice of pairs, from the features of all parts; or the matches of one part of
 // the chosen pairs. Does nothing when its result is there.
-// ORL_ERR_DATA: what it needs is missing. ORL_ERR_UNSUPPORTED: COLMAP's database has rigs (3.12 and
-// later), which cannot be joined.
+// ORL_ERR_DATA: what it needs is missing.
 enum orl_result orl_part_run(const struct orl_log *log, const char *scene, enum orl_part_step step,
                              int part, int parts,
                              const struct orl_progress *progress) ORL_CHECK_RESULT;

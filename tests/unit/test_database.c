@@ -386,11 +386,51 @@ static void parts_are_joined(void **state)
     assert_int_equal(number(file, "SELECT count(*) FROM cameras"), 1);
     assert_int_equal(number(file, "SELECT max(camera_id) FROM images"), 1);
     orl_database_close(&db);
-    // Rigs are refused, and nothing changes.
-    run_sql("CREATE TABLE frames (frame_id INTEGER)");
+}
+
+// Tables of COLMAP 3.12 and later, with what one photograph of one camera has in them.
+static void make_rigs(void)
+{
+    run_sql("CREATE TABLE rigs (rig_id INTEGER PRIMARY KEY, ref_sensor_id INTEGER,"
+            " ref_sensor_type INTEGER);"
+            "CREATE TABLE frames (frame_id INTEGER PRIMARY KEY, rig_id INTEGER);"
+            "CREATE TABLE frame_data (frame_id INTEGER, data_id INTEGER, sensor_id INTEGER,"
+            " sensor_type INTEGER);"
+            "INSERT INTO rigs VALUES (1, 1, 0); INSERT INTO frames VALUES (1, 1);"
+            "INSERT INTO frame_data VALUES (1, 1, 1, 0);");
+}
+
+static void parts_with_rigs_are_joined(void **state)
+{
+    (void)state;
+    const float scales[] = {3, 1, 2};
+    char other[4096], part[4096];
+    struct orl_database *db;
+    snprintf(other, sizeof other, "%s/other.db", dir);
+    snprintf(part, sizeof part, "%s/part.db", dir);
+    make_more_tables();
+    make_rigs();
+    insert_photo(1, "b.png", 4, scales, 2);
+    assert_int_equal(rename(file, other), 0);
+    make_more_tables();
+    make_rigs();
+    insert_photo(1, "a.png", 4, scales, 3);
     assert_int_equal(orl_database_open(NULL, file, &db), ORL_OK);
-    assert_int_equal(orl_database_add_photographs(db, other), ORL_ERR_UNSUPPORTED);
-    assert_int_equal(number(file, "SELECT count(*) FROM images"), 2);
+    assert_int_equal(orl_database_add_photographs(db, other), ORL_OK);
+    // The frame and the rig that the second photograph has are its own.
+    static const char rows[] =
+        "SELECT count(*) FROM images JOIN frame_data ON data_id = image_id AND sensor_id = camera_id "
+        "JOIN frames USING (frame_id) JOIN rigs ON rigs.rig_id = frames.rig_id AND "
+        "ref_sensor_id = camera_id";
+    assert_int_equal(number(file, rows), 2);
+    assert_int_equal(number(file, "SELECT count(DISTINCT ref_sensor_id) FROM rigs"), 2);
+    assert_int_equal(orl_database_share_camera(db, "a.png", "b.png"), ORL_OK);
+    assert_int_equal(number(file, rows), 2);
+    assert_int_equal(number(file, "SELECT count(*) FROM rigs"), 1);
+    assert_int_equal(number(file, "SELECT count(*) FROM frames"), 2);
+    orl_database_close(&db);
+    assert_int_equal(orl_database_create_like(NULL, part, file, &db), ORL_OK);
+    assert_int_equal(number(part, rows), 2);
     orl_database_close(&db);
 }
 
@@ -462,7 +502,8 @@ int main(void)
         FILE_TEST(largest_scales_come_first), FILE_TEST(no_features_is_no_error),
         FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
-        FILE_TEST(parts_are_joined), FILE_TEST(a_part_has_the_features_of_its_pairs),
+        FILE_TEST(parts_are_joined), FILE_TEST(parts_with_rigs_are_joined),
+        FILE_TEST(a_part_has_the_features_of_its_pairs),
         FILE_TEST(a_part_runs_no_sql_of_a_stranger),
         FILE_TEST(no_trigger_of_a_stranger_runs),
         FILE_TEST(matches_are_written_for_colmap), FILE_TEST(matching_can_be_interrupted),
