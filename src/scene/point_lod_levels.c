@@ -259,8 +259,9 @@ static enum orl_result write_table(struct lod_levels *l, struct lod_header *h)
 
 enum orl_result orl_lod_levels_end(struct lod_levels *l)
 {
-    struct lod_header header = {.magic = LOD_MAGIC, .block_points = ORL_BLOCK_POINTS,
-                                .page_blocks = ORL_LOD_BLOCKS, .children = ORL_LOD_CHILDREN};
+    struct lod_header header = {.block_points = ORL_BLOCK_POINTS, .page_blocks = ORL_LOD_BLOCKS,
+                                .children = ORL_LOD_CHILDREN};
+    memcpy(header.magic, LOD_MAGIC, sizeof header.magic); // without its end
     enum orl_result result = ORL_OK;
     bool top = false;
     for (int k = 0; result == ORL_OK && !top; k++) {
