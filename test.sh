@@ -1,15 +1,21 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Oriel and runs all of its tests.
-#   ./test.sh            everything
-#   ./test.sh --quick    the plain build and its tests only
-#   ./test.sh --strict   everything, and warnings are errors (what CI runs)
+#   ./test.sh                  everything
+#   ./test.sh --quick [REGEX]  the plain build and its tests only, those of that name
+# --strict: warnings are errors, as in CI.
 set -u
 cd "$(dirname "$0")" || exit 1
 . .ci/deps.sh
 
-quick='' strict=()
-[ "${1:-}" = --quick ] && quick=1
-[ "${1:-}" = --strict ] && strict=(-DCMAKE_COMPILE_WARNING_AS_ERROR=ON)
+quick='' strict=() names=.
+for word in "$@"; do
+    case $word in
+        --quick) quick=1 ;;
+        --strict) strict=(-DCMAKE_COMPILE_WARNING_AS_ERROR=ON) ;;
+        -*) sed -n '3,5s/^# *//p' "$0"; exit 2 ;;
+        *) names=$word ;;
+    esac
+done
 start=$SECONDS
 # Rough minutes on two cores without a GPU, for the time left: "name minutes".
 steps=("dependencies 2" "build 1" "tests 9")
@@ -46,7 +52,7 @@ run_tests() {
     passed=$((passed + ${total:-0} - ${bad:-0} - away))
     failures=$((failures + ${bad:-0}))
     skipped=$((skipped + away))
-    gpu_run=$((gpu_run + $(grep -cE ' gpu/[a-z_]+ \.* +Passed' "$log")))
+    gpu_run=$((gpu_run + $(grep -cE ' (gpu|golden)/[a-z_]+ \.* +Passed' "$log")))
 }
 
 finish() {
@@ -71,7 +77,7 @@ step build "building with gcc"
 build_oriel build -DORL_TESTS=ON "${strict[@]}" || { failed+=("gcc build"); finish; }
 
 step tests "running the tests"
-run_tests build
+run_tests build -R "$names"
 
 if [ -z "$quick" ]; then
     step zink "running the GPU tests on a second OpenGL: zink, over a software Vulkan"
