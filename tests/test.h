@@ -13,6 +13,11 @@
 
 #include "core/file.h"
 
+// cmocka has one of its own, but under a name that changes with its version.
+#define assert_between(value, least, most) \
+    assert_true((long long)(value) >= (long long)(least) && \
+                (long long)(value) <= (long long)(most))
+
 // A fresh folder below $TMPDIR or /tmp, to be removed with test_dir_remove.
 static inline char *test_dir_make(void)
 {

@@ -63,7 +63,7 @@ static size_t read_list(const struct scene *s, bool *listed, size_t capacity)
     uint32_t args[4];
     static uint32_t items[COUNT];
     orl_buf_read(chunk->args, 0, sizeof args, args);
-    assert_in_range(args[3], 0, COUNT);
+    assert_between(args[3], 0, COUNT);
     assert_true(args[0] * (size_t)(ORL_POINT_GROUP * ORL_SPLAT_POINTS) >=
                 args[3] * (size_t)ORL_ITEM_POINTS);
     orl_buf_read(chunk->items, 0, args[3] * sizeof *items, items);
@@ -86,7 +86,7 @@ static void read_positions(const struct point_chunk *chunk, float (*positions)[3
 {
     static uint32_t codes[CAPACITY][2];
     static float blocks[CAPACITY / ORL_BLOCK_POINTS][ORL_BLOCK_VEC4S][4];
-    assert_in_range(chunk->count, 1, CAPACITY);
+    assert_between(chunk->count, 1, CAPACITY);
     orl_buf_read(chunk->points, 0, (size_t)chunk->count * sizeof *codes, codes);
     orl_buf_read(chunk->blocks, 0, (size_t)chunk->block_count * sizeof *blocks, blocks);
     for (int i = 0; i < chunk->count; i++) {

@@ -64,7 +64,7 @@ static void depth_beyond_the_silhouette_is_taken_back(void **state)
     struct orl_frame before = plate(0.04, 0, ORL_ANTIALIAS_OFF); // 2.5 pixels
     struct orl_frame after = plate(0.04, 3, ORL_ANTIALIAS_OFF);
     assert_true(width_of(&before) >= 2 * PLATE_HALF_PX + 4);
-    assert_in_range(width_of(&after), 2 * PLATE_HALF_PX - 1, 2 * PLATE_HALF_PX + 1);
+    assert_between(width_of(&after), 2 * PLATE_HALF_PX - 1, 2 * PLATE_HALF_PX + 1);
     orl_frame_finish(&before);
     orl_frame_finish(&after);
 }
@@ -77,7 +77,7 @@ static void right_depth_stays(void **state)
     int changed = 0;
     for (int i = 0; i < SIDE * SIDE; i++)
         changed += fabsf(after.depth.f32[i] - before.depth.f32[i]) > 0.1f;
-    assert_in_range(changed, 0, 4 * 2 * PLATE_HALF_PX / 10); // of the plate's rim
+    assert_between(changed, 0, 4 * 2 * PLATE_HALF_PX / 10); // of the plate's rim
     orl_frame_finish(&before);
     orl_frame_finish(&after);
 }

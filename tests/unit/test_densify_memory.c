@@ -22,7 +22,7 @@ static void test_twelve_megapixels_on_4_gib(void **state)
     assert_int_equal(budget.sources, 8);
     assert_int_equal(budget.shrink, 0);
     // 70 + 8 sources * 8 bytes a pixel, and the padding of the sources.
-    assert_in_range(budget.bytes, 12000000ull * 134, 12000000ull * 136);
+    assert_between(budget.bytes, 12000000ull * 134, 12000000ull * 136);
     assert_true(orl_densify_fit(&need, 16, 4096 * MIB, &budget));
     assert_int_equal(budget.sources, 16);
     assert_int_equal(budget.shrink, 0);
@@ -34,7 +34,7 @@ static void test_sources_go_first(void **state)
     const struct densify_need need = photographs(4000, 3000);
     struct densify_budget budget;
     assert_true(orl_densify_fit(&need, 8, 1400 * MIB, &budget));
-    assert_in_range(budget.sources, 4, 7);
+    assert_between(budget.sources, 4, 7);
     assert_int_equal(budget.shrink, 0);
     assert_true(budget.bytes <= 1400 * MIB);
     assert_true(orl_densify_bytes(&need, budget.sources + 1, 0) > 1400 * MIB);
@@ -65,7 +65,7 @@ static void test_large_textures(void **state)
     assert_int_equal(budget.sources, 8);
     assert_int_equal(budget.shrink, 0);
     assert_true(orl_densify_fit(&need, 16, 0, &budget));
-    assert_in_range(budget.sources, 9, 11);
+    assert_between(budget.sources, 9, 11);
     assert_int_equal(budget.shrink, 0);
 }
 

@@ -55,7 +55,7 @@ static void draws_its_shape(void **state)
                     assert_float_equal(picture.depth.f32[i], room.depth.f32[i], 0);
                 }
             }
-        assert_in_range(seen, 150, 1500);
+        assert_between(seen, 150, 1500);
         orl_figures_picture_finish(&picture);
         orl_figures_picture_finish(&room);
     }

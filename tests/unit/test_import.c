@@ -64,7 +64,7 @@ static void check_same_picture(const char *a, const char *b, int channels, int t
     struct orl_image x = picture(a, channels), y = picture(b, channels);
     assert_int_equal(x.width, y.width);
     for (size_t i = 0; i < orl_image_bytes(&x); i++)
-        assert_in_range(x.u8[i] + 255 - y.u8[i], 255 - tolerance, 255 + tolerance);
+        assert_between(x.u8[i] + 255 - y.u8[i], 255 - tolerance, 255 + tolerance);
     orl_image_finish(&x);
     orl_image_finish(&y);
 }

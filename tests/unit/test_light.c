@@ -68,7 +68,7 @@ static void metered_exposure_follows(void **state)
     assert_int_equal(orl_photo_expose(NULL, &scene, 2, &light, &after), ORL_OK);
     assert_true(before.u8[100] > 20);
     for (int i = 0; i < SIDE * SIDE * 3; i++)
-        assert_in_range(after.u8[i] + 1 - before.u8[i], 0, 2); // but for rounding
+        assert_between(after.u8[i] + 1 - before.u8[i], 0, 2); // but for rounding
     orl_image_finish(&light);
     orl_image_finish(&before);
     orl_image_finish(&after);

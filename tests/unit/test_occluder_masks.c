@@ -83,7 +83,7 @@ static void what_nobody_else_shows_is_an_occluder(void **state)
         if (!is_in(&wider, i))
             assert_int_equal(mask.u8[i], 0);
     }
-    assert_in_range((int)(1000 * share), 1000 * 60 * 50 / PIXELS, 1000 * 76 * 66 / PIXELS);
+    assert_between((int)(1000 * share), 1000 * 60 * 50 / PIXELS, 1000 * 76 * 66 / PIXELS);
     orl_image_finish(&mask);
 }
 

@@ -74,8 +74,8 @@ static void all_points_come_back(void **state)
     for (size_t i = 0; i < points.count; i++) {
         const float *p = points.position[i];
         long x = lrintf(p[0]), y = lrintf(p[1]);
-        assert_in_range(x, 0, ROW - 1);
-        assert_in_range(y, 0, ROW - 1);
+        assert_between(x, 0, ROW - 1);
+        assert_between(y, 0, ROW - 1);
         assert_float_equal(p[0], x, 0.75 / 32); // half of the largest step
         assert_float_equal(p[1], y, 0.75 / 32);
         assert_float_equal(p[2], 2, 0.75 / 32);
@@ -122,8 +122,8 @@ static void coarser_levels_cover_the_same(void **state)
             covered += (double)points.radius[i] * (double)points.radius[i];
         print_message("level %d: %zu points, gap %.2f, area %.3f\n", level, points.count,
                       (double)widest_gap(&points), covered / area);
-        assert_in_range(points.count, (size_t)(COUNT >> 3 * level) * 9 / 10,
-                        (size_t)(COUNT >> 3 * level) * 12 / 10);
+        assert_between(points.count, (size_t)(COUNT >> 3 * level) * 9 / 10,
+                       (size_t)(COUNT >> 3 * level) * 12 / 10);
         // An eighth of the points is spread evenly: no hole is much larger than their spacing.
         assert_true(widest_gap(&points) < 2.5 * pow(8, level / 2.0));
         assert_float_equal(covered / area, 1, 0.1);
@@ -140,11 +140,11 @@ static void pages_are_a_tree(void **state)
     struct orl_lod *lod = write_and_open(&params);
     static bool reached[64];
     memset(reached, 0, sizeof reached);
-    assert_in_range(lod->page_count, 3, 64);
+    assert_between(lod->page_count, 3, 64);
     for (size_t page = lod->levels[1].first; page < lod->page_count; page++) {
         size_t first, count;
         assert_true(orl_lod_children(lod, page, &first, &count) > 0);
-        assert_in_range(count, 1, ORL_LOD_CHILDREN);
+        assert_between(count, 1, ORL_LOD_CHILDREN);
         for (size_t c = first; c < first + count; c++) {
             assert_false(reached[c]);
             reached[c] = true;
@@ -218,7 +218,7 @@ static void radii_in_parts_are_those_of_the_whole(void **state)
     assert_non_null(expected);
     size_t all = ground.count, far = 0;
     assert_int_equal(orl_points_find_radii(NULL, views, 2, &ground), ORL_OK);
-    assert_in_range(ground.count, all * 9 / 10, all - 1); // some are isolated
+    assert_between(ground.count, all * 9 / 10, all - 1); // some are isolated
     for (size_t i = 0; i < ground.count; i++) {
         const uint8_t *c = ground.color[i];
         expected[c[0] | c[1] << 8 | c[2] << 16] = ground.radius[i];
