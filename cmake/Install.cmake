@@ -1,4 +1,4 @@
-# cmake --install: program, library, headers, pkg-config file, CMake package.
+# cmake --install: program, library, headers, pkg-config file, CMake package, documentation.
 include(CMakePackageConfigHelpers)
 install(TARGETS oriel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 # The program stays out of the export: its name is the library's there.
@@ -19,3 +19,5 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel-config.cmake
 file(RELATIVE_PATH ORL_PREFIX_FROM_LIBDIR "/${CMAKE_INSTALL_LIBDIR}" "/")
 configure_file(cmake/oriel.pc.in oriel.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
