@@ -42,13 +42,13 @@ class Server:
 
 
 class Browser:
-    def __init__(self, width, height, touch=False):
+    def __init__(self, width, height, touch=False, flags=()):
         options = Options()
         # The browser's last process may still write when it has answered that it ends.
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         for flag in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader",
                      "--enable-unsafe-swiftshader", "--hide-scrollbars", "--mute-audio",
-                     "--disable-dev-shm-usage", f"--user-data-dir={self.profile.name}"):
+                     "--disable-dev-shm-usage", f"--user-data-dir={self.profile.name}", *flags):
             options.add_argument(flag)
         if touch:
             metrics = {"width": width, "height": height, "pixelRatio": 1, "touch": True}

@@ -265,6 +265,28 @@ class Live(Visitors):
         self.assertEqual(self.hint(), "")
 
 
+class Without3d(unittest.TestCase):
+    def test_photographs_and_notes(self):
+        server, browser = Server(SITE), Browser(WIDTH, HEIGHT, flags=("--disable-3d-apis",))
+        self.addCleanup(server.close)
+        self.addCleanup(browser.close)
+        browser.open(server.address + "/")
+        text = "return document.getElementById(arguments[0]).textContent"
+        self.assertIn("WebGL 2", browser.js(text, "hint"))
+        self.assertEqual(browser.js(text, "problem"), "")
+        self.assertIn("Arch", browser.js(text, "note"))
+        self.assertIn("Drawn by nobody", browser.js(text, "attribution"))
+        seen, count = set(), browser.js("return oriel.photos.length")
+        for _ in range(count):
+            browser.settle()
+            seen.add(browser.js("return oriel.photo.name"))
+            browser.js("document.querySelectorAll('#tools button')[1].click()")
+        self.assertEqual(len(seen), count)
+        for width, height in SIZES[1:]: # the smallest has no room for it all
+            browser.resize(width, height)
+            self.assertEqual(browser.js(OVERLAPS), [], (width, height))
+
+
 # Pairs of what lies over the picture that cover one another, and what leaves the window.
 OVERLAPS = """
 const boxes = [...document.querySelectorAll("#over .panel, #tools, #thumbs, #map, #head, #hint, #attribution")]

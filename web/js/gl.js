@@ -21,15 +21,18 @@ const BYTES = {R16F: 2, R32F: 4, RG32F: 8, RG16F: 4, RGBA8: 4, SRGB8_ALPHA8: 4, 
                R32UI: 4, RG32UI: 8};
 const FILTERED = new Set(["RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
 
+// Why this browser draws no walk.
+export class NoDevice extends Error {}
+
 export class Device {
     constructor(canvas)
     {
         const gl = canvas.getContext("webgl2", {alpha: false, antialias: false, depth: false,
                                                 powerPreference: "high-performance"});
         if (!gl)
-            throw new Error(text.noWebgl);
+            throw new NoDevice(text.noWebgl);
         if (!gl.getExtension("EXT_color_buffer_float"))
-            throw new Error(text.noFloats);
+            throw new NoDevice(text.noFloats);
         this.gl = gl;
         this.bytes = 0;
         this.nothing = gl.createVertexArray();

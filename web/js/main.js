@@ -1,6 +1,8 @@
 // The walk: loads the site, draws when something changes, and joins input, picture and tools.
+import {Album} from "./album.js";
 import {benchmark} from "./benchmark.js";
 import {Files} from "./files.js";
+import {NoDevice} from "./gl.js";
 import {Input} from "./input.js";
 import {LivePicture} from "./live.js";
 import {LocalPicture} from "./local.js";
@@ -559,8 +561,14 @@ async function start()
         poster.src = await files.address("poster.jpg");
     const manifest = await files.json("manifest.json");
     const photos = makePhotos(manifest), walk = new Walk(files, manifest, photos);
-    walk.begin(await Walk.open(walk, walk.canvas, files, manifest, photos));
-    window.oriel = walk;
+    try {
+        walk.begin(await Walk.open(walk, walk.canvas, files, manifest, photos));
+        window.oriel = walk;
+    } catch (error) {
+        if (!(error instanceof NoDevice))
+            throw error;
+        window.oriel = new Album(files, manifest, photos, text.album(error.message));
+    }
 }
 
 start().catch(error => {
