@@ -69,6 +69,7 @@ finish() {
 
 step dependencies "checking dependencies"
 extra=(libcmocka-dev openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
+    python3-flask python3-numpy python3-pil
     glslang-tools spirv-tools cppcheck)
 [ "$quick" ] || extra+=(clang llvm libclang-rt-dev mesa-vulkan-drivers)
 install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }

@@ -34,8 +34,9 @@ def add_points(points, root):
     srgb = numpy.stack([points[c] / 255 for c in ("red", "green", "blue")], 1)
     linear = numpy.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
     colors = numpy.concatenate([linear, numpy.ones((len(points), 1))], 1).astype("f4")
-    mesh.attributes.new("color", "FLOAT_COLOR", "POINT").data.foreach_set("color", colors.ravel())
-    mesh.attributes.new("radius", "FLOAT", "POINT").data.foreach_set("value", points["radius"])
+    mesh.attributes.new("photo_color", "FLOAT_COLOR", "POINT").data.foreach_set("color", colors.ravel())
+    mesh.attributes.new("radius", "FLOAT", "POINT").data.foreach_set(
+        "value", numpy.ascontiguousarray(points["radius"]))
     place = bpy.data.objects.new("points", mesh)
     bpy.context.scene.collection.objects.link(place)
     place.parent = root
@@ -50,7 +51,7 @@ def make_material():
     nodes.clear()
     color, light = nodes.new("ShaderNodeAttribute"), nodes.new("ShaderNodeEmission")
     out = nodes.new("ShaderNodeOutputMaterial")
-    color.attribute_name = "color"
+    color.attribute_name = "photo_color"  # Cycles has a "color" of its own
     links.new(color.outputs["Color"], light.inputs["Color"])
     links.new(light.outputs["Emission"], out.inputs["Surface"])
     return material

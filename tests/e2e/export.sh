@@ -56,6 +56,27 @@ same=$(compare -metric PSNR there.png back.png null: 2>&1)
 awk -v db="$same" 'BEGIN { exit !(db == "inf" || db >= 60) }' || fail "splats: $same dB"
 [ $failed -eq 0 ] || exit 1
 
+# --- Blender ---
+
+if command -v blender >/dev/null; then
+    cat >draw.py <<'PY'
+import sys, bpy
+scene = bpy.context.scene
+bpy.data.objects.remove(bpy.data.objects["Cube"])  # of every new file
+scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = "CYCLES", 2, False
+scene.render.filepath = sys.argv[-1]
+bpy.ops.render.render(write_still=True)
+PY
+    runs 0 timeout 600 blender --background --python-exit-code 3 --python blender/open_in_blender.py \
+        --python draw.py -- "$work/first.png"
+    first=blender/$(jq -r '.frames[0].file_path' blender/transforms.json)
+    same=$(compare -metric PSNR first.png -alpha off "$first" null: 2>&1)
+    awk -v db="$same" 'BEGIN { exit !(db >= 10.5) }' || fail "Blender sees something else: $same dB"
+else
+    echo "blender is not installed: not checked with it"
+fi
+[ $failed -eq 0 ] || exit 1
+
 # --- programs of the registry ---
 
 modules=${ORIEL_NODE_MODULES:-$work/node_modules}
