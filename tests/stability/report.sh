@@ -5,7 +5,7 @@
 # that names its commit; without any, all of them. A step that is not named keeps its section, or
 # gets a new one of what an earlier run left in FUZZ_DIR (build-fuzz).
 #   fuzz       every reader for FUZZ_SECONDS (3; 0: only the inputs that there are); inputs tried add
-#              up over the runs of tests/fuzz/run.sh
+#              up over the runs of one commit
 #   faults     the first calls of a kind and then ever fewer, or with FAULTS=all every call in turn,
 #              which takes hours
 #   soak       SOAK_FRAMES (10000) frames and SOAK_ROUNDS (1000) openings
@@ -31,7 +31,10 @@ run_step() {
     local script
     case $1 in
     fuzz)
-        git -C "$source" rev-parse --short HEAD >>"$fuzz/fuzz.commit" # inputs add up, commits too
+        # Inputs add up over the runs of one commit.
+        [ "$(cat "$fuzz/fuzz.commit" 2>/dev/null)" = "$(git -C "$source" rev-parse --short HEAD)" ] ||
+            : >"$fuzz/tried.txt"
+        git -C "$source" rev-parse --short HEAD >"$fuzz/fuzz.commit"
         "$source/tests/fuzz/run.sh" "${FUZZ_SECONDS:-3}"
         ;;
     faults)
@@ -72,19 +75,18 @@ fuzz_section() {
     local name inputs time left
     echo "## Inputs tried"
     echo
-    at_commit fuzz
     echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
     echo
-    echo "| reader | inputs tried | seconds of processor time | failures left |"
-    echo "|---|--:|--:|--:|"
+    echo "| reader | inputs tried | seconds of processor time | commit | failures left |"
+    echo "|---|--:|--:|---|--:|"
     awk '{ n[$1] += $2; s[$1] += $3 } END { for (k in n) print k, n[k], s[k] }' "$fuzz/tried.txt" |
         sort | while read -r name inputs time; do
         left=$(find "$fuzz/failures" -name "$name-*" | wc -l)
-        printf '| %s | %s | %.0f | %s |\n' "$name" "$inputs" "$time" "$left"
+        printf '| %s | %s | %.0f | %s | %s |\n' "$name" "$inputs" "$time" "$(cat "$fuzz/fuzz.commit")" "$left"
     done
     awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | ", n, s, s / 3600 }' \
         "$fuzz/tried.txt"
-    echo "$(find "$fuzz/failures" -type f | wc -l) |"
+    echo "$(cat "$fuzz/fuzz.commit") | $(find "$fuzz/failures" -type f | wc -l) |"
     echo
     echo "### Lines of each reader that these inputs reach"
     echo
@@ -100,7 +102,6 @@ faults_section() {
     local kind times
     echo "## Faults injected"
     echo
-    at_commit faults
     echo "A call of a kind fails, or the program is killed ahead of it, once in \`info\`, \`render\`"
     echo "(PNG, EXR), \`hdr\`, \`synth\` and \`lod\`. Or the power fails there, or at the end (\`end\`): what"
     echo "was not synced then is empty or zeros. Afterwards a final name holds what it held before or the whole"
@@ -108,30 +109,29 @@ faults_section() {
     echo "\`prepare\`, from the start and resumed half-way, with a stand-in for COLMAP; afterwards"
     echo "\`--resume\` gives the bytes of a job that nothing disturbed. And in \`trim\`; afterwards the scene"
     echo "that it reads is as it was, and the one that it makes is whole or absent. And in \`publish\`, which"
-    echo "replaces a site; afterwards the old or the new site is whole. Unless the script was told \`all\`, these"
+    echo "replaces a site in which the user keeps a file; afterwards the old or the new site is whole, with that file. Unless the script was told \`all\`, these"
     echo "are the first six calls of a kind and then every so many, in \`prepare\` calls 1, 3, 9 and so on, in"
     echo "\`trim\` 1, 32 and 1024, in \`publish\` those around the exchange of the two sites."
     echo
-    echo "| fault | times | files cut, crashes, wrong statuses |"
-    echo "|---|--:|--:|"
+    echo "| fault | times | commit | files cut, crashes, wrong statuses |"
+    echo "|---|--:|---|--:|"
     sed -n 's/^injected: \(.*\) \([0-9]*\)$/\1|\2/p' "$fuzz/faults.txt" |
         while IFS='|' read -r kind times; do
-            echo "| $kind | $times | $(grep -c "^FAILED.*: $kind: call " "$fuzz/faults.txt") |"
+            echo "| $kind | $times | $(cat "$fuzz/faults.commit") | $(grep -c "^FAILED.*: $kind: call " "$fuzz/faults.txt") |"
         done
 }
 
 soak_section() {
     echo "## Soaked"
     echo
-    at_commit soak
     echo "Random views of a small scene by all methods in turn, then the scene opened, drawn once and"
     echo "closed again and again, the device too every twentieth time. Every pixel must be finite, no"
     echo "buffer or texture may stay, and resident memory may not grow from one to the next: the slope after"
     echo "the first fifth, by least squares, is at most 8 KiB a frame and 1 MiB an opening."
     echo
-    echo "| what | slope of memory, KiB each |"
-    echo "|---|--:|"
-    sed -n 's/^soaked: \(.*\), memory \([-+.0-9]*\) KiB.*/| \1 | \2 |/p' "$fuzz/soak.txt"
+    echo "| what | commit | slope of memory, KiB each |"
+    echo "|---|---|--:|"
+    sed -n "s/^soaked: \(.*\), memory \([-+.0-9]*\) KiB.*/| \1 | $(cat "$fuzz/soak.commit") | \2 |/p" "$fuzz/soak.txt"
 }
 
 threads_section() {
