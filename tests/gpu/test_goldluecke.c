@@ -205,6 +205,36 @@ static void colours_blend_by_the_weights(void **state)
     assert_float_equal(color_at(&frame, 4, 4)[0], 0, 0);
     assert_float_equal(frame.coverage.f32[SIDE / 2 * SIDE + SIDE / 2], 1, 0);
     assert_float_equal(frame.coverage.f32[0], 0, 0);
+    int part = 0; // along the outline, where silhouettes are half the subject's
+    for (int i = 0; i < SIDE * SIDE; i++)
+        part += frame.coverage.f32[i] > 0.2f && frame.coverage.f32[i] < 0.8f;
+    assert_true(part > 10);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// A ball stands behind another one for the red photograph, which is the nearest by its axis. Beside
+// it, from where both are seen, the far one has the colours of the others alone.
+static void hidden_voxels_are_painted_by_others(void **state)
+{
+    (void)state;
+    static const double centres[2][3] = {{0, 0, -1.2}, {0, 0, 1.2}}, turns[3] = {0, 1.2, -1.2};
+    struct fixture f;
+    setup_empty(&f, 4);
+    for (int i = 0; i < 3; i++) {
+        struct orl_silhouette s = {.view = look_around(turns[i], 4, SIDE, 60)};
+        add_photo(&f, s.view, i ? green : red);
+        assert_int_equal(orl_image_init(NULL, &s.mask, SIDE, SIDE, 1, ORL_PIXEL_U8), ORL_OK);
+        for (int b = 0; b < 2; b++)
+            add_ball(&s, centres[b], 0.5);
+        mask_photo(&f, &s.mask);
+    }
+    struct orl_render_params params = orl_method_find(NULL, "goldluecke")->params;
+    struct orl_frame frame = draw(gpu, &f, look_around(0.5, 4, SIDE, 60), &params, 0);
+    const float *near = color_at(&frame, 20, SIDE / 2), *far = color_at(&frame, 39, SIDE / 2);
+    assert_true(near[0] > 0.3f);
+    assert_true(far[1] > 0.9f);
+    assert_float_equal(far[0], 0, 0.02);
     orl_frame_finish(&frame);
     teardown(&f);
 }
@@ -444,6 +474,7 @@ int main(void)
         cmocka_unit_test(points_fill_voxels),
         cmocka_unit_test(the_nearest_two_weigh_by_their_arcs),
         cmocka_unit_test(colours_blend_by_the_weights),
+        cmocka_unit_test(hidden_voxels_are_painted_by_others),
         cmocka_unit_test(clipped_photographs_give_way),
         cmocka_unit_test(memory_stays_within_the_plan),
         cmocka_unit_test(photographs_come_back_at_their_axis),
