@@ -20,9 +20,6 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
     ORL_REQUIRE(log, (p->points == ORL_IMPORT_CLOUD) == (p->points_file != NULL));
     if (p->hull_side && p->mesh)
         return orl_fail(log, ORL_ERR_ARGUMENT, "the mesh is either a file or the hull");
-    if (p->hull_side && p->silhouettes == ORL_SILHOUETTES_NONE)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "a hull needs silhouettes: --masks, --silhouettes "
-                        "dark or --background");
     if (p->hull_side && (p->hull_side < ORL_HULL_SIDE_MIN || p->hull_side > ORL_HULL_SIDE_MAX))
         return orl_fail(log, ORL_ERR_ARGUMENT, "a hull of %d voxels each way: must be from %d to %d",
                         p->hull_side, ORL_HULL_SIDE_MIN, ORL_HULL_SIDE_MAX);
@@ -73,6 +70,11 @@ static void finish(struct import_job *job)
 static void resolve(const struct import_job *job, struct orl_import_params *params)
 {
     const char *stated = job->known.points_file;
+    bool masks = job->known.alpha;
+    for (size_t i = 0; i < job->known.picture_count && !masks; i++)
+        masks = job->known.pictures[i].mask != NULL;
+    if (params->silhouettes == ORL_SILHOUETTES_NONE && masks)
+        params->silhouettes = ORL_SILHOUETTES_STATED;
     if (params->points != ORL_IMPORT_STATED_POINTS)
         return;
     bool there = stated && orl_path_is_file(stated);
@@ -92,6 +94,9 @@ enum orl_result orl_import(const struct orl_log *log, const struct orl_import_pa
         result = orl_known_cameras_read(log, params->cameras, params->pixel_centre, &job.known);
     if (result == ORL_OK)
         resolve(&job, &resolved);
+    if (result == ORL_OK && resolved.hull_side && resolved.silhouettes == ORL_SILHOUETTES_NONE)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "a hull needs silhouettes: --masks, --silhouettes "
+                          "dark or --background");
     if (result == ORL_OK)
         result = orl_import_find_all(&job);
     if (result == ORL_OK)

@@ -21,10 +21,10 @@ static enum orl_result add_source(struct orl_job *job, const struct import_job *
                                   .path = orl_job_path(job, "images/%s", view->name),
                                   .width = size->width, .height = size->height,
                                   .test = view->test};
-    if (job->params->masks_dir)
+    if (view->masked)
         source->mask = orl_job_path(job, "masks/%s.png", view->name);
     if (!source->name || !source->given || !source->path ||
-        (job->params->masks_dir && !source->mask))
+        (view->masked && !source->mask))
         return ORL_ERR_MEMORY;
     // A frame of a clip has no EXIF.
     return view->picture.kind == IMPORT_PICTURE
@@ -169,7 +169,10 @@ enum orl_result orl_import_densify(struct import_job *import)
     struct orl_job job;
     struct orl_prepare_params params = import->params->densify;
     params.max_size = import->params->max_size;
-    params.masks_dir = import->params->silhouettes == ORL_SILHOUETTES_NONE ? NULL : "masks";
+    params.masks_dir = NULL;
+    for (size_t i = 0; i < import->view_count; i++)
+        if (import->views[i].masked)
+            params.masks_dir = "masks";
     enum orl_result result = begin(&job, import, &params);
     if (result == ORL_OK && !import->known.model.point_count)
         result = make_sparse_points(&job, import);

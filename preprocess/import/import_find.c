@@ -262,6 +262,16 @@ static bool uses_splits(const struct import_job *job)
            block->first == block->end;
 }
 
+// A file that is empty or no picture is warned of, like one that is missing.
+static bool is_broken(const struct import_job *job, const struct import_found *found)
+{
+    struct orl_picture_info info;
+    if (found->kind != IMPORT_PICTURE || orl_picture_inspect(NULL, found->path, &info) != ORL_ERR_FORMAT)
+        return false;
+    orl_logf(job->log, ORL_LOG_WARNING, "%s: not a picture that can be read: left out", found->path);
+    return true;
+}
+
 static enum orl_result find_pictures(struct import_job *job, const char *dir)
 {
     const struct orl_colmap_model *model = &job->known.model;
@@ -286,6 +296,9 @@ static enum orl_result find_pictures(struct import_job *job, const char *dir)
             missed = view->image->name;
             job->why_not[i] = "no picture";
             missing++;
+        } else if (is_broken(job, &view->picture)) {
+            orl_import_found_finish(&view->picture);
+            job->why_not[i] = "its picture cannot be read";
         } else {
             job->view_count++;
         }
@@ -422,6 +435,31 @@ static enum orl_result find_companions(struct import_job *job, const char *optio
     return result;
 }
 
+// Finds the masks that the file of cameras names. A picture without one is whole.
+static enum orl_result find_stated_masks(struct import_job *job)
+{
+    const struct orl_known_cameras *known = &job->known;
+    enum orl_result result = ORL_OK;
+    size_t missing = 0;
+    for (size_t i = 0; result == ORL_OK && known->pictures && i < job->view_count; i++) {
+        struct import_view *view = &job->views[i];
+        const char *told = known->pictures[view->image->id - 1].mask;
+        if (!told)
+            continue;
+        char *path = *told == '/' ? orl_strdup(job->log, told)
+                                  : orl_path_join(job->log, known->folder, told);
+        if (path && orl_path_is_file(path))
+            view->mask = (struct import_found){IMPORT_PICTURE, path};
+        else
+            free(path), missing++;
+        result = path ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    if (result == ORL_OK && missing)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: masks of %zu of %zu cameras, which their file names, are not "
+                 "here", known->folder, missing, job->view_count);
+    return result;
+}
+
 enum orl_result orl_import_find_all(struct import_job *job)
 {
     char *dir = NULL;
@@ -432,6 +470,8 @@ enum orl_result orl_import_find_all(struct import_job *job)
         result = name_views(job);
     if (result == ORL_OK)
         result = hold_out(job);
+    if (result == ORL_OK && job->params->silhouettes == ORL_SILHOUETTES_STATED && !job->sequence)
+        result = find_stated_masks(job);
     if (result == ORL_OK && job->params->masks_dir)
         result = find_companions(job, "masks", job->params->masks_dir, "masks");
     if (result == ORL_OK && job->params->background)

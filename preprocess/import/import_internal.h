@@ -21,6 +21,8 @@ struct import_view {
     size_t camera;                        // index of its camera in the known cameras' model
     char *name;                           // name of the photograph in the scene; owned
     struct import_found picture, mask, background;
+    bool composed; // its picture had alpha, and lies on white
+    bool masked;   // has a silhouette in the scene
     int orientation; // by EXIF; 0: not known
     bool test;
 };

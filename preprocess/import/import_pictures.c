@@ -53,7 +53,7 @@ static enum orl_result undistort(const struct import_job *job, const struct impo
 static bool may_copy(const struct import_job *job, const struct import_view *view)
 {
     struct orl_picture_info info;
-    return view->picture.kind == IMPORT_PICTURE &&
+    return view->picture.kind == IMPORT_PICTURE && !view->composed &&
            strcmp(orl_path_name(view->picture.path), orl_path_name(view->name)) == 0 &&
            orl_import_is_same(camera_of(job, view), &job->targets[view->camera]) &&
            orl_picture_inspect(NULL, view->picture.path, &info) == ORL_OK && info.bits <= 8 &&
@@ -87,7 +87,7 @@ static enum orl_result write_linear(const struct import_job *job, const struct i
     char *out = NULL;
     const char *path = view->picture.path;
     enum orl_result result = orl_picture_inspect(job->log, path, &info);
-    if (result != ORL_OK || info.bits <= 8)
+    if (result != ORL_OK || info.bits <= 8 || view->composed)
         return result;
     result = output_path(job, "images_linear", -1, view->name, ".exr", &out);
     if (result == ORL_OK)
@@ -180,6 +180,29 @@ static enum orl_result write_background(const struct import_job *job,
     return result;
 }
 
+// --- alpha ---
+
+// Lays a picture on white where it has alpha, as programs that render such sets do: the colours under
+// its transparent pixels mean nothing. The alpha is its silhouette.
+static enum orl_result take_alpha(const struct import_job *job, struct import_view *view,
+                                  const char *path, struct orl_image *picture,
+                                  struct orl_image *mask)
+{
+    struct orl_image rgba = {0};
+    enum orl_result result = orl_mask_read_alpha(job->log, path, mask);
+    if (result != ORL_OK || !mask->u8)
+        return result;
+    result = orl_picture_read_rgba(job->log, path, &rgba);
+    size_t count = result == ORL_OK ? (size_t)rgba.width * (size_t)rgba.height : 0;
+    for (size_t i = 0; i < 3 * count; i++) {
+        int alpha = rgba.u8[4 * (i / 3) + 3];
+        picture->u8[i] = (uint8_t)((picture->u8[i] * alpha + 255 * (255 - alpha) + 127) / 255);
+    }
+    view->composed = result == ORL_OK;
+    orl_image_finish(&rgba);
+    return result;
+}
+
 // --- one picture ---
 
 static enum orl_result make_mask(const struct import_job *job, const char *path,
@@ -228,19 +251,29 @@ static enum orl_result judge_masks(const struct import_job *job)
     return ORL_OK;
 }
 
-static enum orl_result import_picture(struct import_job *job, const struct import_view *view,
+static enum orl_result import_picture(struct import_job *job, struct import_view *view,
                                       int frame, const char *path, const char *mask_path,
                                       const struct orl_background *background)
 {
     struct orl_image picture = {0}, mask = {0};
+    bool stated = job->params->silhouettes == ORL_SILHOUETTES_STATED && !job->sequence;
     enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
+    if (result == ORL_OK && stated && job->known.alpha && orl_picture_is_png(path))
+        result = take_alpha(job, view, path, &picture, &mask);
+    if (result == ORL_OK && stated && mask_path) {
+        orl_image_finish(&mask);
+        result = orl_mask_read(job->log, mask_path, &mask);
+    }
     if (result == ORL_OK)
         result = write_photo(job, view, frame, path, &picture);
     // The scene's own pictures, shown before a frame is chosen, are those of the first frame.
     if (result == ORL_OK && frame == 0)
         result = write_photo(job, view, -1, path, &picture);
-    if (result == ORL_OK && job->params->silhouettes != ORL_SILHOUETTES_NONE) {
-        result = make_mask(job, path, mask_path, background, &picture, &mask);
+    bool found = job->params->silhouettes > ORL_SILHOUETTES_STATED;
+    if (result == ORL_OK && (found || mask.u8)) {
+        if (found)
+            result = make_mask(job, path, mask_path, background, &picture, &mask);
+        view->masked = true;
         if (result == ORL_OK)
             result = count_mask(job, mask_path ? mask_path : path, &mask);
         if (result == ORL_OK)
@@ -371,6 +404,16 @@ static enum orl_result drop_surplus(const struct import_job *job)
     return result;
 }
 
+static void say_composed(const struct import_job *job)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < job->view_count; i++)
+        count += job->views[i].composed;
+    if (count)
+        orl_logf(job->log, ORL_LOG_INFO, "%zu of %zu photographs have alpha: they are laid on white, and alpha "
+                 "is their silhouette", count, job->view_count);
+}
+
 enum orl_result orl_import_pictures(struct import_job *job)
 {
     enum orl_result result = ORL_OK;
@@ -388,6 +431,7 @@ enum orl_result orl_import_pictures(struct import_job *job)
         result = drop_surplus(job);
     if (result == ORL_OK)
         result = judge_masks(job);
+    say_composed(job);
     if (result == ORL_OK)
         orl_progress_report(job->progress, "import", 1, 1, NULL);
     return result;

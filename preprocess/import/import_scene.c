@@ -157,7 +157,7 @@ static enum orl_result read_silhouettes(const struct import_job *job, const char
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
-        if (job->views[i].test)
+        if (job->views[i].test || !job->views[i].masked)
             continue;
         struct orl_silhouette *one = &silhouettes[*count];
         char *path = orl_import_path(job, "%smasks/%s.png", folder, job->views[i].name);
@@ -177,6 +177,8 @@ static enum orl_result carve_mesh(struct import_job *job, const char *folder,
         orl_array(job->log, job->view_count, sizeof *silhouettes);
     enum orl_result result =
         silhouettes ? read_silhouettes(job, folder, silhouettes, &count) : ORL_ERR_MEMORY;
+    if (result == ORL_OK && !count)
+        result = orl_fail(job->log, ORL_ERR_DATA, "a hull needs silhouettes: no picture has a mask or alpha");
     if (result == ORL_OK)
         result = orl_cones_mesh(job->log, silhouettes, count, job->params->hull_side,
                                 (size_t)job->params->hull_triangles, &job->said_endless, mesh);
@@ -245,7 +247,7 @@ static json_t *photographs(const struct import_job *job)
                             "split", job->views[i].test ? "test" : "train", "exposure_ev",
                             "series", 0, "gain", 1, 1, 1, "orientation",
                             job->views[i].orientation, "mask",
-                            job->params->silhouettes != ORL_SILHOUETTES_NONE));
+                            job->views[i].masked));
     return list;
 }
 
@@ -276,7 +278,8 @@ static json_t *counts(const struct import_job *job, size_t points, size_t triang
 static json_t *settings(const struct import_job *job)
 {
     static const char *const silhouettes[] = {
-        [ORL_SILHOUETTES_NONE] = "none", [ORL_SILHOUETTES_GIVEN] = "given",
+        [ORL_SILHOUETTES_NONE] = "none", [ORL_SILHOUETTES_STATED] = "stated",
+        [ORL_SILHOUETTES_GIVEN] = "given",
         [ORL_SILHOUETTES_DARK] = "dark", [ORL_SILHOUETTES_BACKGROUND] = "background"};
     static const char *const points[] = {[ORL_IMPORT_STATED_POINTS] = "none",
                                          [ORL_IMPORT_NO_POINTS] = "none",

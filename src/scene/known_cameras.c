@@ -324,7 +324,7 @@ static enum orl_result choose_origin(const struct orl_log *log, struct orl_known
     }
     free(values);
     // Cameras at one place differ by rounding alone.
-    if (spread < 1e-9 * far || far < FAR * spread)
+    if (spread <= 1e-9 * far || far < FAR * spread)
         return ORL_OK;
     double step = pow(10, fmax(floor(log10(spread)), floor(log10(far)) - ORL_JSON_DIGITS + 2));
     for (int k = 0; k < 3; k++)

@@ -495,6 +495,10 @@ static void takes_a_far_origin_off(void **state)
     save(w, "cameras.json", "{\"cameras\": [" AT("a", "0") "," AT("b", "-90000") "]}");
     assert_int_equal(read(w, ""), ORL_OK);
     assert_true(w->known.origin[2] == 0);
+    save(w, "cameras.json", "{\"cameras\": [{\"name\": \"a\", \"width\": 640, \"height\": 480, \"K\": "
+         "[[500,0,320],[0,510,240],[0,0,1]], \"R\": [[1,0,0],[0,1,0],[0,0,1]], \"t\": [0,0,0]}]}");
+    assert_int_equal(read(w, ""), ORL_OK);
+    assert_true(w->known.origin[0] == 0);
 }
 
 // Clouds and meshes lose nothing of it, either.
