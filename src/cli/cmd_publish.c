@@ -10,6 +10,7 @@ struct options {
     struct orl_publish_params params;
     const char *light;
     int max_points;
+    struct arg_enum radiance;
 };
 
 static void print_report(const struct options *o, const struct orl_publish_report *report)
@@ -18,7 +19,7 @@ static void print_report(const struct options *o, const struct orl_publish_repor
            o->params.out, report->photos, report->points, (double)report->bytes / 1e6,
            (double)report->first_bytes / 1e6);
     if (!o->params.single_file)
-        printf("to look at it here: python3 -m http.server --directory %s\n", o->params.out);
+        printf("to look at it here: python3 -m http.server --directory '%s'\n", o->params.out);
 }
 
 static enum orl_result run(const struct terminal *terminal, const void *options,
@@ -38,6 +39,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_scene_set_light(log, scene, o->light);
     if (result == ORL_OK)
+        params.radiance = radiance_chosen(log, scene, &o->radiance);
+    if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
     if (result == ORL_OK)
@@ -51,7 +54,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_publish(int argc, char **argv)
 {
-    struct options o = {.params = {ORL_PUBLISH_DEFAULTS}};
+    struct options o = {.params = {ORL_PUBLISH_DEFAULTS},
+                        .radiance = {radiance_names, RADIANCE_AUTO}};
     o.max_points = (int)o.params.max_points;
     const struct arg_option table[] = {
         {"out", ARG_STRING, &o.params.out, "SITE", "folder to write; an earlier site is replaced",
@@ -59,6 +63,7 @@ int cmd_publish(int argc, char **argv)
         {"title", ARG_STRING, &o.params.title, "TEXT",
          "of the page; default: that of walk.json, else the scene's name", 0, 0},
         LIGHT_OPTION_ROW(&o.light),
+        RADIANCE_OPTION_ROW(&o.radiance),
         {"single-file", ARG_FLAG, &o.params.single_file, NULL,
          "everything in one HTML file SITE, which also opens from disk", 0, 0},
         {"max-size", ARG_INT, &o.params.photo_side, "PX",

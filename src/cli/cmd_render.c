@@ -28,7 +28,7 @@ struct options {
     struct arg_size size;
     struct output_options output;
     const char *out, *method, *part, *light;
-    struct arg_enum textures;
+    struct arg_enum textures, radiance;
     struct orl_names settings, exclude;
     int max_vram_mib, moment; // moment of a sequence; -1: all of them along a path
     double fps;
@@ -108,14 +108,11 @@ static enum orl_result run(const struct options *options, const struct arg_commo
     struct orl_view_choice views = options->views;
     views.width = options->size.width;
     views.height = options->size.height;
-    const struct orl_renderer_params limits = {
+    struct orl_renderer_params limits = {
         .max_vram_bytes = (size_t)options->max_vram_mib << 20,
         .textures = (enum orl_textures)options->textures.value,
         .progress = job->progress};
     enum orl_result result = check(log, options);
-    if (result == ORL_OK && options->method) // reports wrong settings before the long work
-        result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, options->method, &options->settings,
-                                 &job->choice);
     if (result == ORL_OK)
         result = output_choose(log, &options->output, false, &job->output);
     if (result == ORL_OK)
@@ -125,8 +122,11 @@ static enum orl_result run(const struct options *options, const struct arg_commo
     if (result == ORL_OK && options->moment >= 0)
         result = orl_scene_set_frame(log, job->scene, options->moment);
     if (result == ORL_OK)
-        result = orl_choice_make(log, job->scene, ORL_SAMPLE_SRGB, options->method,
-                                 &options->settings, &job->choice);
+        limits.radiance = radiance_chosen(log, job->scene, &options->radiance);
+    if (result == ORL_OK)
+        result = orl_choice_make(log, job->scene,
+                                 limits.radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+                                 options->method, &options->settings, &job->choice);
     if (result == ORL_OK)
         result = orl_views_choose(log, job->scene, &views, &job->path);
     if (result == ORL_OK)
@@ -145,7 +145,8 @@ static enum orl_result run(const struct options *options, const struct arg_commo
 int cmd_render(int argc, char **argv)
 {
     struct options o = {.views = {.frames = 120}, 
-                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .fps = 30,
+                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO},
+                        .radiance = {radiance_names, RADIANCE_AUTO}, .fps = 30,
                         .moment = -1};
     output_options_init(&o.output);
     const struct arg_option table[] = {
@@ -164,6 +165,7 @@ int cmd_render(int argc, char **argv)
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
         LIGHT_OPTION_ROW(&o.light),
+        RADIANCE_OPTION_ROW(&o.radiance),
         OUTPUT_OPTION_ROWS(&o.output, "also write depth, normal, coverage"),
         {"part", ARG_STRING, &o.part, "K/N", "only the K-th of N parts of the frames of a path",
          0, 0},

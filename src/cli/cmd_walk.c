@@ -11,7 +11,8 @@ struct options {
     const char *method, *host, *title, *light, *embed_in;
     struct orl_names settings;
     int port, max_vram_mib;
-    bool edits, radiance;
+    bool edits;
+    struct arg_enum radiance;
 };
 
 static void print_address(void *priv, const char *address)
@@ -30,21 +31,25 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     struct orl_gpu *gpu = NULL;
     struct orl_renderer *renderer = NULL;
     struct orl_choice choice;
+    bool radiance = false;
     enum orl_result result = orl_scene_open(log, dir, &scene);
     if (result == ORL_OK)
         result = orl_scene_set_light(log, scene, o->light);
     if (result == ORL_OK)
-        result = orl_choice_make(log, scene, o->radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+        radiance = radiance_chosen(log, scene, &o->radiance);
+    if (result == ORL_OK)
+        result = orl_choice_make(log, scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
                                  o->method, &o->settings, &choice);
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
-    const struct orl_renderer_params limits = {.radiance = o->radiance,
+    const struct orl_renderer_params limits = {.radiance = radiance,
                                                .max_vram_bytes = (size_t)o->max_vram_mib << 20};
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_walk_params params = {
         .host = o->host, .port = o->port, .title = o->title, .edits = o->edits,
+        .radiance = radiance,
         .embed_in = o->embed_in,
         .choice = &choice, .progress = &terminal->progress, .ready = print_address};
     if (result == ORL_OK)
@@ -57,7 +62,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
 
 int cmd_walk(int argc, char **argv)
 {
-    struct options o = {.host = "127.0.0.1", .port = 8765};
+    struct options o = {.host = "127.0.0.1", .port = 8765, .radiance = {radiance_names, RADIANCE_AUTO}};
     const struct arg_option table[] = {
         {"port", ARG_INT, &o.port, "N", "to listen on; default 8765, 0: any that is free", 0, 65535},
         {"host", ARG_STRING, &o.host, "ADDRESS",
@@ -72,8 +77,7 @@ int cmd_walk(int argc, char **argv)
          "default: the scene's, or else the first of oriel methods", 0, 0},
         {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
         LIGHT_OPTION_ROW(&o.light),
-        {"radiance", ARG_FLAG, &o.radiance, NULL,
-         "merges exposures as oriel hdr does, for scenes that have several", 0, 0},
+        RADIANCE_OPTION_ROW(&o.radiance),
         {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
         {0},
     };

@@ -48,6 +48,18 @@ enum orl_result output_choose(const struct orl_log *log, const struct output_opt
     return choose_layers(log, &options->layers, confidence, &output->layers);
 }
 
+const char *const radiance_names[] = {"auto", "on", "off", NULL};
+
+bool radiance_chosen(const struct orl_log *log, const struct orl_scene *scene,
+                     const struct arg_enum *wish)
+{
+    bool found = wish->value == RADIANCE_AUTO && orl_scene_is_bracketed(scene);
+    if (found)
+        orl_logf(log, ORL_LOG_INFO, "%s: photographs of several exposures are merged into radiance; "
+                 "--radiance off shows them as they are", scene->dir);
+    return found || wish->value == RADIANCE_ON;
+}
+
 bool report_on_stdout(const char *path)
 {
     return path && strcmp(path, "-") == 0;

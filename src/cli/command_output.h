@@ -36,6 +36,16 @@ enum orl_result output_choose(const struct orl_log *log, const struct output_opt
     {"light", ARG_STRING, name, "PHOTO",                                                         \
      "show the scene in this photograph's exposure and white balance", 0, 0}
 
+// Are exposures merged? Indices of the names of --radiance.
+enum radiance_wish { RADIANCE_AUTO, RADIANCE_ON, RADIANCE_OFF };
+extern const char *const radiance_names[];
+#define RADIANCE_OPTION_ROW(wish)                                                                \
+    {"radiance", ARG_ENUM, wish, "WHEN",                                                         \
+     "merge exposures, as oriel hdr does; auto: where photographs were taken at several", 0, 0}
+// auto: says so if they are.
+bool radiance_chosen(const struct orl_log *log, const struct orl_scene *scene,
+                     const struct arg_enum *wish);
+
 // Writes a report to a file or, for "-", to stdout, and releases it. NULL: out of memory.
 enum orl_result report_write(const struct orl_log *log, const char *path,
                              char *text) ORL_CHECK_RESULT;

@@ -10,6 +10,11 @@
 #include "walk/publish.h"
 #include "walk/settings.h"
 
+// Radiance x of a photograph's file is log(1 + mu x / peak) / log(1 + mu), in 8 bits.
+struct site_range {
+    double peak, mu;
+};
+
 struct site {
     const struct orl_log *log;
     const struct orl_scene *scene;
@@ -17,6 +22,7 @@ struct site {
     struct orl_gpu *gpu;
     struct orl_renderer *renderer;
     struct orl_render_params render; // options of the method oriel, as tuned for the scene
+    struct site_range range;         // of radiance
     const char *dir;                 // the folder that is written to
     json_t *settings;                // owned: settings.h
     size_t start;                    // the photograph at which the walk begins unless they say
@@ -39,6 +45,9 @@ enum orl_result orl_site_points(struct site *site, json_t **points);
 
 // Writes photos/, depth/ and thumbs/, and sets *photos to the manifest's array.
 enum orl_result orl_site_photos(struct site *site, json_t **photos);
+// What the scene's radiance is published in: from well below what its brightest photographs see to
+// what its darkest ones clip at.
+struct site_range orl_site_range(const struct orl_scene *scene);
 // Writes poster.jpg: the start view, drawn by the renderer.
 enum orl_result orl_site_poster(struct site *site);
 

@@ -130,8 +130,14 @@ static enum orl_result make_renderer(struct site *site)
 {
     enum orl_result result = orl_render_params_tuned(site->log, &orl_methods[0], site->scene,
                                                      &site->render);
+    const struct orl_renderer_params limits = {.radiance = site->params->radiance};
+    if (limits.radiance) {
+        site->render.sample = ORL_SAMPLE_RADIANCE;
+        site->render.silhouette = 0; // as the renderer, whose radiance has no pass for it
+        site->range = orl_site_range(site->scene);
+    }
     return result == ORL_OK
-               ? orl_renderer_create(site->gpu, site->scene, NULL, &site->renderer)
+               ? orl_renderer_create(site->gpu, site->scene, &limits, &site->renderer)
                : result;
 }
 

@@ -10,6 +10,7 @@ struct orl_publish_params {
     const char *out;   // the folder of the site; with single_file, its HTML file
     const char *title; // of the page; NULL: the name of the scene's folder
     bool single_file;  // everything in one HTML file, which a browser can also open from disk
+    bool radiance;     // photographs are published as merged radiance
     int photo_side;    // greatest longer side of the site's photographs, pixels
     int jpeg_quality;  // of photographs, [1, 100]
     size_t max_points; // greatest number of points; a larger cloud is thinned evenly; of

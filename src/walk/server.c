@@ -622,8 +622,8 @@ static void make_site(struct server *server)
 {
     const struct orl_progress progress = {report_site, site_cancelled, server};
     struct site_table table;
-    enum orl_result result = orl_site_table_make(server->walk.gpu, server->content.scene, &progress,
-                                                 &table);
+    enum orl_result result = orl_site_table_make(server->walk.gpu, server->content.scene,
+                                                 server->params->radiance, &progress, &table);
     if (result == ORL_OK)
         server->content.site = table;
     if (server->result != ORL_OK)

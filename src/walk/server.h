@@ -10,6 +10,7 @@ struct orl_walk_params {
     int port;          // 0: any free port
     const char *title; // title of the page; NULL: as the scene's settings say
     bool edits;        // clients may change the settings; on 127.0.0.1 they always may
+    bool radiance;     // the renderer's
     const char *embed_in; // origins whose pages may frame the walk, with spaces between; NULL: none
     const struct orl_choice *choice; // method and options of a client that has chosen none
     const struct orl_progress *progress; // the server stops when this is cancelled

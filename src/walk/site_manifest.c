@@ -124,6 +124,9 @@ enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *pho
         return ORL_ERR_MEMORY;
     }
     json_decref(more);
+    if (site->params->radiance)
+        json_object_set_new(root, "radiance", json_pack("{s:f, s:f}", "peak", site->range.peak,
+                                                        "mu", site->range.mu));
     char *path = orl_site_path(site, "manifest.json");
     enum orl_result result = path ? orl_json_write(site->log, path, root) : ORL_ERR_MEMORY;
     json_t *file = result == ORL_OK ? orl_site_file(site, "manifest.json") : NULL;

@@ -13,6 +13,8 @@
 enum {
     THUMB_SIDE = 160,
     THUMB_QUALITY = 70,
+    RADIANCE_QUALITY = 97, // logarithms have little contrast, and are stretched when shown
+    REPLACED_STOPS = 8, // above white, that photographs of radiance are published up to
     POSTER_WIDTH = 960,
     POSTER_HEIGHT = 600,
     POSTER_QUALITY = 78,
@@ -52,6 +54,13 @@ static enum orl_result write_smaller(struct site *site, const struct orl_image *
     return result;
 }
 
+static enum orl_result write_thumb(struct site *site, const struct orl_image *image,
+                                   const struct orl_camera *camera, const char *path)
+{
+    struct orl_camera small = within(camera, THUMB_SIDE);
+    return write_smaller(site, image, small.width, small.height, THUMB_QUALITY, path);
+}
+
 static enum orl_result write_pictures(struct site *site, size_t photo,
                                       const struct orl_camera *camera, const char *picture,
                                       const char *thumb)
@@ -60,13 +69,66 @@ static enum orl_result write_pictures(struct site *site, size_t photo,
     char *path = orl_scene_photo_path(site->log, site->scene, photo);
     enum orl_result result = path ? orl_picture_read(site->log, path, 3, &image) : ORL_ERR_MEMORY;
     free(path);
-    struct orl_camera small = within(camera, THUMB_SIDE);
     if (result == ORL_OK)
         result = write_smaller(site, &image, camera->width, camera->height,
                                site->params->jpeg_quality, picture);
     if (result == ORL_OK)
-        result = write_smaller(site, &image, small.width, small.height, THUMB_QUALITY, thumb);
+        result = write_thumb(site, &image, camera, thumb);
     orl_image_finish(&image);
+    return result;
+}
+
+// --- pictures of radiance ---
+
+struct site_range orl_site_range(const struct orl_scene *scene)
+{
+    static const double above = 1.25, below_stops = 6; // white, and darkness, of one photograph
+    double low = 0, high = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const struct orl_photo *photo = &scene->photos[i];
+        low = fmin(low, photo->radiance ? -REPLACED_STOPS : photo->exposure_ev);
+        high = fmax(high, photo->exposure_ev);
+    }
+    return (struct site_range){above * exp2(-low), exp2(high - low + below_stops)};
+}
+
+static enum orl_result encode_radiance(const struct orl_log *log, const struct site_range *range,
+                                       const struct orl_image *light, struct orl_image *coded)
+{
+    enum orl_result result = orl_image_init(log, coded, light->width, light->height, 3,
+                                            ORL_PIXEL_U8);
+    size_t count = 3 * (size_t)light->width * (size_t)light->height;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        double x = fmin(fmax((double)light->f32[i], 0) / range->peak, 1);
+        coded->u8[i] = (uint8_t)lrint(255 * log1p(range->mu * x) / log1p(range->mu));
+    }
+    return result;
+}
+
+// What the renderer makes of all exposures at a photograph's place.
+static enum orl_result write_radiance(struct site *site, size_t photo,
+                                      const struct orl_camera *camera, const char *picture,
+                                      const char *thumb)
+{
+    const struct orl_view view = {*camera, site->scene->photos[photo].view.cam_from_world};
+    struct orl_render_params params = site->render;
+    params.leave_out = ORL_LAYER_DEPTH | ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE |
+                       ORL_LAYER_CONFIDENCE;
+    struct orl_frame frame = {0};
+    struct orl_image coded = {0}, shown = {0};
+    enum orl_result result = orl_renderer_draw(site->renderer, &view, &params, NULL, &frame);
+    if (result == ORL_OK)
+        result = encode_radiance(site->log, &site->range, &frame.color, &coded);
+    if (result == ORL_OK)
+        result = write_smaller(site, &coded, camera->width, camera->height, RADIANCE_QUALITY,
+                               picture);
+    if (result == ORL_OK)
+        result = orl_tone_srgb(site->log, &frame.color, &shown);
+    if (result == ORL_OK)
+        result = write_thumb(site, &shown, camera, thumb);
+    orl_image_finish(&coded);
+    orl_image_finish(&shown);
+    orl_frame_finish(&frame);
     return result;
 }
 
@@ -180,7 +242,9 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
     snprintf(picture, sizeof picture, "photos/%05zu.jpg", number);
     snprintf(thumb, sizeof thumb, "thumbs/%05zu.jpg", number);
     snprintf(depth, sizeof depth, "depth/%05zu.png", number);
-    enum orl_result result = write_pictures(site, index, &c, picture, thumb);
+    enum orl_result result = site->params->radiance
+                                 ? write_radiance(site, index, &c, picture, thumb)
+                                 : write_pictures(site, index, &c, picture, thumb);
     if (result == ORL_OK)
         result = write_depth(site, index, &depth_view, depth, &nearest);
     json_t *depth_file = result == ORL_OK ? orl_site_file(site, depth) : NULL;
@@ -191,8 +255,12 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
                                      "height", depth_view.camera.height, "nearest", (double)nearest,
                                      "steps_per_fold", STEPS_PER_FOLD));
     *out = orl_walk_photo(photo, &c);
-    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o}", "gain", vector_json(photo->gain),
-                             "vignette", vector_json(photo->vignette), "picture",
+    // Radiance has the scene's exposure, and no vignetting.
+    static const float one[3] = {1, 1, 1}, none[3] = {0};
+    bool radiance = site->params->radiance;
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o}", "gain",
+                             vector_json(radiance ? one : photo->gain), "vignette",
+                             vector_json(radiance ? none : photo->vignette), "picture",
                              orl_site_file(site, picture), "thumb", orl_site_file(site, thumb),
                              "depth", depth_file);
     if (*out && json_object_update_new(*out, more) != 0) {

@@ -57,7 +57,7 @@ static enum orl_result read_site(const struct orl_log *log, const char *dir,
 }
 
 enum orl_result orl_site_table_make(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                    const struct orl_progress *progress, struct site_table *table)
+                                    bool radiance, const struct orl_progress *progress, struct site_table *table)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_publish_report report;
@@ -68,7 +68,7 @@ enum orl_result orl_site_table_make(struct orl_gpu *gpu, const struct orl_scene 
         return result;
     site = orl_path_join(log, dir, "site");
     const struct orl_publish_params params = {ORL_PUBLISH_DEFAULTS, .out = site,
-                                              .progress = progress};
+                                              .radiance = radiance, .progress = progress};
     result = site ? orl_publish(gpu, scene, &params, &report) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = read_site(log, site, table);

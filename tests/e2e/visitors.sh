@@ -8,6 +8,12 @@ cat >made/walk.json <<JSON
                                              {"title": "Wall", "position": [0.3, 0, 0]}]}
 JSON
 runs 0 "$oriel" publish made --out site --quiet
+# More light than one exposure holds.
+"$oriel" synth monument --out bright --size 288x192 --count 6 --contrast 3 --exposures -3,0,3 --quiet &&
+    "$tools/bench_truth_scene" bright bright-truth radiance 2 4 || exit 1
+runs 0 "$oriel" publish radiance --out radiance-site
+grep -q 'several exposures' stderr.txt || fail "publish does not say that exposures are merged"
 [ $failed -eq 0 ] || exit 1
 timeout 900 /usr/bin/python3 -B "$source/tests/web/test_visitors.py" "$oriel" \
-    "$tools/bench_web_pictures" "$work/made" "$work/site" 2>&1
+    "$tools/bench_web_pictures" "$work/made" "$work/site" "$work/radiance" \
+    "$work/radiance-site" 2>&1

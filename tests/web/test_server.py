@@ -329,7 +329,7 @@ class Token(unittest.TestCase):
 
 class Radiance(unittest.TestCase):
     def test_shows_what_hdr_gives(self):
-        walk, work = Walk("--radiance", scene=RADIANCE), tempfile.TemporaryDirectory()
+        walk, work = Walk(scene=RADIANCE), tempfile.TemporaryDirectory()
         try:
             client, c = Client(walk), json.loads(run(TOOL, "cameras", RADIANCE))[0]
             request = {"number": 1, "size": [c["width"], c["height"]], "r": c["r"], "eye": c["eye"], "rest": True,

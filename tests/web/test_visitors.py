@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """What visitors of comparable viewers report, on the published page and the live walk. Made by
-tests/e2e/visitors.sh: test_visitors.py ORIEL TOOL SCENE SITE."""
+tests/e2e/visitors.sh: test_visitors.py ORIEL TOOL SCENE SITE RADIANCE RADIANCE-SITE."""
 import json
 import math
 import re
 import signal
 import socket
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -13,7 +14,7 @@ import unittest
 from browser import Browser, QuietHandler, Server
 from client import Walk as Program
 
-ORIEL, TOOL, SCENE, SITE = sys.argv[1:5]
+ORIEL, TOOL, SCENE, SITE, RADIANCE, RADIANCE_SITE = sys.argv[1:7]
 WIDTH, HEIGHT = 360, 240
 SIZES = ((320, 568), (390, 844), (640, 360), (760, 900), (844, 390), (1024, 768), (1440, 900), (2560, 1440))
 
@@ -214,6 +215,51 @@ class Page(Visitors):
         self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
 
 
+def run(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+class Radiance(unittest.TestCase):
+    """A scene of several exposures: the page shows what `oriel hdr` gives, and every command the same."""
+    def psnr(self, a, b):
+        return float(run(TOOL, "compare", a, b).split()[0])
+
+    def test_published_page(self):
+        server, browser, work = Server(RADIANCE_SITE), Browser(240, 160), tempfile.TemporaryDirectory()
+        try:
+            browser.open(server.address)
+            cameras = json.loads(run(TOOL, "cameras", RADIANCE))
+            page, own = f"{work.name}/page.png", f"{work.name}/own.png"
+            # Dark enough to show the sky that most photographs clip, and bright enough for the shade: the
+            # unmerged photographs are 10 dB farther off.
+            for camera, ev, tone in ((cameras[0], -3, "filmic"), (cameras[0], 0, "srgb"), (cameras[0], 3, "reinhard")):
+                browser.js("oriel.picture.setExposure(arguments[0]); oriel.picture.setTone(arguments[1])", ev, tone)
+                browser.capture(page, camera)
+                run(ORIEL, "hdr", RADIANCE, "--at", camera["name"], "--out", own, f"--exposure={ev}", "--tone", tone,
+                    "--quiet")
+                self.assertGreaterEqual(self.psnr(page, own), 31, (ev, tone))
+            # The file of a photograph, through the table of the comparison, is a picture to look at.
+            browser.js("oriel.compare.setExposure(0)")
+            tables = browser.js("return [...document.querySelectorAll('#shown feFuncR')].map(f => f.tableValues.baseVal.numberOfItems)")
+            self.assertEqual(tables, [256])
+            self.assertEqual(browser.js("return document.querySelectorAll('#panel select option').length"), 3)
+            self.assertEqual(browser.errors(), [])
+        finally:
+            browser.close()
+            server.close()
+            work.cleanup()
+
+    def test_render(self):
+        with tempfile.TemporaryDirectory() as work:
+            said = subprocess.run([ORIEL, "render", RADIANCE, "--at", "0001.jpg", "--out", f"{work}/a.png"],
+                                  check=True, capture_output=True, text=True).stderr
+            self.assertIn("several exposures", said)
+            run(ORIEL, "hdr", RADIANCE, "--at", "0001.jpg", "--out", f"{work}/b.png", "--quiet")
+            self.assertEqual(run("cmp", f"{work}/a.png", f"{work}/b.png"), "")
+            run(ORIEL, "render", RADIANCE, "--at", "0001.jpg", "--radiance", "off", "--out", f"{work}/c.png", "--quiet")
+            self.assertLess(self.psnr(f"{work}/b.png", f"{work}/c.png"), 30)
+
+
 class Live(Visitors):
     def walk(self, port=0):
         walk = Program(ORIEL, SCENE, "--port", str(port))
@@ -304,4 +350,4 @@ return found;
 """
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[5:], verbosity=2)
+    unittest.main(argv=sys.argv[:1] + sys.argv[7:], verbosity=2)

@@ -3,7 +3,7 @@ import {Device} from "./gl.js";
 import {clamp, distance} from "./math.js";
 import {rankPhotos} from "./photos.js";
 import {Cloud} from "./points.js";
-import {LAYERS, loadShaders, Renderer} from "./renderer.js";
+import {LAYERS, loadShaders, Renderer, TONES} from "./renderer.js";
 import {text} from "./strings.js";
 import {isBehind, project} from "./view.js";
 
@@ -41,6 +41,7 @@ export class LocalPicture {
         this.all = photos;
         this.onChange = onChange;
         this.layers = LAYERS;
+        this.tones = manifest.radiance ? TONES : [];
         this.problem = "";     // why no frames come
         this.remote = false;   // a frame is there once draw() returns
         // Of a picture, whatever the screen: each takes some 120 bytes on the graphics chip.
@@ -161,6 +162,7 @@ export class LocalPicture {
         return canvas;
     }
 
+    setTone(name) { this.renderer.tone = Math.max(TONES.indexOf(name), 0); }
     setExposure(ev) { this.renderer.exposure = 2 ** ev; }
 
     // The point under a pixel of the window's camera; null: nothing is known of it.

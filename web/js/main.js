@@ -153,11 +153,12 @@ class Walk {
             help: {key: "?", run: () => help.show()},
         };
         this.tools = new Tools(actions);
-        this.compare = new Compare(this.files);
-        this.panel = new Panel({layers: this.picture.layers, layer: this.layer, tones: this.manifest.tones || [],
+        this.compare = new Compare(this.files, this.manifest.radiance);
+        this.panel = new Panel({layers: this.picture.layers, layer: this.layer, tones: this.manifest.tones ||
+                                    this.picture.tones.map(name => ({name, description: text.tones[name]})),
                                 onLayer: layer => this.setLayer(layer),
                                 onExposure: ev => this.change(() => this.setExposure(ev)),
-                                onTone: name => this.change(() => this.server.setTone(name)),
+                                onTone: name => this.change(() => this.picture.setTone(name)),
                                 onDrawer: this.server ? id => this.drawBy(id) : null,
                                 onBenchmark: () => this.measure()});
         if (this.manifest.methods)
@@ -264,6 +265,7 @@ class Walk {
     {
         this.ev = ev;
         this.picture.setExposure(ev);
+        this.compare.setExposure(ev);
     }
 
     // --- who draws ---

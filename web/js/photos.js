@@ -89,7 +89,8 @@ const PER_FRAME = 32; // that one frame paints from; one byte numbers them
 const ROW_TEXELS = 9;
 
 export class PhotoStore {
-    constructor(device, programs, photos, budgetBytes)
+    // radiance: {peak, mu}, of photographs that are radiance; undefined: they are sRGB
+    constructor(device, programs, photos, budgetBytes, radiance)
     {
         const gl = device.gl, largest = key => Math.max(...photos.map(p => key(p)));
         this.device = device;
@@ -99,10 +100,12 @@ export class PhotoStore {
         this.height = largest(p => p.height);
         this.levels = 1 + Math.floor(Math.log2(Math.max(this.width, this.height)));
         const depthWidth = largest(p => p.depth.width), depthHeight = largest(p => p.depth.height);
-        const each = this.width * this.height * 4 * 4 / 3 + depthWidth * depthHeight * 2;
+        this.radiance = radiance;
+        this.format = radiance ? "RGBA16F" : "SRGB8_ALPHA8";
+        const each = this.width * this.height * (radiance ? 8 : 4) * 4 / 3 + depthWidth * depthHeight * 2;
         const layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
         this.slots = clamp(Math.floor(budgetBytes / each), 2, Math.min(photos.length, layers));
-        this.color = device.texture("SRGB8_ALPHA8", this.width, this.height,
+        this.color = device.texture(this.format, this.width, this.height,
                                     {levels: this.levels, layers: this.slots});
         this.depth = device.texture("R16F", depthWidth, depthHeight, {layers: this.slots});
         this.rows = device.texture("RGBA32F", ROW_TEXELS, PER_FRAME);
@@ -143,8 +146,12 @@ export class PhotoStore {
     writeColor(picture, slot)
     {
         const gl = this.device.gl;
-        const one = this.device.texture("SRGB8_ALPHA8", this.width, this.height, {levels: this.levels});
-        this.device.write(one, picture);
+        const one = this.device.texture(this.format, this.width, this.height, {levels: this.levels});
+        if (this.radiance)
+            this.unpackRadiance(picture, one);
+        else
+            this.device.write(one, picture);
+        gl.bindTexture(gl.TEXTURE_2D, one.id);
         gl.generateMipmap(gl.TEXTURE_2D);
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
         gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.color.id);
@@ -154,6 +161,16 @@ export class PhotoStore {
             gl.copyTexSubImage3D(gl.TEXTURE_2D_ARRAY, level, 0, 0, slot, 0, 0, w, h);
         }
         this.device.release(one);
+    }
+
+    unpackRadiance(picture, to)
+    {
+        const {device} = this, packed = device.texture("RGBA8", picture.width, picture.height);
+        const target = device.target(picture.width, picture.height, [to]);
+        device.write(packed, picture);
+        device.pass(this.programs.radianceUnpack, target, {packed_radiance: packed, ...this.radiance});
+        device.releaseTarget(target);
+        device.release(packed);
     }
 
     writeDepth(photo, depth, slot)

@@ -6,7 +6,7 @@ import {PhotoStore} from "./photos.js";
 // The page's own and, in folders, those that it shares with the renderer.
 const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "level0.glsl", "pull.frag",
     "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
-    "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "gather/photo.glsl", "choose.frag",
+    "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "radiance_unpack.frag", "gather/photo.glsl", "choose.frag",
     "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag",
     "compose.frag", "show.frag", "gather/bicubic.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl",
     "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
@@ -15,6 +15,7 @@ const TILE = 16;           // pixels that share a list of photographs
 const LEVELS_MOST = 9;     // of the surfel pyramid
 const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
 export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points"];
+export const TONES = ["srgb", "reinhard", "filmic"]; // as show.frag numbers them
 const POINTS_LAYER = LAYERS.indexOf("points");
 
 export async function loadShaders(files)
@@ -35,6 +36,7 @@ function makePrograms(device, sources)
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
         fillPullFar: screen("fill_pull.frag", {FAR: 1}), fillPushFar: screen("fill_push.frag", {FAR: 1}),
         fillDepth: screen("fill_depth.frag", {FAR: 1}), depthUnpack: screen("depth_unpack.frag"),
+        radianceUnpack: screen("radiance_unpack.frag"),
         choose: screen("choose.frag", {TILE}), vote: screen("silhouette_vote.frag", {TILE}),
         cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
@@ -107,9 +109,11 @@ export class Renderer {
         this.manifest = manifest;
         this.cloud = cloud;
         this.programs = makePrograms(device, sources);
-        this.photos = new PhotoStore(device, this.programs, photos, photoBytes);
+        this.photos = new PhotoStore(device, this.programs, photos, photoBytes,
+                                     manifest.radiance);
         this.frame = null;
         this.exposure = 1; // factor on light
+        this.tone = 0; // of TONES
         this.used = 0; // photographs of the last frame
         this.drawn = 0; // points
     }
@@ -284,7 +288,7 @@ export class Renderer {
                          {composed: f.composed.textures[0], depth: this.depth.textures[0],
                           normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
-                          exposure: this.exposure, scale: [f.width / width, f.height / height]});
+                          exposure: this.exposure, tone: this.tone, antialiases: !this.manifest.radiance, scale: [f.width / width, f.height / height]});
     }
 
     // A frame of its own as RGBA bytes, top row first.

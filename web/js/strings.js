@@ -39,6 +39,8 @@ export const text = {
     preparing: (done, total) => `The server prepares the scene for this browser: ${done} of ${total}.`,
     exposure: "Exposure",
     tone: "Tone curve",
+    tones: {srgb: "clips at white, as a photograph does", reinhard: "compresses highlights",
+            filmic: "as film does: soft in lights and shades"},
     passes: "Milliseconds by pass", drawing: "all of drawing", encoding: "encoding", memoryBy: "Memory by owner",
     owners: {frame: "Frame", points: "Points", photographs: "Photographs"},
     methods: {

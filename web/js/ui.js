@@ -205,11 +205,15 @@ export class Thumbs {
 
 // --- comparison ---
 
+const srgbEncode = x => x > 0.0031308 ? 1.055 * x ** (1 / 2.4) - 0.055 : 12.92 * x;
+
 // The photograph that the viewer stands at, over the part of the picture right of a slider.
 export class Compare {
-    constructor(files)
+    // radiance: as PhotoStore takes it
+    constructor(files, radiance)
     {
         this.files = files;
+        this.radiance = radiance;
         this.element = byId("compare");
         this.image = this.element.querySelector("img");
         this.slider = this.element.querySelector("input");
@@ -219,6 +223,21 @@ export class Compare {
         this.slider.addEventListener("input", () => this.split());
         this.on = false;
         this.photo = null;
+        if (radiance) {
+            this.image.style.filter = "url(#shown)";
+            this.setExposure(0);
+        }
+    }
+
+    // Files of radiance are no pictures to look at: a table makes them such.
+    setExposure(ev)
+    {
+        if (!this.radiance)
+            return;
+        const {peak, mu} = this.radiance, table = [...Array(256).keys()].map(i =>
+            srgbEncode(Math.min(2 ** ev * peak * Math.expm1(i / 255 * Math.log1p(mu)) / mu, 1)).toFixed(4));
+        for (const channel of byId("shown").firstElementChild.children)
+            channel.setAttribute("tableValues", table.join(" "));
     }
 
     split()

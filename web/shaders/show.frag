@@ -4,6 +4,8 @@ uniform sampler2D composed, depth, normals, source;
 uniform int layer;     // as LAYERS of renderer.js
 uniform float typical; // depth
 uniform float exposure; // factor on light
+uniform int tone;      // as TONES of renderer.js
+uniform bool antialiases;
 uniform vec2 scale;    // pixels of the frame per pixel of the target
 layout(location = 0) out vec4 color;
 
@@ -50,6 +52,19 @@ vec3 distinct(float number)
     return clamp(abs(fract(hue + vec3(0.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
 }
 
+const float WHITE = 8.0; // luminance that Reinhard's curve makes white
+
+// The curves of src/render/tone.c.
+vec3 toned(vec3 light)
+{
+    if (tone == 1) {
+        float l = dot(light, vec3(0.2126, 0.7152, 0.0722));
+        return light * (1.0 + l / (WHITE * WHITE)) / (1.0 + l);
+    }
+    vec3 x = 0.6 * light;
+    return tone == 2 ? x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14) : light;
+}
+
 void main()
 {
     ivec2 area = textureSize(depth, 0);
@@ -58,8 +73,8 @@ void main()
     place.y = float(area.y) - place.y;
 #endif
     ivec2 at = clamp(ivec2(place), ivec2(0), area - 1);
-    vec3 light = scale == vec2(1.0) ? antialiased(at) : texture(composed, place / vec2(area)).rgb;
-    vec3 plain = srgb_encode(light * exposure);
+    vec3 light = antialiases && scale == vec2(1.0) ? antialiased(at) : texture(composed, place / vec2(area)).rgb;
+    vec3 plain = srgb_encode(toned(light * exposure));
     float z = texelFetch(depth, at, 0).x;
     vec4 normal = texelFetch(normals, at, 0), from = texelFetch(source, at, 0);
     float near = 1.0 / (1.0 + abs(z) / typical);
