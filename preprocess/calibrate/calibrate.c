@@ -44,6 +44,10 @@ struct calibration {
     int features;        // counts the databases: a new one has other features and numbers
 };
 
+#define LENS_ADVICE "COLMAP finds a camera that no ordinary lens makes: panoramas must be cut into " \
+    "flat views, and photographs of a fisheye lens calibrated with its model (COLMAP's OPENCV_FISHEYE) " \
+    "and given to oriel import"
+
 // --- the mapper ---
 
 static void candidate_finish(struct candidate *candidate)
@@ -66,6 +70,8 @@ static enum orl_result consider(struct calibration *c, const char *path)
 {
     struct candidate candidate = {.features = c->features};
     enum orl_result result = orl_colmap_read(c->job->log, path, &candidate.model);
+    if (result == ORL_ERR_FORMAT)
+        return orl_fail(c->job->log, ORL_ERR_DATA, "%s: " LENS_ADVICE, path);
     if (result != ORL_OK)
         return result;
     for (size_t i = 0; i < candidate.model.camera_count; i++)
@@ -428,6 +434,21 @@ static void name_left_out(const struct calibration *c, json_t *record)
     json_object_set_new(record, "left_out", left_out);
 }
 
+// Panoramas and fisheye pictures end as cameras of very short focal length.
+static enum orl_result check_lenses(const struct calibration *c)
+{
+    const double least = 0.2; // of the larger side: 136 degrees
+    for (size_t i = 0; i < c->best.model.camera_count; i++) {
+        const struct orl_camera *camera = &c->best.model.cameras[i].pinhole;
+        int larger = camera->width > camera->height ? camera->width : camera->height;
+        if (camera->fx < least * larger)
+            return orl_fail(c->job->log, ORL_ERR_DATA, "a focal length of %.4g pixels for "
+                            "photographs of %dx%d: " LENS_ADVICE, camera->fx, camera->width,
+                            camera->height);
+    }
+    return ORL_OK;
+}
+
 enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
 {
     static const char *const ways[] = {
@@ -448,6 +469,7 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
         (result = map(&c, false, NULL)) != ORL_OK ||
         (!all(&c) && (result = try_hard(&c)) != ORL_OK) ||
         (result = straighten(&c)) != ORL_OK ||
+        (result = check_lenses(&c)) != ORL_OK ||
         (result = finish(&c)) != ORL_OK)
         goto end;
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));

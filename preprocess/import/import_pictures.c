@@ -288,15 +288,40 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
 
 // --- one camera ---
 
+// Refuses what is no picture of a lens: a panorama, or a camera whose undistorted pictures would hold
+// next to nothing.
+static enum orl_result check_lens(const struct import_job *job, const struct import_view *view,
+                                  const char *path)
+{
+    const double least = 0.05, focal_least = 0.1; // of the side
+    const struct orl_camera *from = &camera_of(job, view)->pinhole;
+    struct orl_camera to = orl_import_target(camera_of(job, view), 0);
+    int larger = from->width > from->height ? from->width : from->height;
+    if (from->fx < focal_least * larger)
+        return orl_fail(job->log, ORL_ERR_DATA, "%s: a focal length of %.4g pixels for a picture of "
+                        "%dx%d, which no lens has: panoramas must be cut into flat views", path,
+                        from->fx, from->width, from->height);
+    if (to.width < least * from->width || to.height < least * from->height)
+        return orl_fail(job->log, ORL_ERR_DATA, "%s: its lens distortion leaves %dx%d of %dx%d "
+                        "pixels, which no lens does: its terms (k1, ...) are wrong", path, to.width,
+                        to.height, from->width, from->height);
+    return ORL_OK;
+}
+
 static enum orl_result settle_camera(struct import_job *job, struct import_view *view,
                                      const char *path)
 {
-    int width, height;
+    struct orl_picture_info info;
     struct orl_camera *target = &job->targets[view->camera];
-    enum orl_result result = orl_picture_size(job->log, path, &width, &height);
+    enum orl_result result = orl_picture_inspect(job->log, path, &info);
+    if (result == ORL_OK && info.panorama)
+        result = orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: " ORL_PANORAMA_ADVICE, path);
     if (result != ORL_OK || target->width) // known from an earlier picture of the same camera
         return result;
-    result = orl_known_camera_settle(job->log, &job->known, view->camera, path, width, height);
+    result = orl_known_camera_settle(job->log, &job->known, view->camera, path, info.width,
+                                     info.height);
+    if (result == ORL_OK)
+        result = check_lens(job, view, path);
     if (result == ORL_OK)
         *target = orl_import_target(camera_of(job, view), job->params->max_size);
     return result;

@@ -60,7 +60,7 @@ static bool covered(const struct orl_colmap_camera *camera, const struct extent 
 
 bool orl_import_is_same(const struct orl_colmap_camera *from, const struct orl_camera *to)
 {
-    return from->model <= 1 && from->pinhole.width == to->width &&
+    return orl_colmap_camera_is_pinhole(from) && from->pinhole.width == to->width &&
            from->pinhole.height == to->height;
 }
 
@@ -76,12 +76,13 @@ struct orl_camera orl_import_target(const struct orl_colmap_camera *from, int ma
     const double shrink = 0.995, least = 0.2; // COLMAP's smallest scale
     struct orl_camera to = from->pinhole;
     struct extent e;
+    bool distorted = !orl_colmap_camera_is_pinhole(from);
     for (int k = 0; k < 4; k++)
         e.side[k] = reach(from, directions[k]);
-    for (double scale = 1; from->model > 1 && scale > least && !covered(from, &e); scale *= shrink)
+    for (double scale = 1; distorted && scale > least && !covered(from, &e); scale *= shrink)
         for (int k = 0; k < 4; k++)
             e.side[k] *= shrink;
-    if (from->model > 1) {
+    if (distorted) {
         to.width = (int)fmax(1, floor((e.side[0] + e.side[2]) * to.fx));
         to.height = (int)fmax(1, floor((e.side[1] + e.side[3]) * to.fy));
         to.cx = e.side[0] * to.fx;

@@ -159,6 +159,10 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
     source->deep = info.bits > 8;
     source->profiled = info.profiled;
     source->unbounded = info.unbounded;
+    if (info.panorama) {
+        snprintf(reason->text, sizeof reason->text, "%s", ORL_PANORAMA_ADVICE);
+        return false;
+    }
     if (source->width < 64 || source->height < 64) {
         snprintf(reason->text, sizeof reason->text, "%dx%d pixels are too few", source->width,
                  source->height);

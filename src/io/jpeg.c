@@ -95,6 +95,18 @@ static bool is_exif(const struct jpeg_marker_struct *marker)
            memcmp(marker->data, "Exif\0", 6) == 0;
 }
 
+// XMP with Google's Photo Sphere schema.
+static bool is_panorama(const struct jpeg_marker_struct *marker)
+{
+    static const char head[] = "http://ns.adobe.com/xap/1.0/", key[] = "ProjectionType";
+    static const char kind[] = "equirectangular";
+    const void *data = marker->data;
+    return marker->marker == JPEG_APP0 + 1 && marker->data_length > sizeof head &&
+           memcmp(data, head, sizeof head) == 0 &&
+           memmem(data, marker->data_length, key, sizeof key - 1) &&
+           memmem(data, marker->data_length, kind, sizeof kind - 1);
+}
+
 static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, FILE *stream,
                                    struct orl_picture_header *header)
 {
@@ -113,6 +125,7 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
     header->height = (int)info->image_height;
     header->bits = info->data_precision;
     for (jpeg_saved_marker_ptr marker = info->marker_list; marker; marker = marker->next) {
+        header->panorama |= is_panorama(marker);
         if (!is_exif(marker) || header->exif)
             continue;
         header->exif = orl_array(job->log, marker->data_length, 1);

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "scene/colmap_internal.h"
 
-// From COLMAP's src/base/camera_models.h. Models with one focal length have params f cx cy ...;
+// From COLMAP's src/colmap/sensor/models.h, in the order of its ids. Models with one focal length have params f cx cy ...;
 // models with two have fx fy cx cy ...
 static const struct {
     const char *name;
@@ -18,6 +18,8 @@ static const struct {
     {"RADIAL", 5, 1},                {"OPENCV", 8, 2},         {"OPENCV_FISHEYE", 8, 2},
     {"FULL_OPENCV", 12, 2},          {"FOV", 5, 2},            {"SIMPLE_RADIAL_FISHEYE", 4, 1},
     {"RADIAL_FISHEYE", 5, 1},        {"THIN_PRISM_FISHEYE", 12, 2},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", 16, 2}, {"SIMPLE_DIVISION", 4, 1}, {"DIVISION", 5, 2},
+    {"SIMPLE_FISHEYE", 3, 1},        {"FISHEYE", 4, 2},
 };
 
 int orl_colmap_model_params(int model)

@@ -7,11 +7,13 @@
 #include "oriel/image.h"
 #include "oriel/camera.h"
 
+enum { ORL_COLMAP_PARAMS = 16 }; // the most that a camera model has
+
 struct orl_colmap_camera {
     uint32_t id;
     int model;               // COLMAP's model id; 0 SIMPLE_PINHOLE, 1 PINHOLE, ...
     struct orl_camera pinhole; // the camera without its distortion
-    double params[12];
+    double params[ORL_COLMAP_PARAMS];
     int param_count;
 };
 
@@ -71,6 +73,8 @@ struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,
 // model. The camera must come from orl_colmap_read.
 void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],
                                double pixel[2]);
+// True when the model has no distortion, or terms that are exactly zero.
+bool orl_colmap_camera_is_pinhole(const struct orl_colmap_camera *camera);
 // True when every corner of the picture is the projection of a ray. False when a badly estimated
 // distortion folds back before it reaches a corner.
 bool orl_colmap_camera_reaches_corners(const struct orl_colmap_camera *camera);

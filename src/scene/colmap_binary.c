@@ -77,8 +77,8 @@ static enum orl_result read_camera(struct reader *r, struct orl_colmap_camera *c
     camera->model = head.model;
     camera->param_count = orl_colmap_model_params(head.model);
     if (!camera->param_count)
-        return orl_fail(r->log, ORL_ERR_FORMAT, "%s: byte %zu: unknown camera model %d", r->path,
-                        start, head.model);
+        return orl_fail(r->log, ORL_ERR_FORMAT, "%s: byte %zu: unknown camera model %d; undistort "
+                        "the pictures with the program that made it", r->path, start, head.model);
     result = take(r, camera->params, sizeof(double) * (size_t)camera->param_count, "a camera");
     if (result != ORL_OK)
         return result;

@@ -1,4 +1,4 @@
-// COLMAP's camera models, as documented in src/base/camera_models.h of COLMAP 3.8.
+// COLMAP's camera models, as documented in src/colmap/sensor/models.h of COLMAP 4.
 #include <math.h>
 
 #include "scene/colmap.h"
@@ -6,7 +6,8 @@
 
 enum {
     SIMPLE_RADIAL = 2, RADIAL, OPENCV, OPENCV_FISHEYE, FULL_OPENCV, FOV,
-    SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE,
+    SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE, RAD_TAN_THIN_PRISM_FISHEYE,
+    SIMPLE_DIVISION, DIVISION, SIMPLE_FISHEYE, FISHEYE,
 };
 
 // Scales u, v by `radial` and adds OpenCV's tangential terms.
@@ -51,6 +52,24 @@ static void thin_prism(const double *k, double uv[2])
     uv[1] += k[7] * r2;
 }
 
+// k0 to k5 of the angle, p0 p1, s0 to s3: Project Aria's Fisheye624.
+static void rad_tan_thin_prism(const double *k, double uv[2])
+{
+    const double *p = k + 6, *s = k + 8;
+    fisheye(k, 6, uv);
+    double u = uv[0], v = uv[1], r2 = u * u + v * v, r4 = r2 * r2, across = 2 * (p[0] * u + p[1] * v);
+    uv[0] += across * u + p[0] * r2 + s[0] * r2 + s[1] * r4;
+    uv[1] += across * v + p[1] * r2 + s[2] * r2 + s[3] * r4;
+}
+
+// Inverts u = d / (1 + k |d|^2) for the smaller d; NaN where there is none.
+static void division(double k, double uv[2])
+{
+    double r2 = uv[0] * uv[0] + uv[1] * uv[1], scale = 2 / (1 + sqrt(1 - 4 * k * r2));
+    uv[0] *= scale;
+    uv[1] *= scale;
+}
+
 void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],
                                double pixel[2])
 {
@@ -87,11 +106,42 @@ void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const dou
     case THIN_PRISM_FISHEYE:
         thin_prism(k, uv);
         break;
+    case RAD_TAN_THIN_PRISM_FISHEYE:
+        rad_tan_thin_prism(k, uv);
+        break;
+    case SIMPLE_DIVISION:
+    case DIVISION:
+        division(k[0], uv);
+        break;
+    case SIMPLE_FISHEYE:
+    case FISHEYE:
+        fisheye(NULL, 0, uv);
+        break;
     default: // SIMPLE_PINHOLE, PINHOLE
         break;
     }
     pixel[0] = c->fx * uv[0] + c->cx;
     pixel[1] = c->fy * uv[1] + c->cy;
+}
+
+bool orl_colmap_camera_is_pinhole(const struct orl_colmap_camera *camera)
+{
+    switch (camera->model) {
+    case OPENCV_FISHEYE:
+    case SIMPLE_RADIAL_FISHEYE:
+    case RADIAL_FISHEYE:
+    case THIN_PRISM_FISHEYE:
+    case RAD_TAN_THIN_PRISM_FISHEYE:
+    case SIMPLE_FISHEYE:
+    case FISHEYE:
+        return false;
+    default:
+        break;
+    }
+    for (int i = orl_colmap_model_focal_lengths(camera->model) + 2; i < camera->param_count; i++)
+        if (camera->params[i] != 0)
+            return false;
+    return true;
 }
 
 // Follows rays from the axis outwards, up to a tangent of STEPS / 100, as long as their projections

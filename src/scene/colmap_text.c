@@ -1,11 +1,22 @@
 // COLMAP's text model: one record per line; '#' starts a comment line.
 #include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/colmap_internal.h"
 #include "scene/text_lines.h"
+
+static enum orl_result unknown_model(struct orl_text_lines *l, const char *name)
+{
+    char what[192];
+    snprintf(what, sizeof what, "unknown camera model %s; %s", name,
+             strcmp(name, "EQUIRECTANGULAR") == 0
+                 ? "panoramas are not read: cut flat views out of them"
+                 : "undistort the pictures with the program that made it");
+    return orl_text_bad(l, what);
+}
 
 static enum orl_result read_camera(struct orl_text_lines *l, struct orl_colmap_camera *camera)
 {
@@ -21,7 +32,7 @@ static enum orl_result read_camera(struct orl_text_lines *l, struct orl_colmap_c
     camera->model = orl_colmap_model_id(name);
     camera->param_count = orl_colmap_model_params(camera->model);
     if (!camera->param_count)
-        return orl_text_bad(l, "unknown camera model");
+        return unknown_model(l, name);
     l->at += length;
     if (!orl_text_id(l, UINT64_MAX, &width) || !orl_text_id(l, UINT64_MAX, &height) ||
         !orl_text_numbers(l, camera->params, (size_t)camera->param_count))

@@ -21,7 +21,7 @@ struct orl_known_camera {
     enum orl_known_split split;
     int width, height; // 0 0: not stated
     int model;
-    double params[12];
+    double params[ORL_COLMAP_PARAMS];
     struct orl_known_gap gap;
     struct orl_pose pose;
 };

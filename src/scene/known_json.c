@@ -93,6 +93,22 @@ static const char *camera_model(const json_t *root, const json_t *frame)
     return of_frame ? of_frame : of_all ? of_all : "OPENCV";
 }
 
+// instant-ngp's scripts write "is_fisheye" instead of a model. False: the model is unknown.
+static bool find_lens(const json_t *root, const json_t *frame, bool *is_fisheye)
+{
+    static const char *const brown[] = {"OPENCV", "SIMPLE_RADIAL", "RADIAL", "PINHOLE",
+                                        "SIMPLE_PINHOLE", "perspective"};
+    const char *model = camera_model(root, frame);
+    const json_t *told = json_object_get(frame, "is_fisheye");
+    told = told ? told : json_object_get(root, "is_fisheye");
+    *is_fisheye = strcmp(model, "OPENCV_FISHEYE") == 0 ||
+                  (strcmp(model, "OPENCV") == 0 && json_is_true(told));
+    bool known = *is_fisheye;
+    for (size_t i = 0; i < ORL_COUNT(brown); i++)
+        known = known || strcmp(model, brown[i]) == 0;
+    return known;
+}
+
 static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root,
                                        const json_t *frame, struct orl_known_camera *camera)
 {
@@ -104,11 +120,11 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
     if (!orl_json_rows(matrix, json_array_size(matrix) == 3 ? 3 : 4, 4, rows) ||
         !orl_pose_from_opengl(rows, &camera->pose))
         return bad(e, "\"transform_matrix\" is not 4 rows of 4 numbers with a rotation");
-    const char *model = camera_model(root, frame);
-    bool is_fisheye = strcmp(model, "OPENCV_FISHEYE") == 0;
-    if (!is_fisheye && strcmp(model, "OPENCV") != 0 && strcmp(model, "PINHOLE") != 0 &&
-        strcmp(model, "SIMPLE_PINHOLE") != 0 && strcmp(model, "perspective") != 0)
-        return bad(e, "its camera_model is neither OPENCV, PINHOLE nor OPENCV_FISHEYE");
+    bool is_fisheye;
+    if (!find_lens(root, frame, &is_fisheye))
+        return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s: its camera_model, %.60s, is not read: Oriel "
+                        "reads PINHOLE, OPENCV, RADIAL and OPENCV_FISHEYE; panoramas must be cut into "
+                        "flat views", e->file, e->place, camera_model(root, frame));
     camera->gap.size = !number(root, frame, "w", &width) || !number(root, frame, "h", &height);
     if (!camera->gap.size) {
         camera->width = width >= 1 && width <= ORL_IMAGE_MAX_SIDE ? (int)width : 0;

@@ -74,9 +74,22 @@ says "a distortion that no lens has"
 prints "5 used, 5 registered"
 grep -q " 0$" "$work/bent/.oriel/calibrate/model/cameras.txt" || fail "the bent camera was kept"
 
+# What panoramas and fisheye pictures end as.
+DOUBLE_FOCAL=15 run 2 prepare "$work/p" --out "$work/round"
+says "a focal length of 15 pixels for photographs of 96x80"
+says "panoramas must be cut into flat views"
+DOUBLE_FOCAL=0 run 2 prepare "$work/p" --out "$work/flat"
+says "photographs of a fisheye lens"
+
 # Masks reach COLMAP under its names, are undistorted as photographs are, and leave points out.
-photos "$work/m" 0.png 1.png.png
+photos "$work/m" 1.png.png
+base64 -d >"$work/m/0.png" <<'PNG'
+iVBORw0KGgoAAAANSUhEUgAAAGAAAABQCAAAAADDiS9JAAAAgklEQVRYCbXBAQEAAABAIP6ftkLJTGYyk5nMZCYzmclM
+ZjKTmcxkJjOZyUxmMpOZzGQmM5nJTGYyk5nMZCYzmclMZjKTmcxkJjOZyUxmMpOZzGQmM5nJTGYyk5nMZCYzmclMZjKT
+mcxkJjOZyUxmMpOZzGQmM5nJTGYyk5nMZCYzmQXqNABRn24ZTwAAAABJRU5ErkJggg==
+PNG
 run 0 prepare "$work/p" --out "$work/masked" --masks "$work/m"
+says "1 of 2 masks are black, as that of 0.png"
 says "3 of 5 photographs have no mask"
 [ "$(ls "$work/masked/masks" | tr '\n' ' ')" = "0.png.png 1.png.png " ] ||
     fail "masks are $(ls "$work/masked/masks")"

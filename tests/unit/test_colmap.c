@@ -174,7 +174,8 @@ static void refuses_bad_text(void **state)
         const char *file, *text, *why;
     } cases[] = {
         {"cameras.txt", "7 SIMPLE_RADIAL 640 480 500 320.5\n", "parameters are missing"},
-        {"cameras.txt", "7 WIDE 640 480 500 320 240 0\n", "unknown camera model"},
+        {"cameras.txt", "7 WIDE 640 480 500 320 240 0\n", "unknown camera model WIDE"},
+        {"cameras.txt", "7 EQUIRECTANGULAR 640 320 640 320\n", "cut flat views"},
         {"cameras.txt", "7 PINHOLE 640 480 nan 500 320 240\n", "not finite"},
         {"cameras.txt", "7 PINHOLE 99999999999 480 500 500 320 240\n", "size is absurd"},
         {"cameras.txt", "7 PINHOLE 4294967360 480 500 500 320 240\n", "size is absurd"},

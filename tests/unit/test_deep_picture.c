@@ -406,6 +406,21 @@ static void adobe_rgb_by_exif_is_applied(void **state)
     expect_light(in_dir("p.jpg"), want, true);
 }
 
+static void panoramas_are_known_by_xmp(void **state)
+{
+    (void)state;
+    static const uint8_t xmp[] = "http://ns.adobe.com/xap/1.0/\0<x:xmpmeta><rdf:Description "
+                                 "GPano:ProjectionType=\"equirectangular\"/></x:xmpmeta>";
+    const uint8_t pixel[3] = {128, 153, 77};
+    struct orl_picture_info info;
+    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, xmp, sizeof xmp);
+    assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
+    assert_true(info.panorama);
+    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, xmp, 40);
+    assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
+    assert_false(info.panorama);
+}
+
 static void damaged_tiff_is_an_error(void **state)
 {
     (void)state;
@@ -554,6 +569,7 @@ int main(void)
         cmocka_unit_test(tiff_profiles_are_applied),
         cmocka_unit_test(jpeg_and_png_profiles_are_applied),
         cmocka_unit_test(adobe_rgb_by_exif_is_applied),
+        cmocka_unit_test(panoramas_are_known_by_xmp),
         cmocka_unit_test(damaged_tiff_is_an_error),
         cmocka_unit_test(unusual_tiff_is_refused_with_advice),
         cmocka_unit_test(raw_is_linear_with_the_cameras_white_balance),

@@ -216,6 +216,13 @@ static void chooses_targets(void **state)
                                       .params = {180, 181, 104, 73}};
     struct orl_camera same = orl_import_target(&plain, 0), half = orl_import_target(&plain, 100);
     assert_true(orl_import_is_same(&plain, &same));
+    // Distortion of exactly zero is none.
+    struct orl_colmap_camera zero = distorted(0);
+    same = orl_import_target(&zero, 0);
+    assert_true(orl_import_is_same(&zero, &same));
+    zero.model = 5; // an equidistant lens
+    same = orl_import_target(&zero, 0);
+    assert_false(orl_import_is_same(&zero, &same));
     assert_int_equal(half.width, 100);
     assert_int_equal(half.height, 75);
     assert_float_equal(half.fx, 90, 1e-9);
@@ -310,6 +317,38 @@ static char *make_pair(const struct work *w, const char *name)
     fclose(test_create(dir, "points3D.txt"));
     orl_image_finish(&grey);
     return dir;
+}
+
+static void refuses_absurd_lenses(void **state)
+{
+    const struct work *w = *state;
+    static const struct {
+        const char *k, *dist, *why;
+    } cases[] = {{"[[180,0,32],[0,180,24],[0,0,1]]", "[10000000]", "its lens distortion leaves"},
+                 {"[[5,0,32],[0,5,24],[0,0,1]]", "[]", "a focal length of 5 pixels"}};
+    char *dir = make_pair(w, "absurd"), *out = join(w->dir, "absurd_scene");
+    const struct orl_import_params params = {.cameras = dir, .out = out, ORL_IMPORT_DEFAULTS};
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        char *file = join(dir, "cameras.json");
+        struct orl_import_params one = params;
+        struct said said;
+        struct orl_log log = log_to(&said);
+        one.cameras = file;
+        FILE *cameras = test_create(dir, "cameras.json");
+        fprintf(cameras, "{\"cameras\": [");
+        for (int k = 0; k < 2; k++)
+            fprintf(cameras, "%s{\"name\": \"%s/1.png\", \"width\": 64, \"height\": 48, \"K\": %s, "
+                    "\"R\": [[1,0,0],[0,1,0],[0,0,1]], \"t\": [%d,0,0], \"dist\": %s}", k ? "," : "",
+                    k ? "back" : "front", cases[i].k, k, cases[i].dist);
+        fprintf(cameras, "]}");
+        fclose(cameras);
+        assert_int_equal(orl_import(&log, &one, NULL), ORL_ERR_DATA);
+        if (!strstr(said.text, cases[i].why))
+            fail_msg("%s", said.text);
+        free(file);
+    }
+    free(dir);
+    free(out);
 }
 
 // White left of `column`.
@@ -542,7 +581,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(imports_sequences), cmocka_unit_test(finds_silhouettes_by_difference),
         cmocka_unit_test(chooses_targets), cmocka_unit_test(undistorts),
-        cmocka_unit_test(finds_masks_in_folders), cmocka_unit_test(names_black_masks),
+        cmocka_unit_test(refuses_absurd_lenses), cmocka_unit_test(finds_masks_in_folders),
+        cmocka_unit_test(names_black_masks),
         cmocka_unit_test(copies_and_completes), cmocka_unit_test(keeps_linear_light), cmocka_unit_test(refuses),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

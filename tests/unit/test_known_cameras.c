@@ -130,6 +130,20 @@ static void reads_nerfstudio(void **state)
     assert_int_equal(read(NULL, dir, NULL, -1, &known), ORL_OK);
     check_params(&known.model.cameras[0], 5, (double[]){500, 500, 320, 240, 0, 0, 0.3, 0}, 8);
     orl_known_cameras_finish(&known);
+    // instant-ngp's scripts name no model.
+    save(dir, "transforms.json",
+         "{\"is_fisheye\": true, \"fl_x\": 500, \"cx\": 320, \"cy\": 240, \"w\": 640, \"h\": 480, "
+         "\"k1\": 0.3, \"k4\": 0.1, \"frames\": [{\"file_path\": \"a.jpg\", " MATRIX "}]}");
+    assert_int_equal(read(NULL, dir, NULL, -1, &known), ORL_OK);
+    check_params(&known.model.cameras[0], 5, (double[]){500, 500, 320, 240, 0.3, 0, 0, 0.1}, 8);
+    orl_known_cameras_finish(&known);
+    struct said said;
+    struct orl_log log = log_to(&said);
+    save(dir, "transforms.json",
+         "{\"camera_model\": \"EQUIRECTANGULAR\", \"fl_x\": 500, \"w\": 640, \"h\": 320, "
+         "\"frames\": [{\"file_path\": \"a.jpg\", " MATRIX "}]}");
+    assert_int_equal(read(&log, dir, NULL, -1, &known), ORL_ERR_FORMAT);
+    assert_non_null(strstr(said.text, "its camera_model, EQUIRECTANGULAR, is not read"));
     test_dir_remove(dir);
 }
 
