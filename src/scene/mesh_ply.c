@@ -43,8 +43,7 @@ static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_e
             mesh->position[i][k] = (float)(record[at[k]] - builder->origin[k]);
             if (normals)
                 mesh->normal[i][k] = (float)record[n_at[k]];
-            double c = colors ? record[c_at[k]] * (orl_ply_is_float(element, c_at[k]) ? 255 : 1)
-                              : 0;
+            double c = colors ? record[c_at[k]] * orl_ply_color_scale(element, c_at[k]) : 0;
             if (colors)
                 mesh->color[i][k] = (uint8_t)(c >= 255 ? 255 : c > 0 ? c + 0.5 : 0);
         }

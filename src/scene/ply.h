@@ -77,5 +77,13 @@ static inline bool orl_ply_is_float(const struct orl_ply_element *element, int p
 {
     return element->properties[property].type >= ORL_PLY_FLOAT32;
 }
+// The factor that brings a colour of this property's type to 255 at white.
+static inline double orl_ply_color_scale(const struct orl_ply_element *element, int property)
+{
+    enum orl_ply_type type = element->properties[property].type;
+    return orl_ply_is_float(element, property) ? 255
+           : type == ORL_PLY_UINT16            ? 255.0 / 65535
+                                               : 1;
+}
 
 #endif

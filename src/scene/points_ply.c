@@ -84,9 +84,37 @@ static bool set_point(struct orl_points *points, size_t i, const double values[R
     return true;
 }
 
+// The factor that brings colours to 255 at white. Programs that convert from LAS store 16 bits, or 8
+// bits in properties of 16, and others floats of either range, so the file's greatest value decides.
+// Leaves the reader where it was.
+static enum orl_result find_color_scale(struct orl_ply *ply, const struct orl_ply_element *vertex,
+                                        const int property[ROLE_COUNT], double *scale)
+{
+    double record[ORL_PLY_PROPERTIES_MAX], greatest = 0;
+    const size_t start = ply->at;
+    const int next = ply->next;
+    enum orl_result result = ORL_OK;
+    *scale = 1;
+    if (property[RED] < 0 || vertex->properties[property[RED]].type == ORL_PLY_UINT8)
+        return ORL_OK;
+    for (uint64_t i = 0; i < vertex->count && result == ORL_OK; i++) {
+        result = orl_ply_record(ply, vertex, record, -1, NULL);
+        for (int role = RED; result == ORL_OK && role <= BLUE; role++)
+            if (property[role] >= 0 && isfinite(record[property[role]]))
+                greatest = fmax(greatest, record[property[role]]);
+    }
+    ply->at = start;
+    ply->next = next;
+    // Floats may exceed white.
+    bool unit = orl_ply_is_float(vertex, property[RED]) && greatest < 16;
+    *scale = unit ? 255 : greatest > 255 ? 255.0 / 65535 : 1;
+    return result;
+}
+
+// color_scale: see find_color_scale.
 static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_element *vertex,
                                    const int property[ROLE_COUNT], const double origin[3],
-                                   struct orl_points *points)
+                                   double color_scale, struct orl_points *points)
 {
     size_t kept = 0, bad_radii = 0, transparent = 0;
     bool gaussian = is_gaussian(property);
@@ -99,8 +127,8 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
         for (int role = 0; result == ORL_OK && role < ROLE_COUNT; role++) {
             if (property[role] < 0)
                 continue;
-            bool unit = role >= RED && role <= BLUE && orl_ply_is_float(vertex, property[role]);
-            values[role] = record[property[role]] * (unit ? 255 : 1);
+            bool color = role >= RED && role <= BLUE;
+            values[role] = record[property[role]] * (color ? color_scale : 1);
         }
         if (result == ORL_OK && gaussian && !take_gaussian(values, property[RADIUS] >= 0))
             transparent++;
@@ -163,8 +191,11 @@ enum orl_result orl_points_read_from(const struct orl_log *log, const char *path
                  "from 0: write doubles", path);
     if (result == ORL_OK)
         result = orl_points_init(log, points, (size_t)vertex->count);
+    double color_scale;
     if (result == ORL_OK)
-        result = read_points(&ply, vertex, property, origin, points);
+        result = find_color_scale(&ply, vertex, property, &color_scale);
+    if (result == ORL_OK)
+        result = read_points(&ply, vertex, property, origin, color_scale, points);
     if (result != ORL_OK)
         orl_points_finish(points);
     orl_ply_close(&ply);
@@ -254,5 +285,6 @@ enum orl_result orl_point_stream_next(struct orl_point_stream *s, size_t most,
     s->ply.size = bytes;
     s->ply.at = 0;
     s->next += *read;
-    return read_points(&s->ply, &part, s->property, nowhere, points);
+    double scale = s->property[RED] >= 0 ? orl_ply_color_scale(&part, s->property[RED]) : 1;
+    return read_points(&s->ply, &part, s->property, nowhere, scale, points);
 }

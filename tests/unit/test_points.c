@@ -79,6 +79,34 @@ static void reads_ascii(void **state)
     test_dir_remove(dir);
 }
 
+// By the greatest value of the file, whatever the type is called.
+static void scales_colours_of_other_types(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *type, *colours;
+    } cases[] = {{"ushort", "65535 32896 0"}, {"ushort", "255 128 0"}, {"float", "255 128 0"},
+                 {"double", "1 0.50196 0"}, {"int", "255 128 0"}, {"uchar", "255 128 0"}};
+    const uint8_t want[3] = {255, 128, 0};
+    char *dir = test_dir_make(), path[4096], text[1024];
+    snprintf(path, sizeof path, "%s/points.ply", dir);
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        struct orl_points points;
+        const char *t = cases[i].type;
+        int length = snprintf(text, sizeof text, "ply\nformat ascii 1.0\nelement vertex 1\n"
+                              "property float x\nproperty float y\nproperty float z\n"
+                              "property %s red\nproperty %s green\nproperty %s blue\nend_header\n"
+                              "1 2 3 %s\n", t, t, t, cases[i].colours);
+        save(path, text, (size_t)length);
+        assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
+        assert_int_equal(points.count, 1);
+        assert_memory_equal(points.color[0], want, 3);
+        assert_float_equal(points.position[0][2], 3, 0);
+        orl_points_finish(&points);
+    }
+    test_dir_remove(dir);
+}
+
 static void refuses_bad_headers(void **state)
 {
     (void)state;
@@ -261,6 +289,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trips),
         cmocka_unit_test(reads_ascii),
+        cmocka_unit_test(scales_colours_of_other_types),
         cmocka_unit_test(refuses_bad_headers),
         cmocka_unit_test(refuses_truncated),
         cmocka_unit_test(drops_what_is_not_finite),
