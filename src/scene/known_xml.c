@@ -9,6 +9,12 @@
 #include "core/memory.h"
 #include "scene/known_internal.h"
 
+// Expat 2.9 counts in 64 bits, under names of their own.
+#if XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION < 9
+#define XML_GetCurrentLineNumber64 XML_GetCurrentLineNumber
+#define XML_GetCurrentByteIndex64 XML_GetCurrentByteIndex
+#endif
+
 // Files have some sensors and components; more would make the search for them long.
 enum { DEPTH_MAX = 32, TEXT_MAX = 1024, ID_MAX = 32, SENSORS_MAX = 1000 };
 
@@ -299,8 +305,9 @@ static enum orl_result parse(struct reader *r, const uint8_t *data, size_t size)
     XML_SetElementHandler(parser, begin, end);
     XML_SetCharacterDataHandler(parser, take_text);
     if (XML_Parse(parser, (const char *)data, (int)size, 1) != XML_STATUS_OK && r->result == ORL_OK)
-        r->result = orl_fail(log, ORL_ERR_FORMAT, "%s: line %lu (byte %lld): %s", r->source->path,
-                             XML_GetCurrentLineNumber(parser), (long long)XML_GetCurrentByteIndex(parser),
+        r->result = orl_fail(log, ORL_ERR_FORMAT, "%s: line %llu (byte %lld): %s", r->source->path,
+                             (unsigned long long)XML_GetCurrentLineNumber64(parser),
+                             (long long)XML_GetCurrentByteIndex64(parser),
                              XML_ErrorString(XML_GetErrorCode(parser)));
     XML_ParserFree(parser);
     return r->result;
