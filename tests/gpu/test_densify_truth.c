@@ -3,6 +3,7 @@
 // tests.
 #include <math.h>
 #include <string.h>
+#include <time.h>
 
 #include "gpu_test.h"
 
@@ -269,7 +270,13 @@ static void test_monument(void **state)
     char *dir = test_dir_make();
     draw_truth(&truth, trial->width, trial->width * 2 / 3);
     make_workspace(&truth, dir);
+    struct timespec from, to;
+    clock_gettime(CLOCK_MONOTONIC, &from);
     assert_int_equal(orl_densify(gpu, dir, NULL, &params, NULL), ORL_OK);
+    clock_gettime(CLOCK_MONOTONIC, &to);
+    print_message("stereo: %.2f s a photograph\n",
+                  ((double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec)) /
+                      trial->count);
     for (int i = 0; i < trial->count; i++)
         add_photo(&truth, dir, i, &figures);
     report("monument", &figures);
