@@ -89,6 +89,13 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
         printf("ground       %.4g below the photographs, up is %.3f %.3f %.3f\n",
                scene->ground.height, scene->ground.plane[0], scene->ground.plane[1],
                scene->ground.plane[2]);
+    size_t masked = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        masked += scene->photos[i].masked;
+    if (masked)
+        printf("silhouettes  of %zu photographs\n", masked);
+    if (scene->frame_count)
+        printf("moments      %zu\n", scene->frame_count);
     if (scene->backdrop_rests)
         printf("backdrop     rests in the photographs, as behind a turntable\n");
     print_choices(scene);

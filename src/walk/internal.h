@@ -114,6 +114,7 @@ struct walk_request {
     int quality;     // quality of the JPEG
     struct orl_tone_params tone;
     bool at_rest;    // the client's view does not move
+    int moment, expected; // of a sequence, from 0: what the frame shows, and what the next one will
     bool measures;   // asks for what the frame took
     size_t pick_count;
     int picks[WALK_PICKS_MOST][2]; // pixels whose depth it asks for
@@ -132,6 +133,7 @@ struct walk_renderer {
     const struct orl_log *log;
     struct orl_gpu *gpu;
     struct orl_renderer *renderer;
+    struct orl_scene *scene; // the renderer's
     float typical; // typical depth of the scene
     double draw_s; // seconds that a moving frame takes without loading photographs, smoothed
 };

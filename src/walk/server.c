@@ -648,12 +648,12 @@ static enum orl_result serve(struct server *server)
 }
 
 enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *renderer,
-                               const struct orl_scene *scene, const struct orl_walk_params *params)
+                               struct orl_scene *scene, const struct orl_walk_params *params)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct server server = {.log = log, .params = params};
     server.walk = (struct walk_renderer){
-        .log = log, .gpu = gpu, .renderer = renderer,
+        .log = log, .gpu = gpu, .renderer = renderer, .scene = scene,
         .typical = scene->photo_distance > 0 ? (float)scene->photo_distance : 1};
     bool edits = is_local(params->host) || params->edits;
     enum orl_result result = orl_content_init(log, scene, params->title, edits, params->choice,

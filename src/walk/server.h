@@ -22,7 +22,7 @@ struct orl_walk_params {
 // Serves until it is cancelled, which returns ORL_OK. All files and messages come from memory: no
 // path of a request reaches the file system.
 enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *renderer,
-                               const struct orl_scene *scene,
+                               struct orl_scene *scene,
                                const struct orl_walk_params *params) ORL_CHECK_RESULT;
 
 #endif

@@ -103,12 +103,13 @@ json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *c
 json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,
                           size_t start)
 {
-    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:f, s:o, s:I, s:O}", "format", "oriel site",
+    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:f, s:o, s:I, s:O, s:I}", "format", "oriel site",
                      "version", 1, "made_by", "oriel " ORL_VERSION, "title", title, "up",
                      up_json(scene), "distance",
                      scene->photo_distance > 0 ? scene->photo_distance : 1.0, "near",
                      scene->near_distance, "ground", orl_manifest_ground(&scene->ground), "start",
-                     number_of(scene, start), "walk", settings);
+                     number_of(scene, start), "walk", settings, "moments",
+                     (json_int_t)scene->frame_count);
 }
 
 enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos)

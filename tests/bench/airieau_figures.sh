@@ -4,7 +4,8 @@
 #   figure 3: a plane as proxy against the points       figure 13: time by number of photographs
 #   figure 8: without and with the occlusion test       figure 15: photographs at lower resolution
 #   figure 9: points with their own colours             table 1: memory
-#   figure 14: a textured mesh (SCENE/mesh.ply)         table 2: time by pass, 512 and 1024
+#   figure 14: a textured mesh (SCENE/mesh.ply),        table 2: time by pass, 512 and 1024
+#     its colours the mean of the photographs that see it
 # PHOTO, a held-out one, is the viewpoint of the pictures. Needs jq.
 # usage: airieau_figures.sh BUILD SCENE PHOTO OUT
 set -eu
@@ -40,7 +41,10 @@ row 8 test "$scene" --method airieau
 row 9 splats "$scene" --method points
 row 9 photographs "$scene" --method airieau
 if [ -e "$scene/mesh.ply" ]; then
-    row 14 textured-mesh "$scene" --method orzan-surface --set proxy=mesh
+    texture=(--method orzan-surface --set proxy=mesh --set combine=mean)
+    row 14 mesh-without-occlusion-test "$scene" "${texture[@]}"
+    row 14 textured-mesh "$scene" "${texture[@]}" --set visibility=shadow
+    row 14 photographs-on-mesh "$scene" --method airieau --set proxy=mesh
     row 14 photographs "$scene" --method airieau
 fi
 

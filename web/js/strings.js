@@ -37,6 +37,8 @@ export const text = {
     layerLegend: "Layer",
     drawers: {legend: "Drawn by", server: "The server", browser: "This browser"},
     preparing: (done, total) => `The server prepares the scene for this browser: ${done} of ${total}.`,
+    moments: {play: "Play", pause: "Pause", back: "The moment before", forth: "The next moment",
+              slider: "Moment", speed: "Speed", loop: "Repeat", place: (moment, all) => `${moment} / ${all}`},
     exposure: "Exposure",
     tone: "Tone curve",
     tones: {srgb: "clips at white, as a photograph does", reinhard: "compresses highlights",

@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""Time in the walk: the server's moments, and the page that plays them. Made by tests/e2e/walk_moments.sh:
+test_moments.py ORIEL SCENE [SCREENSHOT]."""
+import json
+import struct
+import sys
+import time
+import unittest
+
+from browser import Browser
+from client import Client, Walk
+
+ORIEL, SCENE = sys.argv[1:3]
+
+
+class Moments(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.walk = Walk(ORIEL, SCENE)
+        manifest = json.loads(cls.walk.get("/manifest.json")[1])
+        photo = manifest["photos"][0]
+        rows = photo["cam_from_world"]
+        cls.moments = manifest["moments"]
+        cls.camera = {"size": [photo["width"], photo["height"]], "focal": [photo[key] for key in ("fx", "fy", "cx", "cy")],
+                      "r": [value for row in rows for value in row[:3]],
+                      "eye": [-sum(row[k] * row[3] for row in rows) for k in range(3)]}
+
+    @classmethod
+    def tearDownClass(cls):
+        assert cls.walk.close() == 0, "the server does not end well"
+
+    def picture(self, client, moments):
+        request = {"number": 1, "layer": "color", "quality": 90, "rest": True, **self.camera}
+        client.send({**request, **({"moments": moments} if moments else {})})
+        opcode, data = client.receive()
+        self.assertEqual(opcode, 2)
+        missing, picks = struct.unpack("<6I", data[:24])[4:]
+        self.assertEqual(missing, 0)
+        return data[24 + 4 * picks:]
+
+    def test_each_moment_is_its_own(self):
+        self.assertEqual(self.moments, 3)
+        client = Client(self.walk)
+        pictures = [self.picture(client, [i, i]) for i in range(3)]
+        self.assertEqual(len(set(pictures)), 3)
+        # In any order, alone or made ahead, and as the first without a wish.
+        self.assertEqual(self.picture(client, [0, 2]), pictures[0])
+        self.assertEqual(self.picture(client, [2, 1]), pictures[2])
+        self.assertEqual(self.picture(client, [1, 1]), pictures[1])
+        self.assertEqual(self.picture(client, None), pictures[0])
+        self.assertEqual(self.picture(client, [99, 99]), pictures[2])
+        client.close()
+
+    def test_no_moment_before_the_first(self):
+        for bad in ([-1, 0], [0], "now", [0, 1e300]):
+            client = Client(self.walk)
+            client.send({"number": 1, "layer": "color", "quality": 90, "moments": bad, **self.camera})
+            self.assertEqual(client.receive()[0], 8)
+            client.socket.close()
+
+    def test_the_page_plays(self):
+        browser = Browser(640, 480)
+        self.addCleanup(browser.close)
+        browser.open(self.walk.address)
+        browser.wait("return oriel.settled")
+        self.assertFalse(browser.js("return document.getElementById('moments').hidden"))
+        play = "document.querySelector('#moments button').click()"
+        browser.js("window.seen = new Set(); const {moments} = oriel, tell = moments.tell.bind(moments); "
+                   "moments.tell = () => { seen.add(moments.moment); tell(); };" + play)
+        browser.wait("return seen.size === 3") # again and again
+        # The viewer moves while time runs.
+        browser.js("oriel.navigator.goTo(oriel.photos[1]); seen.clear(); oriel.wake()")
+        browser.wait("return seen.size === 3 && oriel.navigator.at === oriel.photos[1]")
+        browser.js(play + "; oriel.moments.show(2)")
+        browser.wait("return oriel.settled")
+        self.assertEqual(browser.js("return document.querySelector('#moments output').textContent"), "3 / 3")
+        self.assertFalse(browser.js("return oriel.moments.playing"))
+        self.assertEqual(browser.errors(), [])
+        if len(sys.argv) > 3:
+            browser.screenshot(sys.argv[3])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
