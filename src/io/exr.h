@@ -16,8 +16,8 @@ struct orl_exr_channel {
 
 // OpenEXR's standard attributes. Zero and NULL mean unknown; such attributes are left out.
 struct orl_exr_view_attributes {
-    // Gives worldToCamera (row vectors, left-handed, +z forward, y up, as OpenEXR defines it)
-    // and worldToNDC.
+    // Gives worldToCamera (row vectors, left-handed, +z forward, y up, as OpenEXR defines it),
+    // worldToNDC, screenWindowWidth and screenWindowCenter.
     const struct orl_view *view;
     double exposure_s, iso, aperture; // expTime in seconds, isoSpeed, aperture as f-number
     double white_luminance;           // whiteLuminance: cd/m2 of RGB (1, 1, 1)

@@ -79,6 +79,15 @@ static exr_attr_m44f_t world_to_ndc(const struct orl_view *view)
     return m;
 }
 
+// The part of the plane at distance 1 that the picture shows, with y up.
+static exr_result_t set_screen_window(exr_context_t context, const struct orl_camera *c)
+{
+    const exr_attr_v2f_t centre = {.x = (float)((0.5 * c->width - c->cx) / c->fx),
+                                   .y = (float)((c->cy - 0.5 * c->height) / c->fy)};
+    exr_result_t code = exr_set_screen_window_width(context, 0, (float)(c->width / c->fx));
+    return code == EXR_ERR_SUCCESS ? exr_set_screen_window_center(context, 0, &centre) : code;
+}
+
 // --- header ---
 
 static exr_result_t set_attributes(exr_context_t context,
@@ -91,6 +100,8 @@ static exr_result_t set_attributes(exr_context_t context,
         code = exr_attr_set_m44f(context, 0, "worldToCamera", &camera);
         if (code == EXR_ERR_SUCCESS && !params->latlong)
             code = exr_attr_set_m44f(context, 0, "worldToNDC", &ndc);
+        if (code == EXR_ERR_SUCCESS && !params->latlong)
+            code = set_screen_window(context, &params->view->camera);
     }
     if (code == EXR_ERR_SUCCESS && params->latlong)
         code = exr_attr_set_envmap(context, 0, "envmap", EXR_ENVMAP_LATLONG);

@@ -210,6 +210,12 @@ static void camera_and_exposure_attributes(void **state)
     assert_float_equal(out[0], pixel[0] / 64, 1e-5);
     assert_float_equal(out[1], pixel[1] / 32, 1e-5);
     float number;
+    exr_attr_v2f_t centre;
+    assert_int_equal(exr_get_screen_window_width(context, 0, &number), EXR_ERR_SUCCESS);
+    assert_float_equal(number, 64.0 / 70, 1e-6);
+    assert_int_equal(exr_get_screen_window_center(context, 0, &centre), EXR_ERR_SUCCESS);
+    assert_float_equal(centre.x, (32 - 30) / 70.0, 1e-6); // right of the axis
+    assert_float_equal(centre.y, (17 - 16) / 75.0, 1e-6); // above it
     assert_int_equal(exr_attr_get_float(context, 0, "expTime", &number), EXR_ERR_SUCCESS);
     assert_float_equal(number, 0.004, 1e-8);
     assert_int_equal(exr_attr_get_float(context, 0, "isoSpeed", &number), EXR_ERR_SUCCESS);

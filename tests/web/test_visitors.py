@@ -129,6 +129,25 @@ class Page(Visitors):
         self.assertLess(far(self.eye()), 0.9 * far(before["eye"]))
         self.assertLess(self.js("return oriel.navigator.outness"), 1)
 
+    def test_tour_of_the_annotations(self):
+        self.open()
+        self.js("document.querySelector('.mark').click()")
+        title = "return document.querySelector('#note h2').textContent"
+        press = lambda words: self.js("""
+            [...document.querySelectorAll('#note button')].find(b => b.textContent === arguments[0]).click()""", words)
+        self.assertEqual(self.js(title), "Arch")
+        press("Next")
+        self.assertEqual(self.js(title), "Wall")
+        press("Next")
+        press("Previous")
+        self.assertEqual(self.js(title), "Wall")
+        press("Play as a tour")
+        self.browser.wait(title.replace("return", "return 'Arch' ===")) # by itself
+        press("Pause")
+        self.assertEqual(self.js("return oriel.notes.tour"), 0)
+        self.browser.keys("Escape", "Escape")
+        self.assertTrue(self.hidden("note"))
+
     def test_panels_do_not_overlap(self):
         self.open()
         for size in SIZES:

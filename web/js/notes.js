@@ -5,6 +5,8 @@ import {text} from "./strings.js";
 import {button, byId, make} from "./ui.js";
 import {project, viewFromSaved, viewToSaved} from "./view.js";
 
+const READ_MS = 4000, MS_PER_LETTER = 55; // that a tour stays at an annotation
+
 export class Notes {
     // seen(point): false where a surface is before it; settings: manifest.walk;
     // pick(x, y): a promise of the point under a CSS pixel, null: none;
@@ -18,6 +20,7 @@ export class Notes {
         this.card = byId("note");
         this.card.setAttribute("aria-label", text.notes.one);
         this.placing = false;
+        this.tour = 0; // its timer; 0: none plays
         if (save)
             this.buildMaker();
         this.fill();
@@ -61,21 +64,51 @@ export class Notes {
 
     open(i)
     {
-        const note = this.settings.notes[i], close = button(text.close, () => this.close());
+        const t = text.notes, all = this.settings.notes, note = all[i], close = button(text.close, () => this.close());
+        const turn = by => {
+            this.stopTour();
+            this.open((i + by + all.length) % all.length);
+        };
+        const steps = all.length < 2 ? [] : [
+            button(t.previous, () => turn(-1)), button(t.next, () => turn(1)),
+            button(this.tour ? t.pause : t.play, () => this.tour ? this.pause(i) : this.play(i))];
         this.card.replaceChildren(make("h2", {textContent: note.title}),
                                   ...(note.text || "").split("\n").map(line => make("p", {textContent: line})),
-                                  close);
+                                  make("div", {className: "row"}, ...steps, close,
+                                       make("span", {className: "small", textContent: t.ofAll(i + 1, all.length)})));
         this.reveal();
         const view = note.view && viewFromSaved(note.view, this.navigator.home);
         if (view)
             this.navigator.flyTo(view);
         this.opened = this.marks[i];
-        close.focus();
+        (this.tour ? steps[2] : close).focus();
         this.wake();
+    }
+
+    // --- a tour: one annotation after the other ---
+
+    play(i)
+    {
+        const all = this.settings.notes, words = `${all[i].title} ${all[i].text || ""}`;
+        this.tour = setTimeout(() => this.play((i + 1) % all.length), READ_MS + MS_PER_LETTER * words.length);
+        this.open(i);
+    }
+
+    pause(i)
+    {
+        this.stopTour();
+        this.open(i);
+    }
+
+    stopTour()
+    {
+        clearTimeout(this.tour);
+        this.tour = 0;
     }
 
     close()
     {
+        this.stopTour();
         this.card.hidden = true;
         (this.opened && this.opened.isConnected ? this.opened : this.canvas).focus();
     }

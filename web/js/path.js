@@ -168,17 +168,37 @@ export class PathEditor {
         this.wake();
     }
 
+    stopPlaying()
+    {
+        this.turn++;
+        this.plays = false;
+        this.playing.textContent = text.path.play;
+    }
+
+    // From where the slider is, or from the start. A second time: pauses.
     play()
     {
-        const start = performance.now(), ms = 1000 * this.duration, turn = this.turn = (this.turn || 0) + 1;
+        if (this.plays) {
+            this.stopPlaying();
+            return;
+        }
+        this.plays = true;
+        this.playing.textContent = text.path.pause;
+        const start = performance.now(), ms = 1000 * this.duration, from = Number(this.scrubber.value), turn = this.turn = (this.turn || 0) + 1;
         const step = now => {
-            const share = Math.min(Math.max((now - start) / ms, 0), 1);
-            if (turn !== this.turn || this.keys.length < 2 || this.navigator.flying)
+            const share = Math.min(Math.max((now - start) / ms + (from < 1 ? from : 0), 0), 1);
+            if (turn !== this.turn)
                 return;
+            if (this.keys.length < 2 || this.navigator.flying) {
+                this.stopPlaying();
+                return;
+            }
             this.scrubber.value = share;
             this.show(share);
             if (share < 1)
                 requestAnimationFrame(step);
+            else
+                this.stopPlaying();
         };
         requestAnimationFrame(step);
     }

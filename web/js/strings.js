@@ -55,7 +55,7 @@ export const text = {
     path: {
         title: "Path", columns: "Beside a view: its field of view in degrees, and seconds to the next view.",
         add: "Add this view (R)", seconds: "Seconds", scrub: "Place on the path",
-        play: "Play", load: "Open a saved path", saveOriel: "Save for oriel render", saveNerfstudio: "Save for nerfstudio",
+        play: "Play", pause: "Pause", load: "Open a saved path", saveOriel: "Save for oriel render", saveNerfstudio: "Save for nerfstudio",
         format: "Format", render: "Render", rendering: "Progress of rendering",
         rendered: (done, total) => `${done} of ${total} frames`, written: file => `Written to ${file}`,
         failed: problem => `Not rendered: ${problem}`,
@@ -70,6 +70,7 @@ export const text = {
     },
     notes: {
         title: "Annotations", one: "Annotation", mark: (n, title) => `Annotation ${n}: ${title}`,
+        previous: "Previous", next: "Next", play: "Play as a tour", pause: "Pause", ofAll: (n, all) => `${n} of ${all}`,
         behind: (n, title) => `Annotation ${n}, behind what is seen: ${title}`,
         name: "Title", words: "Text", place: "Place by a click", placeMiddle: "Place in the middle",
         clickSurface: "Click the surface that it is about.", noSurface: "There is no surface.",
