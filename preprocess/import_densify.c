@@ -135,7 +135,10 @@ static enum orl_result take_points(const struct import_job *import, const struct
 
 static enum orl_result make_sparse_points(struct orl_job *job, const struct import_job *import)
 {
-    const struct import_points known = {&import->known.model, false};
+    // Points that no photograph is known to see are of no use here.
+    struct orl_colmap_model bare = import->known.model;
+    bare.point_count = 0;
+    const struct import_points known = {&bare, false};
     struct paths paths = {
         orl_job_path(job, ".oriel/known.db"), orl_job_path(job, "images"),
         orl_job_path(job, ".oriel/train.txt"), orl_job_path(job, ".oriel/known"),
@@ -164,6 +167,15 @@ static enum orl_result make_sparse_points(struct orl_job *job, const struct impo
     return result;
 }
 
+// True when the file of cameras says which photographs see its points, as stereo needs to know.
+static bool has_views(const struct orl_colmap_model *model)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < model->image_count && model->point_count; i++)
+        count += model->images[i].point_count;
+    return count > 0;
+}
+
 enum orl_result orl_import_densify(struct import_job *import)
 {
     struct orl_job job;
@@ -174,7 +186,7 @@ enum orl_result orl_import_densify(struct import_job *import)
         if (import->views[i].masked)
             params.masks_dir = "masks";
     enum orl_result result = begin(&job, import, &params);
-    if (result == ORL_OK && !import->known.model.point_count)
+    if (result == ORL_OK && !has_views(&import->known.model))
         result = make_sparse_points(&job, import);
     if (result == ORL_OK)
         result = orl_stages_run_points(&job);

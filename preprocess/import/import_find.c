@@ -181,16 +181,25 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
 
 // --- all cameras ---
 
-// Chooses the folder of pictures: the given one, else images/ beside the cameras, else the cameras'
-// folder.
+// Chooses the folder of pictures: the given one, else images/ beside the cameras, or beside sparse/ where
+// a model in it was named, else the cameras' folder.
 static enum orl_result choose_folder(const struct import_job *job, char **dir)
 {
+    static const char *const places[] = {"images", "../images", "../../images"};
     const char *told = job->params->images_dir;
-    *dir = told ? orl_strdup(job->log, told) : orl_path_join(job->log, job->known.folder, "images");
-    if (*dir && !told && !orl_path_is_dir(*dir)) {
-        free(*dir);
-        *dir = orl_strdup(job->log, job->known.folder);
+    size_t tries = job->known.pictures ? 1 : ORL_COUNT(places); // COLMAP's models name no paths
+    *dir = told ? orl_strdup(job->log, told) : NULL;
+    for (size_t i = 0; !told && i < tries && !*dir; i++) {
+        *dir = orl_path_join(job->log, job->known.folder, places[i]);
+        if (!*dir)
+            return ORL_ERR_MEMORY;
+        if (!orl_path_is_dir(*dir)) {
+            free(*dir);
+            *dir = NULL;
+        }
     }
+    if (!*dir)
+        *dir = orl_strdup(job->log, job->known.folder);
     if (!*dir)
         return ORL_ERR_MEMORY;
     return orl_path_is_dir(*dir) ? ORL_OK

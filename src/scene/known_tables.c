@@ -133,18 +133,19 @@ static const char *const columns[COLUMNS] = {"#name", "x", "y", "alt", "heading"
                                              "px", "py", "k1", "k2", "k3", "k4", "t1", "t2"};
 enum { FIELDS_MAX = 64 };
 
-// Cuts a line at its commas or semicolons; quotes around a field are left out. Number of fields.
-static size_t split(char *line, char *fields[FIELDS_MAX])
+// Cuts a line at its separators; quotes around a field are left out. Number of fields.
+static size_t split(char *line, char separator, char *fields[FIELDS_MAX])
 {
+    const char ends[2] = {separator, '\0'};
     size_t count = 0;
     char *at = line, *stop;
     for (; count < FIELDS_MAX; at = stop + 1) {
         at += strspn(at, " \t");
         bool quoted = *at == '"';
         fields[count++] = at += quoted;
-        stop = quoted ? at + strcspn(at, "\"") : at + strcspn(at, ",;");
+        stop = quoted ? at + strcspn(at, "\"") : at + strcspn(at, ends);
         char *end = stop;
-        stop += strcspn(stop, ",;");
+        stop += strcspn(stop, ends);
         bool last = !*stop;
         while (end > at && strchr(" \t", end[-1]))
             end--;
@@ -153,6 +154,21 @@ static size_t split(char *line, char *fields[FIELDS_MAX])
             break;
     }
     return count;
+}
+
+// The columns of a file, and what separates them: where that is a semicolon, numbers have commas.
+struct heads {
+    int at[COLUMNS]; // -1: there is none
+    char separator;
+};
+
+static double number(const struct heads *heads, char *field)
+{
+    char *end, *comma = heads->separator == ';' ? strchr(field, ',') : NULL;
+    if (comma)
+        *comma = '.';
+    double value = strtod(field, &end);
+    return end != field && !*end ? value : NAN;
 }
 
 // The axes of a camera that looks down with its top to the north (y), turned by heading (clockwise), then
@@ -170,19 +186,19 @@ static void set_pose(const double value[COLUMNS], double rows[16])
 }
 
 // Lengths are those of a picture whose larger side is 36 mm, or 1 for the principal point, whatever its size.
-static enum orl_result read_row(struct orl_text_lines *l, const int at[COLUMNS],
+static enum orl_result read_row(struct orl_text_lines *l, const struct heads *heads,
                                 struct orl_known_cameras *known)
 {
     char *fields[FIELDS_MAX], place[64];
     double value[COLUMNS] = {0}, rows[16] = {0};
-    size_t count = split(l->at, fields);
+    const int *at = heads->at;
+    size_t count = split(l->at, heads->separator, fields);
     snprintf(place, sizeof place, "line %zu", l->number);
     for (int c = X; c < COLUMNS; c++) {
-        char *end = NULL;
         if (at[c] < 0)
             continue;
-        value[c] = at[c] < (int)count ? strtod(fields[at[c]], &end) : NAN;
-        if (!isfinite(value[c]) || end == fields[at[c]] || *end)
+        value[c] = at[c] < (int)count ? number(heads, fields[at[c]]) : NAN;
+        if (!isfinite(value[c]))
             return orl_text_bad(l, "a camera has a value that is not a number");
     }
     if (value[K4] < 0 || value[K4] > 0)
@@ -198,7 +214,7 @@ static enum orl_result read_row(struct orl_text_lines *l, const int at[COLUMNS],
     return orl_known_add(l->log, l->path, place, &camera, known);
 }
 
-static enum orl_result read_heads(struct orl_text_lines *l, int at[COLUMNS])
+static enum orl_result read_heads(struct orl_text_lines *l, struct heads *heads)
 {
     char *fields[FIELDS_MAX];
     while (orl_text_next_raw(l)) {
@@ -207,7 +223,9 @@ static enum orl_result read_heads(struct orl_text_lines *l, int at[COLUMNS])
         if (*l->at && *l->at != '#')
             return orl_text_bad(l, "the line of column names, \"#name,x,y,alt,heading,...\", is missing");
     }
-    size_t count = split(l->at, fields);
+    int *at = heads->at;
+    heads->separator = strchr(l->at, ';') ? ';' : ',';
+    size_t count = split(l->at, heads->separator, fields);
     for (int c = 0; c < COLUMNS; c++) {
         at[c] = -1;
         for (size_t i = 0; i < count && at[c] < 0; i++)
@@ -224,12 +242,12 @@ enum orl_result orl_known_read_realityscan(const struct orl_known_source *source
                                            struct orl_known_cameras *known)
 {
     struct orl_text_lines l;
-    int at[COLUMNS];
+    struct heads heads;
     enum orl_result result = orl_text_open(source->log, source->path, &l);
     if (result == ORL_OK)
-        result = read_heads(&l, at);
+        result = read_heads(&l, &heads);
     while (result == ORL_OK && orl_text_next(&l))
-        result = read_row(&l, at, known);
+        result = read_row(&l, &heads, known);
     orl_text_close(&l);
     return result;
 }

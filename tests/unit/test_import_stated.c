@@ -221,6 +221,20 @@ static void finds_pictures_in_folders(void **state)
     assert_true(w->scene->photos[1].masked && !w->scene->photos[0].masked);
 }
 
+// The folder of one model is given: its pictures are beside sparse/.
+static void finds_the_pictures_of_a_model(void **state)
+{
+    struct work *w = *state;
+    save_picture(w, "images/a.png", false);
+    save_picture(w, "images/b.png", false);
+    save(w, "sparse/0/cameras.txt", "7 PINHOLE 64 48 60 60 32 24\n");
+    save(w, "sparse/0/images.txt", "1 1 0 0 0 0 0 4 7 a.png\n2 1 0 0 0 1 0 4 7 b.png\n");
+    char *model = test_path(w->dir, "sparse/0");
+    assert_int_equal(orl_import(NULL, &(struct orl_import_params){ORL_IMPORT_DEFAULTS, .cameras = model,
+                                                                  .out = w->out}, NULL), ORL_OK);
+    free(model);
+}
+
 // Cameras, cloud, mesh and room of a survey lose nothing, and a path in its coordinates fits.
 static void keeps_a_far_origin(void **state)
 {
@@ -267,7 +281,7 @@ int main(void)
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(takes_masks), TEST(lays_alpha_on_white), TEST(takes_the_stated_split_and_cloud),
-        TEST(leaves_out_what_is_no_picture), TEST(finds_pictures_in_folders), TEST(keeps_a_far_origin),
+        TEST(leaves_out_what_is_no_picture), TEST(finds_pictures_in_folders), TEST(keeps_a_far_origin), TEST(finds_the_pictures_of_a_model),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -388,6 +388,11 @@ static void reads_realityscan(void **state)
     // 28.125 mm of a picture 36 mm wide, whatever its size: 28.125 / 36 * 640 = 500.
     assert_int_equal(orl_known_camera_settle(NULL, &w->known, 0, "a.jpg", 640, 480), ORL_OK);
     check_params(w, 4, (double[]){500, 500, 330, 240, 0.1, 0, 0.3, 0}, 8);
+    // As countries write numbers that have a comma in them.
+    save(w, "cameras.csv", "#name;x;y;alt;heading;pitch;roll;f\na.jpg;1,5;2;3;0;0;0;28,125\n");
+    assert_int_equal(read(w, ""), ORL_OK);
+    orl_pose_centre(&w->known.model.images[0].cam_from_world, centre);
+    assert_float_equal(centre[0], 1.5, 1e-9);
     save(w, "cameras.csv", HEADS "a.jpg,1,2,3,0,0,0,28,0,0,0,0,0,0.1,0,0\n");
     assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
     says(w, "line 2 (byte ");
