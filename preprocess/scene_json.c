@@ -26,7 +26,7 @@ static json_t *settings(const struct orl_prepare_params *p)
 static json_t *copy_stages(const json_t *plan, const json_t *done)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
-                                             "skipped", "ground", "backdrop", "skies",
+                                             "skipped", "ground", "backdrop",
                                              "occluded", "tuned", "render", "files", "sum"};
     json_t *stages = json_object();
     for (size_t k = 0; k < json_array_size(plan); k++) {
@@ -62,7 +62,7 @@ static int compare_photos(const void *a, const void *b)
 }
 
 // Sorted by name, like every list of photographs.
-static json_t *list_photos(const struct orl_job *job, const json_t *photos, const json_t *skies,
+static json_t *list_photos(const struct orl_job *job, const json_t *photos,
                            const json_t *occluded)
 {
     size_t count = json_array_size(photos);
@@ -82,9 +82,6 @@ static json_t *list_photos(const struct orl_job *job, const json_t *photos, cons
         if (source && source->exif.placed)
             json_object_set_new(entry, "gps", json_pack("[f,f]", source->exif.latitude,
                                                         source->exif.longitude));
-        json_t *sky = json_object_get(skies, orl_json_text(entry, "name"));
-        if (sky)
-            json_object_set(entry, "sky", sky);
         json_t *share = json_object_get(occluded, orl_json_text(entry, "name"));
         if (share)
             json_object_set(entry, "occluded", share);
@@ -185,7 +182,6 @@ static json_t *make_manifest(const struct orl_job *job)
     const json_t *plan = json_object_get(job->stages, "plan");
     const json_t *done = json_object_get(job->stages, "done");
     json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"),
-                                 stage_value(done, "sky", "skies"),
                                  stage_value(done, "occluders", "occluded"));
     return json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O, s:O, s:O*, s:O*}",
                      "format", "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",

@@ -18,7 +18,6 @@
 #include "preprocess/cloud/ground.h"
 #include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
-#include "preprocess/cloud/sky_stage.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/adapt_stage.h"
 #include "preprocess/arguments.h"
@@ -163,8 +162,6 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                           "ground", true, NULL},
     [ORL_STAGE_BACKDROP] = {"backdrop", 1, ORL_STAGE_RADII, no_settings, orl_stage_backdrop, {0},
                             "backdrop", true, NULL},
-    [ORL_STAGE_SKY] = {"sky", 1, ORL_STAGE_RADII, no_settings, orl_stage_sky, {0}, "skies", true,
-                       NULL},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, mesh_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 4, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
@@ -172,7 +169,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
     [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_EXPOSE, occluders_settings,
                              orl_stage_occluders, {"occluders"}, "occluded", true,
                              are_occluders_wanted},
-    [ORL_STAGE_ADAPT] = {"adapt", 1, ORL_STAGE_OCCLUDERS, orl_stage_adapt_settings, orl_stage_adapt,
+    [ORL_STAGE_ADAPT] = {"adapt", 2, ORL_STAGE_OCCLUDERS, orl_stage_adapt_settings, orl_stage_adapt,
                          {0}, "render", true, is_adapt_wanted},
 };
 

@@ -41,10 +41,6 @@
         "photographs projected to a guessed depth, the same with the depth no farther than " \
         "the ground, or pictures of the empty place projected on the walls of the scene's " \
         "`room`, or of a shell around it.") \
-    CHOICE(backdrop, orl_backdrop, "moves rests scene", ORL_BACKDROP_MOVES, "paint=tiled", \
-        "What lies behind the points, where depth is guessed: it `moves` with the view as that " \
-        "depth tells, or `rests` in the pictures as behind a turntable, or it does what the " \
-        "`scene` states.") \
     CHOICE(sampling, orl_sampling, "bilinear bicubic", ORL_SAMPLING_BICUBIC, \
         "paint=gather paint=tiled", \
         "The filter that photographs are sampled with. `bicubic` is sharper and takes five " \
@@ -109,29 +105,9 @@
         ORL_TRIES(0, 0.03, 0.06, 0.12, 0.25), \
         "How far colours may lie from their place where depth is guessed and photographs " \
         "differ. They are blurred as far. With 0 they are not.") \
-    NUMBER(guess_blur_most, 0.012f, 0, 0.25, "share of the longer side", "paint=tiled", \
-        ORL_TRIES(0.006, 0.012, 0.025, 0.05), \
-        "The largest blur where depth is guessed.") \
-    NUMBER(plain_sky, 0, 0, 1, "share", "paint=tiled", ORL_TRIES(0, 0.5, 1), \
-        "How far the sky of a view is a plain one, in the mean colour of the photographs' skies. " \
-        "Where they are of different days, clouds of one of them are wrong for any other. " \
-        "Radiance keeps the photographs' skies.") \
-    NUMBER(tint_penalty, 0, 0, 16, "radians per stop", "paint=tiled", \
-        ORL_TRIES(0, 0.5, 1, 2), \
-        "Where depth is guessed, photographs whose white balance differs from the scene's count " \
-        "as if they were so far aside: skies of one day go together. 0.17 stops are no " \
-        "difference.") \
-    NUMBER(surface_seeds, 1, 0, 1, "share", "paint=tiled", ORL_TRIES(0.03, 0.2, 1), \
-        "How much surfaces count beside guessed places in the colours that fill what no " \
-        "photograph paints. It is mostly background, not the surface before it.") \
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
         "How many depths are tried where only a guessed depth is known, from the guess to " \
         "infinity. The guess moves to where photographs do not see past it. With 0 it stays.") \
-    NUMBER(own_place, 0, 0, 0.5, "share of the way to the next photograph", "paint=tiled", \
-        ORL_NO_TRIES, \
-        "How near a photograph's own place a view takes on that photograph, in full at the " \
-        "place itself. It is for pictures at rest: in a path it would flash up. With 0 none " \
-        "does.") \
     NUMBER(unknown_trust, 0.5f, 0, 1, "share", "visibility=soft sample=radiance", \
         ORL_TRIES(0, 0.02, 0.05, 0.15, 0.5), \
         "How far a photograph is trusted that has no depth where the surface would be.") \

@@ -23,7 +23,6 @@ enum orl_occluders_use { ORL_OCCLUDERS_KEEP, ORL_OCCLUDERS_DROP };
 enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON };
 enum orl_median { ORL_MEDIAN_OFF, ORL_MEDIAN_HOLES, ORL_MEDIAN_ALL };
 enum orl_packing { ORL_PACKING_OFF, ORL_PACKING_ON };
-enum orl_backdrop { ORL_BACKDROP_MOVES, ORL_BACKDROP_RESTS, ORL_BACKDROP_SCENE };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC };
 // How photographs are sampled: colours as stored, or radiance (struct orl_renderer_params).
 enum orl_sample { ORL_SAMPLE_SRGB, ORL_SAMPLE_RADIANCE };

@@ -30,9 +30,6 @@ struct orl_photo {
     // Relative illumination is 1 + v[0] r^2 + v[1] r^4 + v[2] r^6 at distance r from the
     // principal point, in units of half the picture's diagonal; 0 0 0: no vignetting.
     float vignette[3];
-    bool has_sky;     // shows the sky; of held-out photographs nothing is known
-    float sky[3];     // its mean colour: linear light at the photograph's own exposure
-    float sky_spread; // its standard deviation, over all channels, in square roots of light
     int response; // index into orl_scene.responses; -1: sRGB
 };
 

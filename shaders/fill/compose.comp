@@ -30,12 +30,6 @@ layout(rgba32f, binding = 3) readonly uniform image2D trusted; // z: see gather/
 // Sums over 2x2 pixels of (colour, 1) where depth is estimated, with mipmaps.
 layout(binding = 0) uniform sampler2D guesses;
 
-// Beside surfaces the blur is at most this fraction of the picture's longer side, or else holes of a
-// surface would take the colours of what is beside it.
-const float BLUR_BESIDE = 0.012;
-// Share of estimated depth around a pixel from which on the blur may be wider, and as wide as asked for.
-const vec2 BLUR_OPEN = vec2(0.5, 0.75);
-
 vec4 guesses_around(ivec2 at, float blur)
 {
     vec2 where = (vec2(at) + 0.5) / vec2((image_size + 1) / 2 * 2);
@@ -47,13 +41,7 @@ vec4 guesses_around(ivec2 at, float blur)
 vec3 softened(ivec2 at, vec3 sharp, float blur)
 {
     blur = clamp(blur, 0.0, log2(max(blur_most, 1.0)));
-    float beside = log2(max(BLUR_BESIDE * float(max(image_size.x, image_size.y)), 1.0));
     vec4 around = guesses_around(at, blur);
-    if (blur > beside) {
-        float open = smoothstep(BLUR_OPEN.x, BLUR_OPEN.y, 0.25 * around.a); // sums are of 4 pixels
-        blur = mix(beside, blur, open);
-        around = guesses_around(at, blur);
-    }
     // The weight may vanish where a driver's mipmaps omit an isolated pixel.
     vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp;
     return mix(sharp, soft, min(blur, 1.0));

@@ -1,7 +1,6 @@
 // Fills pixels without a value bilinearly from the coarser level (Gortler 1996, push). One
 // invocation handles 2x2 pixels.
 // FAR: the values are depths; see fill.glsl.
-// PARTLY: a value of a weight below 1 gets the rest from the coarser level.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 
@@ -24,9 +23,5 @@ void main()
         vec4 own = imageLoad(fine, at);
         if (finer[k].a > 0.0 && !(own.a > 0.0))
             imageStore(fine, at, finer[k]);
-#ifdef PARTLY
-        else if (finer[k].a > 0.0 && own.a < 1.0)
-            imageStore(fine, at, own + finer[k] * ((1.0 - own.a) / finer[k].a));
-#endif
     }
 }

@@ -59,7 +59,6 @@ void main()
             float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
             float hidden = backdrop || share > 0.9 ? 1.0 : 8.0;
             float penalty = photo_penalty(shot, points[s]);
-            penalty = guess[s] > 0.0 ? photo_guess_penalty(shot, penalty) : penalty;
             least = min(least, penalty * hidden);
             seen += 1.0 / hidden;
         }

@@ -30,13 +30,3 @@ float photo_beside(float penalty)
 {
     return clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MOST), 0.0, 1.0);
 }
-
-// The same with the penalty for another colour of light. TINTED: there is one.
-float photo_guess_penalty(photo shot, float penalty)
-{
-#ifdef TINTED
-    return penalty + shot.noise.w;
-#else
-    return penalty;
-#endif
-}

@@ -8,7 +8,6 @@
 #include "shared/pixel.glsl"
 #include <visibility>
 
-// SKY: the view has a plain sky.
 // KEPT: most photographs that a pixel may blend, opt.photos_per_pixel.
 // One invocation handles 2x2 pixels, so that it loads the parameters of a photograph once for four.
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -20,15 +19,11 @@ layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
 #include "gather/unfinished.glsl"
-#ifdef SKY
-#include "gather/sky.glsl"
-#endif
 
 // A pixel's surface point.
 struct spot {
     vec3 p;      // z 0: no surface
-    float guess; // 1: on estimated background depth, 2: and open to the sky, else 0; no bool:
-                 // docs/develop/shaders.md
+    float guess; // 1: on estimated background depth, else 0; no bool: docs/develop/shaders.md
 };
 
 bool is_guess(spot s)
@@ -68,9 +63,6 @@ void insert(sight s, inout ranking r)
 // Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
 const float GUESS_SURE_LEAST = 0.1;
 
-// How much of its penalty a photograph loses at its own place: nearly all, so that it paints alone.
-const float OWN_PREFERENCE = 0.999;
-
 void consider(int i, photo shot, spot s, inout ranking r)
 {
     vec2 pixel;
@@ -82,7 +74,7 @@ void consider(int i, photo shot, spot s, inout ranking r)
     float sees = is_guess(s) ? photo_unhidden_share(shot, seen, z) * photo_past_share(shot, seen, z) *
                                    photo_beside(penalty)
                              : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
-    penalty = is_guess(s) ? photo_guess_penalty(shot, penalty) : photo_surface_penalty(penalty);
+    penalty = is_guess(s) ? penalty : photo_surface_penalty(penalty);
 #ifdef RESTS
     vec2 place;
     bool backdrop = photo_backdrop(shot, s.p, place) && is_guess(s);
@@ -91,11 +83,6 @@ void consider(int i, photo shot, spot s, inout ranking r)
     z = backdrop ? s.p.z : z;
     sees = backdrop ? 1.0 : sees;
     penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
-#endif
-#ifdef OWN_PLACE
-    // At its own place a photograph shows what the view shows, whatever its depth is.
-    sees = mix(sees, 1.0, shot.offset.z);
-    penalty *= 1.0 - OWN_PREFERENCE * shot.offset.z;
 #endif
     float sure = sees * photo_border(shot, pixel, is_guess(s));
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
@@ -139,14 +126,7 @@ vec4 blend(spot s, ranking r, out float blur)
     }
     apart.y = max(apart.y, 1e-30);
     blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
-    sum = sum.a > 0.0 ? sum / sum.a : vec4(0.0);
-#ifdef SKY
-    vec2 votes = vec2(0.0);
-    for (int k = 0; k < KEPT; k++)
-        votes += sky_vote(photo_at(r.best[k].index), samples[k].rgb) * min(10.0 * samples[k].a, 1.0);
-    sum.rgb = mix(sum.rgb, plain_sky.rgb, s.guess > 1.0 ? sky_share(s.p, votes) : 0.0);
-#endif
-    return sum;
+    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
 
 void main()
@@ -161,9 +141,6 @@ void main()
         float stored = imageLoad(view_depth, at).r; // 0 outside
         spots[k] = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
                         stored < 0.0 ? 1.0 : 0.0);
-#ifdef SKY
-        spots[k].guess *= open_to_sky(at) ? 2.0 : 1.0;
-#endif
         rankings[k].next = NOT_SEEN;
         for (int n = 0; n < KEPT; n++)
             rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
@@ -186,7 +163,7 @@ void main()
         float own;
         colors[k] = blend(spots[k], rankings[k], own);
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
-        seed += colors[k] * (is_guess(spots[k]) ? 1.0 : opt.surface_seeds);
+        seed += colors[k];
         guess += guessed;
         blur = guessed.a > 0.0 ? max(blur, own) : blur;
     }

@@ -77,13 +77,9 @@ struct photo_data {
     VEC4(gain);          // rgb gain on linear colour; w: slot again, to save a load
     VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
     VEC4(noise);         // of radiance: shot and read noise variance; z: 1 if rounded to 8 bits.
-                         // Otherwise xyz: the sky, square roots of light as it is sampled.
-                         // w: penalty on guessed depth for another colour of light
     VEC4(selected);      // x: weight by the selection
     VEC4(offset);        // xy, of a frame that packs photographs: from a pixel of the photograph to
-                         // its place in the packed texture; z: 1 where the view is at the
-                         // photograph's own place, falling to 0; w: how far its sky differs from
-                         // its mean, 0: it shows none
+                         // its place in the packed texture
     // Of a frame that packs photographs:
     VEC4(region);        // places that may be read: least x, y and largest x, y
 };
@@ -107,8 +103,6 @@ ORL_BLOCK(gather_block)
 {
     VEC4(view_focal);    // fx fy cx cy
     VEC4(ground);        // as in image_block
-    VEC4(plain_sky);     // mean colour of the photographs' skies
-    VEC4(up);            // direction upwards, the view's camera frame
     VEC4(slot_size);     // width, height of a photograph's slot; width, height of a depth slot
     IVEC2(view_size);    // pixels
     INT(photo_count);    // photographs of this dispatch

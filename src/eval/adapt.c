@@ -8,7 +8,6 @@
 #include "eval/trim.h"
 #include "eval/tune.h"
 #include "eval/verdict.h"
-#include "scene/sky.h"
 #include "scene/tuned_settings.h"
 
 // Of the time that is left after the methods are compared, tuning may take this share.
@@ -234,7 +233,7 @@ static enum orl_result search(struct job *job)
 // --- the few steps ---
 
 // What the scene must be, or the step before must have brought.
-enum step_condition { ALWAYS, SKIES_DIFFER, AFTER_NO_GAIN };
+enum step_condition { ALWAYS, AFTER_NO_GAIN };
 
 struct step {
     enum step_condition condition;
@@ -244,15 +243,11 @@ struct step {
 
 // In the order of what they gained on the training photographs of measured scenes.
 static const struct step steps[] = {
-    // Photographs of different days, of which the mean is nearer to another day than any is.
-    {SKIES_DIFFER, NULL,
-     {"plain_sky=1", "guess_sharpness=0.5", "guess_blur=0.25", "guess_blur_most=0.05"}},
     {ALWAYS, NULL, {"silhouette=1"}}, // depth that hardly reaches past outlines
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
     {AFTER_NO_GAIN, NULL, {"depth_tolerance=0.04"}},
     {ALWAYS, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}}, // few photographs of a subject
     {ALWAYS, NULL, {"antialias=off"}}, // many small photographs, which the view is near to
-    {ALWAYS, NULL, {"surface_seeds=1"}},
     {ALWAYS, "oriel-fast", {NULL}},
 };
 
@@ -342,16 +337,9 @@ static enum orl_result try_step(struct job *job, const struct step *step, bool *
     return result;
 }
 
-static bool is_for(const struct job *job, enum step_condition condition, bool taken)
+static bool is_for(enum step_condition condition, bool taken)
 {
-    switch (condition) {
-    case SKIES_DIFFER:
-        return orl_skies_differ(job->scene);
-    case AFTER_NO_GAIN:
-        return !taken;
-    default:
-        return true;
-    }
+    return condition == ALWAYS || !taken;
 }
 
 static enum orl_result take_steps(struct job *job)
@@ -368,7 +356,7 @@ static enum orl_result take_steps(struct job *job)
     adapt->plain_ssim = job->verdict.ssim;
     adapt->complete = true;
     for (size_t i = 0; result == ORL_OK && adapt->complete && i < ORL_COUNT(steps); i++) {
-        if (!is_for(job, steps[i].condition, taken))
+        if (!is_for(steps[i].condition, taken))
             continue;
         adapt->complete = job->renderings + count <= most; // what begins must be able to end
         if (adapt->complete)

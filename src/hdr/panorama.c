@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "hdr/internal.h"
-#include "scene/sky.h"
+#include "scene/upright.h"
 
 enum { FACES = 6 };
 

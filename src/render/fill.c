@@ -65,12 +65,12 @@ static void run(const struct frame *frame, struct step step, const struct orl_te
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
-// Spreads the known values of level 0 over all of it (pull-push, Gortler 1996). Defines of
-// fill_pull.comp and fill_push.comp, or NULL.
-static void spread(const struct frame *frame, const char *pull_how, const char *push_how)
+// Spreads the known values of level 0 over all of it (pull-push, Gortler 1996). how: "FAR" (fill.glsl),
+// or NULL.
+static void spread(const struct frame *frame, const char *how)
 {
-    const struct step pull = {"fill/fill_pull.comp", pull_how, 1, NULL};
-    const struct step push = {"fill/fill_push.comp", push_how, 2, NULL};
+    const struct step pull = {"fill/fill_pull.comp", how, 1, NULL};
+    const struct step push = {"fill/fill_push.comp", how, 2, NULL};
     struct orl_tex *const *level = frame->fill->level;
     for (int i = 1; i < frame->fill->levels; i++)
         run(frame, pull, level[i - 1], GL_READ_ONLY, level[i], GL_WRITE_ONLY, level[i]);
@@ -97,7 +97,7 @@ void orl_fill_depth(const struct frame *frame)
     orl_frame_ground(frame, block->ground);
     orl_pass_begin(frame->gpu, "fill");
     seed(frame, "SEED_DEPTH", depth, frame->surface.normal, GL_WRITE_ONLY);
-    spread(frame, "FAR", "FAR");
+    spread(frame, "FAR");
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
     orl_pass_end(frame->gpu);
 }
@@ -107,9 +107,9 @@ static void lift(const struct frame *frame)
 {
     static const struct step apply = {"fill/fill_lift.comp", NULL, 2, NULL};
     seed(frame, "SEED_LEAST", frame->picture, NULL, GL_WRITE_ONLY);
-    spread(frame, NULL, NULL);
+    spread(frame, NULL);
     seed(frame, "SEED_BRIGHTER", frame->picture, NULL, GL_READ_WRITE);
-    spread(frame, NULL, NULL);
+    spread(frame, NULL);
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->picture, GL_READ_WRITE,
         frame->picture);
 }
@@ -118,7 +118,7 @@ void orl_fill_room(const struct frame *frame)
 {
     static const struct step apply = {"fill/fill_room.comp", NULL, 2, NULL};
     seed(frame, NULL, frame->room, NULL, GL_WRITE_ONLY);
-    spread(frame, NULL, NULL);
+    spread(frame, NULL);
     run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->room, GL_READ_WRITE,
         frame->room);
 }
@@ -132,5 +132,5 @@ void orl_fill_color(const struct frame *frame)
     if (!frame->finishes)
         seed(frame, surfaces ? "SEED_SURFACES" : NULL, frame->picture, frame->surface.depth,
              GL_WRITE_ONLY);
-    spread(frame, NULL, frame->finishes && frame->params->surface_seeds < 1 ? "PARTLY" : NULL);
+    spread(frame, NULL);
 }

@@ -22,9 +22,7 @@ bool orl_frame_guesses(const struct frame *frame)
 
 bool orl_frame_rests(const struct frame *frame)
 {
-    enum orl_backdrop backdrop = frame->params->backdrop;
-    return backdrop == ORL_BACKDROP_RESTS ||
-           (backdrop == ORL_BACKDROP_SCENE && frame->scene->backdrop_rests);
+    return orl_frame_guesses(frame) && frame->scene->backdrop_rests;
 }
 
 void orl_frame_ground(const struct frame *frame, float out[4])

@@ -8,7 +8,6 @@
 #include "core/memory.h"
 #include "render/packing.h"
 #include "render/photos.h"
-#include "render/plain_sky.h"
 #include "render/progressive.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
@@ -54,7 +53,6 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
     orl_buf_destroy(gpu, &gather->unfinished);
-    orl_buf_destroy(gpu, &gather->sky_columns);
     free(gather->list);
     free(gather->options);
     memset(gather, 0, sizeof *gather);
@@ -82,45 +80,6 @@ static void relative_pose(const struct orl_pose *photo, const struct orl_pose *v
     }
 }
 
-// How far the colour of a photograph's light is from that of the scene, stops: root mean square
-// over channels, less what the white balances of one camera differ by on one day. What is common to
-// all channels is exposure, which says nothing about the light.
-static float tint_of(const float gain[3])
-{
-    static const float usual = 0.17f;
-    float stops[3], mean = 0, square = 0;
-    for (int c = 0; c < 3; c++) {
-        stops[c] = log2f(gain[c]);
-        mean += stops[c] / 3;
-    }
-    for (int c = 0; c < 3; c++)
-        square += (stops[c] - mean) * (stops[c] - mean) / 3;
-    return fmaxf(sqrtf(square) - usual, 0);
-}
-
-static double distance(const double a[3], const double b[3])
-{
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
-}
-
-// 1 where the view is at the photograph's own place, falling smoothly to 0 within params->own_place
-// of the way to the nearest other photograph of the frame.
-static float nearness(const struct frame *frame, size_t index)
-{
-    const struct orl_photo *photos = frame->photos->scene->photos;
-    double eye[3], own[3], other[3], nearest = INFINITY;
-    orl_pose_centre(&frame->view->cam_from_world, eye);
-    orl_pose_centre(&photos[index].view.cam_from_world, own);
-    for (size_t i = 0; i < frame->chosen_count; i++) {
-        orl_pose_centre(&photos[frame->chosen[i]].view.cam_from_world, other);
-        if (frame->chosen[i] != index)
-            nearest = fmin(nearest, distance(own, other));
-    }
-    double limit = (double)frame->params->own_place * nearest;
-    double near = limit > 0 && isfinite(limit) ? fmax(1 - distance(own, eye) / limit, 0) : 0;
-    return (float)(near * near * (3 - 2 * near));
-}
-
 static void describe_photo(const struct frame *frame, size_t index, struct photo_data *data)
 {
     const struct photos *photos = frame->photos;
@@ -139,13 +98,10 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
         data->gain[c] = aligned || frame->radiance ? photo->gain[c] : 1;
         data->lens[c] = aligned ? photo->vignette[c] : 0;
     }
-    data->noise[3] = frame->params->tint_penalty * tint_of(data->gain);
     data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
     data->gain[3] = frame->packs ? 0 : (float)state->slot;
     if (frame->packs)
         orl_packing_describe(photos->packing, index, data);
-    data->offset[2] = frame->params->own_place > 0 ? nearness(frame, index) : 0;
-    orl_sky_describe_photo(frame, photo, data);
     if (!frame->radiance)
         return;
     for (int c = 0; c < 3; c++)
@@ -199,8 +155,6 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
     };
     orl_set_focal(&frame->view->camera, block.view_focal);
     orl_frame_ground(frame, block.ground);
-    if (orl_sky_applies(frame))
-        orl_sky_describe(frame, &block);
     copy_options(params, &block.opt);
     return block;
 }

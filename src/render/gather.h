@@ -8,7 +8,6 @@
 #include "shared/render_blocks.h"
 
 enum { PHOTO_ROWS = 7 };  // image binding of shaders/gather/photo.glsl
-enum { SKY_COLUMNS = 3 }; // buffer binding of shaders/gather/sky.glsl
 
 struct gather {
     struct photo_data *list;    // parameters of the photographs of one dispatch
@@ -16,7 +15,6 @@ struct gather {
     struct orl_tex *photo_rows; // view of `photos` as RGBA32F texels
     struct orl_buf *tile_lists; // listed photographs of each tile
     struct orl_buf *unfinished; // list of the last tiled painter: gather/unfinished.glsl
-    struct orl_buf *sky_columns; // of shaders/gather/sky.glsl; NULL: no frame had a plain sky
     char *options;              // owned: defines RENDER_OPTIONS (render_blocks.h)
 };
 

@@ -23,12 +23,12 @@
 #define TILED \
     .paint = "tiled", .select = "preselect", .visibility = "soft", .weight = "lumigraph", \
     .combine = "robust", .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON, \
-    .backdrop = ORL_BACKDROP_SCENE, .occluders = ORL_OCCLUDERS_DROP
+    .occluders = ORL_OCCLUDERS_DROP
 
 // What makes depth and edges better, and frames slower.
 #define REFINED \
-    , .front_layer = 0.01f, .min_support = 8, .silhouette = 2, .surface_seeds = 0.03f, \
-    .guess_depths = 16, .tint_penalty = 1, .antialias = ORL_ANTIALIAS_ON
+    , .front_layer = 0.01f, .min_support = 8, .silhouette = 2, .guess_depths = 16, \
+    .antialias = ORL_ANTIALIAS_ON
 
 const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",

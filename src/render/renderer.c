@@ -188,7 +188,7 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
     };
     enum orl_result result = orl_fill_resize(r->gpu, &r->fill, width, height);
     if (result == ORL_OK)
-        result = orl_soften_resize(r->gpu, &r->soften, frame->params, width, height);
+        result = orl_soften_resize(r->gpu, &r->soften, width, height);
     if (result == ORL_OK && !frame->radiance)
         result = orl_edges_resize(r->gpu, &r->edges, width, height);
     if (result == ORL_OK && frame->finishes)

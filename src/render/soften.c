@@ -2,18 +2,22 @@
 
 #include "shared/render_blocks.h"
 
+// The largest blur as a share of the picture's longer side: with a larger one, holes of a surface would
+// take the colours of what is beside it.
+static const float BLUR_MOST = 0.012f;
+
 void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
 {
     orl_tex_destroy(gpu, &soften->guesses);
 }
 
-float orl_soften_most(const struct orl_render_params *params, int width, int height)
+float orl_soften_most(int width, int height)
 {
-    return params->guess_blur_most * (float)(width > height ? width : height);
+    return BLUR_MOST * (float)(width > height ? width : height);
 }
 
-enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften,
-                                  const struct orl_render_params *render, int width, int height)
+enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
+                                  int height)
 {
     const struct orl_tex *old = soften->guesses;
     struct orl_tex_params params = {.width = (width + 1) / 2, .height = (height + 1) / 2,
@@ -21,7 +25,7 @@ enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften,
                                     .tag = "guesses"};
     // A texel of the coarsest level is as large as the largest blur, or as the whole picture.
     int longer = width > height ? width : height;
-    float most = orl_soften_most(render, width, height);
+    float most = orl_soften_most(width, height);
     while ((float)(1 << params.levels) < most && longer >> (params.levels + 1) > 0)
         params.levels++;
     if (old && old->params.width == params.width && old->params.height == params.height &&

@@ -9,10 +9,10 @@ struct soften {
 };
 
 // The largest blur of a picture of this size, pixels.
-float orl_soften_most(const struct orl_render_params *params, int width, int height);
+float orl_soften_most(int width, int height);
 // Allocates for pictures of this size. Does nothing if all that is asked for is there.
-enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften,
-                                  const struct orl_render_params *render, int width, int height);
+enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
+                                  int height);
 void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften);
 // Makes the mipmaps. Painters that finish pixels have written the sums; for radiance they are made
 // here.

@@ -8,7 +8,6 @@
 #include "render/gather.h"
 #include "render/guess.h"
 #include "render/photos.h"
-#include "render/plain_sky.h"
 #include "render/progressive.h"
 #include "render/soften.h"
 
@@ -29,13 +28,10 @@ static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_
     return ORL_OK;
 }
 
-// For the passes that compare photographs on guessed depth. Without a penalty for another colour of
-// light, and without a backdrop that rests, they lose no time.
-static const char *guess_defines(const struct frame *frame)
+// For the passes that ask photographs. Without a backdrop that rests they lose no time.
+static const char *rest_define(const struct frame *frame)
 {
-    static const char *const defines[2][2] = {{"", "RESTS 1\n"},
-                                              {"TINTED 1\n", "TINTED 1\nRESTS 1\n"}};
-    return defines[frame->params->tint_penalty > 0][orl_frame_rests(frame)];
+    return orl_frame_rests(frame) ? "RESTS 1\n" : "";
 }
 
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
@@ -45,10 +41,9 @@ static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatc
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs per pixel is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%s%s%s%sKEPT %d",
+    snprintf(defines, sizeof defines, "%s%sKEPT %d",
              frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
-             frame->params->own_place > 0 ? "OWN_PLACE 1\n" : "",
-             orl_sky_applies(frame) ? "SKY 1\n" : "", guess_defines(frame), kept);
+             rest_define(frame), kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
@@ -79,7 +74,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
     }
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);
     struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
-                                                     guess_defines(frame)),
+                                                     rest_define(frame)),
                              .params = &block, .params_size = sizeof block,
                              .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
                              .textures = {frame->photos->color, frame->photos->depth,
@@ -95,11 +90,8 @@ static enum orl_result paint_chosen(const struct frame *frame)
         orl_guess_depth(frame, &d, &block);
     if (block.reach > 0)
         orl_edges_cut(frame, &d);
-    if (orl_sky_applies(frame))
-        result = orl_sky_find(frame, &d);
-    if (result == ORL_OK)
-        gather_tiles(frame, block.kept, d);
-    return result;
+    gather_tiles(frame, block.kept, d);
+    return ORL_OK;
 }
 
 static enum orl_result paint(struct frame *frame)

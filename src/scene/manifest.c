@@ -90,18 +90,6 @@ static enum orl_result read_occluders(const struct orl_json_place *place, const 
                      "these occluders are");
 }
 
-static enum orl_result read_sky(const struct orl_json_place *place, const json_t *entry,
-                                struct orl_photo *photo)
-{
-    double sky[4] = {0};
-    enum orl_result result = orl_json_numbers(place, entry, "sky", 4, 0, 1, sky);
-    photo->has_sky = json_object_get(entry, "sky") != NULL;
-    for (int i = 0; i < 3; i++)
-        photo->sky[i] = (float)sky[i];
-    photo->sky_spread = (float)sky[3];
-    return result;
-}
-
 static enum orl_result read_radiance(const struct orl_json_place *place, const json_t *entry,
                                      struct orl_photo *photo)
 {
@@ -123,8 +111,6 @@ static enum orl_result read_photo(const struct orl_json_place *place, const json
         result = read_exposure(place, entry, photo);
     if (result == ORL_OK)
         result = read_optics(place, entry, scene, photo);
-    if (result == ORL_OK)
-        result = read_sky(place, entry, photo);
     if (result == ORL_OK)
         result = read_radiance(place, entry, photo);
     if (result == ORL_OK)

@@ -11,7 +11,7 @@
 #include "core/vec3.h"
 #include "scene/colmap.h"
 #include "scene/json_views.h"
-#include "scene/sky.h"
+#include "scene/upright.h"
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
 

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "scene/manifest.h"
-#include "scene/sky.h"
+#include "scene/upright.h"
 #include "walk/internal.h"
 
 // The method's numeric options by their keys.

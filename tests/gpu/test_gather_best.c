@@ -296,31 +296,6 @@ static void guesses_fade_out_from_afar(void **state)
     teardown(&f);
 }
 
-// Two photographs from one place, 16 degrees aside, of which the green one has the light of another
-// day: its channels need gains of -1, 0 and 1 stops. It paints less where depth is guessed, and as
-// much on the wall.
-static void skies_of_other_days_count_less(void **state)
-{
-    (void)state;
-    struct fixture f;
-    setup(&f, false);
-    add_photo(&f, look_from(3, 0, 0, 128, 12), red);
-    add_photo(&f, look_from(3, 0, 0, 128, 12), green);
-    memcpy(f.photos[1].gain, (float[3]){0.5f, 1, 2}, sizeof f.photos[1].gain);
-    struct orl_render_params params = best();
-    double near = 0.2793 + 0.005, far = near + 2 * (sqrt(2.0 / 3) - 0.17);
-    for (int k = 0; k < 2; k++) {
-        params.tint_penalty = 2 * (float)k;
-        double weight = k ? pow(near / far, (double)params.guess_sharpness) : 1;
-        struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, 48, 12), &params, 0);
-        const float *c = color_at(&frame, 44, 24); // of (6.8, 0, 4)
-        assert_float_equal(c[1], weight / (1 + weight), 0.02);
-        assert_float_equal(color_at(&frame, 30, 24)[1], 0.5, 5e-3);
-        orl_frame_finish(&frame);
-    }
-    teardown(&f);
-}
-
 // The share of green where the ground, at depth 8.47, has only an estimated depth. The red
 // photograph, a little nearer by angle, sees past it at a patch of depth `z`, which the view shows
 // elsewhere.
@@ -372,7 +347,6 @@ int main(void)
         cmocka_unit_test(guesses_are_not_seen_from_the_side),
         cmocka_unit_test(photographs_that_tie_paint),
         cmocka_unit_test(guesses_fade_out_from_afar),
-        cmocka_unit_test(skies_of_other_days_count_less),
         cmocka_unit_test(guesses_are_no_part_of_objects),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);

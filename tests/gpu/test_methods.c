@@ -200,28 +200,6 @@ static void at_its_own_place_a_photograph_shows(void **state)
     teardown(&f);
 }
 
-// Method oriel blends there, unless it is told not to.
-static void oriel_shows_a_photograph_near_its_own_place_alone(void **state)
-{
-    (void)state;
-    struct fixture f;
-    setup(&f, false);
-    for (int i = 0; i < 5; i++)
-        add_noise_photo(&f, look_from(0.3 * i, 0, -0.6 * i, SIDE, 40), (uint32_t)i);
-    struct orl_render_params blends = orl_method_find(NULL, "oriel")->params, shows = blends;
-    blends.antialias = shows.antialias = ORL_ANTIALIAS_OFF;
-    blends.own_place = 0;
-    blends.border_px = shows.border_px = 0;
-    shows.own_place = 0.1f;
-    struct orl_view at = look_from(0, 0, 0, SIDE, 40), near = look_from(0.02, 0, 0, SIDE, 40);
-    assert_true(likeness(&f, at, &shows) > likeness(&f, at, &blends) + 10);
-    // The next photograph is 0.67 away: full effect at 0, a part of it at 0.02, none at 0.07.
-    assert_true(likeness(&f, near, &shows) > likeness(&f, near, &blends) + 0.1);
-    struct orl_view away = look_from(0.07, 0, 0, SIDE, 40);
-    assert_float_equal(likeness(&f, away, &shows), likeness(&f, away, &blends), 0.01);
-    teardown(&f);
-}
-
 // A photograph whose own depth map has nothing where the point would be is rejected, unless the
 // method is lenient. Small splats leave holes in the depth of the photograph that stands nearer.
 static void without_depth_a_photograph_is_rejected(void **state)
@@ -317,7 +295,6 @@ int main(void)
         cmocka_unit_test(both_sides_have_one_penalty),
         cmocka_unit_test(weights_are_those_of_their_formulas),
         cmocka_unit_test(at_its_own_place_a_photograph_shows),
-        cmocka_unit_test(oriel_shows_a_photograph_near_its_own_place_alone),
         cmocka_unit_test(without_depth_a_photograph_is_rejected),
         cmocka_unit_test(every_method_gives_radiance),
         cmocka_unit_test(every_slot_paints),

@@ -73,24 +73,6 @@ static double contrast(const struct orl_frame *frame)
     return contrast_from(frame, WALL_END + 16);
 }
 
-// A wider blur needs guesses all around: beside the wall it stays as it is.
-static void only_open_guesses_blur_wider(void **state)
-{
-    (void)state;
-    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
-    params.guess_blur = 1;
-    params.antialias = ORL_ANTIALIAS_OFF;
-    struct orl_frame usual = see_stripes(-3, 8, &params, false);
-    params.guess_blur_most = 0.1f;
-    struct orl_frame wide = see_stripes(-3, 8, &params, false);
-    assert_true(contrast_from(&usual, WALL_END + 80) > 0.8);
-    assert_true(contrast_from(&wide, WALL_END + 80) < 0.6);
-    const float *beside = color_at(&wide, WALL_END, SIDE / 2);
-    assert_float_equal(beside[2], color_at(&usual, WALL_END, SIDE / 2)[2], 0.1);
-    orl_frame_finish(&usual);
-    orl_frame_finish(&wide);
-}
-
 static void guesses_from_aside_blur(void **state)
 {
     (void)state;
@@ -178,7 +160,6 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(guesses_from_aside_blur),
-        cmocka_unit_test(only_open_guesses_blur_wider),
         cmocka_unit_test(radiance_blurs_alike),
         cmocka_unit_test(surfaces_stay_sharp_and_do_not_run),
         cmocka_unit_test(a_photograph_from_here_stays_sharp),

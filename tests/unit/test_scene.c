@@ -369,36 +369,6 @@ static void reads_ground(void **state)
     test_dir_remove(dir);
 }
 
-static void reads_skies(void **state)
-{
-    (void)state;
-    char *dir = whole(), text[2048];
-    static const char *const bad[] = {"1", "[0.5, 0.5, 0.5]", "[0.5, 0.5, 0.5, -1]",
-                                      "[0.5, 0.5, \"x\", 0]"};
-    static const char split[] = "\"split\":";
-    const char *first = strstr(manifest, split);
-    struct orl_scene *scene;
-    assert_non_null(first);
-    for (size_t i = 0; i <= ORL_COUNT(bad); i++) {
-        snprintf(text, sizeof text, "%.*s\"sky\": %s, %s", (int)(first - manifest), manifest,
-                 i < ORL_COUNT(bad) ? bad[i] : "[0.25, 0.5, 0.75, 0.125]", first);
-        save(dir, "scene.json", text);
-        assert_int_equal(orl_scene_open(NULL, dir, &scene),
-                         i < ORL_COUNT(bad) ? ORL_ERR_FORMAT : ORL_OK);
-    }
-    size_t with = 0;
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        with += scene->photos[i].has_sky;
-        if (!scene->photos[i].has_sky)
-            continue;
-        assert_float_equal(scene->photos[i].sky[2], 0.75, 0);
-        assert_float_equal(scene->photos[i].sky_spread, 0.125, 0);
-    }
-    assert_int_equal(with, 1);
-    orl_scene_destroy(&scene);
-    test_dir_remove(dir);
-}
-
 static void reads_backdrop(void **state)
 {
     (void)state;
@@ -477,7 +447,6 @@ int main(void)
         cmocka_unit_test(reads_how_to_render),
         cmocka_unit_test(reads_ground),
         cmocka_unit_test(reads_backdrop),
-        cmocka_unit_test(reads_skies),
         cmocka_unit_test(links_out_of_the_scene_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "oriel/path.h"
-#include "scene/sky.h"
+#include "scene/upright.h"
 #include "test.h"
 
 static const struct orl_view stored = {

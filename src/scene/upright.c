@@ -1,0 +1,43 @@
+#include "scene/upright.h"
+
+#include <string.h>
+
+#include "core/vec3.h"
+
+struct orl_view orl_photo_upright(const struct orl_photo *photo)
+{
+    // Quarters, clockwise, that turn a picture of each EXIF orientation upright, mirrored ones too.
+    static const int quarters[9] = {0, 0, 0, 2, 2, 1, 1, 3, 3};
+    struct orl_view view = photo->view;
+    bool known = photo->orientation >= 1 && photo->orientation <= 8;
+    for (int i = known ? quarters[photo->orientation] : 0; i > 0; i--) {
+        struct orl_view was = view;
+        struct orl_camera *c = &view.camera;
+        struct orl_pose *pose = &view.cam_from_world;
+        for (int k = 0; k < 3; k++) { // upwards is to the right then, the right downwards
+            pose->r[0][k] = -was.cam_from_world.r[1][k];
+            pose->r[1][k] = was.cam_from_world.r[0][k];
+        }
+        pose->t[0] = -was.cam_from_world.t[1];
+        pose->t[1] = was.cam_from_world.t[0];
+        *c = (struct orl_camera){.width = was.camera.height, .height = was.camera.width,
+                                 .fx = was.camera.fy, .fy = was.camera.fx,
+                                 .cx = was.camera.height - was.camera.cy, .cy = was.camera.cx};
+    }
+    return view;
+}
+
+bool orl_scene_mean_up(const struct orl_scene *scene, double up[3])
+{
+    memset(up, 0, 3 * sizeof *up);
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        struct orl_view view = orl_photo_upright(&scene->photos[i]);
+        for (int k = 0; k < 3; k++)
+            up[k] -= view.cam_from_world.r[1][k];
+    }
+    if (orl_normalize3(up) > 0)
+        return true;
+    up[0] = up[2] = 0;
+    up[1] = -1;
+    return false;
+}

@@ -1,0 +1,14 @@
+// Which way photographs, and a scene, are upright.
+#ifndef ORL_SCENE_UPRIGHT_H
+#define ORL_SCENE_UPRIGHT_H
+
+#include "oriel/scene.h"
+
+// The photograph's view, turned by quarters about its axis so that it is upright as the orientation
+// says; the same pixels, none mirrored.
+struct orl_view orl_photo_upright(const struct orl_photo *photo);
+// The mean upward direction of the upright photographs, world. False, and 0 -1 0, where they cancel
+// each other.
+bool orl_scene_mean_up(const struct orl_scene *scene, double up[3]);
+
+#endif
