@@ -129,6 +129,17 @@ class Page(Visitors):
         self.assertLess(far(self.eye()), 0.9 * far(before["eye"]))
         self.assertLess(self.js("return oriel.navigator.outness"), 1)
 
+    def test_languages(self):
+        for lang, words, close in (("de", "Fotos", "Schließen"), ("cs", "Fotografie", "Zavřít"), ("xx", "Photographs", "Close")):
+            self.open(f"?lang={lang}")
+            self.assertEqual(self.js("return document.getElementById('tool-thumbs').title"), f"{words} (T)")
+            self.assertEqual(self.js("return document.querySelector('#help button').textContent"), close)
+            self.assertEqual(self.js("return document.documentElement.lang"), lang if lang != "xx" else "en")
+            # What a language lacks is English, and nothing that English lacks is translated.
+            self.assertEqual(self.js("""
+                return import("./js/strings.js").then(m => [typeof m.text.benchmark, m.text.help.length]);"""),
+                ["string", 21])
+
     def test_tour_of_the_annotations(self):
         self.open()
         self.js("document.querySelector('.mark').click()")

@@ -14,7 +14,7 @@ import {Navigator} from "./navigation.js";
 import {Notes} from "./notes.js";
 import {PathEditor} from "./path.js";
 import {makePhotos} from "./photos.js";
-import {text} from "./strings.js";
+import {language, text} from "./strings.js";
 import {buildHelp, byId, Compare, make, Panel, save, showHint, showProblem, showProgress, Thumbs, Tools} from "./ui.js";
 import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "./view.js";
 
@@ -554,6 +554,7 @@ class Walk {
 async function start()
 {
     byId("unstarted").remove();
+    document.documentElement.lang = language;
     const page = document.documentElement, hold = () => page.classList.toggle("held", document.hasFocus());
     page.classList.toggle("framed", window.top !== window);
     for (const kind of ["focus", "blur"])
