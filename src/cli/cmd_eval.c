@@ -127,6 +127,7 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
     struct orl_eval_params params = {.method = choice->method->name, .setting = choice->setting,
                                      .render = &choice->params,
                                      .image_dir = job->options->images,
+                                     .divide = job->options->divide,
                                      .progress = job->progress,
                                      .truth = job->options->truth ? &job->truth : NULL};
     struct orl_eval *eval = &job->evals[job->count];
@@ -197,6 +198,9 @@ static enum orl_result check_together(const struct orl_log *log, const struct op
     if (o->walk && o->vary)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary is of held-out photographs: without "
                         "--walk");
+    if (o->truth && o->divide > 1)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --truth is of the photographs' size: without "
+                        "--divide");
     if (o->vary && o->images)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary makes several pictures of one name: "
                         "without --images");
@@ -291,7 +295,7 @@ int cmd_eval(int argc, char **argv)
         {"walk", ARG_INT, &o.walk, "N",
          "instead: a walk of N frames past the photographs that are not held out; how much "
          "each frame, warped, differs from the next", 2, 100000},
-        {"divide", ARG_INT, &o.divide, "N", "of --walk: pictures at 1/N of their size; default 1",
+        {"divide", ARG_INT, &o.divide, "N", "pictures at 1/N of their size, as small screens show them; default 1",
          1, 64},
         {"textures", ARG_ENUM, &o.textures, "KIND",
          "photographs on the device; not with --merge", 0, 0},

@@ -109,7 +109,9 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
     struct orl_heldout heldout;
     struct orl_image rendered = {0};
     struct orl_frame frame = {0};
-    enum orl_result result = orl_heldout_load(job->log, job->scene, view->photo, 1, &heldout);
+    enum orl_result result = orl_heldout_load(job->log, job->scene, view->photo,
+                                               job->params->divide > 1 ? job->params->divide : 1,
+                                               &heldout);
     view->width = heldout.picture.width;
     view->height = heldout.picture.height;
     if (result == ORL_OK)

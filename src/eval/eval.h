@@ -45,6 +45,7 @@ struct orl_eval_params {
     enum orl_result (*draw_radiance)(void *priv, const struct orl_view *view,
                                      struct orl_frame *frame);
     void *draw_priv;
+    int divide; // pictures at 1/divide of the photographs' size; 0: at that size
     const struct orl_truth *truth; // NULL: renderings are compared with the photographs alone
     const struct orl_progress *progress;
 };
@@ -52,7 +53,7 @@ struct orl_eval_params {
 // ORL_ERR_DATA, with advice: the scene has no held-out photograph.
 enum orl_result orl_eval_check(const struct orl_log *log,
                                const struct orl_scene *scene) ORL_CHECK_RESULT;
-// Renders the view of every held-out photograph at the photograph's own size and compares. A
+// Renders the view of every held-out photograph at the photograph's size and compares. A
 // renderer with default orl_renderer_params uses no held-out photograph; with draw_radiance it may
 // be NULL. Fails as orl_eval_check does.
 enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
