@@ -94,7 +94,7 @@ float likeness(opinion here, opinion there, ivec2 inner)
 
 float vote(uvec4 edge)
 {
-    ivec2 at = edge_pixel(edge), tile = at / CHOICE_TILE;
+    ivec2 at = edge_pixel(edge), tile = at / tile_side;
     int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
     opinion here = ask(list, ray(at) * imageLoad(view_depth, at).r);
     opinion there = ask(list, ray(at) * abs(uintBitsToFloat(edge.y)));

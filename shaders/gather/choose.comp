@@ -17,7 +17,7 @@ const int ACROSS = 3; // sample points of a tile in each direction
 void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS], out float guess[ACROSS * ACROSS])
 {
     for (int i = 0; i < ACROSS * ACROSS; i++) {
-        ivec2 at = tile * CHOICE_TILE + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * CHOICE_TILE /
+        ivec2 at = tile * tile_side + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * tile_side /
                                             (2 * ACROSS);
         at = min(at, view_size - 1);
         float depth = imageLoad(view_depth, at).r;
@@ -29,7 +29,7 @@ void sample_depths(ivec2 tile, out vec3 points[ACROSS * ACROSS], out float guess
 void main()
 {
     ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
-    int row = tiles_across, rows = (view_size.y + CHOICE_TILE - 1) / CHOICE_TILE;
+    int row = tiles_across, rows = (view_size.y + tile_side - 1) / tile_side;
     if (tile.x >= row || tile.y >= rows)
         return;
     vec3 points[ACROSS * ACROSS];

@@ -145,7 +145,7 @@ void main()
         for (int n = 0; n < KEPT; n++)
             rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
     }
-    ivec2 tile = corner / CHOICE_TILE; // of all four pixels, since the tile's side is even
+    ivec2 tile = corner / tile_side; // of all four pixels, since the tile's side is even
     int list = (tile.y * tiles_across + tile.x) * CANDIDATES, c = 0;
     int i = chosen[list];
     // The condition comes last: with a condition at the beginning, a software renderer runs the

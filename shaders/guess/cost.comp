@@ -106,7 +106,7 @@ void main()
     }
     vec2 centre = (vec2(cell) + 0.5) * float(GUESS_CELL);
     vec3 ray = vec3((centre - view_focal.zw) / view_focal.xy, 1.0);
-    ivec2 tile = cell * GUESS_CELL / CHOICE_TILE;
+    ivec2 tile = cell * GUESS_CELL / tile_side;
     int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
     for (int first = 0; first < planes; first += AT_ONCE) {
         opinion opinions[AT_ONCE];

@@ -107,7 +107,7 @@ ORL_BLOCK(gather_block)
     IVEC2(view_size);    // pixels
     INT(photo_count);    // photographs of this dispatch
     INT(tiles_across);   // tiles in each row of the view
-    INT(reach);          // opt.silhouette, rounded to whole pixels
+    INT(reach);          // opt.silhouette in whole pixels of the view
     INT(kept);           // opt.photos_per_pixel, rounded to a whole number
     INT(asked);          // opt.candidates, rounded to a whole number
     FLOAT(last_mip);     // largest mip level
@@ -121,7 +121,7 @@ ORL_BLOCK(gather_block)
     FLOAT(billboard_half);   // half the width of a billboard, scene units
     INT(planes);             // planes of shaders/guess
     FLOAT(least_inverse);    // inverse depth of the farthest one
-    FLOAT(unused_1);
+    INT(tile_side);          // pixels of a tile each way, even
     FLOAT(unused_2);
     // Rows of rotation | translation: of billboards to units of a voxel, of the room to a space
     // where its walls are at -1 and 1, or the shell has radius 1.
@@ -134,7 +134,6 @@ ORL_BLOCK(gather_block)
 #define ORL_BICUBIC 1 // value of opt.sampling
 
 // Selection of photographs per tile.
-#define CHOICE_TILE 16 // pixels
 #define CANDIDATES 8   // most photographs listed per tile
 // Estimated depth from photographs: pixels of a cell each way; lines of cells of a work group.
 #define GUESS_CELL 4
@@ -176,7 +175,7 @@ ORL_BLOCK(image_block)
     INT(layers);        // compose: 1: a pixel's weight is alpha, and it lies over what is behind
     IVEC2(pictures);    // mean: index of the picture, number of them
     FLOAT(blur_most);   // compose: largest blur of estimated depth, pixels
-    FLOAT(unused_1);
+    FLOAT(footprint);   // antialias: pixels of a photograph in one of the view, each way
     FLOAT(unused_2);
     FLOAT(unused_3);
 };

@@ -68,7 +68,8 @@ void orl_edges_antialias(const struct frame *frame)
 {
     struct orl_gpu *gpu = frame->gpu;
     bool half = frame->picture->params.format == GL_RGBA16F;
-    struct image_block block = {.image_size = {frame->surface.width, frame->surface.height}};
+    struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
+                                .footprint = (float)orl_frame_footprint(frame)};
     struct orl_dispatch d = {.params = &block, .params_size = sizeof block,
                              .images = {{frame->surface.depth, 0, GL_READ_ONLY}}};
     list(frame, orl_prog_get(gpu, "edges/antialias_find.comp", NULL, NULL), &d);

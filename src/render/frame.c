@@ -1,5 +1,6 @@
 #include "render/frame.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "scene/ground_plane.h"
@@ -23,6 +24,17 @@ bool orl_frame_guesses(const struct frame *frame)
 bool orl_frame_rests(const struct frame *frame)
 {
     return orl_frame_guesses(frame) && frame->scene->backdrop_rests;
+}
+
+double orl_frame_footprint(const struct frame *frame)
+{
+    const struct orl_scene *scene = frame->scene;
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        sum += scene->photos[i].test ? 0 : scene->photos[i].view.camera.fx;
+        count += !scene->photos[i].test;
+    }
+    return count > 0 ? fmax(sum / count / frame->view->camera.fx, 1) : 1;
 }
 
 void orl_frame_ground(const struct frame *frame, float out[4])

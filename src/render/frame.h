@@ -58,6 +58,10 @@ void orl_pixel_groups(int width, int height, unsigned groups[3]);
 bool orl_frame_guesses(const struct frame *frame);
 // True if the backdrop stays where it is in photographs (scene.h).
 bool orl_frame_rests(const struct frame *frame);
+// How many pixels of a photograph a pixel of the view covers each way where both are equally far, in
+// the mean over the photographs; at least 1. What is known of the scene by photographs, such as where
+// a silhouette is, is as exact as their pixels, whatever the view's are.
+double orl_frame_footprint(const struct frame *frame);
 // The scene's ground for image_block and gather_block; zeros if the frame's estimated depth is not
 // limited by the ground.
 void orl_frame_ground(const struct frame *frame, float ground[4]);

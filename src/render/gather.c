@@ -124,6 +124,11 @@ static void copy_options(const struct orl_render_params *params, struct render_o
 #undef COPY_NUMBER
 }
 
+int orl_tile_side(const struct frame *frame)
+{
+    return orl_frame_footprint(frame) < 1.5 ? 16 : 8;
+}
+
 struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count)
 {
     struct gather *g = frame->gather;
@@ -142,8 +147,9 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
                       (float)depth->height},
         .view_size = {frame->view->camera.width, frame->view->camera.height},
         .photo_count = (int)count,
-        .tiles_across = (frame->view->camera.width + CHOICE_TILE - 1) / CHOICE_TILE,
-        .reach = (int)(params->silhouette + 0.5f),
+        .tile_side = orl_tile_side(frame),
+        .tiles_across = (int)orl_groups((size_t)frame->view->camera.width, orl_tile_side(frame)),
+        .reach = (int)((double)params->silhouette / orl_frame_footprint(frame) + 0.5),
         .kept = (int)(params->photos_per_pixel + 0.5f),
         .asked = (int)(params->candidates + 0.5f),
         .last_mip = (float)(color->levels - 1),

@@ -61,8 +61,8 @@ static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatc
 static enum orl_result paint_chosen(const struct frame *frame)
 {
     struct gather *g = frame->gather;
-    size_t across = orl_groups((size_t)frame->surface.width, CHOICE_TILE);
-    size_t down = orl_groups((size_t)frame->surface.height, CHOICE_TILE);
+    size_t across = orl_groups((size_t)frame->surface.width, orl_tile_side(frame));
+    size_t down = orl_groups((size_t)frame->surface.height, orl_tile_side(frame));
     unsigned groups[3];
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, groups);
     enum orl_result result = make_lists(frame, across * down, (size_t)groups[0] * groups[1]);

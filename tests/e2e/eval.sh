@@ -45,6 +45,11 @@ runs 2 "$oriel" eval nowhere
 runs 2 "$oriel" eval
 runs 0 "$oriel" eval --help
 
+# A screen smaller than the photographs.
+runs 0 "$oriel" eval ws --divide 2 --quiet
+grep -q "${names[1]}.*48x32" stdout.txt || fail "not at half the size"
+runs 2 "$oriel" eval ws --divide 2 --truth nowhere
+
 # A walk.
 runs 0 "$oriel" eval ws --walk 3 --divide 2 --method all --json walk.json --images walk --quiet
 grep -q 'walk of 3 frames of 48x32' stdout.txt || fail "no head of the walk's table"

@@ -87,6 +87,31 @@ static void occluded_photographs_are_rejected(void **state)
     teardown(&f);
 }
 
+// A view of half the photograph's resolution, whose pixels lie across those of the mip level: a white
+// column of the photograph fills half of one pixel, and the pixels beside it stay black.
+static void small_views_show_the_mean_of_an_area(void **state)
+{
+    (void)state;
+    enum { FINE = 64, COLUMN = 33, PIXEL = 17, ROW = 16 };
+    struct fixture f;
+    struct orl_image image;
+    setup(&f, false);
+    add_photo(&f, look_from(0, 0, 0, FINE, 80), red);
+    assert_int_equal(orl_image_init(NULL, &image, FINE, FINE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < FINE * FINE; i++)
+        memset(image.u8 + 3 * i, i % FINE == COLUMN ? 255 : 0, 3);
+    repaint_photo(&f, &image);
+    struct orl_view view = look_from(0, 0, 0, FINE / 2, 40);
+    view.camera.cx += 0.5;
+    struct orl_render_params params = airieau();
+    params.sampling = ORL_SAMPLING_BICUBIC;
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+    for (int x = PIXEL - 2; x <= PIXEL + 2; x++)
+        assert_float_equal(frame.color.f32[3 * (ROW * FINE / 2 + x)], x == PIXEL ? 0.5 : 0, 0.01);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 static void check_colors(const struct orl_image *image, const uint8_t color[3])
 {
     for (int i = 0; i < SIDE * SIDE; i++)
@@ -335,6 +360,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(weights_are_cosine_over_distance_difference),
         cmocka_unit_test(occluded_photographs_are_rejected),
+        cmocka_unit_test(small_views_show_the_mean_of_an_area),
         cmocka_unit_test(photographs_are_aligned),
         cmocka_unit_test(held_out_photographs_are_never_used),
         cmocka_unit_test(holes_are_filled_but_not_covered),

@@ -246,7 +246,7 @@ export class Renderer {
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
                         photo_depth: store.depth, slot_size: [store.width, store.height],
                         last_mip: store.levels - 1, border_px: o.border_px, photos: count,
-                        blur_per_radian: o.guess_blur, silhouette: Math.round(o.silhouette),
+                        blur_per_radian: o.guess_blur, silhouette: Math.round(o.silhouette / store.footprint(camera)),
                         candidates: Math.round(o.candidates), outliers: o.outliers,
                         photos_per_pixel: Math.round(o.photos_per_pixel),
                         view_depth: f.depth.textures[0], tiles: f.tiles.textures[0]};
