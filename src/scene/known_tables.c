@@ -231,7 +231,7 @@ static enum orl_result read_heads(struct orl_text_lines *l, struct heads *heads)
         for (size_t i = 0; i < count && at[c] < 0; i++)
             if (strcasecmp(fields[i], columns[c]) == 0)
                 at[c] = (int)i;
-        if (at[c] < 0 && c <= F)
+        if (c <= F && at[c] < 0)
             return orl_text_bad(l, "a column of name, x, y, alt, heading, pitch, roll or f is missing: "
                                    "export \"Internal/External camera parameters\"");
     }
