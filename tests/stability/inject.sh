@@ -30,7 +30,7 @@ check_out() {
     local file
     (cd out && find . -type f) | while read -r file; do
         case $file in
-        */.oriel-part-* | *.part/*) [ "$killed" ] || [ "$call" = unlink ] || echo "left: $file" ;;
+        */.oriel-part-*) [ "$killed" ] || [ "$call" = unlink ] || echo "left: $file" ;;
         *) cmp -s "out/$file" "whole/$file" || cmp -s "out/$file" "old/$file" ||
             echo "partial: $file" ;;
         esac

@@ -33,14 +33,14 @@ problems() {
     else
         [ "$1" -lt 128 ] || echo "crashed ($1);"
         [ "$1" -eq 0 ] || grep -q 'error: ' stderr.txt || echo "status $1 without a word;"
-        [ "$call" = unlink ] || for part in *out*part*; do [ ! -e "$part" ] || echo "left: $part;"; done
+        [ "$call" = unlink ] || for part in .oriel-*; do [ ! -e "$part" ] || echo "left: $part;"; done
     fi
 }
 
 # once NUMBER: runs the command with that call failing; 1 when there are fewer calls.
 once() {
     local number=$1 status found kind="$call in trim${killed:+, $killed}"
-    rm -rf out *out*part* mark
+    rm -rf out .oriel-* mark
     (with_fault "$work" "${trim[@]}" >stdout.txt 2>stderr.txt; exit $?) 2>/dev/null
     status=$?
     [ -e mark ] || return 1
