@@ -205,10 +205,6 @@ static void colours_blend_by_the_weights(void **state)
     assert_float_equal(color_at(&frame, 4, 4)[0], 0, 0);
     assert_float_equal(frame.coverage.f32[SIDE / 2 * SIDE + SIDE / 2], 1, 0);
     assert_float_equal(frame.coverage.f32[0], 0, 0);
-    int part = 0; // along the outline, where silhouettes are half the subject's
-    for (int i = 0; i < SIDE * SIDE; i++)
-        part += frame.coverage.f32[i] > 0.2f && frame.coverage.f32[i] < 0.8f;
-    assert_true(part > 10);
     orl_frame_finish(&frame);
     teardown(&f);
 }
