@@ -1,5 +1,6 @@
 // What the GPU tests share: a device, or exit 77 with a word. ORIEL_TEST_DEVICE names a part of the
-// renderer's name that must be there, so that a driver asked for is the one that is tested.
+// renderer's name that must be there, so that a driver asked for is the one that is tested;
+// ORIEL_TEST_SHADERS a folder of shaders to test in place of those in the program.
 #ifndef ORL_TESTS_GPU_TEST_H
 #define ORL_TESTS_GPU_TEST_H
 
@@ -14,7 +15,8 @@ static inline struct orl_gpu *gpu_test_device(void)
     static struct orl_log log;
     log = orl_log_stderr(ORL_LOG_WARNING);
     struct orl_gpu *gpu = NULL;
-    if (orl_gpu_create(&log, &(struct orl_gpu_params){.debug = true}, &gpu) != ORL_OK) {
+    const struct orl_gpu_params params = {.debug = true, .shader_dir = getenv("ORIEL_TEST_SHADERS")};
+    if (orl_gpu_create(&log, &params, &gpu) != ORL_OK) {
         fprintf(stderr, "skipped: no OpenGL 4.5 device\n");
         exit(77);
     }

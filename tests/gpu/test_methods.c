@@ -137,19 +137,21 @@ static void weights_are_those_of_their_formulas(void **state)
     (void)state;
     static const struct {
         const char *weight;
-        double x, z, expected;
+        double x, z, expected, own_z; // own_z: of the other photograph
     } rows[] = {
-        {"weight=equal", 3, 0, 1},      {"weight=cos", 3, 0, 0.8},
-        {"weight=cos", 0, -2, 1},       {"weight=distance", 3, 0, 1 / 1.25},
-        {"weight=distance", 0, -2, 1 / 1.5},
-        {"weight=airieau", 3, 0, 0.8 * 0.01 / (0.25 + 0.01)},
-        {"weight=airieau", 0, -2, 0.01 / (0.5 + 0.01)},
+        // 1 / (angle + a tenth of how much nearer): 0.1 * 2 / 6, and the angle and 0.1 * 1 / 5.
+        {"weight=ulr", 3, 0, (0.2 / 6) / (0.6435011 + 0.02), -2},
+        {"weight=equal", 3, 0, 1, 0},      {"weight=cos", 3, 0, 0.8, 0},
+        {"weight=cos", 0, -2, 1, 0},       {"weight=distance", 3, 0, 1 / 1.25, 0},
+        {"weight=distance", 0, -2, 1 / 1.5, 0},
+        {"weight=airieau", 3, 0, 0.8 * 0.01 / (0.25 + 0.01), 0},
+        {"weight=airieau", 0, -2, 0.01 / (0.5 + 0.01), 0},
     };
     for (size_t i = 0; i < ORL_COUNT(rows); i++) {
         const char *const choices[] = {rows[i].weight, "visibility=none", "combine=mean"};
         struct fixture f;
         setup(&f, false);
-        add_photo(&f, look_from(0, 0, 0, SIDE, 20), red);
+        add_photo(&f, look_from(0, 0, rows[i].own_z, SIDE, 20), red);
         add_photo(&f, look_from(rows[i].x, 0, rows[i].z, SIDE, 20), green);
         struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
         assert_int_equal(orl_render_params_assign(NULL, &params, choices, 3), ORL_OK);

@@ -232,6 +232,7 @@ static void medians_mix_no_colours(void **state)
     assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
     for (int i = 0; i < SIDE * SIDE; i++)
         image.u8[3 * i + (i / SIDE < MIDDLE ? 0 : 1)] = 255;
+    image.u8[3 * (10 * SIDE + 10) + 2] = 255; // 12 pixels to the left of where the view has it
     repaint_photo(&f, &image);
     struct orl_frame open = draw_with(&f, "orzan-shadow", none, 2);
     struct orl_frame filled = draw_with(&f, "orzan-shadow", holes, 1);
@@ -246,6 +247,7 @@ static void medians_mix_no_colours(void **state)
             more++;
         }
     assert_true(more >= 4);
+    assert_float_equal(color_at(&filled, 22, 10)[2], 1, 0.01); // what is painted stays
     orl_frame_finish(&open);
     orl_frame_finish(&filled);
     teardown(&f);

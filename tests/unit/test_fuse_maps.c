@@ -111,6 +111,49 @@ static void what_others_see_past_goes(void **state)
         orl_image_finish(&maps[i].depth);
 }
 
+// Depths agree within a hundredth, and a map sees past what lies two hundredths before its own depth.
+// Cameras stand close, so that pixels do not decide.
+static void depths_agree_within_a_hundredth(void **state)
+{
+    static const struct {
+        float second, third; // walls; 0: no depth
+        bool stays;
+    } rows[] = {{1.008f, 0, true}, {1.03f, 0, false}, {1, 1.015f, true}, {1, 1.03f, false}};
+    struct orl_depth_map maps[] = {make_map(0, 1), make_map(0.05, 1), make_map(-0.05, 1)};
+    (void)state;
+    for (size_t r = 0; r < ORL_COUNT(rows); r++) {
+        struct orl_fused_pixels found;
+        draw(&maps[0], WALL, false);
+        draw(&maps[1], rows[r].second * WALL, false);
+        draw(&maps[2], rows[r].third * WALL, false);
+        find(maps, 0, 3, &found);
+        assert_int_equal(found.count > 0, rows[r].stays);
+        orl_fused_pixels_finish(&found);
+    }
+    for (int i = 0; i < 3; i++)
+        orl_image_finish(&maps[i].depth);
+}
+
+// A step is a twentieth of the depth, not a hundredth.
+static void small_steps_are_outlines_too(void **state)
+{
+    struct orl_depth_map maps[] = {make_map(0, 1), make_map(0.02, 1)};
+    (void)state;
+    for (int step = 0; step < 2; step++) {
+        struct orl_fused_pixels found;
+        size_t between = 0; // pixels that are not every second one
+        for (int i = 0; i < 2; i++)
+            draw(&maps[i], step ? 1.05f * BOX : 1.01f * BOX, true);
+        find(maps, 0, 2, &found);
+        for (size_t i = 0; i < found.count; i++)
+            between += !(found.pixel[i] % WIDTH % 2 == 1 && found.pixel[i] / WIDTH % 2 == 1);
+        assert_int_equal(between > 0, step);
+        orl_fused_pixels_finish(&found);
+    }
+    for (int i = 0; i < 2; i++)
+        orl_image_finish(&maps[i].depth);
+}
+
 // The map with the finer pixels keeps the points; the coarser one those that the finer lacks.
 static void the_finer_photograph_keeps_the_points(void **state)
 {
@@ -200,6 +243,8 @@ int main(void)
         cmocka_unit_test(a_wall_needs_every_second_pixel),
         cmocka_unit_test(outlines_have_all_pixels),
         cmocka_unit_test(what_others_see_past_goes),
+        cmocka_unit_test(depths_agree_within_a_hundredth),
+        cmocka_unit_test(small_steps_are_outlines_too),
         cmocka_unit_test(the_finer_photograph_keeps_the_points),
         cmocka_unit_test(far_photographs_agree_by_pixels),
         cmocka_unit_test(points_are_in_the_world),

@@ -125,8 +125,9 @@ static void reads_nerfstudio(void **state)
     orl_known_cameras_finish(&known);
     save(dir, "transforms.json",
          "{\"camera_model\": \"OPENCV_FISHEYE\", \"fl_x\": 500, \"cx\": 320, \"cy\": 240, "
-         "\"w\": 640, \"h\": 480, \"k3\": 0.3, \"frames\": [{\"file_path\": \"a.jpg\", " MATRIX
-         "}]}");
+         "\"w\": 640, \"h\": 480, \"k3\": 0.3, \"frames\": [{\"file_path\": \"a.jpg\", "
+         // without the last row, which some programs leave out
+         "\"transform_matrix\": [[0,-1,0,1],[-1,0,0,2],[0,0,-1,3]]}]}");
     assert_int_equal(read(NULL, dir, NULL, -1, &known), ORL_OK);
     check_params(&known.model.cameras[0], 5, (double[]){500, 500, 320, 240, 0, 0, 0.3, 0}, 8);
     orl_known_cameras_finish(&known);

@@ -163,6 +163,53 @@ static void keyframes_have_their_own_seconds(void **state)
     }
 }
 
+// At x = 0, 1 and 3 after 0, 1 and 3 seconds: the speed at the second keyframe is that of the chord
+// from the first to the third, by time. Found by hand, half-way between keyframes.
+static void speed_follows_the_seconds(void **state)
+{
+    (void)state;
+    struct orl_path path;
+    assert_int_equal(
+        read_text("line.json",
+                  "{\"keyframes\": [{\"position\": [0, 0, 0], \"target\": [0, 0, 5], \"seconds\": 1},"
+                  " {\"position\": [1, 0, 0], \"target\": [1, 0, 5], \"seconds\": 2},"
+                  " {\"position\": [3, 0, 0], \"target\": [3, 0, 5]}], \"frames\": 13}", &path),
+        ORL_OK);
+    assert_int_equal(path.count, 13);
+    assert_centre(&path.views[2], 0.4375, 0, 0);
+    assert_centre(&path.views[4], 1, 0, 0);
+    assert_centre(&path.views[8], 2.125, 0, 0);
+    assert_centre(&path.views[12], 3, 0, 0);
+    orl_path_finish(&path);
+}
+
+// A view of another shape keeps the angle of view up and down.
+static void another_shape_keeps_the_height(void **state)
+{
+    (void)state;
+    const struct orl_camera wide = {200, 100, 150, 150, 110, 40};
+    struct orl_camera c = orl_camera_reframed(&wide, 300, 300);
+    assert_float_equal(c.fy, 450, 1e-9);
+    assert_float_equal(c.fx, 450, 1e-9);
+    assert_float_equal(c.cx, 180, 1e-9);
+    assert_float_equal(c.cy, 120, 1e-9);
+}
+
+// A path of another program is in the coordinates that the scene had before its origin moved.
+static void paths_move_with_the_origin(void **state)
+{
+    (void)state;
+    struct orl_path path;
+    const double origin[3] = {1000, 2000, 3000};
+    memcpy(scene.origin, origin, sizeof origin);
+    assert_int_equal(read_text("camera_path.json",
+                               "{\"render_width\": 40, \"render_height\": 30, \"camera_path\": ["
+                               "{\"camera_to_world\": [1,0,0,1001, 0,1,0,2002, 0,0,1,3003, 0,0,0,1],"
+                               " \"fov\": 60}]}", &path), ORL_OK);
+    assert_centre(&path.views[0], 1, 2, 3);
+    orl_path_finish(&path);
+}
+
 static void nerfstudio_axes_are_turned(void **state)
 {
     (void)state;
@@ -316,6 +363,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(frames_move_smoothly_from_end_to_end, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_circle_leads_around_what_they_see, set_up, tear_down),
         cmocka_unit_test_setup_teardown(keyframes_have_their_own_seconds, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(speed_follows_the_seconds, set_up, tear_down),
+        cmocka_unit_test(another_shape_keeps_the_height),
+        cmocka_unit_test_setup_teardown(paths_move_with_the_origin, set_up, tear_down),
         cmocka_unit_test_setup_teardown(nerfstudio_axes_are_turned, set_up, tear_down),
         cmocka_unit_test_setup_teardown(inria_rotation_is_world_from_camera, set_up, tear_down),
         cmocka_unit_test_setup_teardown(colmap_text_takes_the_cameras_beside_it, set_up,

@@ -17,6 +17,9 @@ static void trust_falls_towards_white(void **state)
         last = trust;
     }
     // Of photographs that all clip the darkest counts most; half floats hold every trace.
+    // A quarter of the way it has fallen by 3/16 - 2/64.
+    float quarter = (float)(sensor.soft + 0.25 * (sensor.hard - sensor.soft));
+    assert_float_equal(orl_clip_trust(&sensor, quarter, 60), 1 - 5 / 32.0, 1e-4);
     assert_float_equal(orl_clip_trust(&sensor, 1, 0), 0x1p-10, 1e-9);
     assert_float_equal(orl_clip_trust(&sensor, 1, 3), 0x1p-16, 1e-9);
     assert_float_equal(orl_clip_trust(&sensor, 1, 60), (double)ORL_TRUST_MIN, 1e-12);
@@ -32,6 +35,10 @@ static void noise_is_photons_reading_and_rounding(void **state)
     double step = 1 / (12.92 * 255);
     assert_float_equal(orl_relative_variance(&sensor, dark, true),
                        (1e-7 + 4e-8 + step * step / 12) / 1e-6, 1e-5);
+    // Brighter, steps grow as the root of the light.
+    double bright = 1.6 * sqrt(0.5) / 255;
+    assert_float_equal(orl_relative_variance(&sensor, half, true),
+                       (5e-5 + 4e-8 + bright * bright / 12) / 0.25, 1e-8);
     assert_float_equal(orl_relative_variance(&sensor, dark, false), 0.14, 1e-5);
     assert_float_equal(orl_least_radiance(&sensor, 3, false), 2e-4 / 8, 1e-9);
     assert_true(orl_least_radiance(&sensor, 0, true) > orl_least_radiance(&sensor, 0, false));

@@ -72,6 +72,17 @@ static void a_heap_changes_no_other_radius(void **state)
     assert_int_equal(orl_points_set_radii(NULL, NULL, &params, NULL, 0, &points), ORL_OK);
     for (int i = 0; i < COUNT; i++)
         assert_float_equal(points.radius[HEAP + i], alone.radius[i], 1e-6);
+    for (int i = 6; i < COUNT; i++) { // each has a plane of its own
+        double cosine = 0;
+        for (int k = 0; k < 3; k++)
+            cosine += (double)points.normal[HEAP + i][k] * (double)alone.normal[i][k];
+        assert_float_equal(fabs(cosine), 1, 1e-3);
+    }
+    int found[COUNT];
+    float dist2[COUNT];
+    assert_int_equal(orl_points_nearest(NULL, &points, &alone, found, dist2), ORL_OK);
+    for (int i = 0; i < COUNT; i++)
+        assert_int_equal(found[i], HEAP + (i < 6 ? 0 : i));
     assert_true(points.radius[HEAP] > 0 && points.radius[0] > 0);
     orl_points_finish(&alone);
     orl_points_finish(&points);
@@ -102,6 +113,29 @@ static void identical_points_take_their_number(void **state)
 {
     (void)state;
     test_grows_in_proportion(seconds_of_a_heap);
+}
+
+// Planes across each axis.
+static void normals_of_upright_planes(void **state)
+{
+    (void)state;
+    enum { SIDE = 8 };
+    for (int axis = 0; axis < 3; axis++) {
+        struct orl_points points;
+        double viewer[1][3] = {{3, 3, 3}};
+        viewer[0][axis] = 20;
+        assert_int_equal(orl_points_init(NULL, &points, SIDE * SIDE), ORL_OK);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            points.position[i][(axis + 1) % 3] = (float)(i % SIDE);
+            points.position[i][(axis + 2) % 3] = (float)(i / SIDE);
+        }
+        const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
+        assert_int_equal(orl_points_set_radii(NULL, NULL, &params, (const double(*)[3])viewer, 1,
+                                              &points), ORL_OK);
+        for (int i = 0; i < SIDE * SIDE; i++)
+            assert_float_equal(points.normal[i][axis], 1, 1e-5);
+        orl_points_finish(&points);
+    }
 }
 
 // A tilted plane: each missing normal is its own, towards the nearest viewer; one
@@ -205,9 +239,9 @@ static void limits_radii_by_pixels(void **state)
     // Seen from 1 and 4 units away with a focal length of 100: a radius of 0.1 is ten
     // pixels in the nearer photograph.
     struct orl_view views[2] = {{{64, 64, 100, 100, 32, 32}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                                              {0, 0, 4}}},
+                                                              {0, 0, 1}}},
                                 {{64, 64, 100, 100, 32, 32}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                                                              {0, 0, 1}}}};
+                                                              {0, 0, 4}}}};
     struct orl_points points;
     enum { FINE = 10 }; // points of the cloud that the others are judged by, one pixel each
     assert_int_equal(orl_points_init(NULL, &points, 5 + FINE), ORL_OK);
@@ -270,6 +304,23 @@ static void set_wall(const struct orl_radii_params *params, struct orl_points *p
 }
 
 // The overlap and the neighbours change sizes, not which points are isolated.
+// In a cloud whose points are large, as the median of their sizes tells, larger ones stay.
+static void limits_follow_the_median(void **state)
+{
+    (void)state;
+    const struct orl_view view = {{64, 64, 100, 100, 32, 32},
+                                  {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 1}}};
+    const struct orl_radii_limits limits = {.largest_px = 6, .isolated_px = 20, .typical = 3};
+    struct orl_points points;
+    assert_int_equal(orl_points_init(NULL, &points, 7), ORL_OK);
+    for (int i = 0; i < 7; i++)
+        points.radius[i] = i == 0 ? 0.001f : i == 6 ? 0.25f : 0.1f; // 0.1, 10 and 25 pixels
+    assert_int_equal(orl_points_limit_radii(NULL, &limits, &view, 1, &points), ORL_OK);
+    assert_int_equal(points.count, 7);
+    assert_float_equal(points.radius[6], 0.25, 1e-6); // up to 3 times the median of 10
+    orl_points_finish(&points);
+}
+
 static void limits_follow_the_overlap(void **state)
 {
     (void)state;
@@ -277,6 +328,10 @@ static void limits_follow_the_overlap(void **state)
     const struct orl_radii_limits limits = orl_radii_limits_of(&usual);
     assert_float_equal(limits.largest_px, 9, 0);
     assert_float_equal(limits.isolated_px, 16, 0);
+    const struct orl_radii_limits wide = orl_radii_limits_of(
+        &(struct orl_radii_params){4 * usual.neighbours, 3 * usual.overlap, false});
+    assert_float_equal(wide.largest_px, 2 * 3 * 9, 1e-4);
+    assert_float_equal(wide.isolated_px, 2 * 3 * 16, 1e-4);
     const float overlaps[] = {0.25f, 1, 4};
     struct orl_points all;
     set_wall(&usual, &all);
@@ -319,6 +374,8 @@ int main(void)
         cmocka_unit_test(a_heap_changes_no_other_radius),
         cmocka_unit_test(identical_points_take_their_number),
         cmocka_unit_test(fits_normals),
+        cmocka_unit_test(normals_of_upright_planes),
+        cmocka_unit_test(limits_follow_the_median),
         cmocka_unit_test(gives_coinciding_points_the_median),
         cmocka_unit_test(drops_points_beyond_the_world),
         cmocka_unit_test(takes_few_points),

@@ -1,4 +1,5 @@
 // Silhouettes of pictures made by hand.
+#include <stdlib.h>
 #include <string.h>
 
 #include "scene/silhouette.h"
@@ -155,9 +156,27 @@ static void tolerates_unsteady_pixels(void **state)
     orl_background_finish(&background);
 }
 
+// What lies beyond the picture is unknown: a subject that fills it has no edge.
+static void the_border_is_no_edge(void **state)
+{
+    (void)state;
+    struct orl_image mask;
+    assert_int_equal(orl_image_init(NULL, &mask, W, H, 1, ORL_PIXEL_U8), ORL_OK);
+    memset(mask.u8, 255, W * H);
+    mask.u8[30 * W + 40] = 0;
+    orl_silhouette_mark_edges(&mask);
+    for (int i = 0; i < W * H; i++) {
+        int apart = abs(i % W - 40) + abs(i / W - 30);
+        assert_int_equal(mask.u8[i], apart == 0 ? ORL_ALPHA_OUT
+                                                : apart == 1 ? ORL_ALPHA_EDGE : ORL_ALPHA_IN);
+    }
+    orl_image_finish(&mask);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_border_is_no_edge),
         cmocka_unit_test(marks_edges), cmocka_unit_test(finds_what_is_bright),
         cmocka_unit_test(learns_backgrounds), cmocka_unit_test(tells_shadows_from_subjects),
         cmocka_unit_test(tolerates_unsteady_pixels),
