@@ -4,7 +4,7 @@
 # Airieau 2012's Table 2. Leaves OUT/gpu.json and the page OUT/gpu.md; that of a device that is not
 # software belongs to docs/measured.
 # usage: tests/bench/gpu.sh BUILD OUT [--small]
-#        tests/bench/gpu.sh --pack BUILD FILE.tar.xz
+#        tests/bench/gpu.sh --pack BUILD FILE.tar.gz
 # --small: tiny pictures and few points, to try the script without a GPU.
 # --pack: what the measurement needs, with its libraries but for the C library and the driver, for a
 # machine that has neither a compiler nor packages: unpack it there and run
@@ -16,7 +16,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 pack() {
     local build=$1 file=$2 work program
     work=$(mktemp -d)
-    trap 'rm -rf "$work"' EXIT
+    trap "rm -rf '$work'" EXIT
     mkdir -p "$work/gpu/build/tests" "$work/gpu/lib"
     cp "$here/gpu.sh" "$here/truth_cloud" "$work/gpu/"
     cp "$build/oriel" "$work/gpu/build/"
@@ -28,7 +28,7 @@ pack() {
     done | sort -u | grep -vE '/(libc|libm|libpthread|libdl|librt)\.so' | xargs cp -Lt "$work/gpu/lib"
     # The dispatcher of drivers, which epoxy opens by its name.
     cp -L /usr/lib/*/libEGL.so.1 /usr/lib/*/libOpenGL.so.0 /usr/lib/*/libGLdispatch.so.0 "$work/gpu/lib"
-    tar -C "$work/gpu" -cJf "$file" .
+    tar -C "$work/gpu" -caf "$file" .
 }
 
 if [ "${1:-}" = --pack ]; then
