@@ -19,7 +19,7 @@ done
 start=$SECONDS
 # Rough minutes on two cores without a GPU, for the time left: "name minutes".
 steps=("dependencies 2" "build 1" "tests 9")
-[ "$quick" ] || steps+=("zink 2" "clang 2" "sanitizers 4" "fuzz 3")
+[ "$quick" ] || steps+=("zink 2" "clang 2" "mutants 5" "sanitizers 4" "fuzz 3")
 failed=()
 passed=0 failures=0 skipped=0 gpu_run=0
 
@@ -94,6 +94,11 @@ if [ -z "$quick" ]; then
         run_tests build-clang -L 'unit|golden'
     else
         failed+=("clang build")
+    fi
+
+    step mutants "making small wrong changes to files of the last commit, which tests must notice"
+    if git rev-parse -q --verify HEAD~1 >/dev/null; then
+        tests/mutants/run.py build --changed HEAD~1 --minutes 5 || failed+=("changes that no test notices")
     fi
 
     step sanitizers "building and testing with AddressSanitizer and UBSan"

@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""Makes small wrong changes, one at a time, and runs the tests that should notice.
+
+usage: tests/mutants/run.py BUILD [--changed COMMIT] [--minutes N] [--jobs N] [--table FILE] [NAME...]
+
+BUILD is a build folder (Ninja) whose tests are built. A change of list.json to a C file is made in a
+copy, which is compiled and linked into the test ahead of the library; one to a shader in a copy of
+all shaders, which the test reads (ORIEL_TEST_SHADERS). Neither the source nor BUILD is touched.
+Named changes alone are tried, with --changed those of files that differ from COMMIT, and with
+--minutes only as many as begin within that time: what is left is told, and is no failure.
+
+A change that no test notices fails the run, unless its entry says why none can ("survives"). So does
+an entry whose text is not in its file exactly once, and a test that fails without any change.
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SOURCE = os.path.dirname(os.path.dirname(HERE))
+LIMIT_S = 300  # of a test; a change that makes it endless is noticed
+
+
+class Broken(Exception):
+    """An entry, or a test, that says nothing about the change."""
+
+
+def run(command, **more):
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", **more)
+
+
+class Build:
+    def __init__(self, folder):
+        self.folder = folder
+        found = run(["ninja", "-C", folder, "-t", "compdb"], check=True).stdout
+        self.compile = {os.path.realpath(os.path.join(c["directory"], c["file"])): c["command"]
+                        for c in json.loads(found[found.index("["):]) if "-c " in c["command"]}
+        self.sound, self.locks, self.lock = {}, {}, threading.Lock()
+
+    def object_of(self, path, text, work):
+        """Compiles a changed C file."""
+        if path not in self.compile:
+            raise Broken("nothing compiles it")
+        changed, out = os.path.join(work, os.path.basename(path)), os.path.join(work, "changed.o")
+        with open(changed, "w") as file:
+            file.write(text)
+        words, command = shlex.split(self.compile[path]), []
+        while words:
+            word = words.pop(0)
+            if word in ("-o", "-c", "-MF", "-MT"):
+                words.pop(0)
+            elif word not in ("-MD", "-g"):
+                command.append(word)
+        command += ["-I", os.path.dirname(path), "-c", changed, "-o", out]
+        made = run(command, cwd=self.folder)
+        if made.returncode:
+            raise Broken("does not compile:\n" + made.stdout[-2000:])
+        return out
+
+    def program(self, test, changed, work):
+        """Links a test with the changed file ahead of the library."""
+        name = "tests/" + test.replace("/", "_")
+        found = run(["ninja", "-C", self.folder, "-t", "commands", name]).stdout.strip().split("\n")
+        own, out = "-o %s " % name, os.path.join(work, os.path.basename(name))
+        if own not in found[-1]:
+            raise Broken("no test " + test)
+        made = run(["sh", "-c", found[-1].replace(own, "-o %s %s " % (shlex.quote(out), shlex.quote(changed)))],
+                   cwd=self.folder)
+        if made.returncode:
+            raise Broken("does not link:\n" + made.stdout[-2000:])
+        return out
+
+    def passes(self, program, shaders=None):
+        """None: it is skipped."""
+        environment = dict(os.environ, **({"ORIEL_TEST_SHADERS": shaders} if shaders else {}))
+        try:
+            status = run([program], timeout=LIMIT_S, env=environment,
+                         cwd=os.path.join(self.folder, "tests")).returncode
+        except subprocess.TimeoutExpired:
+            return False
+        return None if status == 77 else status == 0
+
+    def own_program(self, test):
+        return os.path.join(self.folder, "tests", test.replace("/", "_"))
+
+    def check_sound(self, test):
+        with self.lock:
+            own = self.locks.setdefault(test, threading.Lock())
+        with own:
+            if test not in self.sound:
+                self.sound[test] = self.passes(self.own_program(test))
+            if self.sound[test] is False:
+                raise Broken(test + " fails without a change")
+
+
+def changed_text(entry):
+    with open(os.path.join(SOURCE, entry["file"])) as file:
+        text = file.read()
+    count = text.count(entry["old"])
+    if count != 1:
+        raise Broken("its text is %d times in %s" % (count, entry["file"]))
+    return text.replace(entry["old"], entry["new"])
+
+
+def prepare(build, entry, work):
+    """What runs a test with the change."""
+    path, text = os.path.realpath(os.path.join(SOURCE, entry["file"])), changed_text(entry)
+    if entry["file"].startswith("shaders/"):
+        shaders = os.path.join(work, "shaders")
+        shutil.copytree(os.path.join(SOURCE, "shaders"), shaders)
+        with open(os.path.join(work, entry["file"]), "w") as file:
+            file.write(text)
+        return lambda test: build.passes(build.own_program(test), shaders)
+    changed = build.object_of(path, text, work)
+    return lambda test: build.passes(build.program(test, changed, work))
+
+
+def attempt(build, entry):
+    """What became of a change - killed, survived, skipped, broken - and by which test or why."""
+    try:
+        with tempfile.TemporaryDirectory() as work:
+            passes, results = prepare(build, entry, work), []
+            for test in entry["tests"]:
+                build.check_sound(test)
+                results.append(passes(test))
+                if results[-1] is False:
+                    return "killed", test
+            return "skipped" if None in results else "survived", ", ".join(entry["tests"])
+    except Broken as problem:
+        return "broken", str(problem)
+
+
+def judge(build, entries, minutes, jobs):
+    start, found = time.monotonic(), []
+
+    def within_time(entry):
+        if minutes and time.monotonic() - start > 60 * minutes:
+            return None
+        what, why = attempt(build, entry)
+        accepted = entry.get("survives")
+        bad = (what == "broken" or (what == "survived" and not accepted) or
+               (what == "killed" and accepted is not None))
+        if what == "killed" and accepted:
+            why += ", although its entry says that none can"
+        why = accepted if what == "survived" and accepted else why
+        print("%-9s %-44s %s%s" % (what, entry["name"], why, "   <-- FAILED" if bad else ""), flush=True)
+        return entry, what, why, bad
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        found = list(pool.map(within_time, entries))
+    late = found.count(None)
+    if late:
+        print("%d changes are not tried within %g minutes" % (late, minutes))
+    return [f for f in found if f]
+
+
+def changed_files(commit):
+    names = run(["git", "-C", SOURCE, "diff", "--name-only", commit])
+    if names.returncode:
+        sys.exit(names.stdout)
+    return set(names.stdout.split("\n"))
+
+
+def write_table(path, found):
+    with open(path, "w") as file:
+        file.write("| file | change | what became of it |\n|---|---|---|\n")
+        for entry, what, why, _ in sorted(found, key=lambda f: (f[0]["file"], f[0]["name"])):
+            file.write("| `%s` | %s | %s: %s |\n" % (entry["file"], entry["name"], what, why))
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("build")
+    parser.add_argument("--changed")
+    parser.add_argument("--minutes", type=float)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--table")
+    parser.add_argument("names", nargs="*")
+    asked = parser.parse_intermixed_args()
+    with open(os.path.join(HERE, "list.json")) as file:
+        entries = json.load(file)
+    if asked.changed:
+        changed = changed_files(asked.changed)
+        entries = [entry for entry in entries if entry["file"] in changed]
+    if asked.names:
+        entries = [entry for entry in entries if entry["name"] in asked.names]
+    if not entries:
+        print("no change of the list concerns what is asked for")
+        return 0
+    found = judge(Build(os.path.abspath(asked.build)), entries, asked.minutes, asked.jobs)
+    if asked.table:
+        write_table(asked.table, found)
+    count = {what: sum(f[1] == what for f in found) for what in ("killed", "survived", "skipped", "broken")}
+    print("%(killed)d killed, %(survived)d survived, %(skipped)d skipped, %(broken)d broken" % count)
+    return 1 if any(f[3] for f in found) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
