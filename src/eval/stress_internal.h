@@ -127,6 +127,7 @@ enum orl_result orl_stress_noise(struct stress_case *c, double level, uint64_t s
 enum orl_result orl_stress_jpeg(struct stress_case *c, double level, uint64_t seed);
 enum orl_result orl_stress_passers_by(struct stress_case *c, double level, uint64_t seed);
 enum orl_result orl_stress_silhouettes(struct stress_case *c, double level, uint64_t seed);
+enum orl_result orl_stress_hull_cameras(struct stress_case *c, double level, uint64_t seed);
 
 // stress_cameras.c
 enum orl_result orl_stress_fewer_photos(struct stress_case *c, double level, uint64_t seed);

@@ -262,3 +262,9 @@ enum orl_result orl_stress_silhouettes(struct stress_case *c, double level, uint
             blacken(&c->masks[c->views[i].photo], &c->views[i].picture);
     return result;
 }
+
+enum orl_result orl_stress_hull_cameras(struct stress_case *c, double level, uint64_t seed)
+{
+    enum orl_result result = orl_stress_silhouettes(c, 0, seed);
+    return result == ORL_OK ? orl_stress_fewer_photos(c, level, seed) : result;
+}
