@@ -48,7 +48,7 @@ static void expect_pixel(const struct orl_image *image, int x, const uint8_t wan
     const uint8_t *got =
         image->u8 + 3 * ((size_t)(image->height / 2) * (size_t)image->width + (size_t)x);
     for (int c = 0; c < 3; c++)
-        assert_in_range(got[c] + 255 - want[c], 255 - TOLERANCE, 255 + TOLERANCE);
+        assert_between(got[c] + 255 - want[c], 255 - TOLERANCE, 255 + TOLERANCE);
 }
 
 // The first frame of dir/NAME has the patches.
