@@ -98,7 +98,7 @@ static enum orl_result check(const struct orl_log *log, const struct options *op
                         "parts");
     if (!options->views.path && !orl_frame_can_write(options->out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .png or .exr", options->out);
-    return ORL_OK;
+    return options->method && !orl_method_find(log, options->method) ? ORL_ERR_ARGUMENT : ORL_OK;
 }
 
 static enum orl_result run(const struct options *options, const struct arg_common *common,

@@ -38,7 +38,7 @@ sent=$(grep -o '[0-9]* points' stdout.txt | grep -o '[0-9]*')
 # A damaged file is named, with what to do.
 cp made/points.lod sound.lod
 printf '\125' | dd of=made/points.lod bs=1 seek=60000 conv=notrunc 2>/dev/null
-runs 1 "$oriel" info made --check
+runs 2 "$oriel" info made --check
 grep -q "points.lod: a page is damaged" stderr.txt || fail "info --check does not see a changed page"
 runs 2 "$oriel" render made --at "$name" --out damaged.png
 mv sound.lod made/points.lod
