@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# What each rule of method oriel is worth: held-out photographs with the rule and without it.
+#     tests/bench/worth.sh ORIEL SCENE...
+# Scenes should be prepared with --adapt none, so that all are drawn alike. Prints a table in Markdown:
+# what is lost without the rule, in dB of PSNR and thousandths of SSIM of whole pictures, the mean over
+# the scenes, crumbs added, and the time of a frame without it as a share. Needs jq.
+set -euo pipefail
+[ $# -ge 2 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
+oriel=$1
+shift
+without=(fill=color fill=depth guess_depths=0 guess_blur=0 antialias=off alignment=off min_support=0
+    front_layer=0 outliers=0 border_px=0 occluders=keep sampling=bilinear)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# row CHANGE: one figure of each scene, tab-separated: PSNR, SSIM, crumbs, milliseconds.
+row() {
+    local scene
+    for scene in "${scenes[@]}"; do
+        "$oriel" eval "$scene" --method oriel ${1:+--set "$1"} --quiet --json - </dev/null |
+            jq -c 'if type == "array" then .[0] else . end | .mean'
+    done | jq -sc '{change: $change, psnr: map(.psnr_db), ssim: map(.ssim), crumbs: map(.crumbs),
+                    ms: map(.render_ms)}' --arg change "$1"
+}
+
+scenes=("$@")
+row "" >"$work/whole"
+for change in "${without[@]}"; do
+    row "$change"
+done >"$work/rows"
+names=$(printf '%s\n' "${scenes[@]##*/}" | jq -R . | jq -sc .)
+jq -rs --argjson names "$names" --slurpfile whole "$work/whole" '
+  $whole[0] as $w
+  | def mean: add / length;
+    def at(d): pow(10; d) as $p | (. * $p | round) / $p | tostring;
+    (["without"] + $names + ["mean", "crumbs", "time"] | "| " + join(" | ") + " |"),
+    (["without"] + $names + ["mean", "crumbs", "time"] | "|" + (map("---") | join("|")) + "|"),
+    (.[] | . as $r
+      | [range($names | length) | {db: ($w.psnr[.] - $r.psnr[.]), ssim: (1000 * ($w.ssim[.] - $r.ssim[.]))}] as $d
+      | ["`" + .change + "`"] + ($d | map((.db | at(2)) + ", " + (.ssim | at(1))))
+        + [($d | map(.db) | mean | at(3)) + ", " + ($d | map(.ssim) | mean | at(1)),
+           ([range($names | length) | $r.crumbs[.] - $w.crumbs[.]] | mean | at(2)),
+           ([range($names | length) | $r.ms[.] / $w.ms[.]] | sort | .[length / 2 | floor] | at(2))]
+      | "| " + join(" | ") + " |")' "$work/rows"
