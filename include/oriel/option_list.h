@@ -96,9 +96,6 @@
         "A frame is the mean of so many pictures, which differ in the size of the splats and by " \
         "parts of a pixel: what depends on these alone is chance. Time grows with their number. " \
         "Radiance takes one.") \
-    NUMBER(silhouette, 0, 0, 4, "pixels of the photographs", "paint=tiled", ORL_TRIES(0, 1, 2, 3), \
-        "How far the depth from splats may reach past a silhouette. Where photographs agree " \
-        "far better on what is behind, that depth is removed. With 0 none is.") \
     NUMBER(guess_sharpness, 1.5f, 0, 64, "", "weight=lumigraph", ORL_TRIES(0.5, 1, 2, 4, 8), \
         "The same as sharpness, where only a guessed depth is known.") \
     NUMBER(guess_blur, 0.06f, 0, 1, "share of parallax", "paint=tiled", \

@@ -107,7 +107,6 @@ ORL_BLOCK(gather_block)
     IVEC2(view_size);    // pixels
     INT(photo_count);    // photographs of this dispatch
     INT(tiles_across);   // tiles in each row of the view
-    INT(reach);          // opt.silhouette in whole pixels of the view
     INT(kept);           // opt.photos_per_pixel, rounded to a whole number
     INT(asked);          // opt.candidates, rounded to a whole number
     FLOAT(last_mip);     // largest mip level
@@ -122,6 +121,7 @@ ORL_BLOCK(gather_block)
     INT(planes);             // planes of shaders/guess
     FLOAT(least_inverse);    // inverse depth of the farthest one
     INT(tile_side);          // pixels of a tile each way, even
+    FLOAT(unused_1);
     FLOAT(unused_2);
     // Rows of rotation | translation: of billboards to units of a voxel, of the room to a space
     // where its walls are at -1 and 1, or the shell has radius 1.

@@ -243,7 +243,6 @@ struct step {
 
 // In the order of what they gained on the training photographs of measured scenes.
 static const struct step steps[] = {
-    {ALWAYS, NULL, {"silhouette=1"}}, // depth that hardly reaches past outlines
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
     {AFTER_NO_GAIN, NULL, {"depth_tolerance=0.04"}},
     {ALWAYS, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}}, // few photographs of a subject

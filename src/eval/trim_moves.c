@@ -13,7 +13,7 @@ enum { TRAIN_LEAST = 3 };
 
 // Options whose cheaper values save time.
 static const char *const cheaper[] = {
-    "sampling=bilinear", "antialias=off", "median=off", "silhouette=0", "guess_blur=0",
+    "sampling=bilinear", "antialias=off", "median=off", "guess_blur=0",
     "outliers=0", "min_support=0", "photos_per_pixel=3", "photos_per_pixel=2", "candidates=4",
     "candidates=3", "points_per_pixel=1"};
 

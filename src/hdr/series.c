@@ -193,9 +193,8 @@ static enum orl_result draw_series(struct series_set *set, size_t k,
     exposure_range(set, range);
     for (size_t i = 0; i < set->scene.photo_count; i++)
         s->skip[i] = set->scene.photos[i].series != s->number || (skip && skip[i]);
-    // Silhouette cuts and antialiasing are off: all series need the same depth edges.
+    // Antialiasing is off: all series need the same depth edges.
     struct orl_render_params render = params->render;
-    render.silhouette = 0;
     render.antialias = ORL_ANTIALIAS_OFF;
     enum orl_result result = orl_renderer_draw(set->renderer, view, &render, s->skip, &picture);
     if (result != ORL_OK)

@@ -8,26 +8,21 @@ enum { LIST = 2 }; // storage binding of shaders/edges/edge_list.glsl
 void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges)
 {
     orl_buf_destroy(gpu, &edges->list);
-    orl_tex_destroy(gpu, &edges->votes);
+    edges->width = edges->height = 0;
 }
 
 enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height)
 {
-    const struct orl_tex *old = edges->votes;
-    if (old && old->params.width == width && old->params.height == height)
+    if (edges->list && edges->width == width && edges->height == height)
         return ORL_OK;
-    orl_tex_destroy(gpu, &edges->votes);
     orl_buf_destroy(gpu, &edges->list);
+    edges->width = width;
+    edges->height = height;
     // Room for every pixel, since the number of listed pixels is unknown.
     size_t bytes = 16 * (1 + (size_t)width * (size_t)height);
     size_t most = orl_gpu_caps(gpu)->max_storage_block;
-    enum orl_result result = orl_buf_create(gpu, ORL_OWNER_FRAME, "pixels at edges",
-                                            bytes < most ? bytes : most, NULL, &edges->list);
-    if (result != ORL_OK)
-        return result;
-    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height,
-                                                        .format = GL_R32F, .tag = "votes"},
-                          &edges->votes);
+    return orl_buf_create(gpu, ORL_OWNER_FRAME, "pixels at edges", bytes < most ? bytes : most,
+                          NULL, &edges->list);
 }
 
 // Runs `find` over all pixels to list some of them. `d` holds the rest of its dispatch, and is then
@@ -44,24 +39,6 @@ static void list(const struct frame *frame, struct orl_prog *find, struct orl_di
                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT;
     orl_gpu_dispatch(frame->gpu, d);
     d->indirect = frame->edges->list;
-}
-
-void orl_edges_cut(const struct frame *frame, const struct orl_dispatch *choice)
-{
-    struct orl_gpu *gpu = frame->gpu;
-    struct orl_dispatch d = *choice;
-    orl_pass_begin(gpu, "silhouette");
-    list(frame, orl_gather_prog(frame, "edges/silhouette_find.comp", NULL, NULL), &d);
-    orl_tex_clear(frame->edges->votes, 0);
-    d.prog = orl_gather_prog(frame, "edges/silhouette_judge.comp", NULL, NULL);
-    d.images[1] = (struct orl_image_binding){frame->edges->votes, 0, GL_WRITE_ONLY};
-    orl_gpu_dispatch(gpu, &d);
-    d.prog = orl_prog_get(gpu, "edges/silhouette_cut.comp", NULL, NULL);
-    d.images[0].access = GL_WRITE_ONLY;
-    d.images[1].access = GL_READ_ONLY;
-    d.images[2] = (struct orl_image_binding){frame->surface.normal, 0, GL_WRITE_ONLY};
-    orl_gpu_dispatch(gpu, &d);
-    orl_pass_end(gpu);
 }
 
 void orl_edges_antialias(const struct frame *frame)

@@ -27,7 +27,7 @@
 
 // What makes depth and edges better, and frames slower.
 #define REFINED \
-    , .front_layer = 0.01f, .min_support = 8, .silhouette = 2, .guess_depths = 16, \
+    , .front_layer = 0.01f, .min_support = 8, .guess_depths = 16, \
     .antialias = ORL_ANTIALIAS_ON
 
 const struct orl_method orl_methods[] = {

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "render/edges.h"
 #include "render/fill.h"
 #include "render/gather.h"
 #include "render/guess.h"
@@ -88,8 +87,6 @@ static enum orl_result paint_chosen(const struct frame *frame)
     orl_pass_end(frame->gpu);
     if (orl_guess_applies(frame))
         orl_guess_depth(frame, &d, &block);
-    if (block.reach > 0)
-        orl_edges_cut(frame, &d);
     gather_tiles(frame, block.kept, d);
     return ORL_OK;
 }

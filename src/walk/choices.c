@@ -114,7 +114,6 @@ struct orl_render_params orl_walk_moving_params(const struct orl_render_params *
     struct orl_render_params moving = *params;
     moving.sampling = fast->sampling;
     moving.antialias = fast->antialias;
-    moving.silhouette = fminf(params->silhouette, fast->silhouette);
     moving.guess_depths = fminf(params->guess_depths, fast->guess_depths);
     moving.candidates = fminf(params->candidates, fast->candidates);
     moving.reconstructions = 1;

@@ -133,7 +133,6 @@ static enum orl_result make_renderer(struct site *site)
     const struct orl_renderer_params limits = {.radiance = site->params->radiance};
     if (limits.radiance) {
         site->render.sample = ORL_SAMPLE_RADIANCE;
-        site->render.silhouette = 0; // as the renderer, whose radiance has no pass for it
         site->range = orl_site_range(site->scene);
     }
     return result == ORL_OK

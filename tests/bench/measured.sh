@@ -794,7 +794,7 @@ page_edges() {
     [ -e "$work/edges-true" ] || run "$truth" >&2
     [ -e "$work/edges-stereo" ] || run "$stereo" >&2
     for points in stereo true; do
-        for options in '' 'antialias=off' 'silhouette=0' 'antialias=off silhouette=0'; do
+        for options in '' 'antialias=off'; do
             run "${show//OPTIONS/${options:+--set ${options// / --set }}}" $points >"$work/edges.json"
             printf '| %s | %s | %s | %s |\n' "$points" "${options:-as it is}" \
                 "$(run "$error" | sed -E 's/near ([0-9.]+) .*away ([0-9.]+)/\1 | \2/')" \

@@ -313,7 +313,7 @@ static float green_before(float z)
     add_photo(&f, look_from(2, 0, 0, VIEW, 120), red);
     add_photo(&f, look_from(-2.2, 0, 0, VIEW, 120), green);
     struct orl_render_params params = best();
-    params.min_support = params.silhouette = params.guess_blur = 0;
+    params.min_support = params.guess_blur = 0;
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, VIEW, 120), &params, 0);
     float share = color_at(&frame, COLUMN, ROW)[1];
     assert_float_equal(frame.coverage.f32[ROW * VIEW + COLUMN], 0, 0);

@@ -185,11 +185,6 @@ export class PhotoStore {
         this.device.release(packed);
     }
 
-    footprint(camera)
-    {
-        return footprintOf(this.ready, camera);
-    }
-
     // What the gather passes are told of the photographs that this view is painted from; how many.
     describe(camera, typical)
     {
@@ -203,14 +198,6 @@ export class PhotoStore {
         this.device.write(this.rows, this.rowData);
         return chosen.length;
     }
-}
-
-// How many pixels of a photograph a pixel of the view covers each way, as orl_frame_footprint of
-// src/render/frame.h.
-function footprintOf(photos, camera)
-{
-    const sum = photos.reduce((all, photo) => all + photo.fx, 0);
-    return photos.length ? Math.max(sum / photos.length / camera.fx, 1) : 1;
 }
 
 // As struct photo of shaders/gather/photo.glsl.

@@ -7,7 +7,7 @@ import {PhotoStore} from "./photos.js";
 const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "level0.glsl", "pull.frag",
     "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
     "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "radiance_unpack.frag", "gather/photo.glsl", "choose.frag",
-    "silhouette_vote.frag", "silhouette_cut.frag", "gather.frag", "colors.glsl", "seed_color.frag",
+    "gather.frag", "colors.glsl", "seed_color.frag",
     "compose.frag", "show.frag", "gather/bicubic.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl",
     "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
     "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
@@ -37,8 +37,7 @@ function makePrograms(device, sources)
         fillPullFar: screen("fill_pull.frag", {FAR: 1}), fillPushFar: screen("fill_push.frag", {FAR: 1}),
         fillDepth: screen("fill_depth.frag", {FAR: 1}), depthUnpack: screen("depth_unpack.frag"),
         radianceUnpack: screen("radiance_unpack.frag"),
-        choose: screen("choose.frag", {TILE}), vote: screen("silhouette_vote.frag", {TILE}),
-        cut: screen("silhouette_cut.frag"), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
+        choose: screen("choose.frag", {TILE}), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
         show: screen("show.frag", {FLIP: 1}), capture: screen("show.frag"),
     };
@@ -72,8 +71,6 @@ class Frame {
         this.surface = make(width, height, ["R32F", "RGBA8"]);
         this.supported = make(width, height, ["R32F", "RGBA8"]);
         this.depth = make(width, height, ["R32F"]);
-        this.votes = make(width, height, ["RG32F"]);
-        this.cut = make(width, height, ["R32F", "RGBA8"]);
         this.fillDepth = this.pyramid(make, "RGBA32F");
         this.fillColor = this.pyramid(make, "RGBA16F");
         this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
@@ -246,21 +243,13 @@ export class Renderer {
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
                         photo_depth: store.depth, slot_size: [store.width, store.height],
                         last_mip: store.levels - 1, border_px: o.border_px, photos: count,
-                        blur_per_radian: o.guess_blur, silhouette: Math.round(o.silhouette / store.footprint(camera)),
+                        blur_per_radian: o.guess_blur,
                         candidates: Math.round(o.candidates), outliers: o.outliers,
                         photos_per_pixel: Math.round(o.photos_per_pixel),
                         view_depth: f.depth.textures[0], tiles: f.tiles.textures[0]};
         for (const [key, value] of Object.entries(o))
             values[`opt.${key}`] = value;
         this.device.pass(this.programs.choose, f.tiles, values);
-        if (values.silhouette > 0) {
-            this.device.pass(this.programs.vote, f.votes, values);
-            this.device.pass(this.programs.cut, f.cut, {...values, votes: f.votes.textures[0],
-                                                        normal_in: this.normals});
-            this.depth = f.cut;
-            this.normals = f.cut.textures[1];
-            values.view_depth = f.cut.textures[0];
-        }
         this.device.pass(this.programs.gather, f.painted, values);
         return count;
     }
