@@ -65,6 +65,7 @@ grep -q 'src="photos\|href="style.css"' single.html && fail "the single file nam
 runs 0 "$oriel" publish made --out single.html --single-file
 [ $failed -eq 0 ] || exit 1
 
+rm "$site/photos/my.jpg"
 needs_browser
 timeout 900 /usr/bin/python3 -B "$source/tests/web/test_page.py" "$oriel" \
     "$tools/bench_web_pictures" "$work/made" "$work/$site" "$work/single.html" 2>&1
