@@ -89,7 +89,8 @@ struct site_range orl_site_range(const struct orl_scene *scene)
         low = fmin(low, photo->radiance ? -REPLACED_STOPS : photo->exposure_ev);
         high = fmax(high, photo->exposure_ev);
     }
-    return (struct site_range){above * exp2(-low), exp2(high - low + below_stops)};
+    double peak = above * exp2(-low), mu = exp2(high - low + below_stops);
+    return (struct site_range){peak, mu};
 }
 
 static enum orl_result encode_radiance(const struct orl_log *log, const struct site_range *range,
