@@ -196,11 +196,6 @@ class Page(Visitors):
             self.browser.driver.switch_to.frame(0)
             self.browser.settle()
             self.assertEqual(self.eye(), eye)
-            self.browser.click(100, 75)
-            self.browser.wheel(100, 75, -120)
-            self.browser.wait(f"return oriel.navigator.view.eye[2] !== {eye[2]!r}")
-            self.browser.driver.switch_to.default_content()
-            self.assertEqual(self.js("return scrollY"), 0)
 
     def test_address_of_who_embeds(self):
         self.open("?start=2&mode=fly&ui=none")
