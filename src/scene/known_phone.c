@@ -34,7 +34,7 @@ static enum orl_result read_keyframe(const struct orl_known_source *source, cons
     for (int i = 0; good && i < 4; i++)
         good = orl_known_json_number(root, lens[i], &f_c[i]);
     for (int i = 0; good && i < 12; i++) {
-        char key[8];
+        char key[32];
         snprintf(key, sizeof key, "t_%d%d", i / 4, i % 4);
         good = orl_known_json_number(root, key, &rows[i]);
     }
