@@ -377,7 +377,7 @@ void orl_point_parts_finish(struct point_parts *parts)
 
 double orl_point_parts_bytes(double points)
 {
-    static const double around = 0.35; // of the points; docs/measured/points.md
+    static const double around = 0.35; // points around the parts, for each of their own
     return points * (1 + around) * sizeof(struct record);
 }
 

@@ -103,9 +103,12 @@ def fixed(d): if . == null then "-" else . * pow(10; d) | round / pow(10; d) end
 def row: "| " + (map(tostring) | join(" | ")) + " |";
 def table(head; rows): (head | row), (head | map("---") | row), (rows | row), "";
 "# On a GPU", "",
-"Oriel \(.commit), \(.date). Device: \(.device), driver \(.driver)\(if .software then
- ", which is software: no GPU has been measured here" else "" end). Processor: \(.cpu).", "",
-"    tests/bench/gpu.sh BUILD OUT", "",
+"- Commit: \(.commit)",
+"- Scenes: a synthetic monument of \(.frames.photographs) photographs",
+"- Device: \(.device), driver \(.driver)\(if .software then
+ ", which is software: no GPU has been measured here" else "" end); \(.cpu)",
+"- Date: \(.date)",
+"- Made by: `tests/bench/gpu.sh BUILD OUT`", "",
 "Tests of label `gpu`: \([.tests[] | select(.result == "passed")] | length) passed, " +
 "\([.tests[] | select(.result == "failed") | .name] | if length > 0 then "failed: " + join(", ") else "none failed" end), " +
 "\([.tests[] | select(.result == "skipped")] | length) skipped. Stereo: \(.stereo_s_a_photograph // "not measured;") s a photograph.", "",

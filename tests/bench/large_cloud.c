@@ -1,5 +1,5 @@
 // A cloud of any size that looks like a scene's: each point becomes many smaller ones, spread over
-// its disc. To measure what grows with the points (docs/measured/points.md).
+// its disc. To measure what grows with the points.
 // usage: bench_large_cloud SCENE TIMES OUT.ply     TIMES the scene's points
 #include <math.h>
 #include <stdio.h>

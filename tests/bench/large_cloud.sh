@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a cloud of many points costs to divide, to open and to draw (docs/measured/points.md): the
+# What a cloud of many points costs to divide, to open and to draw: the
 # scene's own cloud, each of whose points becomes TIMES smaller ones.
 # usage: tests/bench/large_cloud.sh BUILD SCENE WORK_DIR TIMES [TIMES]..
 # Needs 78 bytes of disk a point in WORK_DIR, most of which is free again at the end.

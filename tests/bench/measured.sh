@@ -7,8 +7,7 @@
 # that are missing. Without SECTION all sections are measured, which takes hours on two cores.
 # A section writes the page of its name. Work files lie in BUILD/measured. Needs jq.
 set -euo pipefail
-sections="scenes accuracy adapt charts methods airieau parts stress steadiness frame growth memory trim prepare
-stereo radiance replaced response resampling edges"
+sections="scenes accuracy charts methods airieau parts stress memory trim radiance"
 [ $# -ge 3 ] || { sed -n '2,9s/^# *//p' "$0"; echo "sections: "$sections; exit 2; }
 build=$(realpath "$1") scenes=$(realpath -m "$2") datasets=$(realpath -m "$3")
 shift 3
@@ -91,14 +90,23 @@ print_table() { # FILE FILTER
 
 # --- pages ---
 
-# head TITLE JSON: the page's beginning. JSON: a report, which names the device; none: no device.
+# head_of TITLE SCENES [JSON]: the page's beginning. JSON: a report, which names the device.
 head_of() {
     local device=
-    [ $# -lt 2 ] ||
-        device=$(jq -r 'if type == "array" then .[0] else . end | "Device: " + .device + ". "' "$2")
+    [ $# -lt 3 ] ||
+        device=$(jq -r 'if type == "array" then .[0] else . end | .device + "; "' "$3")
     printf '# %s\n\n' "$1"
-    printf 'Oriel %s, %s. %sProcessor: %s, %s cores, load average %s at the start.\n' \
-        "$commit" "$(date -u +%F)" "$device" "$(processor)" "$(nproc)" "$load"
+    printf -- '- Commit: %s\n' "$commit"
+    printf -- '- Scenes: %s\n' "$2"
+    printf -- '- Device: %s%s, %s cores, load average %s at the start\n' "$device" "$(processor)" "$(nproc)" "$load"
+    printf -- '- Date: %s\n' "$(date -u +%F)"
+    printf -- '- Made by: `tests/bench/measured.sh BUILD SCENES DATASETS %s`\n' "$section"
+}
+
+# Words with commas between.
+list() {
+    local all=$*
+    echo "${all// /, }"
 }
 
 processor() {
@@ -131,14 +139,13 @@ page_scenes() {
     for name in $(scene_names); do
         jq --arg scene "$name" '. + {scene: $scene}' "$scenes/$name/scene.json"
     done | jq -s . >"$work/scenes.json"
-    head_of "Scenes of the measurements"
+    head_of "Scenes of the measurements" "all"
     cat <<'END'
 
 Every figure of these pages is of one of these scenes. `measured.sh` prepares those that are missing; its function
 `scene_list` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others are
 photographs. *Held out* photographs take part in calibration alone. *Spread* is the robust standard deviation of what
-photographs show of one point, in stops, before and after their exposures are brought together. The commit above is of
-the program that wrote this page, the column *prepared by* names the one that made the scene.
+photographs show of one point, in stops, before and after their exposures are brought together.
 
 END
     print_table "$work/scenes.json" '
@@ -149,12 +156,26 @@ END
                (.counts.points | tostring)] +
               [.stages.expose.spread_before_ev, .stages.expose.spread_after_ev
                | if . == null then "-" else fixed(2) end])'
+    for name in $(scene_names); do
+        jq --arg scene "$name" '[.stages | to_entries[] | . + {scene: $scene}]' "$scenes/$name/scene.json"
+    done | jq -s add >"$work/prepare.json"
+    cat <<'END'
+**Time of `oriel prepare`** for each stage, as `oriel info` prints it: seconds of wall time, seconds of processor time with
+COLMAP's, and the largest memory of a process so far in MiB. Other work may have run beside it.
+
+END
+    print_table "$work/prepare.json" '
+      def cell: if . == null then "-" else [.value | .wall_s, .cpu_s, ([.peak_rss_mib, .child_peak_rss_mib] | max)]
+        | map(if . == null then "-" else fixed(0) end) | join(", ") end;
+      group_by(.scene) as $s | ([$s[0][].key] - ["collect"]) as $stages
+      | table(["scene"] + $stages; $s[] | . as $of
+          | [.[0].scene] + [$stages[] as $k | [$of[] | select(.key == $k)][0] | cell])'
 }
 
 page_accuracy() {
     local all='oriel eval SCENES/NAME --method paired --quiet --json -'
     for_scenes "$work/accuracy.json" "$all" $(scene_names)
-    head_of "Accuracy" "$work/accuracy.json"
+    head_of "Accuracy" "$(list $(scene_names))" "$work/accuracy.json"
     cat <<'END'
 
 Held-out photographs, rendered from the others; means over the photographs of a scene. The
@@ -174,100 +195,6 @@ END
     print_table "$work/accuracy.json" 'by_method(.mean.psnr_cc_db; 2)'
 }
 
-# What prepare found of a scene, and the scene with it and without.
-prepared_scene() { # NAME
-    rm -rf "$work/plain/$1"
-    mkdir -p "$work/plain"
-    cp -r "$scenes/$1" "$work/plain/$1"
-    jq 'del(.tuned, .render)' "$scenes/$1/scene.json" >"$work/plain/$1/scene.json"
-    run "$plain" "$1" >"$work/plain.json"
-    run "$prepared" "$1" >"$work/prepared.json"
-    jq -n --arg scene "$1" --slurpfile manifest "$scenes/$1/scene.json" \
-        --slurpfile plain "$work/plain.json" --slurpfile prepared "$work/prepared.json" '
-        def mean: if type == "array" then .[0] else . end | .mean;
-        $manifest[0] | select(.stages.adapt.psnr_db) | {scene: $scene, adapt: .stages.adapt,
-         others_s: ([.stages | del(.adapt) | .[].cpu_s // 0] | add), method: .render.method,
-         settings: .tuned[.render.method].settings, plain: ($plain[0] | mean),
-         prepared: ($prepared[0] | mean)}'
-}
-
-# What the long search makes of a copy of a scene, and all methods on the scene itself.
-adapted_scene() { # NAME
-    local start end
-    rm -rf "$work/adapted/$1"
-    mkdir -p "$work/adapted"
-    cp -r "$scenes/$1" "$work/adapted/$1"
-    start=$EPOCHREALTIME
-    run "$adapt" "$1" >"$work/adapted.txt"
-    end=$EPOCHREALTIME
-    run "$eval" "$1" >"$work/adapted.json"
-    run "$all" "$1" >"$work/all.json"
-    jq -n --arg scene "$1" --argjson from "$start" --argjson to "$end" \
-        --slurpfile manifest "$work/adapted/$1/scene.json" \
-        --slurpfile adapted "$work/adapted.json" --slurpfile all "$work/all.json" \
-        --rawfile training "$work/adapted.txt" '
-        def list: if type == "array" then . else [.] end;
-        {scene: $scene, adapt_s: ($to - $from), device: ($all[0] | list[0].device),
-         prepare_s: ([$manifest[0].stages[].wall_s] | add), method: $manifest[0].render.method,
-         settings: $manifest[0].tuned[$manifest[0].render.method].settings,
-         adapted: ($adapted[0] | list[0].mean), all: ($all[0] | list | map({method} + .mean)),
-         training: [$training | split("\n")[] | [splits(" +")] | select(.[2] == "dB" and .[0] != "plain")
-                    | {method: .[0], psnr_db: (.[1] | tonumber), ssim: (.[3] | tonumber)}]}'
-}
-
-page_adapt() {
-    local plain='oriel eval WORK/plain/NAME --quiet --json -'
-    local prepared='oriel eval SCENES/NAME --quiet --json -'
-    local adapt='oriel tune WORK/adapted/NAME --adapt long --budget 600 --quiet'
-    local eval='oriel eval WORK/adapted/NAME --quiet --json -'
-    local all='oriel eval SCENES/NAME --method all --quiet --json -'
-    local name
-    for name in $(scene_names); do
-        prepared_scene "$name"
-    done | jq -s . >"$work/prepared_all.json"
-    for name in $(scene_names); do
-        adapted_scene "$name"
-    done | jq -s . >"$work/adapt.json"
-    head_of "Adapted scenes" "$work/adapt.json"
-    cat <<'END'
-
-What `oriel prepare` and `oriel tune --adapt long` choose by training photographs, each rendered without itself, and
-what that gives on held-out photographs, which they never read.
-
-## By default
-
-What the stage `adapt` found, PSNR in dB and SSIM before and after, and its share of the processor time of `prepare`.
-WORK/plain has the scenes without it.
-END
-    command_block "$plain" "$prepared"
-    print_table "$work/prepared_all.json" '
-      def figures(p; s): (p | fixed(2)) + ", " + (s | fixed(4));
-      table(["scene", "found", "training, before", "after", "held out, before", "after", "adapt, s", "share of prepare"];
-        .[] | [.scene, "`" + .method + "`" + ([.settings // {} | to_entries[] | " `\(.key)=\(.value)`"] | add // ""),
-             figures(.adapt.plain_psnr_db; .adapt.plain_ssim), figures(.adapt.psnr_db; .adapt.ssim),
-             figures(.plain.psnr_db; .plain.ssim), figures(.prepared.psnr_db; .prepared.ssim),
-             (.adapt.cpu_s | fixed(1)), (100 * .adapt.cpu_s / (.others_s + .adapt.cpu_s) | fixed(1)) + " %"])'
-    cat <<'END'
-## The long search
-
-The best of the methods as they are, for each figure, stands beside it.
-END
-    command_block "$adapt" "$eval" "$all"
-    print_table "$work/adapt.json" '
-      table(["scene", "adapted", "PSNR, dB", "best other", "SSIM", "best other", "adapt, s", "prepare, s"];
-        .[] | (.all | max_by(.psnr_db)) as $p | (.all | max_by(.ssim)) as $s
-          | [.scene, "`" + .method + "`" + ([.settings // {} | to_entries[] | " `\(.key)=\(.value)`"] | add // ""),
-             (.adapted.psnr_db | fixed(2)), ($p.psnr_db | fixed(2)) + " `" + $p.method + "`",
-             (.adapted.ssim | fixed(3)), ($s.ssim | fixed(3)) + " `" + $s.method + "`",
-             (.adapt_s | fixed(0)), (.prepare_s | fixed(0))])'
-    printf '**Training photographs, each left out**, PSNR in dB and SSIM, six of them\n\n'
-    print_table "$work/adapt.json" '
-      [.[].training[].method] as $all | ($all | reduce .[] as $m ([]; if index([$m]) then . else . + [$m] end)) as $methods
-      | table(["scene"] + $methods;
-          .[] | . as $of | [.scene] + [$methods[] as $m | [$of.training[] | select(.method == $m)][0]
-            | if . == null then "-" else (.psnr_db | fixed(2)) + ", " + (.ssim | fixed(3)) end])'
-}
-
 page_charts() {
     local name chart='oriel chart'
     for name in $(scene_names fountain herz sakharov temple monument); do
@@ -276,7 +203,7 @@ page_charts() {
     chart+=' --out WORK/chart --seconds 0 --quiet'
     run "$chart" >&2
     cp "$work/chart/chart.svg" "$pages/charts.svg"
-    head_of "All methods and settings over several scenes" "$work/chart/chart.json"
+    head_of "All methods and settings over several scenes" "$(list $(scene_names fountain herz sakharov temple monument))" "$work/chart/chart.json"
     cat <<'END'
 
 All methods and their settings on the held-out photographs of five scenes, one report. `cpu ms` is the processor time of
@@ -375,7 +302,7 @@ page_methods() {
         run "$command" >&2
     done
     run "oriel eval SCENES/NAME --method points --quiet --json -" "$scene" >"$work/methods.json"
-    head_of "All methods on five scenes" "$work/methods.json"
+    head_of "All methods on five scenes" "fountain and four that the commands below make" "$work/methods.json"
     cat <<'END'
 
 Accuracy is that of held-out photographs, over whole pictures. Time is processor time of a frame of 512x512 relative
@@ -405,7 +332,7 @@ page_airieau() {
         done | jq -s '{scene: .[0].scene, device: .[0].device, before: .[0].mean, after: .[1].mean,
                        own_before: .[2], own: .[3]}'
     done | jq -s . >"$work/airieau.json"
-    head_of "Airieau's method as the paper has it" "$work/airieau.json"
+    head_of "Airieau's method as the paper has it" "$(list $(scene_names fountain herz sceaux sakharov sacre bronze dino temple))" "$work/airieau.json"
     cat <<'END'
 
 Method `airieau` beside the settings that it had: photographs without depth paint, the difference of distances is kept
@@ -427,7 +354,7 @@ page_parts() {
     local part_scenes=($(scene_names)) command
     command="tests/bench/worth.sh $build/oriel ${part_scenes[*]/#/SCENES/}"
     run "oriel eval SCENES/${part_scenes[0]} --method points --quiet --json -" >"$work/device.json"
-    head_of "What each part is worth" "$work/device.json"
+    head_of "What each part is worth" "$(list ${part_scenes[*]})" "$work/device.json"
     cat <<'END'
 
 Held-out photographs by method `oriel`, whole pictures, with one rule left out: how much PSNR in dB and how many
@@ -456,7 +383,7 @@ page_stress() {
     local real='oriel stress SCENES/NAME --out WORK/stress/NAME --axes photographs,angle --views 1 --quiet'
     local name report=$work/stress/synth/stress.json
     run "$synth" >&2
-    head_of "How much methods lose" "$report"
+    head_of "How much methods lose" "synthetic, $(list $(scene_names fountain sakharov temple))" "$report"
     cat <<'END'
 
 One thing at a time gets worse, in six severities ([axes](../reference/stress.md#axes)). A cell says how many dB of PSNR
@@ -486,85 +413,6 @@ END
     done
 }
 
-page_steadiness() {
-    local walk='oriel eval SCENES/NAME --walk 60 --divide 2 --method all --quiet --json -'
-    for_scenes "$work/steadiness.json" "$walk" $(scene_names fountain herz sakharov)
-    head_of "Temporal stability" "$work/steadiness.json"
-    cat <<'END'
-
-A walk past the training photographs. Each frame is warped by its depth to the next one and compared with it, in
-8-bit values ([what is compared](../reference/metrics.md#walks)). Less is steadier; a blurred picture is steadier too.
-END
-    command_block "$walk"
-    printf '**Mean difference of pixels**\n\n'
-    print_table "$work/steadiness.json" 'by_method(.all.mean; 2)'
-    printf '**Mean difference of blocks of 16x16 pixels, which blur does not lower**\n\n'
-    print_table "$work/steadiness.json" 'by_method(.all.block_mean; 2)'
-    printf '**Largest difference of a block**\n\n'
-    print_table "$work/steadiness.json" 'by_method(.all.block_worst; 1)'
-}
-
-page_frame() {
-    local bench='oriel bench SCENES/NAME --method all --quick --size 512x512 --size 768x512
-        --size 1024x1024 --seconds 2 --quiet --json -'
-    for_scenes "$work/frame.json" "$bench" $(scene_names fountain herz sakharov)
-    head_of "Time of a frame" "$work/frame.json"
-    cat <<'END'
-
-Medians of wall time, without reading back. They mean something on a quiet machine alone: with a load average above
-about one at the start, figures of one table differ by a factor of two for no other reason. The passes, which are timed
-in frames of their own with the device drained around each, suffer in the same way.
-END
-    command_block "$(echo $bench)"
-    printf '**A frame, ms**\n\n'
-    print_table "$work/frame.json" '
-      [.[] | . as $b | .sizes[] | . + {scene: ($b | name), all: $b.photographs}]
-      | ([.[].method] | unique) as $m
-      | table(["scene", "photographs", "size"] + $m;
-          group_by([.scene, .size])[] | . as $runs
-          | [.[0].scene, (.[0].all | tostring), (.[0].size | size)] +
-            [$m[] as $one | $runs[] | select(.method == $one) | .frame_ms | fixed(0)])'
-    printf '**Passes of a frame of the first scene at 768x512, ms**\n\n'
-    print_table "$work/frame.json" '
-      [.[0].sizes[] | select(.size == [768, 512])] as $runs
-      | table(["pass"] + [$runs[].method];
-          ([$runs[].passes_ms | keys_unsorted[]] | reduce .[] as $k ([]; if index([$k]) then . else . + [$k] end))[]
-          | . as $pass | [$pass] + [$runs[] | .passes_ms[$pass] | if . == null then "-" else fixed(1) end])'
-}
-
-page_growth() {
-    local bench='oriel bench SCENES/NAME --method oriel --method oriel-fast --method airieau
-        --size 512x512 --points 1000000,8000000 --quiet --json -'
-    for_scenes "$work/growth.json" "$bench" $(scene_names fountain)
-    head_of "How time grows" "$work/growth.json"
-    printf '\nMedians of wall time of a frame of 512x512, in ms.\n'
-    command_block "$(echo $bench)"
-    local by
-    for by in photographs points; do
-        printf '**By number of %s**\n\n' "$by"
-        print_table "$work/growth.json" ".[0].by_$by | group_by(.$by) as \$g
-          | table([\"$by\"] + [\$g[0][].method]; \$g[] | [(.[0].$by | tostring)] + [.[].frame_ms | fixed(0)])"
-    done
-    printf '**By resolution of the photographs**, with PSNR to the picture from photographs at full size\n\n'
-    print_table "$work/growth.json" '.[0].by_resolution
-      | table(["method", "photographs at 1/n", "ms", "MiB on the device", "PSNR, dB"];
-          .[] | [.method, (.photo_divide | tostring), (.frame_ms | fixed(0)),
-                 (.device_bytes / 1048576 | fixed(0)),
-                 (if .psnr_db == null then "-" else .psnr_db | fixed(1) end)])'
-    printf '**Splatting in compute shaders beside `GL_POINTS` with a depth test**, ms\n\n'
-    print_table "$work/growth.json" '.[0].gl_points
-      | table(["points", "compute", "`GL_POINTS`"];
-          .[] | [(.points | tostring), (.splat_ms | fixed(1)), (.gl_points_ms | fixed(1))])'
-    local many='tests/bench/photographs.sh BUILD/oriel BUILD/tests/bench_photographs WORK/photographs 200 oriel oriel-fast'
-    run "${many//BUILD/$build}" >"$work/photographs.txt"
-    printf '**20 and 200 photographs of one synthetic place**, processor time in ms: standing still, along a walk\n'
-    printf 'the second time, and the first time, when photographs that come into question are read.\n'
-    command_block "$many"
-    printf '| method | still: 20 | 200 | ratio | walk: 20 | 200 | ratio | first walk: 20 | 200 | ratio |\n'
-    printf '|---|---|---|---|---|---|---|---|---|---|\n'
-    awk 'NR > 2 { for (i = 1; i <= NF; i++) printf "| %s ", $i; print "|" }' "$work/photographs.txt"
-}
-
 page_memory() {
     local bench="oriel bench SCENES/NAME --quick --size 768x512 --seconds 1 --textures KIND --quiet --json -"
     local eval="oriel eval SCENES/NAME --textures KIND --quiet --json -"
@@ -576,7 +424,7 @@ page_memory() {
         jq -s --arg kind "$kind" '.[0] + {kind: $kind, mean: .[1].mean}' "$work/memory_bench.json" \
             "$work/memory_eval.json"
     done | jq -s . >"$work/memory.json"
-    head_of "Memory" "$work/memory.json"
+    head_of "Memory" "$name" "$work/memory.json"
     printf '\nMemory on the device after frames of 768x512 of scene `%s`, in MiB, and what compressed photographs\n' \
         "$name"
     printf 'cost in accuracy and time.\n'
@@ -598,7 +446,7 @@ page_trim() {
         run "${trim/--plots*/--plots WORK/trimmed/$name-plots}" "$name" >"$work/trimmed/$name.txt"
         jq --arg scene "$name" '. + {scene: $scene}' "$work/trimmed/$name.json"
     done | jq -s . >"$work/trim.json"
-    head_of "Trimming" "$work/trim.json"
+    head_of "Trimming" "$(list $(scene_names fountain herz sakharov monument))" "$work/trim.json"
     cat <<'END'
 
 What `oriel trim` leaves of a scene within 0.1 dB of mean PSNR and 0.01 of SSIM over training photographs, each rendered
@@ -629,42 +477,6 @@ END
         .[] | .scene as $scene | .random[] | [$scene, (.bytes / 1048576 | fixed(2)), (.loss_db | fixed(2))])'
 }
 
-page_prepare() {
-    local name
-    for name in $(scene_names); do
-        jq --arg scene "$name" '[.stages | to_entries[] | . + {scene: $scene}]' "$scenes/$name/scene.json"
-    done | jq -s add >"$work/prepare.json"
-    head_of "Time of prepare"
-    cat <<'END'
-
-What each stage of `oriel prepare` took when the scenes were made, from their `scene.json` (`oriel info` prints the
-same): seconds of wall time, seconds of processor time with COLMAP's, and the largest memory of a process so far in
-MiB. [Scenes](scenes.md) says how many photographs there are and which program prepared them. Other work may have run
-beside it.
-END
-    command_block 'oriel info SCENES/NAME'
-    print_table "$work/prepare.json" '
-      def cell: if . == null then "-" else [.value | .wall_s, .cpu_s, ([.peak_rss_mib, .child_peak_rss_mib] | max)]
-        | map(if . == null then "-" else fixed(0) end) | join(", ") end;
-      group_by(.scene) as $s | ([$s[0][].key] - ["collect"]) as $stages
-      | table(["scene"] + $stages; $s[] | . as $of
-          | [.[0].scene] + [$stages[] as $k | [$of[] | select(.key == $k)][0] | cell])'
-}
-
-page_stereo() {
-    local truth='gpu_test_densify_truth full'
-    run "$truth" >"$work/stereo.txt" 2>&1
-    local compare='tests/bench/densify_compare.sh BUILD/oriel SCENES/fountain WORK/densify'
-    run "${compare//BUILD/$build}" >"$work/densify.txt"
-    head_of "Stereo"
-    printf '\nAgainst the truth of the 24 photographs of the synthetic monument, sparse points on the true surface:\n'
-    command_block "$truth"
-    sed -n 's/^\(.*within 1 %.*\)$/    \1/p' "$work/stereo.txt"
-    printf '\nBeside other densifiers that are installed here, fused alike, on one real scene:\n'
-    command_block "$compare"
-    sed 's/^/    /' "$work/densify.txt"
-}
-
 # Mean of the views of what bench_radiance_error prints.
 radiance_rows() {
     awk '{ m = 2; while ($m != "median") m++
@@ -693,7 +505,7 @@ page_radiance() {
     jq -s '[.[0] + {row: "one exposure, not re-exposed"}, .[1] + {row: "three series, `fused`"},
             .[2] + {row: "three series, `series`"}]' "$work/reexposed/single.json" \
         "$work/reexposed/fused.json" "$work/reexposed/series.json" >"$work/radiance.json"
-    head_of "Radiance" "$work/radiance.json"
+    head_of "Radiance" "synthetic monument, $scene" "$work/radiance.json"
     cat <<'END'
 
 **Against true radiance.** A synthetic monument in three series, with true cameras and points. Errors are differences
@@ -712,106 +524,6 @@ END
     command_block "$again"
     print_table "$work/radiance.json" 'table(["", "PSNR, dB", "covered PSNR, dB", "SSIM"];
         .[] | [.row, (.mean.psnr_db | fixed(2)), (.mean.psnr_covered_db | fixed(2)), (.mean.ssim | fixed(3))])'
-}
-
-# Rows of the table: what is merged, its scene, its options for eval, its line of bench_merge_time.
-page_replaced() {
-    local synth='oriel synth monument --out WORK/replace --size 384x256 --count 24 --contrast 8 --exposures -3,0,3 --noise 0.005 --quiet'
-    local truth='bench_truth_scene WORK/replace WORK/replace-truth WORK/replace-scene 1 9'
-    local replace='oriel hdr WORK/replace-scene --replace-series 9 --out WORK/replaced --quiet'
-    local cost='bench_merge_time WORK/replace-scene' cost2='bench_merge_time WORK/replaced'
-    local errors=() row scene merge
-    rm -rf "$work/replaced"
-    [ -e "$work/replace" ] || run "$synth" >&2
-    [ -e "$work/replace-scene" ] || run "$truth" >&2
-    run "$replace" >&2
-    { run "$cost"; run "$cost2"; } >"$work/replaced.txt"
-    for row in 'replace-scene fused' 'replace-scene series' 'replaced fused'; do
-        read -r scene merge <<<"$row"
-        errors+=("oriel eval WORK/$scene --truth WORK/replace-truth --merge $merge --quiet --json -")
-        run "${errors[-1]}" >"$work/replaced-$scene-$merge.json"
-    done
-    head_of "A series replaced by radiance" "$work/replaced-replaced-fused.json"
-    cat <<'END'
-
-A synthetic monument in three series of eight photographs, three of 24 held out, with true cameras and points.
-`fused` and `series` merge all photographs for every frame; the last row renders from the eight photographs of the
-darkest series after `oriel hdr --replace-series` has replaced them. Errors are differences of log2 to the true
-radiance, in stops, over covered pixels. Time is processor time, memory that of the photographs on the device.
-END
-    command_block "$synth" "$truth" "$replace" "${errors[@]}" "$cost" "$cost2"
-    printf '| way | log2 RMSE, stops | PU21 PSNR, dB | time of a view | photographs |\n|---|---|---|---|---|\n'
-    paste -d'|' <(jq -r '.mean | "\(.log2_rmse * 1000 | round / 1000) | \(.pu21_psnr_db * 100 | round / 100) "' \
-                     "$work"/replaced-replace-scene-fused.json "$work"/replaced-replace-scene-series.json \
-                     "$work"/replaced-replaced-fused.json) \
-        <(sed -E 's/.* ([0-9.]+) s of .* ([0-9.]+ MiB)/ \1 s | \2 |/' "$work/replaced.txt") |
-        paste -d' ' <(printf '| `fused` |\n| `series` |\n| replaced, then `fused` |\n') -
-}
-
-page_response() {
-    local test='unit_test_response'
-    ORL_DATASETS=$datasets run "$test" >"$work/response.txt" 2>&1
-    head_of "Response curves"
-    cat <<'END'
-
-Response curves beside those of OpenCV's calibrations from the same photographs of one place: RMS error of a made-up
-film's curve after scaling, between two values; the error of the ratio of light between neighbouring exposures of
-Debevec and Malik's church; and how far the curve lies from OpenCV's for each channel.
-END
-    command_block "ORL_DATASETS=DATASETS $test"
-    sed -n '/RMS\|ratio:/s/^/    /p' "$work/response.txt"
-}
-
-page_resampling() {
-    local measure='bench_half_pixel DATASETS/fountain-P11/images/NAME'
-    local name photos=()
-    for name in 0002.jpg 0005.jpg 0008.jpg; do
-        photos+=("$name")
-        run "$measure" "$name"
-    done >"$work/resampling.txt"
-    head_of "What resampling costs"
-    cat <<'END'
-
-A photograph at half its size beside another made from the same file whose pixels lie half a pixel aside, moved back
-bicubically. No depth, camera, light or noise differs: what is missing to a perfect figure is lost by resampling.
-END
-    command_block "$measure"
-    printf '| photograph | PSNR, dB | SSIM |\n|---|---|---|\n'
-    sed 's|.*/\([^/]*\): \(.*\) dB, SSIM \(.*\)|\| \1 \| \2 \| \3 \||' "$work/resampling.txt"
-}
-
-# Pictures near steps of depth, from points of stereo and from true ones.
-page_edges() {
-    local held_out='0005 0013 0021' # what bench_truth_scene holds out
-    local synth='oriel synth monument --out WORK/edges --size 576x384 --quiet'
-    local truth='bench_truth_scene WORK/edges WORK/edges-truth WORK/edges-true 2 8'
-    local stereo='oriel import WORK/edges-truth/cameras.json --images WORK/edges --points densify --quality draft'
-    stereo+=" --test-list ${held_out// /.jpg,}.jpg --out WORK/edges-stereo --quiet"
-    local show='oriel eval WORK/edges-NAME OPTIONS --images WORK/edges-pictures --quiet --json -'
-    local error="bench_edge_error WORK/edges-pictures WORK/edges-truth oriel $held_out"
-    local points options
-    [ -e "$work/edges" ] || run "$synth" >&2
-    [ -e "$work/edges-true" ] || run "$truth" >&2
-    [ -e "$work/edges-stereo" ] || run "$stereo" >&2
-    for points in stereo true; do
-        for options in '' 'antialias=off'; do
-            run "${show//OPTIONS/${options:+--set ${options// / --set }}}" $points >"$work/edges.json"
-            printf '| %s | %s | %s | %s |\n' "$points" "${options:-as it is}" \
-                "$(run "$error" | sed -E 's/near ([0-9.]+) .*away ([0-9.]+)/\1 | \2/')" \
-                "$(jq -r "$tables"'.mean | "\(.psnr_db | fixed(2)) | \(.ssim | fixed(4))"' "$work/edges.json")"
-        done
-    done >"$work/edges.txt"
-    head_of "Edges, and what true depth would give" "$work/edges.json"
-    cat <<'END'
-
-Squared error (of 8-bit values, mean) of three held-out photographs of the synthetic monument within 4 pixels of a step
-of the true depth and away from them, by method `oriel`. Cameras are the true ones, so that no photograph is resampled.
-*Stereo*: points as `prepare` makes them; *true*: points on the true surface. What remains with true points is not due
-to stereo: photographs are resampled and blended, and points lie at every second pixel of a photograph.
-END
-    command_block "$synth" "$truth" "$stereo" "$show" "$error"
-    printf '| points | options | near | away | PSNR, dB | SSIM |\n|---|---|---|---|---|---|\n'
-    cat "$work/edges.txt"
 }
 
 # --- all that is asked for ---

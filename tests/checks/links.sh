@@ -1,6 +1,7 @@
 #!/bin/sh
 # Every relative link of README.md and docs/**/*.md leads to a file and, with #, to a heading of it;
-# every page of docs can be reached from its index. Links to other sites are not followed.
+# every page of docs can be reached from its index, and every page that a comment names is there.
+# Links to other sites are not followed.
 # usage: links.sh SOURCE_DIR [INDEX]
 set -eu
 index=${2:-docs/index.md}
@@ -51,6 +52,11 @@ for page in README.md $pages; do
         echo "$page $file" >>"$table"
     done
 done
+for page in $(grep -rhoE 'docs/[a-z]+/[a-z_-]+\.md' src preprocess include datasets shaders web tests .ci \
+    2>/dev/null | sort -u); do
+    [ -f "$page" ] || { echo "$page: no such page: $(grep -rl "$page" src preprocess include datasets shaders web tests .ci | tr '\n' ' ')"; bad=1; }
+done
+
 [ "$(wc -l <"$table")" -gt 10 ] || { echo "found no links to check below $1"; exit 1; }
 
 reached=$(awk -v start="$index" '

@@ -161,6 +161,14 @@ valgrind_section() {
     echo "$(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"), $(grep -c ^FAILED "$fuzz/valgrind.txt") of them with an error."
 }
 
+# The commits of all sections; of those that are kept, what the page has.
+all_commits() {
+    { cat "$fuzz"/*.commit
+      [ "$(ls "$fuzz"/*.commit | wc -l)" -eq 6 ] ||
+          sed -n 's/^- Commit: \([^;]*\).*/\1/p' "$page" | tr -d ' ' | tr , '\n'
+    } | sort -u | paste -sd, | sed 's/,/, /g'
+}
+
 # section STEP HEADING: of what lies in FUZZ_DIR, else as the page has it.
 section() {
     if [ -s "$fuzz/$1.commit" ]; then
@@ -171,15 +179,24 @@ section() {
     fi
 }
 
+device() {
+    echo "$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), $(nproc) cores"
+}
+
 for step in "$@"; do
     run_step "$step"
 done
 {
-    cat <<'END'
+    cat <<END
 # Robustness: what was tried, and what failed
 
-Made by `tests/stability/report.sh BUILD [STEP]..`. SECURITY.md says what Oriel promises; the inputs
-and checks below are in `tests/fuzz` and `tests/stability`. Each section names the commits that it tried.
+- Commit: $(all_commits); each section names its own
+- Scenes: stored inputs of \`tests/fuzz\`; tiny synthetic scenes
+- Device: $(device)
+- Date: $(date -u +%F)
+- Made by: \`tests/stability/report.sh BUILD [STEP]..\`
+
+SECURITY.md says what Oriel promises; the inputs and checks below are in \`tests/fuzz\` and \`tests/stability\`.
 
 END
     section fuzz "Inputs tried"
