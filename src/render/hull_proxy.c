@@ -5,7 +5,7 @@
 #include <xxhash.h>
 
 #include "core/memory.h"
-#include "render/ahead.h"
+#include "render/prefetch.h"
 #include "render/mesh_proxy.h"
 #include "render/raster_target.h"
 
@@ -47,8 +47,8 @@ static enum orl_result make(const struct frame *frame, size_t triangles, struct 
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: no silhouettes to make a hull of; see oriel import",
                         frame->scene->dir);
-    if (!orl_ahead_take_hull(frame->gpu, frame->ahead, orl_voxels_key(frame), triangles, &voxels,
-                             &state->mesh.mesh)) {
+    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, orl_voxels_key(frame), triangles,
+                                &voxels, &state->mesh.mesh)) {
         result = orl_voxels_make(frame, &voxels);
         if (result == ORL_OK)
             result = orl_hull_field_mesh(log, &voxels.cube, voxels.field, triangles,

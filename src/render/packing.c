@@ -9,7 +9,7 @@
 #include <xxhash.h>
 
 #include "core/memory.h"
-#include "render/ahead.h"
+#include "render/prefetch.h"
 #include "render/gather.h"
 #include "render/method.h"
 #include "render/photos.h"
@@ -159,7 +159,7 @@ static enum orl_result upload(const struct frame *frame, size_t photo,
     enum orl_result result = ORL_OK;
     if (orl_progress_cancelled(photos->progress))
         return ORL_ERR_CANCELLED;
-    if (!orl_ahead_take_photo(frame->ahead, photo, &image))
+    if (!orl_prefetch_take_photo(frame->prefetch, photo, &image))
         result = orl_photo_read(log, frame->scene, photo, false, &image);
     if (result == ORL_OK)
         result = cut(log, &image, region, &part);

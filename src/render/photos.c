@@ -8,7 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "io/picture.h"
-#include "render/ahead.h"
+#include "render/prefetch.h"
 #include "render/method.h"
 #include "render/occluders.h"
 #include "render/packing.h"
@@ -460,7 +460,7 @@ static enum orl_result load_color(const struct frame *frame, size_t index)
     struct photos *photos = frame->photos;
     struct orl_image image = {0};
     enum orl_result result = ORL_OK;
-    if (!orl_ahead_take_photo(frame->ahead, index, &image))
+    if (!orl_prefetch_take_photo(frame->prefetch, index, &image))
         result = orl_photo_read(orl_gpu_log(frame->gpu), photos->scene, index, photos->radiance,
                                 &image);
     if (result == ORL_OK)
@@ -671,7 +671,7 @@ static enum orl_result make_alpha(const struct frame *frame, size_t index,
         return result;
     }
     enum orl_result result = ORL_OK;
-    if (!orl_ahead_take_mask(frame->ahead, index, &mask))
+    if (!orl_prefetch_take_mask(frame->prefetch, index, &mask))
         result = orl_photo_mask_read(log, photos->scene, index, &mask);
     if (result == ORL_OK) {
         orl_silhouette_mark_edges(&mask);

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/ahead.h"
+#include "render/prefetch.h"
 #include "render/compose.h"
 #include "render/edges.h"
 #include "render/fill.h"
@@ -39,7 +39,7 @@ struct orl_renderer {
     struct orl_image staging; // for read_back.h
     size_t point_bytes;       // of device memory for points that come as they are needed; 0: any
     int expected;             // moment after the next frame's; -1: none is expected
-    struct ahead *ahead;      // what is prepared for it; NULL: nothing
+    struct prefetch *prefetch;      // what is prepared for it; NULL: nothing
 };
 
 // Device memory of everything but photographs: points, and targets of common sizes.
@@ -123,7 +123,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
         return;
     for (size_t i = 0; i < r->proxy_count; i++)
         orl_proxy_finish(r->gpu, &r->proxies[i]);
-    orl_ahead_destroy(r->gpu, &r->ahead);
+    orl_prefetch_destroy(r->gpu, &r->prefetch);
     orl_photos_finish(r->gpu, &r->photos);
     orl_fill_finish(r->gpu, &r->fill);
     orl_soften_finish(r->gpu, &r->soften);
@@ -281,13 +281,13 @@ void orl_frame_finish(struct orl_frame *frame)
 // Draws and reads back the frame, whose proxy is up to date. With `next`, prepares that moment
 // meanwhile: its hull is carved before the read-back waits for the device.
 static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame, bool normals,
-                                    struct ahead *next, struct orl_frame *out)
+                                    struct prefetch *next, struct orl_frame *out)
 {
     enum orl_result result = draw(frame, normals);
     if (result == ORL_OK && next) {
-        orl_ahead_want(next, frame->chosen, frame->chosen_count);
+        orl_prefetch_want(next, frame->chosen, frame->chosen_count);
         orl_pass_begin(r->gpu, "next hull");
-        result = orl_ahead_carve(r->gpu, next);
+        result = orl_prefetch_carve(r->gpu, next);
         orl_pass_end(r->gpu);
     }
     if (result == ORL_OK && out)
@@ -295,7 +295,7 @@ static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame,
     if (result == ORL_OK)
         result = orl_gpu_finish(r->gpu);
     if (result == ORL_OK && next)
-        result = orl_ahead_collect(r->gpu, next);
+        result = orl_prefetch_collect(r->gpu, next);
     return result;
 }
 
@@ -303,8 +303,8 @@ static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame,
 static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
 {
     orl_photos_follow_moment(&r->photos);
-    if (r->ahead && orl_ahead_moment(r->ahead) == r->scene->frame)
-        frame->ahead = r->ahead;
+    if (r->prefetch && orl_prefetch_moment(r->prefetch) == r->scene->frame)
+        frame->prefetch = r->prefetch;
     enum orl_result result = orl_proxy_update(frame);
     frame->depth_key = orl_photos_depth_key(frame);
     if (result == ORL_OK)
@@ -337,7 +337,7 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
     if (result != ORL_OK)
         return result;
     struct proxy *proxy;
-    struct ahead *next = NULL;
+    struct prefetch *next = NULL;
     result = find_proxy(r, orl_proxy_kind_of(params), &proxy);
     if (result != ORL_OK)
         return result;
@@ -345,15 +345,15 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
     frame.progressive = progressive;
     result = ready_frame(r, &frame);
     if (result == ORL_OK && r->expected >= 0 && r->expected != r->scene->frame)
-        result = orl_ahead_create(&frame, r->expected, &next);
+        result = orl_prefetch_create(&frame, r->expected, &next);
     if (result == ORL_OK)
         result = finish_frame(r, &frame, out && !(params->leave_out & ORL_LAYER_NORMAL), next, out);
     // Where small maps are kept to save memory, they are picked from ones that take more than all.
     if (r->scene->defaults.depth_divide > 1)
         orl_proxy_free_photo_target(r->gpu, proxy);
     r->expected = -1;
-    orl_ahead_destroy(r->gpu, &r->ahead);
-    r->ahead = next;
+    orl_prefetch_destroy(r->gpu, &r->prefetch);
+    r->prefetch = next;
     if (result != ORL_OK && out)
         orl_frame_finish(out);
     return result;

@@ -36,7 +36,7 @@ int orl_voxels_side(const struct frame *frame);
 // Says once that the hull is cut off where it is; *said: it has been said.
 void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, bool *said);
 
-// --- the steps of carving, for ahead.c ---
+// --- the steps of carving, for prefetch.c ---
 
 // Asks the device for the intersection of all cones, as orl_cones_field. The caller destroys *field.
 // Does not wait for the device.

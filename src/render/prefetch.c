@@ -1,4 +1,4 @@
-#include "render/ahead.h"
+#include "render/prefetch.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -22,7 +22,7 @@ enum step {
 
 enum arrival { UNREAD, BEING_READ, READ, TAKEN };
 
-struct ahead {
+struct prefetch {
     struct orl_scene scene; // the thread's: of the frame, but showing the moment; photos are a copy
     // Not changed after the start.
     int moment;
@@ -47,14 +47,14 @@ struct ahead {
     size_t *wanted, wanted_count, bytes;
 };
 
-int orl_ahead_moment(const struct ahead *ahead)
+int orl_prefetch_moment(const struct prefetch *prefetch)
 {
-    return ahead->moment;
+    return prefetch->moment;
 }
 
 // --- the thread ---
 
-static enum orl_result read_silhouettes(struct ahead *a)
+static enum orl_result read_silhouettes(struct prefetch *a)
 {
     struct orl_silhouette *all = orl_array(NULL, a->masked_count, sizeof *all);
     enum orl_result result = all ? ORL_OK : ORL_ERR_MEMORY;
@@ -69,7 +69,7 @@ static enum orl_result read_silhouettes(struct ahead *a)
     return result;
 }
 
-static enum orl_result list(struct ahead *a)
+static enum orl_result list(struct prefetch *a)
 {
     enum orl_result result = orl_voxels_list(NULL, &a->voxels);
     if (result == ORL_OK && a->wants_mesh)
@@ -79,7 +79,7 @@ static enum orl_result list(struct ahead *a)
 }
 
 // Does the hull's next step. The lock is held, but not while it works.
-static void go_on(struct ahead *a)
+static void go_on(struct prefetch *a)
 {
     bool reads = a->step == STEP_READ;
     pthread_mutex_unlock(&a->lock);
@@ -94,7 +94,7 @@ static bool is_of_thread(enum step step)
     return step == STEP_READ || step == STEP_LIST;
 }
 
-static bool next_photo(const struct ahead *a, size_t *photo)
+static bool next_photo(const struct prefetch *a, size_t *photo)
 {
     for (size_t i = 0; i < a->wanted_count && a->bytes < PHOTO_BYTES_MAX; i++) {
         *photo = a->wanted[i];
@@ -105,7 +105,7 @@ static bool next_photo(const struct ahead *a, size_t *photo)
 }
 
 // As go_on, of a photograph.
-static void read_photo(struct ahead *a, size_t photo)
+static void read_photo(struct prefetch *a, size_t photo)
 {
     struct orl_image image = {0};
     a->arrival[photo] = BEING_READ;
@@ -120,7 +120,7 @@ static void read_photo(struct ahead *a, size_t photo)
 
 static void *work(void *priv)
 {
-    struct ahead *a = priv;
+    struct prefetch *a = priv;
     // The scene's check of its files, as it is done for every moment that is shown.
     bool broken = orl_scene_set_frame(NULL, &a->scene, a->moment) != ORL_OK;
     pthread_mutex_lock(&a->lock);
@@ -144,7 +144,7 @@ static void *work(void *priv)
 // --- start and end ---
 
 // Lists the silhouettes that would make the hull of the moment.
-static enum orl_result prepare_hull(const struct frame *frame, struct ahead *a)
+static enum orl_result prepare_hull(const struct frame *frame, struct prefetch *a)
 {
     struct frame next = *frame;
     bool hull = frame->proxy->kind == &orl_proxy_hull, voxels = frame->proxy->kind == &orl_proxy_voxels;
@@ -161,11 +161,11 @@ static enum orl_result prepare_hull(const struct frame *frame, struct ahead *a)
     return a->masked ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-enum orl_result orl_ahead_create(const struct frame *frame, int moment, struct ahead **out)
+enum orl_result orl_prefetch_create(const struct frame *frame, int moment, struct prefetch **out)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     size_t count = frame->scene->photo_count;
-    struct ahead *a = orl_array(log, 1, sizeof *a);
+    struct prefetch *a = orl_array(log, 1, sizeof *a);
     *out = a;
     if (!a)
         return ORL_ERR_MEMORY;
@@ -190,13 +190,13 @@ enum orl_result orl_ahead_create(const struct frame *frame, int moment, struct a
     if (result == ORL_OK && !a->has_thread)
         result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read the next moment");
     if (result != ORL_OK)
-        orl_ahead_destroy(frame->gpu, out);
+        orl_prefetch_destroy(frame->gpu, out);
     return result;
 }
 
-void orl_ahead_destroy(struct orl_gpu *gpu, struct ahead **ahead)
+void orl_prefetch_destroy(struct orl_gpu *gpu, struct prefetch **prefetch)
 {
-    struct ahead *a = *ahead;
+    struct prefetch *a = *prefetch;
     if (!a)
         return;
     if (a->has_thread) {
@@ -223,12 +223,12 @@ void orl_ahead_destroy(struct orl_gpu *gpu, struct ahead **ahead)
     free(a->arrival);
     free(a->wanted);
     free(a);
-    *ahead = NULL;
+    *prefetch = NULL;
 }
 
 // --- the caller ---
 
-void orl_ahead_want(struct ahead *a, const size_t *photos, size_t count)
+void orl_prefetch_want(struct prefetch *a, const size_t *photos, size_t count)
 {
     pthread_mutex_lock(&a->lock);
     memcpy(a->wanted, photos, count * sizeof *photos);
@@ -237,7 +237,7 @@ void orl_ahead_want(struct ahead *a, const size_t *photos, size_t count)
     pthread_mutex_unlock(&a->lock);
 }
 
-static enum step step_of(struct ahead *a)
+static enum step step_of(struct prefetch *a)
 {
     pthread_mutex_lock(&a->lock);
     enum step step = a->step;
@@ -245,7 +245,7 @@ static enum step step_of(struct ahead *a)
     return step;
 }
 
-static void set_step(struct ahead *a, enum step step)
+static void set_step(struct prefetch *a, enum step step)
 {
     pthread_mutex_lock(&a->lock);
     a->step = step;
@@ -253,7 +253,7 @@ static void set_step(struct ahead *a, enum step step)
     pthread_mutex_unlock(&a->lock);
 }
 
-enum orl_result orl_ahead_carve(struct orl_gpu *gpu, struct ahead *a)
+enum orl_result orl_prefetch_carve(struct orl_gpu *gpu, struct prefetch *a)
 {
     if (step_of(a) != STEP_CARVE)
         return ORL_OK;
@@ -262,7 +262,7 @@ enum orl_result orl_ahead_carve(struct orl_gpu *gpu, struct ahead *a)
     return result;
 }
 
-enum orl_result orl_ahead_collect(struct orl_gpu *gpu, struct ahead *a)
+enum orl_result orl_prefetch_collect(struct orl_gpu *gpu, struct prefetch *a)
 {
     if (step_of(a) != STEP_COLLECT)
         return ORL_OK;
@@ -274,7 +274,7 @@ enum orl_result orl_ahead_collect(struct orl_gpu *gpu, struct ahead *a)
 }
 
 // Waits until the hull's next step is not the thread's.
-static void wait_for_hull(struct ahead *a)
+static void wait_for_hull(struct prefetch *a)
 {
     pthread_mutex_lock(&a->lock);
     while (is_of_thread(a->step))
@@ -282,7 +282,7 @@ static void wait_for_hull(struct ahead *a)
     pthread_mutex_unlock(&a->lock);
 }
 
-void orl_ahead_wait(struct ahead *a)
+void orl_prefetch_wait(struct prefetch *a)
 {
     size_t photo;
     wait_for_hull(a);
@@ -297,13 +297,13 @@ void orl_ahead_wait(struct ahead *a)
     pthread_mutex_unlock(&a->lock);
 }
 
-bool orl_ahead_take_hull(struct orl_gpu *gpu, struct ahead *a, uint64_t key, size_t triangles,
-                         struct voxels *voxels, struct orl_mesh *mesh)
+bool orl_prefetch_take_hull(struct orl_gpu *gpu, struct prefetch *a, uint64_t key, size_t triangles,
+                            struct voxels *voxels, struct orl_mesh *mesh)
 {
     if (!a || a->key != key || (mesh && (!a->wants_mesh || a->triangles != triangles)))
         return false;
     wait_for_hull(a);
-    if (orl_ahead_carve(gpu, a) != ORL_OK || orl_ahead_collect(gpu, a) != ORL_OK)
+    if (orl_prefetch_carve(gpu, a) != ORL_OK || orl_prefetch_collect(gpu, a) != ORL_OK)
         return false;
     wait_for_hull(a);
     if (step_of(a) != STEP_DONE)
@@ -318,7 +318,7 @@ bool orl_ahead_take_hull(struct orl_gpu *gpu, struct ahead *a, uint64_t key, siz
     return true;
 }
 
-bool orl_ahead_take_photo(struct ahead *a, size_t photo, struct orl_image *image)
+bool orl_prefetch_take_photo(struct prefetch *a, size_t photo, struct orl_image *image)
 {
     if (!a)
         return false;
@@ -337,7 +337,7 @@ bool orl_ahead_take_photo(struct ahead *a, size_t photo, struct orl_image *image
     return there;
 }
 
-bool orl_ahead_take_mask(struct ahead *a, size_t photo, struct orl_image *mask)
+bool orl_prefetch_take_mask(struct prefetch *a, size_t photo, struct orl_image *mask)
 {
     if (!a)
         return false;

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "figure_scene.h"
-#include "render/ahead.h"
+#include "render/prefetch.h"
 #include "render/photos.h"
 
 enum { W = 96, H = 72, CAMERAS = 5, MOMENTS = 3 };
@@ -98,14 +98,14 @@ static void pictures_are_the_same(void **state)
     setup_moments(&f);
     for (size_t row = 0; row < ORL_COUNT(rows); row++) {
         struct orl_render_params params = params_of(rows[row][0], rows[row][1]);
-        struct orl_frame plain[4], ahead[4];
+        struct orl_frame plain[4], early[4];
         draw_moments(&f, &params, moments, NULL, plain);
         for (int list = 0; list < 2; list++) {
-            draw_moments(&f, &params, moments, expected[list], ahead);
+            draw_moments(&f, &params, moments, expected[list], early);
             for (int i = 0; i < 4; i++) {
-                assert_same(&plain[i].color, &ahead[i].color);
-                assert_same(&plain[i].depth, &ahead[i].depth);
-                orl_frame_finish(&ahead[i]);
+                assert_same(&plain[i].color, &early[i].color);
+                assert_same(&plain[i].depth, &early[i].depth);
+                orl_frame_finish(&early[i]);
             }
         }
         // The moments differ, or equal pictures would say nothing.
@@ -154,18 +154,18 @@ static void remove_file(char *path)
 }
 
 // Prepares moment 1 with all its photographs, as while moment 0 is drawn.
-static struct ahead *prepare(struct stage *s)
+static struct prefetch *prepare(struct stage *s)
 {
     static const size_t all[CAMERAS] = {0, 1, 2, 3, 4};
-    struct ahead *ahead;
-    assert_int_equal(orl_ahead_create(&s->frame, 1, &ahead), ORL_OK);
-    assert_int_equal(orl_ahead_moment(ahead), 1);
-    orl_ahead_want(ahead, all, CAMERAS);
-    orl_ahead_wait(ahead);
-    assert_int_equal(orl_ahead_carve(gpu, ahead), ORL_OK);
-    assert_int_equal(orl_ahead_collect(gpu, ahead), ORL_OK);
-    orl_ahead_wait(ahead);
-    return ahead;
+    struct prefetch *prefetch;
+    assert_int_equal(orl_prefetch_create(&s->frame, 1, &prefetch), ORL_OK);
+    assert_int_equal(orl_prefetch_moment(prefetch), 1);
+    orl_prefetch_want(prefetch, all, CAMERAS);
+    orl_prefetch_wait(prefetch);
+    assert_int_equal(orl_prefetch_carve(gpu, prefetch), ORL_OK);
+    assert_int_equal(orl_prefetch_collect(gpu, prefetch), ORL_OK);
+    orl_prefetch_wait(prefetch);
+    return prefetch;
 }
 
 // Nothing is left to read: the files may be gone.
@@ -174,7 +174,7 @@ static void files_are_read_once(void **state)
     (void)state;
     struct stage s;
     setup_stage(&s);
-    struct ahead *ahead = prepare(&s);
+    struct prefetch *prefetch = prepare(&s);
     s.f.scene.frame = 1;
     assert_int_equal(orl_proxy_update(&s.frame), ORL_OK); // as without
     size_t count = s.proxy.vertex_count;
@@ -186,7 +186,7 @@ static void files_are_read_once(void **state)
     }
     orl_proxy_finish(gpu, &s.proxy);
     assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, 0, &s.proxy), ORL_OK);
-    s.frame.ahead = ahead;
+    s.frame.prefetch = prefetch;
     assert_int_equal(orl_proxy_update(&s.frame), ORL_OK);
     assert_int_equal(s.proxy.vertex_count, count);
     assert_memory_equal(s.proxy.vertices, plain, count * sizeof *plain);
@@ -195,7 +195,7 @@ static void files_are_read_once(void **state)
         assert_int_equal(orl_photos_require_mask(&s.frame, i), ORL_OK);
     }
     free(plain);
-    orl_ahead_destroy(gpu, &ahead);
+    orl_prefetch_destroy(gpu, &prefetch);
     finish_stage(&s);
 }
 
@@ -207,18 +207,19 @@ static void another_hull_is_not_taken(void **state)
     struct voxels voxels;
     struct orl_mesh mesh;
     setup_stage(&s);
-    struct ahead *ahead = prepare(&s);
+    struct prefetch *prefetch = prepare(&s);
     s.f.scene.frame = 1;
     uint64_t key = orl_voxels_key(&s.frame);
     const bool skip[CAMERAS] = {[2] = true};
     s.frame.skip = skip;
-    assert_false(orl_ahead_take_hull(gpu, ahead, orl_voxels_key(&s.frame), 900, &voxels, &mesh));
-    assert_false(orl_ahead_take_hull(gpu, ahead, key, 901, &voxels, &mesh));
-    assert_true(orl_ahead_take_hull(gpu, ahead, key, 900, &voxels, &mesh));
-    assert_false(orl_ahead_take_hull(gpu, NULL, key, 900, &voxels, &mesh));
+    assert_false(orl_prefetch_take_hull(gpu, prefetch, orl_voxels_key(&s.frame), 900, &voxels,
+                                         &mesh));
+    assert_false(orl_prefetch_take_hull(gpu, prefetch, key, 901, &voxels, &mesh));
+    assert_true(orl_prefetch_take_hull(gpu, prefetch, key, 900, &voxels, &mesh));
+    assert_false(orl_prefetch_take_hull(gpu, NULL, key, 900, &voxels, &mesh));
     orl_voxels_finish(&voxels);
     orl_mesh_finish(&mesh);
-    orl_ahead_destroy(gpu, &ahead);
+    orl_prefetch_destroy(gpu, &prefetch);
     finish_stage(&s);
 }
 
@@ -235,11 +236,11 @@ static void missing_files_are_left_alone(void **state)
     uint64_t key = orl_voxels_key(&s.frame);
     remove_file(orl_scene_photo_path(NULL, &s.f.scene, 3));
     s.f.scene.frame = 0;
-    struct ahead *ahead = prepare(&s);
-    assert_false(orl_ahead_take_photo(ahead, 0, &image));
-    assert_false(orl_ahead_take_mask(ahead, 0, &image));
-    assert_false(orl_ahead_take_hull(gpu, ahead, key, 900, &voxels, &mesh));
-    orl_ahead_destroy(gpu, &ahead);
+    struct prefetch *prefetch = prepare(&s);
+    assert_false(orl_prefetch_take_photo(prefetch, 0, &image));
+    assert_false(orl_prefetch_take_mask(prefetch, 0, &image));
+    assert_false(orl_prefetch_take_hull(gpu, prefetch, key, 900, &voxels, &mesh));
+    orl_prefetch_destroy(gpu, &prefetch);
     finish_stage(&s);
 }
 
@@ -252,7 +253,7 @@ int main(void)
         cmocka_unit_test(another_hull_is_not_taken),
         cmocka_unit_test(missing_files_are_left_alone),
     };
-    int failed = cmocka_run_group_tests_name("ahead", tests, NULL, NULL);
+    int failed = cmocka_run_group_tests_name("prefetch", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);
     return failed;
 }
