@@ -4,27 +4,27 @@
 
 // A photograph's answer before its colours are read.
 struct Answer {
-    int shot;     // the photograph
+    int source;   // the photograph
     vec2 pixel;   // projection of the point, pixels
     float mip;
     float weight; // 0: the photograph does not show the point
 };
 
-// Asks photograph i, which is `shot`, about a point. soft_border: the weight falls over a wider
+// Asks photograph i, the source, about a point. soft_border: the weight falls over a wider
 // border where depth is estimated. The code selects rather than branches, since software renderers
 // run both sides of a condition.
-Answer ask(photo shot, int i, Point at, bool soft_border)
+Answer ask(photo source, int i, Point at, bool soft_border)
 {
     Answer a;
-    a.shot = i;
+    a.source = i;
     float z;
-    bool inside = photo_project(shot, at.p, a.pixel, z);
+    bool inside = photo_project(source, at.p, a.pixel, z);
     z = inside ? z : at.p.z; // keeps the logarithm's argument positive
-    a.mip = photo_mip(shot, z, at.p.z);
-    vec4 seen = photo_depths(shot, a.pixel);
-    float visible = at.guessed ? visible_guess(shot, at, seen, z) : visible_surface(shot, at, seen, z);
-    float weight = weight_of(shot, at) *
-                   photo_border(shot, a.pixel, at.guessed && soft_border) * visible;
+    a.mip = photo_mip(source, z, at.p.z);
+    vec4 seen = photo_depths(source, a.pixel);
+    float visible = at.guessed ? visible_guess(source, at, seen, z) : visible_surface(source, at, seen, z);
+    float weight = weight_of(source, at) *
+                   photo_border(source, a.pixel, at.guessed && soft_border) * visible;
     a.weight = inside ? weight : 0.0;
     return a;
 }

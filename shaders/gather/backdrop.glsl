@@ -6,10 +6,10 @@
 const float BACKDROP_HIDDEN = 8.0;
 
 // True if a photograph shows the backdrop at the place of its camera frame where the view has p.
-bool photo_backdrop(photo shot, vec3 p, out vec2 pixel)
+bool photo_backdrop(photo source, vec3 p, out vec2 pixel)
 {
     float z;
-    bool inside = photo_shows(shot, p, pixel, z);
+    bool inside = photo_shows(source, p, pixel, z);
     // Depth is 0 outside the object, and below 0 in holes of its surfaces.
-    return inside && all(equal(photo_depths(shot, pixel), vec4(0.0)));
+    return inside && all(equal(photo_depths(source, pixel), vec4(0.0)));
 }

@@ -46,19 +46,19 @@ void main()
         // The least penalty at any sample point, raised a little for photographs that see few
         // points.
         float least = 1e30, seen = 0.0;
-        photo shot = photo_at(i);
+        photo source = photo_at(i);
         for (int s = 0; s < ACROSS * ACROSS; s++) {
             vec2 pixel;
             float z;
             bool backdrop = false;
 #ifdef RESTS
-            backdrop = guess[s] > 0.0 && photo_backdrop(shot, points[s], pixel);
+            backdrop = guess[s] > 0.0 && photo_backdrop(source, points[s], pixel);
 #endif
-            if (!(points[s].z > 0.0) || !(photo_project(shot, points[s], pixel, z) || backdrop))
+            if (!(points[s].z > 0.0) || !(photo_project(source, points[s], pixel, z) || backdrop))
                 continue;
-            float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
+            float share = photo_unhidden_share(source, photo_depths(source, pixel), z);
             float hidden = backdrop || share > 0.9 ? 1.0 : 8.0;
-            float penalty = photo_penalty(shot, points[s]);
+            float penalty = photo_penalty(source, points[s]);
             least = min(least, penalty * hidden);
             seen += 1.0 / hidden;
         }

@@ -12,9 +12,9 @@ layout(rgba32f, binding = 2) uniform image2D state_0;          // private to the
 layout(rgba32f, binding = 3) uniform image2D state_1;
 
 // The slots of the method:
-#include <sample>     // vec4 photo_sample(shot, pixel, mip): colour and confidence weight
-#include <visibility> // float visible_surface(shot, point, seen, z), visible_guess: 0 to 1
-#include <weight>     // float weight_of(shot, point): weight in any unit
+#include <sample>     // vec4 photo_sample(source, pixel, mip): colour and confidence weight
+#include <visibility> // float visible_surface(source, point, seen, z), visible_guess: 0 to 1
+#include <weight>     // float weight_of(source, point): weight in any unit
 #include "gather/ask.glsl"
 #ifdef ROOM // 1: where there is no surface; 2: everywhere
 #include "gather/room.glsl"
@@ -36,8 +36,8 @@ void main()
     combine_begin(at);
     int i = photo_first();
     do { // the condition comes last: see tiled.comp
-        photo shot = photo_at(i);
-        combine_add(shot, ask(shot, i, point, SOFT_BORDER));
+        photo source = photo_at(i);
+        combine_add(source, ask(source, i, point, SOFT_BORDER));
         i = photo_next(i);
     } while (i >= 0);
     combine_end(at, point);

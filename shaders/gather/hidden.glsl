@@ -40,11 +40,11 @@ float photo_seen_share(vec4 seen, float z)
 const float GUESS_PARALLAX = 0.05;
 
 // Share of the four texels around a pixel that have no occluder in front of z.
-float photo_unhidden_share(photo shot, vec4 seen, float z)
+float photo_unhidden_share(photo source, vec4 seen, float z)
 {
     vec4 front = (z - seen) * (1.0 / (z * opt.depth_tolerance)); // in units of the depth tolerance
     vec4 nearer = -1.0 / min(seen, -1e-9) - 1.0 / z;
-    vec4 behind_guess = nearer * (length(shot.eye.xyz) / GUESS_PARALLAX);
+    vec4 behind_guess = nearer * (length(source.eye.xyz) / GUESS_PARALLAX);
     front = mix(front, behind_guess, lessThan(seen, vec4(0.0)));
     vec4 share = mix(clamp(2.0 - front, 0.0, 1.0), vec4(1.0), equal(seen, vec4(0.0)));
     return dot(share, vec4(0.25)); // at a depth edge the background is visible in part
@@ -57,10 +57,10 @@ const float GUESS_PAST = 0.15;
 // Falls from 1 to GUESS_PAST as the photograph sees a surface a little behind z. The point is then
 // not where it was estimated, and the photograph shows the object beside it. Surfaces farther back
 // are the background, which it may paint.
-float photo_past_share(photo shot, vec4 seen, float z)
+float photo_past_share(photo source, vec4 seen, float z)
 {
     vec4 past = clamp((seen - z) * (1.0 / (z * opt.depth_tolerance)) - 1.0, 0.0, 1.0);
-    vec4 parallax = (1.0 / z - 1.0 / max(seen, 1e-9)) * (length(shot.eye.xyz) / GUESS_PARALLAX);
+    vec4 parallax = (1.0 / z - 1.0 / max(seen, 1e-9)) * (length(source.eye.xyz) / GUESS_PARALLAX);
     past *= clamp(2.0 - parallax, 0.0, 1.0);
     return 1.0 - (1.0 - GUESS_PAST) * dot(past, vec4(0.25));
 }

@@ -2,13 +2,13 @@
 #include "gather/photo.glsl"
 #include "shared/penalty.h"
 
-float photo_penalty(photo shot, vec3 p)
+float photo_penalty(photo source, vec3 p)
 {
-    vec3 to_photo = shot.eye.xyz - p;
+    vec3 to_photo = source.eye.xyz - p;
     float here = length(p), there = length(to_photo);
     float angle = acos(clamp(dot(-p, to_photo) / (here * there), -1.0, 1.0));
     // Compares the sizes of a pixel on the surface rather than distances: focal lengths may differ.
-    float coarser = there / here * (view_focal.x / shot.focal.x) - 1.0;
+    float coarser = there / here * (view_focal.x / source.focal.x) - 1.0;
     return ORL_PENALTY(angle, coarser);
 }
 

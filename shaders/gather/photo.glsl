@@ -46,12 +46,12 @@ layout(binding = ORL_PHOTO_CHROMA) uniform sampler2DArray photo_chroma;
 #include "gather/projection.glsl"
 
 // The photograph's own depth at the four texels around a pixel.
-vec4 photo_depths(photo shot, vec2 pixel)
+vec4 photo_depths(photo source, vec2 pixel)
 {
-    vec2 at = pixel * (shot.size.zw / shot.size.xy);
+    vec2 at = pixel * (source.size.zw / source.size.xy);
     // Clamps to the part of the slot that the photograph covers.
-    at = clamp(at, vec2(0.5), shot.size.zw - 0.5);
-    float slot = shot.eye.w;
+    at = clamp(at, vec2(0.5), source.size.zw - 0.5);
+    float slot = source.eye.w;
     return textureGather(photo_depth, vec3(at * (1.0 / slot_size.zw), slot));
 }
 
@@ -77,26 +77,26 @@ vec4 photo_complete(vec4 texel, vec2 pixel, float slot, float lod)
 
 // Where photo_color shows a pixel of the photograph, in texels of level 0. PACKED: photo_color has
 // one layer, in which parts of the photographs lie side by side.
-vec2 photo_place(photo shot, vec2 pixel)
+vec2 photo_place(photo source, vec2 pixel)
 {
 #ifdef PACKED
-    return clamp(pixel + shot.offset.xy, shot.region.xy, shot.region.zw);
+    return clamp(pixel + source.offset.xy, source.region.xy, source.region.zw);
 #else
     return pixel;
 #endif
 }
 
-vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
+vec4 photo_bilinear(photo source, vec2 pixel, float mip)
 {
-    vec2 place = photo_place(shot, pixel);
-    vec4 texel = photo_texel(place * (1.0 / slot_size.xy), shot.gain.w, mip);
-    return photo_complete(texel, pixel, shot.gain.w, mip);
+    vec2 place = photo_place(source, pixel);
+    vec4 texel = photo_texel(place * (1.0 / slot_size.xy), source.gain.w, mip);
+    return photo_complete(texel, pixel, source.gain.w, mip);
 }
 
 #include "gather/bicubic.glsl"
 
-vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
+vec4 photo_bicubic(photo source, vec2 pixel, float mip)
 {
-    vec4 texel = bicubic(photo_place(shot, pixel), shot.gain.w, slot_size.xy, mip);
-    return photo_complete(texel, pixel, shot.gain.w, floor(mip + 0.5));
+    vec4 texel = bicubic(photo_place(source, pixel), source.gain.w, slot_size.xy, mip);
+    return photo_complete(texel, pixel, source.gain.w, floor(mip + 0.5));
 }

@@ -63,30 +63,30 @@ void insert(sight s, inout ranking r)
 // Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
 const float GUESS_SURE_LEAST = 0.1;
 
-void consider(int i, photo shot, spot s, inout ranking r)
+void consider(int i, photo source, spot s, inout ranking r)
 {
     vec2 pixel;
     float z;
-    bool inside = photo_project(shot, s.p, pixel, z);
-    vec4 seen = photo_depths(shot, pixel);
-    float penalty = photo_penalty(shot, s.p);
+    bool inside = photo_project(source, s.p, pixel, z);
+    vec4 seen = photo_depths(source, pixel);
+    float penalty = photo_penalty(source, s.p);
     // Estimated depth is tested even if the method has no visibility test: it is behind everything.
-    float sees = is_guess(s) ? photo_unhidden_share(shot, seen, z) * photo_past_share(shot, seen, z) *
+    float sees = is_guess(s) ? photo_unhidden_share(source, seen, z) * photo_past_share(source, seen, z) *
                                    photo_beside(penalty)
-                             : visible_surface(shot, Point(s.p, vec3(0.0), false), seen, z);
+                             : visible_surface(source, Point(s.p, vec3(0.0), false), seen, z);
     penalty = is_guess(s) ? penalty : photo_surface_penalty(penalty);
 #ifdef RESTS
     vec2 place;
-    bool backdrop = photo_backdrop(shot, s.p, place) && is_guess(s);
+    bool backdrop = photo_backdrop(source, s.p, place) && is_guess(s);
     inside = inside || backdrop;
     pixel = backdrop ? place : pixel;
     z = backdrop ? s.p.z : z;
     sees = backdrop ? 1.0 : sees;
     penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
 #endif
-    float sure = sees * photo_border(shot, pixel, is_guess(s));
+    float sure = sees * photo_border(source, pixel, is_guess(s));
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
-    insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, s.p.z)), r);
+    insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z)), r);
 }
 
 // One photograph's colour and its weight.
@@ -151,9 +151,9 @@ void main()
     // The condition comes last: with a condition at the beginning, a software renderer runs the
     // loop's body once more before it ends.
     do {
-        photo shot = photo_at(max(i, 0));
+        photo source = photo_at(max(i, 0));
         for (int k = 0; k < 4; k++)
-            consider(i, shot, spots[k], rankings[k]);
+            consider(i, source, spots[k], rankings[k]);
         c++;
         i = c < asked ? chosen[list + c] : -1;
     } while (i >= 0);

@@ -56,21 +56,21 @@ struct opinion {
     float past;    // weight of the photographs that see a surface behind the point
 };
 
-void ask(photo shot, bool listed, vec3 p, inout opinion o)
+void ask(photo source, bool listed, vec3 p, inout opinion o)
 {
     vec2 pixel;
     float z;
-    bool inside = photo_project(shot, p, pixel, z) && listed;
-    vec4 seen = photo_depths(shot, pixel);
+    bool inside = photo_project(source, p, pixel, z) && listed;
+    vec4 seen = photo_depths(source, pixel);
     vec4 behind = clamp((seen - z) * (1.0 / (z * opt.depth_tolerance)) - 1.0, 0.0, 1.0);
-    float past = dot(behind, vec4(0.25)), penalty = photo_penalty(shot, p);
-    float weight = photo_border(shot, pixel, false) * photo_beside(penalty) / (penalty + 0.05);
+    float past = dot(behind, vec4(0.25)), penalty = photo_penalty(source, p);
+    float weight = photo_border(source, pixel, false) * photo_beside(penalty) / (penalty + 0.05);
     weight = inside ? weight : 0.0;
-    float open = weight * photo_unhidden_share(shot, seen, z), counts = open * (1.0 - past);
+    float open = weight * photo_unhidden_share(source, seen, z), counts = open * (1.0 - past);
     // A texel of this level is as large as half a cell.
-    float mip = photo_mip(shot, z, p.z) + log2(0.5 * float(GUESS_CELL));
-    vec3 color = photo_bilinear(shot, pixel, floor(min(mip, last_mip) + 0.5)).rgb;
-    color = sqrt(photo_aligned(shot, pixel, color));
+    float mip = photo_mip(source, z, p.z) + log2(0.5 * float(GUESS_CELL));
+    vec3 color = photo_bilinear(source, pixel, floor(min(mip, last_mip) + 0.5)).rgb;
+    color = sqrt(photo_aligned(source, pixel, color));
     o.sum += vec4(color, 1.0) * counts;
     o.squares += dot(color, color) * counts;
     o.weights += counts * counts;
@@ -114,9 +114,9 @@ void main()
             opinions[n] = opinion(vec4(0.0), 0.0, 0.0, 0.0);
         int c = 0, i = chosen[list];
         do { // the condition comes last: see tiled.comp
-            photo shot = photo_at(max(i, 0));
+            photo source = photo_at(max(i, 0));
             for (int n = 0; n < AT_ONCE; n++)
-                ask(shot, i >= 0,
+                ask(source, i >= 0,
                     ray / max(estimate * plane_share(float(first + n)), least_inverse),
                     opinions[n]);
             c++;

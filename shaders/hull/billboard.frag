@@ -19,9 +19,9 @@ layout(location = 0) out vec4 painted;
 #ifdef TABLES
 // The paper stores the projection of every voxel's centre in a 3D texture of 8-bit channels, which
 // the hardware interpolates. This gives the same without the texture.
-bool project(photo shot, vec3 p, out vec2 pixel, out float z)
+bool project(photo source, vec3 p, out vec2 pixel, out float z)
 {
-    bool inside = photo_project(shot, p, pixel, z);
+    bool inside = photo_project(source, p, pixel, z);
     vec4 ph = vec4(p, 1.0);
     vec3 at = vec3(dot(local_from_view[0], ph), dot(local_from_view[1], ph),
                    dot(local_from_view[2], ph));
@@ -37,34 +37,34 @@ bool project(photo shot, vec3 p, out vec2 pixel, out float z)
         vec3 weight = mix(1.0 - share, share, corner);
         vec2 there;
         float depth;
-        photo_project(shot, from, there, depth);
-        vec2 stored = floor(clamp(there / shot.size.xy, 0.0, 1.0) * steps + 0.5) / steps;
+        photo_project(source, from, there, depth);
+        vec2 stored = floor(clamp(there / source.size.xy, 0.0, 1.0) * steps + 0.5) / steps;
         sum += weight.x * weight.y * weight.z * stored;
     }
-    pixel = sum * shot.size.xy;
+    pixel = sum * source.size.xy;
     return inside;
 }
 #else
-bool project(photo shot, vec3 p, out vec2 pixel, out float z)
+bool project(photo source, vec3 p, out vec2 pixel, out float z)
 {
-    return photo_project(shot, p, pixel, z);
+    return photo_project(source, p, pixel, z);
 }
 #endif
 
 // Colour, and alpha: how far the pixel is the subject's. confidence: in the colour, by exposure.
 vec4 picture_of(uint row, out float confidence)
 {
-    photo shot = photo_at(int(row));
+    photo source = photo_at(int(row));
     vec2 pixel;
     float z;
     confidence = 0.0;
-    if (!project(shot, in_camera, pixel, z))
+    if (!project(source, in_camera, pixel, z))
         return vec4(0.0);
-    float mip = photo_mip(shot, z, in_camera.z);
-    float alpha = textureLod(photo_mask, vec3(pixel / slot_size.xy, shot.eye.w), mip).r;
-    vec4 color = photo_sample(shot, pixel, mip);
+    float mip = photo_mip(source, z, in_camera.z);
+    float alpha = textureLod(photo_mask, vec3(pixel / slot_size.xy, source.eye.w), mip).r;
+    vec4 color = photo_sample(source, pixel, mip);
 #ifdef RADIANCE
-    confidence = color.a > 0.0 ? confidence_alone(shot, color) : 0.0;
+    confidence = color.a > 0.0 ? confidence_alone(source, color) : 0.0;
 #else
     confidence = 1.0;
 #endif

@@ -27,15 +27,15 @@ void main()
     }
     for (int i = 0; i < photos; i++) {
         float least = NOT_SEEN, seen = 0.0;
-        photo shot = photo_at(i);
+        photo source = photo_at(i);
         for (int s = 0; s < 9; s++) {
             vec2 pixel;
             float z;
-            if (!(points[s].z > 0.0) || !photo_project(shot, points[s], pixel, z))
+            if (!(points[s].z > 0.0) || !photo_project(source, points[s], pixel, z))
                 continue;
-            float share = photo_unhidden_share(shot, photo_depths(shot, pixel), z);
+            float share = photo_unhidden_share(source, photo_depths(source, pixel), z);
             float hidden = share > 0.9 ? 1.0 : 8.0;
-            least = min(least, photo_penalty(shot, points[s]) * hidden);
+            least = min(least, photo_penalty(source, points[s]) * hidden);
             seen += 1.0 / hidden;
         }
         least = seen == 0.0 ? NOT_SEEN : least * (1.0 + 1.0 / max(seen, 0.1));

@@ -25,20 +25,20 @@ const float GUESS_SURE_LEAST = 0.1;
 
 sight consider(int i, vec3 p, bool guessed)
 {
-    photo shot = photo_at(i);
+    photo source = photo_at(i);
     vec2 pixel;
     float z;
-    if (!photo_project(shot, p, pixel, z))
+    if (!photo_project(source, p, pixel, z))
         return sight(NOT_SEEN, i, vec2(0.0), 0.0);
-    vec4 seen = photo_depths(shot, pixel);
-    float penalty = photo_penalty(shot, p);
-    float sees = guessed ? photo_unhidden_share(shot, seen, z) * photo_past_share(shot, seen, z) *
-                              photo_beside(penalty)
-                         : photo_seen_share(seen, z);
+    vec4 seen = photo_depths(source, pixel);
+    float penalty = photo_penalty(source, p);
+    float sees = guessed ? photo_unhidden_share(source, seen, z) *
+                             photo_past_share(source, seen, z) * photo_beside(penalty)
+                       : photo_seen_share(seen, z);
     penalty = guessed ? penalty : photo_surface_penalty(penalty);
-    float sure = sees * photo_border(shot, pixel, guessed);
+    float sure = sees * photo_border(source, pixel, guessed);
     bool paints = sees > (guessed ? GUESS_SURE_LEAST : 1e-4);
-    return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(shot, z, p.z));
+    return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, p.z));
 }
 
 vec4 look(sight one, float least, float limit, bool guessed)
@@ -47,8 +47,8 @@ vec4 look(sight one, float least, float limit, bool guessed)
         return vec4(0.0);
     // Falls to zero where the first photograph left out is as good: nothing pops.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
-    photo shot = photo_at(one.index);
-    vec3 color = photo_sample(shot, one.pixel, one.mip).rgb;
+    photo source = photo_at(one.index);
+    vec3 color = photo_sample(source, one.pixel, one.mip).rgb;
     return vec4(color, pow(least / one.penalty, guessed ? opt.guess_sharpness : opt.sharpness) * fade);
 }
 

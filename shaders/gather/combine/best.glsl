@@ -11,9 +11,9 @@ void combine_begin(ivec2 at)
     best = imageLoad(accumulated, at);
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
-    vec3 color = photo_sample(shot, a.pixel, a.mip).rgb;
+    vec3 color = photo_sample(source, a.pixel, a.mip).rgb;
     best = a.weight > best.a ? vec4(color, 1.0) * a.weight : best;
 }
 

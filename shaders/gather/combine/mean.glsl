@@ -12,9 +12,9 @@ void combine_begin(ivec2 at)
     sum = imageLoad(accumulated, at);
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
-    vec3 color = photo_sample(shot, a.pixel, a.mip).rgb;
+    vec3 color = photo_sample(source, a.pixel, a.mip).rgb;
     sum += a.weight > 0.0 ? vec4(color, 1.0) * a.weight : vec4(0.0);
 }
 

@@ -20,9 +20,9 @@ void combine_begin(ivec2 at)
     share = any_sample ? imageLoad(state_0, at).x : 1.0;
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
-    vec3 sample_color = photo_sample(shot, a.pixel, a.mip).rgb;
+    vec3 sample_color = photo_sample(source, a.pixel, a.mip).rgb;
     bool counts = a.weight > 0.0;
     vec3 mixed = clamp(mix(color, sample_color, share), 0.0, 1.0);
     vec3 stored = srgb_decode(floor(srgb_encode(mixed) * 255.0 + 0.5) / 255.0);

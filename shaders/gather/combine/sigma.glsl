@@ -22,9 +22,9 @@ void combine_begin(ivec2 at)
     squares = imageLoad(state_1, at).rgb;
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
-    vec3 value = srgb_encode(photo_sample(shot, a.pixel, a.mip).rgb);
+    vec3 value = srgb_encode(photo_sample(source, a.pixel, a.mip).rgb);
     bool sees = a.weight > 0.0;
     sum += sees ? vec4(value, 1.0) : vec4(0.0);
     squares += sees ? value * value : vec3(0.0);
@@ -50,9 +50,9 @@ void combine_begin(ivec2 at)
     sum = imageLoad(accumulated, at);
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
-    vec3 color = photo_sample(shot, a.pixel, a.mip).rgb;
+    vec3 color = photo_sample(source, a.pixel, a.mip).rgb;
     bool inlier = all(lessThanEqual(abs(srgb_encode(color) - mean), allowed));
     sum += inlier && a.weight > 0.0 ? vec4(color, 1.0) * a.weight : vec4(0.0);
 }

@@ -19,7 +19,7 @@ void combine_begin(ivec2 at)
     best = float[](first.x, first.y, first.z, first.w, imageLoad(state_1, at).x);
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
     float weight = a.weight;
     for (int k = 0; k < KEPT; k++) {
@@ -46,9 +46,9 @@ void combine_begin(ivec2 at)
     sum = imageLoad(accumulated, at);
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
-    vec3 color = photo_sample(shot, a.pixel, a.mip).rgb;
+    vec3 color = photo_sample(source, a.pixel, a.mip).rgb;
     bool counts = a.weight > 0.0 && a.weight >= limit;
     sum += counts ? vec4(color, 1.0) * (1.0 + TRACE - limit / a.weight) : vec4(0.0);
 }

@@ -2,9 +2,9 @@
 #include "gather/radiance/trust.glsl"
 
 // Squared relative error of a photograph due to noise; inverse: 1 / radiance.
-float noise_of(photo shot, vec3 inverse)
+float noise_of(photo source, vec3 inverse)
 {
-    return relative_variance(shot.gain.rgb * inverse, shot.noise);
+    return relative_variance(source.gain.rgb * inverse, source.noise);
 }
 
 // A geometric weight is also an inverse variance, in units of 1 / model_variance. Errors of the
@@ -20,7 +20,7 @@ float confident_weight(float weight, float clip, float noise)
 }
 
 // texel: of photo_sample. The noise is that of the light that the sample itself shows.
-float confidence_alone(photo shot, vec4 texel)
+float confidence_alone(photo source, vec4 texel)
 {
-    return confident_weight(1.0, texel.a, noise_of(shot, 1.0 / texel.rgb));
+    return confident_weight(1.0, texel.a, noise_of(source, 1.0 / texel.rgb));
 }

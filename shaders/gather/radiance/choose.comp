@@ -23,7 +23,7 @@ const float CLIPPED_SHARE = 0.1; // least score of a photograph, fraction of its
 float score(int i, ivec2 tile)
 {
     float most = 0.0;
-    photo shot = photo_at(i);
+    photo source = photo_at(i);
     for (int k = 0; k < PROBES_X * PROBES_Y; k++) {
         ivec2 at = tile * TILE + (2 * ivec2(k % PROBES_X, k / PROBES_X) + 1) *
                                      (TILE / (2 * ivec2(PROBES_X, PROBES_Y)));
@@ -33,10 +33,10 @@ float score(int i, ivec2 tile)
             continue;
         Point point = Point(surface_point(at, abs(depth)), imageLoad(view_normal, at).xyz,
                             depth < 0.0);
-        Answer a = ask(shot, i, point, true);
-        Sample s = sample_of(shot, a, point.guessed);
+        Answer a = ask(source, i, point, true);
+        Sample s = sample_of(source, a, point.guessed);
         // A clipped sample still reveals samples that are too dark (radiance/merge.glsl).
-        most = max(most, max(weight_alone(shot, s), CLIPPED_SHARE * s.weight));
+        most = max(most, max(weight_alone(source, s), CLIPPED_SHARE * s.weight));
     }
     return most;
 }

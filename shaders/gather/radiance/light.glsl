@@ -3,7 +3,7 @@
 
 // Squared share of a sample that shows the surface at z. It is squared since an occluder may be a
 // thousand times as bright.
-float visible_surface(photo shot, Point at, vec4 seen, float z)
+float visible_surface(photo source, Point at, vec4 seen, float z)
 {
     vec4 same = clamp(2.0 - abs(seen - z) / (z * opt.depth_tolerance), 0.0, 1.0);
     float share = dot(mix(same, vec4(opt.unknown_trust), lessThanEqual(seen, vec4(0.0))),
@@ -11,7 +11,7 @@ float visible_surface(photo shot, Point at, vec4 seen, float z)
     return share * share;
 }
 
-float visible_guess(photo shot, Point at, vec4 seen, float z)
+float visible_guess(photo source, Point at, vec4 seen, float z)
 {
-    return photo_unhidden_share(shot, seen, z);
+    return photo_unhidden_share(source, seen, z);
 }

@@ -12,10 +12,11 @@ void combine_begin(ivec2 at)
     sum = imageLoad(accumulated, at);
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
-    vec4 texel = photo_sample(shot, a.pixel, a.mip);
-    float weight = a.weight > 0.0 && texel.a > 0.0 ? a.weight * confidence_alone(shot, texel) : 0.0;
+    vec4 texel = photo_sample(source, a.pixel, a.mip);
+    float weight = a.weight > 0.0 && texel.a > 0.0 ? a.weight * confidence_alone(source, texel)
+                                                   : 0.0;
     sum += weight > 0.0 ? vec4(texel.rgb, 1.0) * weight : vec4(0.0);
 }
 

@@ -45,7 +45,7 @@ void put(Sample s, float weight)
         samples[k].weight = here ? s.weight : samples[k].weight;
         samples[k].pixel = here ? s.pixel : samples[k].pixel;
         samples[k].mip = here ? s.mip : samples[k].mip;
-        samples[k].shot = here ? s.shot : samples[k].shot;
+        samples[k].source = here ? s.source : samples[k].source;
         weights[k] = here ? weight : weights[k];
     }
 }
@@ -91,13 +91,13 @@ int photo_next(int before)
     return i;
 }
 
-void combine_add(photo shot, Answer a)
+void combine_add(photo source, Answer a)
 {
     bool known = false;
     EACH_SAMPLE(k)
-        known = known || listed[k] == a.shot;
-    Sample s = sample_of(shot, a, on_guess);
-    float weight = known && other >= 0 ? 0.0 : weight_alone(shot, s);
+        known = known || listed[k] == a.source;
+    Sample s = sample_of(source, a, on_guess);
+    float weight = known && other >= 0 ? 0.0 : weight_alone(source, s);
     put(s, weight);
     heaviest = max(heaviest, weight);
 }
@@ -150,7 +150,7 @@ Sample sample_at(int one)
         s.weight = here ? samples[k].weight : s.weight;
         s.pixel = here ? samples[k].pixel : s.pixel;
         s.mip = here ? samples[k].mip : s.mip;
-        s.shot = here ? samples[k].shot : s.shot;
+        s.source = here ? samples[k].source : s.source;
     }
     return s;
 }
@@ -170,7 +170,7 @@ void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
     do { // for doubtful samples only, since it reads a texel
         int one = findLSB(doubtful); // -1: none
         Sample s = sample_at(one);
-        float more = unrest(photo_at(s.shot), s);
+        float more = unrest(photo_at(s.source), s);
         EACH_SAMPLE(k) {
             float excess = off[k] / (allowed[k] + more);
             weights[k] *= k == one ? 1.0 / (1.0 + excess * excess) : 1.0;
@@ -217,7 +217,7 @@ vec3 weigh(bool guessed)
     vec3 level = max(median_color(), least_radiance), inverse = 1.0 / level;
     float noise[ORL_RADIANCE_KEPT];
     EACH_SAMPLE(k) {
-        noise[k] = noise_of(photo_at(samples[k].shot), inverse);
+        noise[k] = noise_of(photo_at(samples[k].source), inverse);
         weights[k] = total_weight(samples[k], noise[k]);
     }
     if (opt.ghosts > 0.0)
@@ -251,7 +251,7 @@ vec3 blend(float total)
         float weight = 0.0;
         EACH_SAMPLE(k)
             weight = k == one ? weights[k] : weight;
-        sum += photo_sharper(photo_at(s.shot), s.pixel, s.mip, s.color) * weight;
+        sum += photo_sharper(photo_at(s.source), s.pixel, s.mip, s.color) * weight;
         sharp &= sharp - 1;
     } while (sharp != 0);
     return sum;
@@ -266,7 +266,7 @@ float blur_of(vec3 p, float total)
     int best = 0;
     EACH_SAMPLE(k) {
         vote += vec4(sqrt(samples[k].color), 1.0) * sqrt(weights[k]);
-        best = weights[k] > heaviest ? samples[k].shot : best;
+        best = weights[k] > heaviest ? samples[k].source : best;
         heaviest = max(heaviest, weights[k]);
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);

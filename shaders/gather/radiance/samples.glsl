@@ -11,7 +11,7 @@ struct Sample {
     float weight; // geometric; 0: the photograph does not see the point
     vec2 pixel;
     float mip;
-    int shot;     // the photograph
+    int source;   // the photograph
 };
 
 float total_weight(Sample s, float noise)
@@ -28,22 +28,22 @@ float stops2(vec3 a, vec3 b)
 
 // Variation of light around a sample in its photograph, squared stops: the change that a
 // misplacement of one or two pixels may cause. Beside clipped pixels it is unknown, thus large.
-float unrest(photo shot, Sample s)
+float unrest(photo source, Sample s)
 {
-    vec4 around = photo_sample(shot, s.pixel, s.mip + 3.0);
+    vec4 around = photo_sample(source, s.pixel, s.mip + 3.0);
     return 16.0 * stops2(s.color, around.rgb) + 64.0 * (1.0 - around.a);
 }
 
 // Reads the colours for an answer. The weight is in units of that of a photograph whose geometric
 // error equals the model error: at an angle of a tenth of a radian, or farther by a tenth of the
 // viewing distance.
-Sample sample_of(photo shot, Answer a, bool guessed)
+Sample sample_of(photo source, Answer a, bool guessed)
 {
     Sample s;
-    s.shot = a.shot;
+    s.source = a.source;
     s.pixel = a.pixel;
     s.mip = a.mip;
-    vec4 texel = photo_sample(shot, a.pixel, a.mip);
+    vec4 texel = photo_sample(source, a.pixel, a.mip);
     s.color = texel.rgb;
     s.clip = texel.a;
     s.weight = texel.a > 0.0 ? a.weight / weight_unit(guessed) : 0.0;
@@ -51,7 +51,7 @@ Sample sample_of(photo shot, Answer a, bool guessed)
 }
 
 // Weight of a sample by itself: the noise is that of the light that the sample itself shows.
-float weight_alone(photo shot, Sample s)
+float weight_alone(photo source, Sample s)
 {
-    return total_weight(s, noise_of(shot, 1.0 / s.color));
+    return total_weight(s, noise_of(source, 1.0 / s.color));
 }

@@ -5,31 +5,31 @@
 // Brings linear colour to the scene's exposure and white balance and undoes the vignetting. The
 // mapping is linear except for the brightest colours. White stays white, since a clipped photograph
 // was at least that bright, and cameras compress highlights. src/render/reexpose.c inverts it.
-vec3 photo_aligned(photo shot, vec2 pixel, vec3 color)
+vec3 photo_aligned(photo source, vec2 pixel, vec3 color)
 {
-    vec2 off = pixel - shot.focal.zw;
-    vec3 lens = shot.lens.xyz;
-    float r2 = dot(off, off) * shot.lens.w;
+    vec2 off = pixel - source.focal.zw;
+    vec3 lens = source.lens.xyz;
+    float r2 = dot(off, off) * source.lens.w;
     float light = 1.0 + r2 * (lens.x + r2 * (lens.y + r2 * lens.z));
-    vec3 gain = shot.gain.rgb / max(light, 0.1);
+    vec3 gain = source.gain.rgb / max(light, 0.1);
     // Mixes the first and the third power of the colour such that the mapping stays increasing.
     vec3 more = gain - 1.0, third = min(more, vec3(0.5)), c = min(color, vec3(1.0));
     return gain * color / (1.0 + c * (more - third + third * c * c));
 }
 
 // Colour, and full confidence.
-vec4 photo_sample(photo shot, vec2 pixel, float mip)
+vec4 photo_sample(photo source, vec2 pixel, float mip)
 {
     // Each filter is a program of its own, since software renderers run both sides of a condition.
 #ifdef BICUBIC
-    vec3 color = photo_bicubic(shot, pixel, mip).rgb;
+    vec3 color = photo_bicubic(source, pixel, mip).rgb;
 #else
     // Mip levels are interpolated only in a narrow range, where a software renderer reads two
     // levels.
     // Elsewhere it reads one, which is more often the sharper one.
     float level = floor(mip);
     level += clamp(5.0 * (mip - level) - 3.5, 0.0, 1.0);
-    vec3 color = photo_bilinear(shot, pixel, level).rgb;
+    vec3 color = photo_bilinear(source, pixel, level).rgb;
 #endif
-    return vec4(photo_aligned(shot, pixel, color), 1.0);
+    return vec4(photo_aligned(source, pixel, color), 1.0);
 }

@@ -1,11 +1,11 @@
 // Every photograph sees every point.
 
-float visible_surface(photo shot, Point at, vec4 seen, float z)
+float visible_surface(photo source, Point at, vec4 seen, float z)
 {
     return 1.0;
 }
 
-float visible_guess(photo shot, Point at, vec4 seen, float z)
+float visible_guess(photo source, Point at, vec4 seen, float z)
 {
     return 1.0;
 }

@@ -15,14 +15,14 @@ bool photo_lit(vec4 seen, float z)
                      seen.z <= 0.0 || seen.z > nearest, seen.w <= 0.0 || seen.w > nearest));
 }
 
-float visible_surface(photo shot, Point at, vec4 seen, float z)
+float visible_surface(photo source, Point at, vec4 seen, float z)
 {
-    vec3 sight = at.p - shot.eye.xyz;
+    vec3 sight = at.p - source.eye.xyz;
     bool faces = dot(at.normal, sight) < -TANGENT * length(sight);
     return faces && photo_lit(seen, z) ? 1.0 : 0.0;
 }
 
-float visible_guess(photo shot, Point at, vec4 seen, float z)
+float visible_guess(photo source, Point at, vec4 seen, float z)
 {
     // No part of the subject may paint what lies behind it.
     float nearest = z - opt.depth_tolerance * z;

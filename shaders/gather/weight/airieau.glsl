@@ -6,9 +6,9 @@ const float GUESS_POWER = 8.0;
 // Scale of a weight before it is raised to GUESS_POWER, so that the power fits a float.
 const float GUESS_SCALE = 0.03;
 
-float weight_of(photo shot, Point at)
+float weight_of(photo source, Point at)
 {
-    vec3 to_photo = shot.eye.xyz - at.p;
+    vec3 to_photo = source.eye.xyz - at.p;
     float view_distance = length(at.p), photo_distance = length(to_photo);
     float cosine = dot(-at.p, to_photo) / (view_distance * photo_distance);
     float delta = abs(view_distance - photo_distance) / view_distance + opt.distance_floor;

@@ -1,6 +1,6 @@
 // Every photograph that sees the point has the same weight: Li 2003, equation 1.
 
-float weight_of(photo shot, Point at)
+float weight_of(photo source, Point at)
 {
     return 1.0;
 }

@@ -1,9 +1,9 @@
 // Weight from the penalty of the unstructured lumigraph (Buehler 2001): a power of its inverse.
 #include "gather/penalty.glsl"
 
-float weight_of(photo shot, Point at)
+float weight_of(photo source, Point at)
 {
-    float penalty = photo_penalty(shot, at.p);
+    float penalty = photo_penalty(source, at.p);
     float share = at.guessed ? 0.1 / penalty
                           : photo_surface_penalty(0.1) / photo_surface_penalty(penalty);
     // The bounds keep sums and products finite, and the weight of every photograph above zero.

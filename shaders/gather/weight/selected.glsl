@@ -1,8 +1,8 @@
 // The weight that the selection gives to the whole photograph: Orzan 2005, 4.3.2.
 
-float weight_of(photo shot, Point at)
+float weight_of(photo source, Point at)
 {
-    return shot.selected.x;
+    return source.selected.x;
 }
 
 float weight_unit(bool guessed)

@@ -42,15 +42,15 @@ int photo_listed(uvec2 list, int c)
 #include "gather/projection.glsl"
 
 // The photograph's own depth at the four texels around a pixel.
-vec4 photo_depths(photo shot, vec2 pixel)
+vec4 photo_depths(photo source, vec2 pixel)
 {
-    vec2 at = clamp(pixel * shot.size.zw / shot.size.xy, vec2(0.5), shot.size.zw - 0.5);
-    ivec2 low = ivec2(floor(at - 0.5)), high = min(low + 1, ivec2(shot.size.zw) - 1);
-    int slot = int(shot.eye.w);
-    return shot.file.y * vec4(texelFetch(photo_depth, ivec3(low, slot), 0).x,
-                              texelFetch(photo_depth, ivec3(high.x, low.y, slot), 0).x,
-                              texelFetch(photo_depth, ivec3(low.x, high.y, slot), 0).x,
-                              texelFetch(photo_depth, ivec3(high, slot), 0).x);
+    vec2 at = clamp(pixel * source.size.zw / source.size.xy, vec2(0.5), source.size.zw - 0.5);
+    ivec2 low = ivec2(floor(at - 0.5)), high = min(low + 1, ivec2(source.size.zw) - 1);
+    int slot = int(source.eye.w);
+    return source.file.y * vec4(texelFetch(photo_depth, ivec3(low, slot), 0).x,
+                                texelFetch(photo_depth, ivec3(high.x, low.y, slot), 0).x,
+                                texelFetch(photo_depth, ivec3(low.x, high.y, slot), 0).x,
+                                texelFetch(photo_depth, ivec3(high, slot), 0).x);
 }
 
 vec4 photo_texel(vec2 at, float slot, float lod)
@@ -58,14 +58,14 @@ vec4 photo_texel(vec2 at, float slot, float lod)
     return textureLod(photo_color, vec3(at, slot), lod);
 }
 
-vec4 photo_bilinear(photo shot, vec2 pixel, float mip)
+vec4 photo_bilinear(photo source, vec2 pixel, float mip)
 {
-    return photo_texel(pixel / slot_size, shot.eye.w, mip);
+    return photo_texel(pixel / slot_size, source.eye.w, mip);
 }
 
 #include "gather/bicubic.glsl"
 
-vec4 photo_bicubic(photo shot, vec2 pixel, float mip)
+vec4 photo_bicubic(photo source, vec2 pixel, float mip)
 {
-    return bicubic(pixel, shot.eye.w, slot_size, mip);
+    return bicubic(pixel, source.eye.w, slot_size, mip);
 }
