@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "eval/judges.h"
-#include "render/contribution.h"
+#include "render/importance.h"
 #include "scene/nearest_points.h"
 #include "scene/point_radii.h"
 
@@ -94,22 +94,22 @@ static enum orl_result draw_views(struct orl_gpu *gpu, const struct orl_scene *s
                                   const struct views *views, const struct orl_progress *progress,
                                   struct ranker *r)
 {
-    struct orl_contribution *contribution = NULL;
+    struct orl_importance *importance = NULL;
     r->drawn = orl_array(orl_gpu_log(gpu), views->count, sizeof *r->drawn);
-    enum orl_result result = r->drawn ? orl_contribution_create(gpu, scene, &contribution)
+    enum orl_result result = r->drawn ? orl_importance_create(gpu, scene, &importance)
                                       : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < views->count; i++) {
         struct orl_nearest_points *drawn = &r->drawn[i];
         orl_progress_report(progress, "points", (double)i, (double)views->count, NULL);
         result = orl_progress_cancelled(progress)
                      ? ORL_ERR_CANCELLED
-                     : orl_contribution_draw(contribution, &views->items[i], drawn);
+                     : orl_importance_draw(importance, &views->items[i], drawn);
         for (size_t k = 0;
              result == ORL_OK && k < (size_t)drawn->width * (size_t)drawn->height; k++)
             if (drawn->point[k] != UINT32_MAX)
                 r->ranking->pixels[drawn->point[k]]++;
     }
-    orl_contribution_destroy(&contribution);
+    orl_importance_destroy(&importance);
     return result;
 }
 
