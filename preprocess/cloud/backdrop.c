@@ -12,7 +12,7 @@
 enum {
     SIDE = 256,        // longer side of the reduced photographs, pixels
     SHOTS_LEAST = 5,   // fewer photographs may agree by chance
-    SHOTS_MAX = 24,
+    PHOTOS_MAX = 24,
     STEP = 2,          // every STEP-th row and column is compared
     SAMPLES_LEAST = 500, // of a photograph, on average, or else nothing is known
     BLUR_TAPS = 121,
@@ -23,7 +23,7 @@ static const double BLUR_SIGMA = 30;  // pixels; skies and vignetting vary more 
 static const double RESTS = 0.35, RESTS_BY = 0.2;
 
 // A training photograph at reduced size.
-struct shot {
+struct photo {
     struct orl_reduced reduced;
     struct orl_image detail; // luma minus its local mean over open pixels, as a fraction of white
 };
@@ -45,16 +45,16 @@ static enum orl_result open_luma(const struct orl_log *log, const struct orl_ima
     return result;
 }
 
-static enum orl_result read_shot(const struct orl_log *log, const struct orl_scene *scene, size_t i,
-                                 struct shot *shot)
+static enum orl_result read_photo(const struct orl_log *log, const struct orl_scene *scene,
+                                  size_t i, struct photo *photo)
 {
-    struct orl_image luma = {0}, mean = {0}, *detail = &shot->detail;
-    enum orl_result result = orl_reduced_read(log, scene, i, SIDE, &shot->reduced);
-    const struct orl_image *small = &shot->reduced.picture;
+    struct orl_image luma = {0}, mean = {0}, *detail = &photo->detail;
+    enum orl_result result = orl_reduced_read(log, scene, i, SIDE, &photo->reduced);
+    const struct orl_image *small = &photo->reduced.picture;
     if (result == ORL_OK)
         result = orl_image_init(log, detail, small->width, small->height, 1, ORL_PIXEL_F32);
     if (result == ORL_OK)
-        result = open_luma(log, small, shot->reduced.open, &luma);
+        result = open_luma(log, small, photo->reduced.open, &luma);
     if (result == ORL_OK)
         result = orl_bridge_blur(log, &luma, BLUR_TAPS, BLUR_SIGMA, &mean);
     for (int k = 0; result == ORL_OK && k < small->width * small->height; k++)
@@ -64,18 +64,18 @@ static enum orl_result read_shot(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// At most SHOTS_MAX of the training photographs, evenly chosen.
-static enum orl_result read_shots(const struct orl_log *log, const struct orl_scene *scene,
-                                  struct shot *shots, int *count)
+// At most PHOTOS_MAX of the training photographs, evenly chosen.
+static enum orl_result read_photos(const struct orl_log *log, const struct orl_scene *scene,
+                                   struct photo *photos, int *count)
 {
     size_t train = 0, seen = 0;
     for (size_t i = 0; i < scene->photo_count; i++)
         train += !scene->photos[i].test;
-    size_t step = (train + SHOTS_MAX - 1) / SHOTS_MAX;
+    size_t step = (train + PHOTOS_MAX - 1) / PHOTOS_MAX;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; train >= SHOTS_LEAST && result == ORL_OK && i < scene->photo_count; i++)
         if (!scene->photos[i].test && seen++ % step == 0)
-            result = read_shot(log, scene, i, &shots[(*count)++]);
+            result = read_photo(log, scene, i, &photos[(*count)++]);
     return result;
 }
 
@@ -98,7 +98,7 @@ static void turn(const struct orl_pose *from, const struct orl_pose *to, double 
 
 // Compares what `a` shows with what `b` shows at the same place of its camera frame, or with `far` in
 // the same direction of the world.
-static void compare(const struct shot *a, const struct shot *b, bool far, struct tally *tally)
+static void compare(const struct photo *a, const struct photo *b, bool far, struct tally *tally)
 {
     const struct orl_camera *from = &a->reduced.view.camera, *to = &b->reduced.view.camera;
     int width = a->detail.width, height = a->detail.height;
@@ -124,13 +124,13 @@ static void compare(const struct shot *a, const struct shot *b, bool far, struct
 }
 
 // Correlation of what photographs show beside the points; 0 if too little of it is in two of them.
-static double correlation(const struct shot *shots, int count, bool far)
+static double correlation(const struct photo *photos, int count, bool far)
 {
     struct tally tally = {0};
     for (int a = 0; a < count; a++)
         for (int b = 0; b < count; b++)
             if (a != b)
-                compare(&shots[a], &shots[b], far, &tally);
+                compare(&photos[a], &photos[b], far, &tally);
     return tally.samples < (long)SAMPLES_LEAST * count || !(tally.sum > 0)
                ? 0
                : 1 - tally.off / tally.sum;
@@ -138,24 +138,24 @@ static double correlation(const struct shot *shots, int count, bool far)
 
 enum orl_result orl_backdrop_find(const struct orl_log *log, struct orl_scene *scene)
 {
-    struct shot *shots = orl_array(log, SHOTS_MAX, sizeof *shots);
+    struct photo *photos = orl_array(log, PHOTOS_MAX, sizeof *photos);
     int count = 0;
     scene->backdrop_rests = false;
-    if (!shots)
+    if (!photos)
         return ORL_ERR_MEMORY;
-    enum orl_result result = read_shots(log, scene, shots, &count);
+    enum orl_result result = read_photos(log, scene, photos, &count);
     if (result == ORL_OK && count > 0) {
-        double rests = correlation(shots, count, false), far = correlation(shots, count, true);
+        double rests = correlation(photos, count, false), far = correlation(photos, count, true);
         scene->backdrop_rests = rests >= RESTS && rests >= far + RESTS_BY;
         orl_logf(log, ORL_LOG_INFO, "backdrop: %s; photographs correlate by %.2f at the same place "
                  "of the picture, by %.2f in the same direction",
                  scene->backdrop_rests ? "rests in the pictures" : "moves with the view", rests, far);
     }
     for (int i = 0; i < count; i++) {
-        orl_image_finish(&shots[i].detail);
-        orl_reduced_finish(&shots[i].reduced);
+        orl_image_finish(&photos[i].detail);
+        orl_reduced_finish(&photos[i].reduced);
     }
-    free(shots);
+    free(photos);
     return result;
 }
 

@@ -15,7 +15,7 @@
 
 enum {
     SIDE = 256,         // longer side of the reduced photographs, pixels
-    SHOTS_MAX = 24,
+    PHOTOS_MAX = 24,
     NEAR_MAX = 6,       // photographs that each one is compared with
     SPOTS = 12000,      // approximate number of pixels compared in a photograph
     SAMPLES_LEAST = 1000,
@@ -34,7 +34,7 @@ static const double SHIFT = 0.15, TILT = 0.02, SHIFT_MOST = 0.5, TILT_MOST = 0.0
 static const double SHIFT_SIGMA = 0.2, TILT_SIGMA = 0.03, COST = 0.01;
 
 // A training photograph at reduced size.
-struct shot {
+struct photo {
     struct orl_view view;
     int width, height;
     float *detail; // luma minus its local mean, as a fraction of white
@@ -50,71 +50,72 @@ struct move {
 
 struct search {
     const struct orl_ground *found;
-    struct shot shots[SHOTS_MAX];
-    int shot_count;
+    struct photo photos[PHOTOS_MAX];
+    int photo_count;
     double axes[2][3]; // the plane tilts about these
     double eye[3];     // mean camera centre of the photographs
 };
 
 static enum orl_result find_detail(const struct orl_log *log, const struct orl_image *small,
-                                   struct shot *shot)
+                                   struct photo *photo)
 {
     struct orl_image luma = {0}, blurred = {0};
-    size_t count = (size_t)shot->width * (size_t)shot->height;
+    size_t count = (size_t)photo->width * (size_t)photo->height;
     enum orl_result result =
-        orl_image_init(log, &luma, shot->width, shot->height, 1, ORL_PIXEL_F32);
+        orl_image_init(log, &luma, photo->width, photo->height, 1, ORL_PIXEL_F32);
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         const uint8_t *rgb = &small->u8[3 * i];
         luma.f32[i] = (0.299f * rgb[0] + 0.587f * rgb[1] + 0.114f * rgb[2]) / 255;
     }
     if (result == ORL_OK)
         result = orl_bridge_blur(log, &luma, BLUR_TAPS, BLUR_SIGMA, &blurred);
-    shot->detail = result == ORL_OK ? orl_array(log, count, sizeof *shot->detail) : NULL;
-    if (result == ORL_OK && !shot->detail)
+    photo->detail = result == ORL_OK ? orl_array(log, count, sizeof *photo->detail) : NULL;
+    if (result == ORL_OK && !photo->detail)
         result = ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
-        shot->detail[i] = luma.f32[i] - blurred.f32[i];
+        photo->detail[i] = luma.f32[i] - blurred.f32[i];
     orl_image_finish(&luma);
     orl_image_finish(&blurred);
     return result;
 }
 
 static enum orl_result reduce_depth(const struct orl_log *log, const struct orl_image *depth,
-                                    struct shot *shot)
+                                    struct photo *photo)
 {
-    shot->depth = orl_array(log, (size_t)shot->width * (size_t)shot->height, sizeof *shot->depth);
-    if (!shot->depth)
+    size_t pixels = (size_t)photo->width * (size_t)photo->height;
+    photo->depth = orl_array(log, pixels, sizeof *photo->depth);
+    if (!photo->depth)
         return ORL_ERR_MEMORY;
-    for (int y = 0; y < shot->height; y++)
-        for (int x = 0; x < shot->width; x++) {
-            int u = (2 * x + 1) * depth->width / (2 * shot->width);
-            int v = (2 * y + 1) * depth->height / (2 * shot->height);
-            shot->depth[y * shot->width + x] = fmaxf(depth->f32[v * depth->width + u], 0);
+    for (int y = 0; y < photo->height; y++)
+        for (int x = 0; x < photo->width; x++) {
+            int u = (2 * x + 1) * depth->width / (2 * photo->width);
+            int v = (2 * y + 1) * depth->height / (2 * photo->height);
+            photo->depth[y * photo->width + x] = fmaxf(depth->f32[v * depth->width + u], 0);
         }
     return ORL_OK;
 }
 
-static enum orl_result read_shot(const struct orl_log *log, const struct orl_scene *scene, size_t i,
-                                 const char *depth_path, struct shot *shot)
+static enum orl_result read_photo(const struct orl_log *log, const struct orl_scene *scene,
+                                  size_t i, const char *depth_path, struct photo *photo)
 {
     struct orl_image picture = {0}, small = {0}, depth = {0};
-    shot->view = scene->photos[i].view;
-    const struct orl_camera *c = &shot->view.camera;
+    photo->view = scene->photos[i].view;
+    const struct orl_camera *c = &photo->view.camera;
     double scale = fmin(1, (double)SIDE / (c->width > c->height ? c->width : c->height));
-    shot->width = (int)fmax(1, round(c->width * scale));
-    shot->height = (int)fmax(1, round(c->height * scale));
+    photo->width = (int)fmax(1, round(c->width * scale));
+    photo->height = (int)fmax(1, round(c->height * scale));
     char *path = orl_scene_photo_path(log, scene, i);
     enum orl_result result = path ? orl_picture_read(log, path, 3, &picture) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_bridge_resize(log, &picture, shot->width, shot->height, &small);
+        result = orl_bridge_resize(log, &picture, photo->width, photo->height, &small);
     if (result == ORL_OK)
-        result = find_detail(log, &small, shot);
+        result = find_detail(log, &small, photo);
     if (result == ORL_OK)
         result = orl_colmap_map_read(log, depth_path, &depth);
     if (result == ORL_OK)
-        result = reduce_depth(log, &depth, shot);
-    shot->view.camera = orl_camera_resized(c, shot->width, shot->height);
-    orl_pose_centre(&shot->view.cam_from_world, shot->eye);
+        result = reduce_depth(log, &depth, photo);
+    photo->view.camera = orl_camera_resized(c, photo->width, photo->height);
+    orl_pose_centre(&photo->view.cam_from_world, photo->eye);
     orl_image_finish(&picture);
     orl_image_finish(&small);
     orl_image_finish(&depth);
@@ -122,14 +123,14 @@ static enum orl_result read_shot(const struct orl_log *log, const struct orl_sce
     return result;
 }
 
-// Reads at most SHOTS_MAX of the training photographs with depth maps, evenly chosen.
-static enum orl_result read_shots(const struct orl_log *log, const struct orl_scene *scene,
-                                  struct search *s)
+// Reads at most PHOTOS_MAX of the training photographs with depth maps, evenly chosen.
+static enum orl_result read_photos(const struct orl_log *log, const struct orl_scene *scene,
+                                   struct search *s)
 {
     size_t train = 0, seen = 0;
     for (size_t i = 0; i < scene->photo_count; i++)
         train += !scene->photos[i].test;
-    size_t step = (train + SHOTS_MAX - 1) / SHOTS_MAX;
+    size_t step = (train + PHOTOS_MAX - 1) / PHOTOS_MAX;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         if (scene->photos[i].test || seen++ % step != 0)
@@ -139,7 +140,7 @@ static enum orl_result read_shots(const struct orl_log *log, const struct orl_sc
         if (!path)
             result = ORL_ERR_MEMORY;
         else if (orl_path_is_file(path)) // depth maps may have been deleted
-            result = read_shot(log, scene, i, path, &s->shots[s->shot_count++]);
+            result = read_photo(log, scene, i, path, &s->photos[s->photo_count++]);
         free(path);
     }
     return result;
@@ -147,21 +148,21 @@ static enum orl_result read_shots(const struct orl_log *log, const struct orl_sc
 
 static void find_near(struct search *s)
 {
-    for (int a = 0; a < s->shot_count; a++) {
-        struct shot *shot = &s->shots[a];
-        double away[SHOTS_MAX];
-        for (int b = 0; b < s->shot_count; b++) {
-            const double to[3] = {s->shots[b].eye[0] - shot->eye[0],
-                                  s->shots[b].eye[1] - shot->eye[1],
-                                  s->shots[b].eye[2] - shot->eye[2]};
+    for (int a = 0; a < s->photo_count; a++) {
+        struct photo *photo = &s->photos[a];
+        double away[PHOTOS_MAX];
+        for (int b = 0; b < s->photo_count; b++) {
+            const double to[3] = {s->photos[b].eye[0] - photo->eye[0],
+                                  s->photos[b].eye[1] - photo->eye[1],
+                                  s->photos[b].eye[2] - photo->eye[2]};
             away[b] = a == b ? INFINITY : orl_dot3(to, to);
         }
-        while (shot->near_count < NEAR_MAX && shot->near_count < s->shot_count - 1) {
+        while (photo->near_count < NEAR_MAX && photo->near_count < s->photo_count - 1) {
             int nearest = 0;
-            for (int b = 1; b < s->shot_count; b++)
+            for (int b = 1; b < s->photo_count; b++)
                 nearest = away[b] < away[nearest] ? b : nearest;
             away[nearest] = INFINITY;
-            shot->near[shot->near_count++] = nearest;
+            photo->near[photo->near_count++] = nearest;
         }
     }
 }
@@ -176,9 +177,9 @@ static void find_axes(struct search *s)
         u[k] = (k == least) - n[least] * n[k];
     orl_normalize3(u);
     orl_cross3(n, u, s->axes[1]);
-    for (int i = 0; i < s->shot_count; i++)
+    for (int i = 0; i < s->photo_count; i++)
         for (int k = 0; k < 3; k++)
-            s->eye[k] += s->shots[i].eye[k] / s->shot_count;
+            s->eye[k] += s->photos[i].eye[k] / s->photo_count;
 }
 
 static struct orl_ground moved(const struct search *s, const struct move *move)
@@ -197,22 +198,22 @@ static struct orl_ground moved(const struct search *s, const struct move *move)
 
 // Reads the detail that a photograph shows at a point of the ground. Returns false where the
 // photograph does not show the point or has stereo depth.
-static bool look_up(const struct shot *shot, const double at[3], double *detail)
+static bool look_up(const struct photo *photo, const double at[3], double *detail)
 {
     double pixel[2], depth;
-    if (!orl_view_project(&shot->view, at, pixel, &depth))
+    if (!orl_view_project(&photo->view, at, pixel, &depth))
         return false;
     double u = pixel[0] - 0.5, v = pixel[1] - 0.5;
-    if (!(u >= 2 && v >= 2 && u < shot->width - 3 && v < shot->height - 3))
+    if (!(u >= 2 && v >= 2 && u < photo->width - 3 && v < photo->height - 3))
         return false;
     int x = (int)u, y = (int)v;
-    if (shot->depth[y * shot->width + x] > 0)
+    if (photo->depth[y * photo->width + x] > 0)
         return false;
-    const float *d = &shot->detail[y * shot->width + x];
+    const float *d = &photo->detail[y * photo->width + x];
     u -= x;
     v -= y;
     *detail = (1 - v) * ((1 - u) * (double)d[0] + u * (double)d[1]) +
-              v * ((1 - u) * (double)d[shot->width] + u * (double)d[shot->width + 1]);
+              v * ((1 - u) * (double)d[photo->width] + u * (double)d[photo->width + 1]);
     return true;
 }
 
@@ -223,28 +224,28 @@ struct tally {
 };
 
 // Compares one photograph's ground pixels without depth with what its neighbours show there.
-static void compare(const struct search *s, const struct shot *shot,
+static void compare(const struct search *s, const struct photo *photo,
                     const struct orl_ground *ground, struct tally *tally)
 {
-    const struct orl_camera *c = &shot->view.camera;
+    const struct orl_camera *c = &photo->view.camera;
     double down[3];
-    if (!orl_ground_along_rays(ground, &shot->view, down))
+    if (!orl_ground_along_rays(ground, &photo->view, down))
         return;
-    int step = 1 + (int)sqrt((double)shot->width * shot->height / SPOTS);
-    for (int y = step / 2; y < shot->height; y += step)
-        for (int x = step / 2; x < shot->width; x += step) {
+    int step = 1 + (int)sqrt((double)photo->width * photo->height / SPOTS);
+    for (int y = step / 2; y < photo->height; y += step)
+        for (int x = step / 2; x < photo->width; x += step) {
             const double ray[3] = {(x + 0.5 - c->cx) / c->fx, (y + 0.5 - c->cy) / c->fy, 1};
             double inverse = orl_dot3(down, ray), at[3];
-            float depth = shot->depth[y * shot->width + x];
+            float depth = photo->depth[y * photo->width + x];
             if (inverse * REACH * ground->height < 1)
                 continue;
             tally->covered += fabs((double)depth * inverse - 1) < NEAR_PLANE;
             if (depth > 0)
                 continue;
-            orl_view_unproject(&shot->view, x + 0.5, y + 0.5, 1 / inverse, at);
-            double here = (double)shot->detail[y * shot->width + x], there;
-            for (int k = 0; k < shot->near_count; k++) {
-                if (!look_up(&s->shots[shot->near[k]], at, &there))
+            orl_view_unproject(&photo->view, x + 0.5, y + 0.5, 1 / inverse, at);
+            double here = (double)photo->detail[y * photo->width + x], there;
+            for (int k = 0; k < photo->near_count; k++) {
+                if (!look_up(&s->photos[photo->near[k]], at, &there))
                     continue;
                 tally->off += fabs(here - there);
                 tally->contrast += fabs(here) + fabs(there) + QUIET;
@@ -259,8 +260,8 @@ static double disagreement(const struct search *s, const struct move *move, long
 {
     struct orl_ground ground = moved(s, move);
     struct tally tally = {0};
-    for (int i = 0; i < s->shot_count; i++)
-        compare(s, &s->shots[i], &ground, &tally);
+    for (int i = 0; i < s->photo_count; i++)
+        compare(s, &s->photos[i], &ground, &tally);
     if (tally.samples < samples_least)
         return INFINITY;
     double shift = move->log_height / SHIFT_SIGMA, tilt = hypot(move->tilt[0], move->tilt[1]);
@@ -298,8 +299,8 @@ static void search(const struct orl_log *log, const struct search *s, struct orl
 {
     struct move best = {0};
     struct tally tally = {0};
-    for (int i = 0; i < s->shot_count; i++)
-        compare(s, &s->shots[i], s->found, &tally);
+    for (int i = 0; i < s->photo_count; i++)
+        compare(s, &s->photos[i], s->found, &tally);
     if (tally.samples + tally.covered < SAMPLES_LEAST) {
         orl_logf(log, ORL_LOG_INFO,
                  "ground: not known: photographs hardly show the plane that points tell");
@@ -329,15 +330,15 @@ enum orl_result orl_ground_refine(const struct orl_log *log, struct orl_scene *s
         return ORL_ERR_MEMORY;
     struct orl_ground found = scene->ground;
     s->found = &found;
-    enum orl_result result = read_shots(log, scene, s);
-    if (result == ORL_OK && s->shot_count > 1) {
+    enum orl_result result = read_photos(log, scene, s);
+    if (result == ORL_OK && s->photo_count > 1) {
         find_near(s);
         find_axes(s);
         search(log, s, &scene->ground);
     }
-    for (int i = 0; i < s->shot_count; i++) {
-        free(s->shots[i].detail);
-        free(s->shots[i].depth);
+    for (int i = 0; i < s->photo_count; i++) {
+        free(s->photos[i].detail);
+        free(s->photos[i].depth);
     }
     free(s);
     return result;
