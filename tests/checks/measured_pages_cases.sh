@@ -1,6 +1,6 @@
 #!/bin/sh
-# What measured.sh says of pages in small repositories of its own.
-# usage: measured_cases.sh CHECK
+# What measured_pages.sh says of pages in small repositories of its own.
+# usage: measured_pages_cases.sh CHECK
 set -eu
 check=$(realpath "$1")
 work=$(mktemp -d)

@@ -3,7 +3,7 @@
 # `- Device: `, `- Date: ` and `- Made by: `. Its commits belong to this history, and none is older
 # than the release before the last or, while there is none, than 60 days. There are at most 16 pages.
 # Where the history is not at hand, in a shallow clone or an archive, the lines alone are checked.
-# usage: measured.sh SOURCE_DIR [PAGES_DIR]
+# usage: measured_pages.sh SOURCE_DIR [PAGES_DIR]
 set -eu
 cd "$1"
 pages=${2:-docs/measured}
