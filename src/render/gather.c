@@ -264,7 +264,7 @@ static bool reads_normals(const struct frame *frame)
     return false;
 }
 
-// One sweep over one turn: the photographs of frame->chosen from `first` on, all resident.
+// One sweep over one batch: the photographs of frame->chosen from `first` on, all resident.
 static enum orl_result gather(const struct frame *frame, size_t first, size_t count, int sweep)
 {
     struct gather_slots slots;
@@ -283,7 +283,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
                    {frame->states[1], 0, GL_READ_WRITE},
                    {frame->surface.normal, 0, GL_READ_ONLY},
                    [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
-        // The storage barrier is needed because the next turn overwrites the lists of this one.
+        // The storage barrier is needed because the next batch overwrites the lists of this one.
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
     orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
     if (frame->radiance) {
@@ -306,13 +306,13 @@ static bool reads_depth(const struct frame *frame)
            (frame->radiance || strcmp(visibility, "facing") != 0);
 }
 
-// Sweeps over all photographs, in turns of as many as are resident together.
+// Sweeps over all photographs, in batches of as many as are resident together.
 static enum orl_result sweep_over(const struct frame *frame, int sweep)
 {
-    size_t turn = (size_t)frame->photos->slot_count;
+    size_t batch = (size_t)frame->photos->slot_count;
     bool depth = reads_depth(frame);
-    for (size_t first = 0; first < frame->chosen_count; first += turn) {
-        size_t left = frame->chosen_count - first, count = left < turn ? left : turn;
+    for (size_t first = 0; first < frame->chosen_count; first += batch) {
+        size_t left = frame->chosen_count - first, count = left < batch ? left : batch;
         enum orl_result result = ORL_OK;
         for (size_t i = 0; !frame->progressive && result == ORL_OK && i < count; i++)
             result = orl_photos_require(frame, frame->chosen[first + i], depth);

@@ -15,7 +15,7 @@ struct selection {
 };
 
 // How the samples of a pixel become one colour (shaders/gather/combine), and how this streams when
-// the photographs do not all fit on the device. A combination of sums adds to them turn by turn;
+// the photographs do not all fit on the device. A combination of sums adds to them batch by batch;
 // one that must know all samples before it can weigh one asks all photographs twice.
 struct combine {
     const char *name;

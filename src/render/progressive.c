@@ -56,7 +56,7 @@ static int most_useful(const void *a, const void *b)
 // --- steps ---
 
 // The photographs of a frame, the most useful first, and the time that is left for them.
-struct turn {
+struct loading {
     const struct frame *frame;
     bool depth;
     double start_s;
@@ -67,24 +67,24 @@ struct turn {
 
 // True if a step that took `cost` seconds last time fits. One step of the first kind always does,
 // so that every frame brings the picture forward.
-static bool fits(const struct turn *turn, double cost, bool always)
+static bool fits(const struct loading *loading, double cost, bool always)
 {
-    double spent = orl_time_s() - turn->start_s;
-    return (always && turn->steps == 0) || spent + cost <= turn->frame->progressive->seconds;
+    double spent = orl_time_s() - loading->start_s;
+    return (always && loading->steps == 0) || spent + cost <= loading->frame->progressive->seconds;
 }
 
 // Ends a step that began at `start_s`: its time includes that of the device.
-static enum orl_result end_step(struct turn *turn, double start_s, double *cost)
+static enum orl_result end_step(struct loading *loading, double start_s, double *cost)
 {
-    enum orl_result result = orl_gpu_finish(turn->frame->gpu);
+    enum orl_result result = orl_gpu_finish(loading->frame->gpu);
     *cost = orl_time_s() - start_s;
-    turn->steps++;
+    loading->steps++;
     return result;
 }
 
-static enum orl_result upload(struct turn *turn, size_t photo)
+static enum orl_result upload(struct loading *loading, size_t photo)
 {
-    struct photos *photos = turn->frame->photos;
+    struct photos *photos = loading->frame->photos;
     struct orl_image image = {0};
     enum orl_result result = ORL_OK;
     switch (orl_photo_loader_take(photos->loader, photo, &image)) {
@@ -96,9 +96,9 @@ static enum orl_result upload(struct turn *turn, size_t photo)
     case PHOTO_READ: {
         double start = orl_time_s();
         photos->states[photo].last_use = ++photos->clock;
-        result = orl_photos_put(turn->frame->gpu, photos, photo, &image);
+        result = orl_photos_put(loading->frame->gpu, photos, photo, &image);
         if (result == ORL_OK)
-            result = end_step(turn, start, &photos->costs.color);
+            result = end_step(loading, start, &photos->costs.color);
         break;
     }
     }
@@ -106,53 +106,53 @@ static enum orl_result upload(struct turn *turn, size_t photo)
     return result;
 }
 
-static enum orl_result draw_depth(struct turn *turn, size_t photo, int divide)
+static enum orl_result draw_depth(struct loading *loading, size_t photo, int divide)
 {
-    struct photo_costs *costs = &turn->frame->photos->costs;
+    struct photo_costs *costs = &loading->frame->photos->costs;
     double start = orl_time_s();
-    enum orl_result result = orl_photos_draw_depth(turn->frame, photo, divide);
+    enum orl_result result = orl_photos_draw_depth(loading->frame, photo, divide);
     if (result == ORL_OK)
-        result = end_step(turn, start, divide > 1 ? &costs->coarse : &costs->depth);
+        result = end_step(loading, start, divide > 1 ? &costs->coarse : &costs->depth);
     return result;
 }
 
 // The photograph is on the device with colours and, if needed, depth.
-static bool is_present(const struct turn *turn, size_t photo)
+static bool is_present(const struct loading *loading, size_t photo)
 {
-    return turn->frame->photos->states[photo].has_color &&
-           (!turn->depth || orl_photos_depth_divide(turn->frame, photo) > 0);
+    return loading->frame->photos->states[photo].has_color &&
+           (!loading->depth || orl_photos_depth_divide(loading->frame, photo) > 0);
 }
 
-static bool is_complete(const struct turn *turn, size_t photo)
+static bool is_complete(const struct loading *loading, size_t photo)
 {
-    return is_present(turn, photo) &&
-           (!turn->depth || orl_photos_depth_divide(turn->frame, photo) == 1);
+    return is_present(loading, photo) &&
+           (!loading->depth || orl_photos_depth_divide(loading->frame, photo) == 1);
 }
 
 // Makes photographs usable, then their depth as fine as other frames have it.
-static enum orl_result bring(struct turn *turn)
+static enum orl_result bring(struct loading *loading)
 {
-    const struct photos *photos = turn->frame->photos;
+    const struct photos *photos = loading->frame->photos;
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < turn->count; i++) {
-        size_t photo = turn->order[i];
-        if (is_present(turn, photo))
+    for (size_t i = 0; result == ORL_OK && i < loading->count; i++) {
+        size_t photo = loading->order[i];
+        if (is_present(loading, photo))
             continue;
-        if (!fits(turn, photos->costs.color + photos->costs.coarse, true))
+        if (!fits(loading, photos->costs.color + photos->costs.coarse, true))
             break;
         if (!photos->states[photo].has_color)
-            result = upload(turn, photo);
-        if (result == ORL_OK && photos->states[photo].has_color && !is_present(turn, photo))
-            result = draw_depth(turn, photo, COARSE);
+            result = upload(loading, photo);
+        if (result == ORL_OK && photos->states[photo].has_color && !is_present(loading, photo))
+            result = draw_depth(loading, photo, COARSE);
     }
-    bool at_rest = turn->frame->progressive->at_rest;
-    for (size_t i = 0; result == ORL_OK && i < turn->count; i++) {
-        size_t photo = turn->order[i];
-        if (!is_present(turn, photo) || is_complete(turn, photo))
+    bool at_rest = loading->frame->progressive->at_rest;
+    for (size_t i = 0; result == ORL_OK && i < loading->count; i++) {
+        size_t photo = loading->order[i];
+        if (!is_present(loading, photo) || is_complete(loading, photo))
             continue;
-        if (!fits(turn, photos->costs.depth, at_rest))
+        if (!fits(loading, photos->costs.depth, at_rest))
             break;
-        result = draw_depth(turn, photo, 1);
+        result = draw_depth(loading, photo, 1);
     }
     return result;
 }
@@ -160,15 +160,15 @@ static enum orl_result bring(struct turn *turn)
 // --- a frame ---
 
 // Marks the photographs that are there as used, and asks the loader for the others.
-static enum orl_result ask(struct turn *turn)
+static enum orl_result ask(struct loading *loading)
 {
-    const struct frame *frame = turn->frame;
+    const struct frame *frame = loading->frame;
     struct photos *photos = frame->photos;
     const struct orl_log *log = orl_gpu_log(frame->gpu);
-    size_t *absent = orl_array(log, turn->count, sizeof *absent), count = 0;
+    size_t *absent = orl_array(log, loading->count, sizeof *absent), count = 0;
     enum orl_result result = absent ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < turn->count; i++) {
-        size_t photo = turn->order[i];
+    for (size_t i = 0; result == ORL_OK && i < loading->count; i++) {
+        size_t photo = loading->order[i];
         if (photos->states[photo].has_color)
             photos->states[photo].last_use = ++photos->clock;
         else
@@ -183,33 +183,33 @@ static enum orl_result ask(struct turn *turn)
 }
 
 // Sorts the photographs of the frame. No more take part than fit on the device.
-static enum orl_result sort(const struct frame *frame, struct turn *turn)
+static enum orl_result sort(const struct frame *frame, struct loading *loading)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     size_t count = frame->chosen_count, most = (size_t)frame->photos->slot_count;
     struct candidate *all = orl_array(log, count, sizeof *all);
-    turn->order = orl_array(log, count, sizeof *turn->order);
-    turn->count = count < most ? count : most;
-    enum orl_result result = all && turn->order ? ORL_OK : ORL_ERR_MEMORY;
+    loading->order = orl_array(log, count, sizeof *loading->order);
+    loading->count = count < most ? count : most;
+    enum orl_result result = all && loading->order ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         all[i] = (struct candidate){frame->chosen[i], use_of(frame, frame->chosen[i])};
     if (result == ORL_OK)
         qsort(all, count, sizeof *all, most_useful);
-    for (size_t i = 0; result == ORL_OK && i < turn->count; i++)
-        turn->order[i] = all[i].photo;
+    for (size_t i = 0; result == ORL_OK && i < loading->count; i++)
+        loading->order[i] = all[i].photo;
     free(all);
     return result;
 }
 
-static void remove_absent(struct frame *frame, const struct turn *turn)
+static void remove_absent(struct frame *frame, const struct loading *loading)
 {
     size_t kept = 0;
     frame->photos->were_absent = false;
-    for (size_t i = 0; i < turn->count; i++)
-        frame->photos->were_absent |= frame->photos->states[turn->order[i]].usable &&
-                                      !is_present(turn, turn->order[i]);
+    for (size_t i = 0; i < loading->count; i++)
+        frame->photos->were_absent |= frame->photos->states[loading->order[i]].usable &&
+                                      !is_present(loading, loading->order[i]);
     for (size_t i = 0; i < frame->chosen_count; i++) {
-        if (!is_present(turn, frame->chosen[i]))
+        if (!is_present(loading, frame->chosen[i]))
             continue;
         frame->chosen[kept] = frame->chosen[i];
         memmove(frame->selected[kept++], frame->selected[i], sizeof frame->selected[i]);
@@ -219,26 +219,26 @@ static void remove_absent(struct frame *frame, const struct turn *turn)
 
 enum orl_result orl_progressive_admit(struct frame *frame, bool depth)
 {
-    struct turn turn = {.frame = frame, .depth = depth};
+    struct loading loading = {.frame = frame, .depth = depth};
     frame->progressive->missing = 0;
     if (frame->chosen_count == 0)
         return ORL_OK;
     // The surface is drawn first: its time does not count as that of photographs.
     enum orl_result result = orl_gpu_finish(frame->gpu);
-    turn.start_s = orl_time_s();
+    loading.start_s = orl_time_s();
     if (result == ORL_OK)
-        result = sort(frame, &turn);
+        result = sort(frame, &loading);
     if (result == ORL_OK)
-        result = ask(&turn);
+        result = ask(&loading);
     if (result == ORL_OK)
-        result = bring(&turn);
-    for (size_t i = 0; result == ORL_OK && i < turn.count; i++)
-        frame->progressive->missing += frame->photos->states[turn.order[i]].usable &&
-                                       !is_complete(&turn, turn.order[i]);
+        result = bring(&loading);
+    for (size_t i = 0; result == ORL_OK && i < loading.count; i++)
+        frame->progressive->missing += frame->photos->states[loading.order[i]].usable &&
+                                       !is_complete(&loading, loading.order[i]);
     if (result == ORL_OK)
-        remove_absent(frame, &turn);
-    frame->progressive->spent = orl_time_s() - turn.start_s;
-    free(turn.order);
+        remove_absent(frame, &loading);
+    frame->progressive->spent = orl_time_s() - loading.start_s;
+    free(loading.order);
     return result;
 }
 

@@ -51,7 +51,7 @@ static void place(const struct frame *frame, struct gather_block *block)
     }
 }
 
-// One turn: the photographs of frame->chosen from `first` on, all resident.
+// One batch: the photographs of frame->chosen from `first` on, all resident.
 static void project(const struct frame *frame, bool backgrounds, size_t first, size_t count)
 {
     struct gather_block block = orl_gather_prepare(frame, first, count);
@@ -137,10 +137,10 @@ enum orl_result orl_room_paint(struct frame *frame)
     enum orl_result result = orl_select_all.choose(&room, 0);
     if (result == ORL_OK && frame->progressive)
         result = keep_present(&room, backgrounds, &frame->room_absent);
-    size_t turn = (size_t)frame->photos->slot_count;
+    size_t batch = (size_t)frame->photos->slot_count;
     orl_pass_begin(frame->gpu, "room");
-    for (size_t first = 0; result == ORL_OK && first < room.chosen_count; first += turn) {
-        size_t left = room.chosen_count - first, count = left < turn ? left : turn;
+    for (size_t first = 0; result == ORL_OK && first < room.chosen_count; first += batch) {
+        size_t left = room.chosen_count - first, count = left < batch ? left : batch;
         if (!frame->progressive)
             result = require(&room, backgrounds, room.chosen + first, count);
         if (result == ORL_OK)

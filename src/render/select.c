@@ -17,7 +17,7 @@ static bool may_use(const struct frame *frame, size_t photo)
 
 static enum orl_result choose_all(struct frame *frame, size_t most)
 {
-    (void)most; // photographs that do not fit on the device are asked in turns
+    (void)most; // photographs that do not fit on the device are asked in batches
     frame->chosen_count = 0;
     for (size_t i = 0; i < frame->scene->photo_count; i++) {
         if (!may_use(frame, i))
@@ -72,7 +72,7 @@ static int by_index(const void *a, const void *b)
 // it has faded out when another replaces it. All have weight 1 if none is left out.
 static enum orl_result choose_nearest(struct frame *frame, size_t most)
 {
-    (void)most; // photographs that do not fit on the device are asked in turns
+    (void)most; // photographs that do not fit on the device are asked in batches
     size_t count = 0, kept = (size_t)(frame->params->nearest + 0.5f);
     struct direction *all = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count,
                                       sizeof *all);

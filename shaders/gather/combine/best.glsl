@@ -1,5 +1,5 @@
-// The one sample of greatest weight: Princ 2014, 2.3.3. Streams: a turn goes on from the greatest
-// weight of the turns before it. Of samples that tie, the first photograph's is taken.
+// The one sample of greatest weight: Princ 2014, 2.3.3. Streams: a batch goes on from the greatest
+// weight of the batches before it. Of samples that tie, the first photograph's is taken.
 #include "gather/each.glsl"
 
 const bool SOFT_BORDER = false;

@@ -1,5 +1,5 @@
-// The weighted mean of all samples. When the photographs come in several turns, each turn adds to
-// the sums of the one before.
+// The weighted mean of all samples. When the photographs come in several batches, each batch
+// adds to the sums of the one before.
 #include "gather/each.glsl"
 
 // A wide soft border is unnecessary: among all photographs the border of one does not show.
