@@ -18,7 +18,7 @@ enum {
 
 struct orl_figures_params {
     int cameras;       // [2, ORL_FIGURES_CAMERAS_MAX], on a ring around the figure
-    int frames;        // moments, [1, ORL_FIGURES_FRAMES_MAX]; 25 to a second
+    int frames;        // time steps, [1, ORL_FIGURES_FRAMES_MAX]; 25 to a second
     int width, height; // pixels, [ORL_FIGURES_SIDE_MIN, ORL_FIGURES_SIDE_MAX]
 };
 #define ORL_FIGURES_DEFAULTS .cameras = 8, .frames = 1, .width = 640, .height = 480
@@ -31,7 +31,7 @@ void orl_figures_views(const struct orl_figures_params *params, struct orl_view 
 
 extern const struct orl_room orl_figures_room;
 
-// --- one moment ---
+// --- one time step ---
 
 // A part of the body: all points within `radius` of the segment from a to b.
 struct orl_figure_part {
@@ -42,7 +42,7 @@ enum { ORL_FIGURE_PARTS = 14 };
 struct orl_figure {
     struct orl_figure_part parts[ORL_FIGURE_PARTS];
 };
-// The figure at a moment: it walks on a small circle.
+// The figure at a time step: it walks on a small circle.
 void orl_figure_pose(int frame, struct orl_figure *figure);
 // Distance to its surface, negative inside. *part takes the nearest one; may be NULL.
 double orl_figure_distance(const struct orl_figure *figure, const double at[3], int *part);

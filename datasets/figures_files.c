@@ -97,7 +97,7 @@ static enum orl_result make_folders(const struct job *job)
     bool sequence = job->params->frames > 1;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
-        // Backgrounds are one a camera, meshes one a moment.
+        // Backgrounds are one a camera, meshes one a time step.
         bool per_camera = sequence && i < 3;
         for (int c = 0; result == ORL_OK && c < (per_camera ? job->params->cameras : 1); c++) {
             char *path = per_camera ? view_path(job, folders[i], c, -1, "")
@@ -137,7 +137,7 @@ static enum orl_result write_mesh(const struct job *job, const struct orl_figure
     return result;
 }
 
-static enum orl_result write_moment(const struct job *job, int frame)
+static enum orl_result write_time_step(const struct job *job, int frame)
 {
     struct orl_figure figure;
     orl_figure_pose(frame, &figure);
@@ -167,7 +167,7 @@ static enum orl_result write_all(const struct job *job)
         result = write_backgrounds(job);
     for (int f = 0; result == ORL_OK && f < job->params->frames; f++) {
         orl_progress_report(job->progress, "figures", f, job->params->frames, NULL);
-        result = write_moment(job, f);
+        result = write_time_step(job, f);
     }
     if (result == ORL_OK)
         orl_progress_report(job->progress, "figures", 1, 1, NULL);

@@ -193,10 +193,11 @@ enum orl_result orl_renderer_draw(struct orl_renderer *renderer, const struct or
                                   const struct orl_render_params *params, const bool *skip,
                                   struct orl_frame *frame) ORL_CHECK_RESULT;
 
-// Says that the view after the next one shows `moment` of the scene. While the next one is drawn,
-// files of that moment are read on another thread and its hull is made, if the method draws one.
+// Says that the view after the next one shows `time_step` of the scene. While the next one is
+// drawn, files of that time step are read on another thread and its hull is made, if the method
+// draws one.
 // The pictures are the same.
-void orl_renderer_expect(struct orl_renderer *renderer, int moment);
+void orl_renderer_expect(struct orl_renderer *renderer, int time_step);
 
 // How a viewer's frame gets its photographs: it paints from those that are on the device, and from
 // the points' own colours elsewhere. Files are read on another thread.

@@ -140,7 +140,7 @@ char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *sc
 char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
 // Where the photograph shows what stands before the scene and has no points: a mask of any size,
 // 255 there, else 0: "SCENE/occluders/<name>.png". The file exists when photo->occluded > 0. It is
-// of SCENE/images, not of the moments of a sequence.
+// of SCENE/images, not of the time steps of a sequence.
 char *orl_scene_occluders_path(const struct orl_log *log, const struct orl_scene *scene,
                                size_t photo);
 // A picture of the place without the subject: "SCENE/background/<name>.png". The file may be

@@ -327,10 +327,10 @@ static enum orl_result settle_camera(struct import_job *job, struct import_view 
     return result;
 }
 
-static enum orl_result import_moments(struct import_job *job, struct import_view *view,
-                                      const struct import_frames *frames,
-                                      const struct import_frames *masks,
-                                      const struct orl_background *background)
+static enum orl_result import_time_steps(struct import_job *job, struct import_view *view,
+                                         const struct import_frames *frames,
+                                         const struct import_frames *masks,
+                                         const struct orl_background *background)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < frames->count; i++) {
@@ -369,7 +369,7 @@ static enum orl_result import_sequence(struct import_job *job, struct import_vie
         result = orl_fail(job->log, ORL_ERR_DATA, "%s: %zu masks, but %zu pictures",
                           view->mask.path, masks.count, frames.count);
     if (result == ORL_OK)
-        result = import_moments(job, view, &frames, &masks, background);
+        result = import_time_steps(job, view, &frames, &masks, background);
     if (result == ORL_OK && job->frame_count && frames.count != job->frame_count)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: %zu pictures, but other cameras have %zu: what "
                  "not all have is left out", view->picture.path, frames.count, job->frame_count);

@@ -206,8 +206,8 @@ static enum orl_result write_mesh(struct import_job *job, const char *folder,
     return result;
 }
 
-// A hull belongs to its moment; the mesh of a file belongs to all.
-static enum orl_result carve_moments(struct import_job *job)
+// A hull belongs to its time step; the mesh of a file belongs to all.
+static enum orl_result carve_time_steps(struct import_job *job)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < job->frame_count; i++) {
@@ -218,7 +218,7 @@ static enum orl_result carve_moments(struct import_job *job)
             return ORL_ERR_CANCELLED;
         result = write_mesh(job, folder, &triangles);
         if (result == ORL_ERR_DATA) { // the subject may have left the room
-            orl_logf(job->log, ORL_LOG_WARNING, "moment %zu has no hull: it shows that of the scene", i);
+            orl_logf(job->log, ORL_LOG_WARNING, "time step %zu has no hull: it shows that of the scene", i);
             result = ORL_OK;
         }
         orl_progress_report(job->progress, "hulls", (double)(i + 1), (double)job->frame_count,
@@ -233,7 +233,7 @@ enum orl_result orl_import_write_mesh(struct import_job *job, size_t *triangles)
     if (!job->params->mesh && !job->params->hull_side)
         return ORL_OK;
     enum orl_result result = write_mesh(job, "", triangles);
-    return result == ORL_OK && job->params->hull_side ? carve_moments(job) : result;
+    return result == ORL_OK && job->params->hull_side ? carve_time_steps(job) : result;
 }
 
 // --- scene.json ---

@@ -53,7 +53,7 @@ size_t orl_trim_scene_file_bytes(const struct orl_log *log, const struct orl_sce
 }
 
 // True for a file that belongs to a photograph that is left out. `path` begins with the folder of
-// such files, as "masks", which for a moment of a sequence is in a folder as "frames/00012".
+// such files, as "masks", which for a time step of a sequence is in a folder as "frames/00012".
 static bool is_left_out(const struct writer *w, const char *path)
 {
     const struct orl_scene *scene = w->source->scene;

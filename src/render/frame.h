@@ -30,7 +30,7 @@ struct frame {
     uint64_t depth_key;        // orl_photos_depth_key of this frame
     struct surface surface;    // surface that the view sees
     struct photos *photos;     // photographs on the device
-    struct prefetch *prefetch; // what was prepared for the moment that it shows; NULL: nothing
+    struct prefetch *prefetch; // what was prepared for the time step that it shows; NULL: nothing
     struct gather *gather;     // parameters of the photographs in use
     struct fill *fill;
     struct soften *soften;

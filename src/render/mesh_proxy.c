@@ -83,7 +83,7 @@ static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
     char *path = orl_scene_mesh_path(log, scene);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     orl_mesh_state_finish(gpu, state);
-    state->moment = scene->frame;
+    state->time_step = scene->frame;
     if (result == ORL_OK && !orl_path_is_file(path))
         result = orl_fail(log, ORL_ERR_NOT_FOUND,
                           "%s: not there; --mesh of oriel prepare or oriel import makes one", path);
@@ -107,11 +107,11 @@ static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene
     return result;
 }
 
-// Moments of a sequence may have meshes of their own.
+// Time steps of a sequence may have meshes of their own.
 static enum orl_result update(const struct frame *frame, void *handle, bool *changed)
 {
     struct mesh_state *state = handle;
-    *changed = state->moment != frame->scene->frame;
+    *changed = state->time_step != frame->scene->frame;
     return *changed ? load(frame->gpu, frame->scene, state) : ORL_OK;
 }
 

@@ -11,7 +11,7 @@ struct mesh_state {
     struct orl_buf *vertices, *indices;
     struct orl_buf *colors; // sRGB and a spare byte of each vertex; NULL: it has none
     float low[3], high[3]; // bounding box, world
-    int moment;            // of the scene, whose mesh was read
+    int time_step;            // of the scene, whose mesh was read
 };
 
 // Brings state->mesh, which has triangles, to the device and finds its bounding box.

@@ -13,8 +13,8 @@ enum orl_result orl_occluders_read(const struct orl_log *log, const struct orl_s
                                    size_t photo, struct orl_image *mask)
 {
     *mask = (struct orl_image){0};
-    bool moment = scene->frame_count > 0 && scene->frame >= 0;
-    if (!(scene->photos[photo].occluded > 0) || moment)
+    bool time_step = scene->frame_count > 0 && scene->frame >= 0;
+    if (!(scene->photos[photo].occluded > 0) || time_step)
         return ORL_OK;
     char *path = orl_scene_occluders_path(log, scene, photo);
     enum orl_result result = path ? orl_picture_read(log, path, 1, mask) : ORL_ERR_MEMORY;

@@ -212,7 +212,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     const bool *use = params->use;
     memset(photos, 0, sizeof *photos);
     photos->scene = scene;
-    photos->moment = scene->frame;
+    photos->time_step = scene->frame;
     photos->radiance = params->radiance;
     photos->progress = params->progress;
     photos->sensor = params->sensor ? *params->sensor
@@ -331,14 +331,14 @@ static void give_slot(struct photos *photos, struct photo_state *state)
         state->slot = take_slot(photos);
 }
 
-void orl_photos_follow_moment(struct photos *photos)
+void orl_photos_follow_time_step(struct photos *photos)
 {
-    if (photos->moment == photos->scene->frame)
+    if (photos->time_step == photos->scene->frame)
         return;
-    orl_photo_loader_destroy(&photos->loader); // what it has read is of the other moment
+    orl_photo_loader_destroy(&photos->loader); // what it has read is of the other time step
     for (size_t i = 0; i < photos->scene->photo_count; i++)
         evict(&photos->states[i]);
-    photos->moment = photos->scene->frame;
+    photos->time_step = photos->scene->frame;
 }
 
 // Writes sRGB-encoded RGB, or radiance times confidence, and the confidence.

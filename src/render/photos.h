@@ -36,13 +36,13 @@ struct photos {
     struct orl_tex *mask;       // R8: which pixels are the subject's; NULL: not asked for yet
     struct orl_tex *background; // pictures of the place without the subject; NULL: not asked for
     size_t *background_of;      // per slot: 1 + the photograph whose background it holds; 0: none.
-                                // It outlives a moment. NULL: none was asked for; owned
+                                // It outlives a time step. NULL: none was asked for; owned
     const struct orl_progress *progress; // see struct orl_renderer_params
     size_t uploaded;            // bytes of photographs and masks that went to the device
     bool silhouettes, places;   // methods may ask for mask, for background
     int slot_count, divide;     // divide: photographs are loaded at 1/divide of their size
     unsigned clock;
-    int moment;                 // scene->frame of what is resident
+    int time_step;                 // scene->frame of what is resident
     bool radiance;              // see struct orl_renderer_params
     struct orl_sensor sensor;
     float ev_darkest, ev_brightest; // of the photographs in use
@@ -66,8 +66,8 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
 // Releases the textures of colours while they hold no photograph.
 void orl_photos_spare(struct orl_gpu *gpu, struct photos *photos);
-// Evicts all photographs if the scene shows another moment than they do.
-void orl_photos_follow_moment(struct photos *photos);
+// Evicts all photographs if the scene shows another time step than they do.
+void orl_photos_follow_time_step(struct photos *photos);
 // Makes the textures of colours if they are not there. Frames that pack do without.
 enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos);
 // Makes a photograph's colour resident, unless the frame packs colours, and its depth if asked for,

@@ -23,21 +23,21 @@ enum step {
 enum arrival { UNREAD, BEING_READ, READ, TAKEN };
 
 struct prefetch {
-    struct orl_scene scene; // the thread's: of the frame, but showing the moment; photos are a copy
+    struct orl_scene scene; // the thread's: of the frame, but showing the time step; photos: a copy
     // Not changed after the start.
-    int moment;
+    int time_step;
     size_t photo_count;
     size_t *masked;         // photographs whose silhouettes make the hull
     size_t masked_count, triangles;
     bool linear, wants_mesh, has_thread;
     int side;
-    uint64_t key;           // orl_voxels_key of the moment
+    uint64_t key;           // orl_voxels_key of the time step
     pthread_t thread;
     struct orl_buf *field;  // the caller's: what the device carves
 
     pthread_mutex_t lock;   // guards the rest
     pthread_cond_t changed;
-    bool ends, broken;      // broken: files of the moment are missing
+    bool ends, broken;      // broken: files of the time step are missing
     enum step step;         // what is done next; cones, voxels and mesh belong to who does it
     struct cones cones;
     struct voxels voxels;
@@ -47,9 +47,9 @@ struct prefetch {
     size_t *wanted, wanted_count, bytes;
 };
 
-int orl_prefetch_moment(const struct prefetch *prefetch)
+int orl_prefetch_time_step(const struct prefetch *prefetch)
 {
-    return prefetch->moment;
+    return prefetch->time_step;
 }
 
 // --- the thread ---
@@ -121,8 +121,8 @@ static void read_photo(struct prefetch *a, size_t photo)
 static void *work(void *priv)
 {
     struct prefetch *a = priv;
-    // The scene's check of its files, as it is done for every moment that is shown.
-    bool broken = orl_scene_set_frame(NULL, &a->scene, a->moment) != ORL_OK;
+    // The scene's check of its files, as it is done for every time step that is shown.
+    bool broken = orl_scene_set_frame(NULL, &a->scene, a->time_step) != ORL_OK;
     pthread_mutex_lock(&a->lock);
     a->broken = broken;
     if (broken)
@@ -143,7 +143,7 @@ static void *work(void *priv)
 
 // --- start and end ---
 
-// Lists the silhouettes that would make the hull of the moment.
+// Lists the silhouettes that would make the hull of the time step.
 static enum orl_result prepare_hull(const struct frame *frame, struct prefetch *a)
 {
     struct frame next = *frame;
@@ -161,7 +161,7 @@ static enum orl_result prepare_hull(const struct frame *frame, struct prefetch *
     return a->masked ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-enum orl_result orl_prefetch_create(const struct frame *frame, int moment, struct prefetch **out)
+enum orl_result orl_prefetch_create(const struct frame *frame, int time_step, struct prefetch **out)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     size_t count = frame->scene->photo_count;
@@ -170,7 +170,7 @@ enum orl_result orl_prefetch_create(const struct frame *frame, int moment, struc
     if (!a)
         return ORL_ERR_MEMORY;
     a->scene = *frame->scene;
-    a->scene.frame = a->moment = moment;
+    a->scene.frame = a->time_step = time_step;
     a->photo_count = count;
     a->linear = frame->radiance;
     a->scene.photos = orl_array(log, count, sizeof *a->scene.photos);
@@ -188,7 +188,7 @@ enum orl_result orl_prefetch_create(const struct frame *frame, int moment, struc
     }
     a->has_thread = result == ORL_OK && pthread_create(&a->thread, NULL, work, a) == 0;
     if (result == ORL_OK && !a->has_thread)
-        result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read the next moment");
+        result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read the next time step");
     if (result != ORL_OK)
         orl_prefetch_destroy(frame->gpu, out);
     return result;

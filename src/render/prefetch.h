@@ -1,5 +1,5 @@
-// Private to src/render: what the next moment of a sequence needs, made while this one is drawn. A
-// thread reads its silhouettes and photographs, the device carves its hull between the passes of this
+// Private to src/render: what the next time step of a sequence needs, made while this one is drawn.
+// A thread reads its silhouettes and photographs, the device carves its hull between the passes of this
 // frame and its end, and the thread makes a mesh of that. Pictures are the same without it.
 #ifndef ORL_RENDER_PREFETCH_H
 #define ORL_RENDER_PREFETCH_H
@@ -8,13 +8,13 @@
 
 struct prefetch;
 
-// Starts to read what `frame` would need if it showed `moment`. The frame's proxy must be up to
-// date. What cannot be read is left to the frame that shows the moment, which says why.
-enum orl_result orl_prefetch_create(const struct frame *frame, int moment,
+// Starts to read what `frame` would need if it showed `time_step`. The frame's proxy must be up to
+// date. What cannot be read is left to the frame that shows the time step, which says why.
+enum orl_result orl_prefetch_create(const struct frame *frame, int time_step,
                                     struct prefetch **out) ORL_CHECK_RESULT;
 // Waits for the file that is being read. Needs no orl_prefetch_wait.
 void orl_prefetch_destroy(struct orl_gpu *gpu, struct prefetch **prefetch);
-int orl_prefetch_moment(const struct prefetch *prefetch);
+int orl_prefetch_time_step(const struct prefetch *prefetch);
 // Asks for photographs, in this order.
 void orl_prefetch_want(struct prefetch *prefetch, const size_t *photos, size_t count);
 // Asks the device for the hull if its silhouettes have been read. Does not wait.

@@ -38,7 +38,7 @@ struct orl_renderer {
     float (*selected)[4];
     struct orl_image staging; // for read_back.h
     size_t point_bytes;       // of device memory for points that come as they are needed; 0: any
-    int expected;             // moment after the next frame's; -1: none is expected
+    int expected;             // time step after the next frame's; -1: none is expected
     struct prefetch *prefetch;      // what is prepared for it; NULL: nothing
 };
 
@@ -143,9 +143,9 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     *renderer = NULL;
 }
 
-void orl_renderer_expect(struct orl_renderer *renderer, int moment)
+void orl_renderer_expect(struct orl_renderer *renderer, int time_step)
 {
-    renderer->expected = moment;
+    renderer->expected = time_step;
 }
 
 size_t orl_renderer_uploaded(const struct orl_renderer *renderer)
@@ -278,7 +278,7 @@ void orl_frame_finish(struct orl_frame *frame)
     orl_image_finish(&frame->confidence);
 }
 
-// Draws and reads back the frame, whose proxy is up to date. With `next`, prepares that moment
+// Draws and reads back the frame, whose proxy is up to date. With `next`, prepares that time step
 // meanwhile: its hull is carved before the read-back waits for the device.
 static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame, bool normals,
                                     struct prefetch *next, struct orl_frame *out)
@@ -302,8 +302,8 @@ static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame,
 // Brings everything that the frame needs besides photographs up to date.
 static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
 {
-    orl_photos_follow_moment(&r->photos);
-    if (r->prefetch && orl_prefetch_moment(r->prefetch) == r->scene->frame)
+    orl_photos_follow_time_step(&r->photos);
+    if (r->prefetch && orl_prefetch_time_step(r->prefetch) == r->scene->frame)
         frame->prefetch = r->prefetch;
     enum orl_result result = orl_proxy_update(frame);
     frame->depth_key = orl_photos_depth_key(frame);

@@ -248,7 +248,7 @@ static enum orl_result try_bounds(const struct orl_log *log,
         return result;
     if (!any)
         return orl_fail(log, ORL_ERR_DATA, "the silhouettes have no place in common: are "
-                        "cameras and masks of the same moment?");
+                        "cameras and masks of the same time step?");
     *cut = false;
     for (int k = 0; k < 3; k++) {
         *cut = *cut || low[k] == 0 || high[k] == COARSE - 1;

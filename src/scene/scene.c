@@ -15,7 +15,7 @@
 #include "scene/radius_limits.h"
 
 // A still scene has no frames. Its `frame` may be 0 when the struct was only zeroed.
-static bool shows_moment(const struct orl_scene *scene)
+static bool shows_time_step(const struct orl_scene *scene)
 {
     return scene->frame_count > 0 && scene->frame >= 0;
 }
@@ -71,7 +71,7 @@ static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *
                           scene->dir, photo->name);
     if (result == ORL_OK)
         result = check_if_there(log, scene, orl_scene_linear_path(log, scene, i), &linear);
-    photo->linear = result == ORL_OK && linear && !shows_moment(scene);
+    photo->linear = result == ORL_OK && linear && !shows_time_step(scene);
     if (result == ORL_OK)
         result = check_if_there(log, scene, orl_scene_mask_path(log, scene, i), &masked);
     return result;
@@ -91,8 +91,8 @@ enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene 
 {
     int before = scene->frame;
     if (frame < -1 || (frame >= 0 && (size_t)frame >= scene->frame_count))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: no moment %d: there are %zu", scene->dir, frame,
-                        scene->frame_count);
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: no time step %d: there are %zu", scene->dir,
+                        frame, scene->frame_count);
     scene->frame = frame;
     enum orl_result result = check_photo_files(log, scene);
     if (result != ORL_OK) {
@@ -508,11 +508,11 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name)
 }
 
 // The path "SCENE/" or "SCENE/frames/<number>/", followed by folder, name and ending.
-static char *moment_path(const struct orl_log *log, const struct orl_scene *scene,
-                         const char *folder, size_t photo, const char *ending)
+static char *time_step_path(const struct orl_log *log, const struct orl_scene *scene,
+                            const char *folder, size_t photo, const char *ending)
 {
     char frame[32] = "";
-    if (shows_moment(scene))
+    if (shows_time_step(scene))
         snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
     return orl_format(log, "%s/%s%s/%s%s", scene->dir, frame, folder, scene->photos[photo].name,
                       ending);
@@ -520,12 +520,12 @@ static char *moment_path(const struct orl_log *log, const struct orl_scene *scen
 
 char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
 {
-    return moment_path(log, scene, "images", photo, "");
+    return time_step_path(log, scene, "images", photo, "");
 }
 
 char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
 {
-    return moment_path(log, scene, "masks", photo, ".png");
+    return time_step_path(log, scene, "masks", photo, ".png");
 }
 
 char *orl_scene_occluders_path(const struct orl_log *log, const struct orl_scene *scene,
@@ -542,7 +542,7 @@ char *orl_scene_background_path(const struct orl_log *log, const struct orl_scen
 
 char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene)
 {
-    if (shows_moment(scene)) {
+    if (shows_time_step(scene)) {
         char *path = orl_format(log, "%s/frames/%05d/mesh.ply", scene->dir, scene->frame);
         if (!path || orl_path_is_file(path))
             return path;

@@ -100,12 +100,12 @@ bool orl_walk_request_read(const char *text, size_t size, struct walk_request *r
                                      .quality = (int)json_integer_value(quality),
                                      .at_rest = json_is_true(json_object_get(root, "rest")),
                                      .measures = json_is_true(json_object_get(root, "measure"))};
-    const json_t *moments = json_object_get(root, "moments");
-    double moment[2] = {0, 0};
-    bool timed = !moments || (orl_json_read_numbers(moments, 2, moment) && moment[0] >= 0 &&
-                              moment[1] >= 0 && moment[0] <= INT32_MAX && moment[1] <= INT32_MAX);
-    request->moment = timed ? (int)moment[0] : 0;
-    request->expected = timed ? (int)moment[1] : 0;
+    const json_t *time_steps = json_object_get(root, "time_steps");
+    double pair[2] = {0, 0};
+    bool timed = !time_steps || (orl_json_read_numbers(time_steps, 2, pair) && pair[0] >= 0 &&
+                                 pair[1] >= 0 && pair[0] <= INT32_MAX && pair[1] <= INT32_MAX);
+    request->time_step = timed ? (int)pair[0] : 0;
+    request->expected = timed ? (int)pair[1] : 0;
     bool valid = timed && layer && index < WALK_LAYERS && json_is_integer(number) &&
                  json_integer_value(number) >= 0 && json_integer_value(number) <= UINT32_MAX &&
                  json_is_integer(quality) && json_integer_value(quality) >= 1 &&
@@ -146,20 +146,22 @@ struct outcome {
     float picked[WALK_PICKS_MOST]; // depth under each picked pixel; 0: none
 };
 
-// A moment that there is not is that of the last one.
-static int moment_of(const struct orl_scene *scene, int asked)
+// A time step that there is not is that of the last one.
+static int time_step_of(const struct orl_scene *scene, int asked)
 {
     return asked < (int)scene->frame_count ? asked : (int)scene->frame_count - 1;
 }
 
-// A moment is drawn whole, with all of its photographs: by the time that they had come one by one, it
+// A time step is drawn whole, with all of its photographs: by the time that they had come one by one, it
 // would be over. The next one's files are read and its hull is made meanwhile.
-static enum orl_result draw_moment(struct walk_renderer *walk, const struct walk_request *request,
-                                   const struct orl_render_params *params, struct orl_frame *frame)
+static enum orl_result draw_time_step(struct walk_renderer *walk,
+                                      const struct walk_request *request,
+                                      const struct orl_render_params *params,
+                                      struct orl_frame *frame)
 {
     enum orl_result result =
-        orl_scene_set_frame(walk->log, walk->scene, moment_of(walk->scene, request->moment));
-    int next = moment_of(walk->scene, request->expected);
+        orl_scene_set_frame(walk->log, walk->scene, time_step_of(walk->scene, request->time_step));
+    int next = time_step_of(walk->scene, request->expected);
     if (result == ORL_OK && next != walk->scene->frame)
         orl_renderer_expect(walk->renderer, next);
     return result == ORL_OK ? orl_renderer_draw(walk->renderer, &request->view, params, NULL, frame)
@@ -197,7 +199,7 @@ static enum orl_result draw(struct walk_renderer *walk, const struct walk_reques
                         ORL_LAYER_CONFIDENCE) & ~layers;
     struct orl_frame frame;
     enum orl_result result =
-        walk->scene->frame_count ? draw_moment(walk, request, &params, &frame)
+        walk->scene->frame_count ? draw_time_step(walk, request, &params, &frame)
                                  : draw_timed(walk, request, &params, &outcome->missing, &frame);
     if (result != ORL_OK)
         return result;

@@ -114,7 +114,8 @@ struct walk_request {
     int quality;     // quality of the JPEG
     struct orl_tone_params tone;
     bool at_rest;    // the client's view does not move
-    int moment, expected; // of a sequence, from 0: what the frame shows, and what the next one will
+    // Of a sequence, from 0: what the frame shows, and what the next one will.
+    int time_step, expected;
     bool measures;   // asks for what the frame took
     size_t pick_count;
     int picks[WALK_PICKS_MOST][2]; // pixels whose depth it asks for

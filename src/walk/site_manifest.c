@@ -108,7 +108,7 @@ json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings,
                      up_json(scene), "distance",
                      scene->photo_distance > 0 ? scene->photo_distance : 1.0, "near",
                      scene->near_distance, "ground", orl_manifest_ground(&scene->ground), "start",
-                     number_of(scene, start), "walk", settings, "moments",
+                     number_of(scene, start), "walk", settings, "time_steps",
                      (json_int_t)scene->frame_count);
 }
 

@@ -122,7 +122,7 @@ static void use_scene(const char *dir)
     for (size_t i = 0; i < scene->photo_count; i++)
         (void)orl_scene_camera_users(scene, i);
     fuzz_require(orl_scene_set_frame(&fuzz_log, scene, 0) == ORL_ERR_ARGUMENT && scene->frame == -1,
-                 "a still scene has no moments");
+                 "a still scene has no time steps");
     orl_scene_destroy(&scene);
 }
 

@@ -42,7 +42,7 @@ static inline struct orl_view look_around(double turn, double distance, int side
                                                 .t = {0, 0, distance}}};
 }
 
-// `cameras` photographs of the figure at its first moment.
+// `cameras` photographs of the figure at its first time step.
 static inline void setup_figure(struct fixture *f, int cameras, int width, int height)
 {
     const struct orl_figures_params params = {cameras, 1, width, height};

@@ -1,4 +1,4 @@
-// The next moment of a sequence, prepared while one is drawn: the same pictures, and nothing is read
+// The next time step of a sequence, prepared while one is drawn: the same pictures, and nothing is read
 // twice.
 #include <math.h>
 
@@ -6,7 +6,7 @@
 #include "render/prefetch.h"
 #include "render/photos.h"
 
-enum { W = 96, H = 72, CAMERAS = 5, MOMENTS = 3 };
+enum { W = 96, H = 72, CAMERAS = 5, TIME_STEPS = 3 };
 
 static struct orl_gpu *gpu;
 
@@ -17,17 +17,17 @@ static void make_folder(const struct fixture *f, const char *name)
     free(path);
 }
 
-// The figure, which walks on from moment to moment.
-static void setup_moments(struct fixture *f)
+// The figure, which walks on from time step to time step.
+static void setup_time_steps(struct fixture *f)
 {
     const struct orl_figures_params params = {CAMERAS, 1, W, H};
     struct orl_view views[CAMERAS];
     struct orl_figure figure;
     setup_empty(f, 3);
     make_folder(f, "frames");
-    f->scene.frame_count = MOMENTS;
+    f->scene.frame_count = TIME_STEPS;
     orl_figures_views(&params, views);
-    for (f->scene.frame = 0; f->scene.frame < MOMENTS; f->scene.frame++) {
+    for (f->scene.frame = 0; f->scene.frame < TIME_STEPS; f->scene.frame++) {
         char folder[48];
         snprintf(folder, sizeof folder, "frames/%05d", f->scene.frame);
         make_folder(f, folder);
@@ -63,9 +63,9 @@ static struct orl_render_params params_of(const char *method, const char *choice
 
 // --- pictures ---
 
-// Draws the moments in this order; expected: what is said of the next one, NULL: nothing.
-static void draw_moments(struct fixture *f, const struct orl_render_params *params,
-                         const int *moments, const int *expected, struct orl_frame frames[4])
+// Draws the time steps in this order; expected: what is said of the next one, NULL: nothing.
+static void draw_time_steps(struct fixture *f, const struct orl_render_params *params,
+                            const int *time_steps, const int *expected, struct orl_frame frames[4])
 {
     struct orl_renderer *renderer;
     const struct orl_view *view = &f->photos[1].view;
@@ -73,7 +73,7 @@ static void draw_moments(struct fixture *f, const struct orl_render_params *para
     for (int i = 0; i < 4; i++) {
         // The last of the views does without one photograph and its silhouette.
         const bool skip[CAMERAS] = {[0] = i == 3};
-        assert_int_equal(orl_scene_set_frame(NULL, &f->scene, moments[i]), ORL_OK);
+        assert_int_equal(orl_scene_set_frame(NULL, &f->scene, time_steps[i]), ORL_OK);
         if (expected)
             orl_renderer_expect(renderer, expected[i]);
         assert_int_equal(orl_renderer_draw(renderer, view, params, skip, &frames[i]), ORL_OK);
@@ -92,23 +92,23 @@ static void pictures_are_the_same(void **state)
     (void)state;
     static const char *const rows[][2] = {{"li", "hull_triangles=900"},
                                           {"goldluecke", "hull_side=32"}};
-    // Moment 1 is shown twice. The second list expects what does not come.
-    static const int moments[4] = {0, 1, 1, 2}, expected[2][4] = {{1, 1, 2, -1}, {2, 0, 2, 0}};
+    // Time step 1 is shown twice. The second list expects what does not come.
+    static const int time_steps[4] = {0, 1, 1, 2}, expected[2][4] = {{1, 1, 2, -1}, {2, 0, 2, 0}};
     struct fixture f;
-    setup_moments(&f);
+    setup_time_steps(&f);
     for (size_t row = 0; row < ORL_COUNT(rows); row++) {
         struct orl_render_params params = params_of(rows[row][0], rows[row][1]);
         struct orl_frame plain[4], early[4];
-        draw_moments(&f, &params, moments, NULL, plain);
+        draw_time_steps(&f, &params, time_steps, NULL, plain);
         for (int list = 0; list < 2; list++) {
-            draw_moments(&f, &params, moments, expected[list], early);
+            draw_time_steps(&f, &params, time_steps, expected[list], early);
             for (int i = 0; i < 4; i++) {
                 assert_same(&plain[i].color, &early[i].color);
                 assert_same(&plain[i].depth, &early[i].depth);
                 orl_frame_finish(&early[i]);
             }
         }
-        // The moments differ, or equal pictures would say nothing.
+        // The time steps differ, or equal pictures would say nothing.
         assert_memory_not_equal(plain[0].color.data, plain[1].color.data,
                                 orl_image_bytes(&plain[0].color));
         assert_memory_not_equal(plain[2].color.data, plain[3].color.data,
@@ -132,7 +132,7 @@ struct stage {
 static void setup_stage(struct stage *s)
 {
     const struct orl_renderer_params none = {0};
-    setup_moments(&s->f);
+    setup_time_steps(&s->f);
     s->params = params_of("li", "hull_triangles=900");
     assert_int_equal(orl_photos_init(gpu, &s->f.scene, &none, 0, &s->photos), ORL_OK);
     assert_int_equal(orl_proxy_create(gpu, &s->f.scene, &orl_proxy_hull, 0, &s->proxy), ORL_OK);
@@ -153,13 +153,13 @@ static void remove_file(char *path)
     free(path);
 }
 
-// Prepares moment 1 with all its photographs, as while moment 0 is drawn.
+// Prepares time step 1 with all its photographs, as while time step 0 is drawn.
 static struct prefetch *prepare(struct stage *s)
 {
     static const size_t all[CAMERAS] = {0, 1, 2, 3, 4};
     struct prefetch *prefetch;
     assert_int_equal(orl_prefetch_create(&s->frame, 1, &prefetch), ORL_OK);
-    assert_int_equal(orl_prefetch_moment(prefetch), 1);
+    assert_int_equal(orl_prefetch_time_step(prefetch), 1);
     orl_prefetch_want(prefetch, all, CAMERAS);
     orl_prefetch_wait(prefetch);
     assert_int_equal(orl_prefetch_carve(gpu, prefetch), ORL_OK);
@@ -223,7 +223,7 @@ static void another_hull_is_not_taken(void **state)
     finish_stage(&s);
 }
 
-// What is missing is left to the frame that shows the moment.
+// What is missing is left to the frame that shows the time step.
 static void missing_files_are_left_alone(void **state)
 {
     (void)state;

@@ -123,8 +123,8 @@ static void imports_sequences(void **state)
     struct said said;
     struct orl_log log = log_to(&said);
     assert_int_equal(orl_scene_set_frame(&log, scene, 3), ORL_ERR_ARGUMENT);
-    assert_non_null(strstr(said.text, "no moment 3: there are 3"));
-    // A photograph that is missing leaves the moment as it was.
+    assert_non_null(strstr(said.text, "no time step 3: there are 3"));
+    // A photograph that is missing leaves the time step as it was.
     char *gone = join(out, "frames/00001/images/cam03.jpg");
     assert_int_equal(unlink(gone), 0);
     assert_int_equal(orl_scene_set_frame(&log, scene, 1), ORL_ERR_NOT_FOUND);

@@ -129,8 +129,8 @@ export class LivePicture {
     describe(camera, layer, quality, rest)
     {
         const {width, height, fx, fy, cx, cy, r, eye} = camera;
-        const moments = this.moments ? {moments: this.moments.pair} : {};
-        return {...moments, number: ++this.number, size: [width, height], focal: [fx, fy, cx, cy], r, eye,
+        const timeSteps = this.timeSteps ? {time_steps: this.timeSteps.pair} : {};
+        return {...timeSteps, number: ++this.number, size: [width, height], focal: [fx, fy, cx, cy], r, eye,
                 layer: LAYERS[layer], quality, rest, ev: this.ev, tone: this.tone,
                 measure: rest && this.measures};
     }

@@ -9,7 +9,7 @@ import {LocalPicture} from "./local.js";
 import {Map2d} from "./map.js";
 import {clamp} from "./math.js";
 import {MethodPanel} from "./methods.js";
-import {Moments} from "./moments.js";
+import {TimeSteps} from "./time_steps.js";
 import {Navigator} from "./navigation.js";
 import {Notes} from "./notes.js";
 import {PathEditor} from "./path.js";
@@ -56,9 +56,9 @@ class Walk {
         this.picture = picture;
         this.server = picture.remote ? picture : null;
         this.own = picture.remote ? null : picture; // drawn by this browser
-        this.moments = picture.remote && this.manifest.moments > 1
-            ? new Moments(this.manifest.moments, byId("moments"), () => this.change(() => {})) : null;
-        picture.moments = this.moments;
+        this.timeSteps = picture.remote && this.manifest.time_steps > 1
+            ? new TimeSteps(this.manifest.time_steps, byId("time-steps"), () => this.change(() => {})) : null;
+        picture.timeSteps = this.timeSteps;
         this.buildTools();
         this.readAddress();
         this.resized();
@@ -104,8 +104,8 @@ class Walk {
     changed(took)
     {
         if (took !== undefined) {
-            if (this.moments)
-                this.moments.measured(took);
+            if (this.timeSteps)
+                this.timeSteps.measured(took);
             this.adapt(took, 0);
             this.showFrame();
         } else {
@@ -446,9 +446,9 @@ class Walk {
         this.lastTime = time;
         const {keys, turn, fast} = this.input.state(), nav = this.navigator;
         const moves = nav.update(Math.min(passed, 100) / 1000, keys, turn, fast);
-        const plays = this.moments !== null && this.moments.playing;
+        const plays = this.timeSteps !== null && this.timeSteps.playing;
         if (plays)
-            this.moments.advance();
+            this.timeSteps.advance();
         const changed = nav.changed || plays;
         nav.changed = false;
         if (changed || moves)

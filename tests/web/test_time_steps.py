@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Time in the walk: the server's moments, and the page that plays them. Made by tests/e2e/walk_moments.sh:
-test_moments.py ORIEL SCENE [SCREENSHOT]."""
+"""Time in the walk: the server's time steps, and the page that plays them. Made by tests/e2e/walk_time_steps.sh:
+test_time_steps.py ORIEL SCENE [SCREENSHOT]."""
 import json
 import struct
 import sys
@@ -13,14 +13,14 @@ from client import Client, Walk
 ORIEL, SCENE = sys.argv[1:3]
 
 
-class Moments(unittest.TestCase):
+class TimeSteps(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.walk = Walk(ORIEL, SCENE)
         manifest = json.loads(cls.walk.get("/manifest.json")[1])
         photo = manifest["photos"][0]
         rows = photo["cam_from_world"]
-        cls.moments = manifest["moments"]
+        cls.time_steps = manifest["time_steps"]
         cls.camera = {"size": [photo["width"], photo["height"]], "focal": [photo[key] for key in ("fx", "fy", "cx", "cy")],
                       "r": [value for row in rows for value in row[:3]],
                       "eye": [-sum(row[k] * row[3] for row in rows) for k in range(3)]}
@@ -29,17 +29,17 @@ class Moments(unittest.TestCase):
     def tearDownClass(cls):
         assert cls.walk.close() == 0, "the server does not end well"
 
-    def picture(self, client, moments):
+    def picture(self, client, time_steps):
         request = {"number": 1, "layer": "color", "quality": 90, "rest": True, **self.camera}
-        client.send({**request, **({"moments": moments} if moments else {})})
+        client.send({**request, **({"time_steps": time_steps} if time_steps else {})})
         opcode, data = client.receive()
         self.assertEqual(opcode, 2)
         missing, picks = struct.unpack("<6I", data[:24])[4:]
         self.assertEqual(missing, 0)
         return data[24 + 4 * picks:]
 
-    def test_each_moment_is_its_own(self):
-        self.assertEqual(self.moments, 3)
+    def test_each_time_step_is_its_own(self):
+        self.assertEqual(self.time_steps, 3)
         client = Client(self.walk)
         pictures = [self.picture(client, [i, i]) for i in range(3)]
         self.assertEqual(len(set(pictures)), 3)
@@ -51,10 +51,10 @@ class Moments(unittest.TestCase):
         self.assertEqual(self.picture(client, [99, 99]), pictures[2])
         client.close()
 
-    def test_no_moment_before_the_first(self):
+    def test_no_time_step_before_the_first(self):
         for bad in ([-1, 0], [0], "now", [0, 1e300]):
             client = Client(self.walk)
-            client.send({"number": 1, "layer": "color", "quality": 90, "moments": bad, **self.camera})
+            client.send({"number": 1, "layer": "color", "quality": 90, "time_steps": bad, **self.camera})
             self.assertEqual(client.receive()[0], 8)
             client.socket.close()
 
@@ -63,18 +63,18 @@ class Moments(unittest.TestCase):
         self.addCleanup(browser.close)
         browser.open(self.walk.address)
         browser.wait("return oriel.settled")
-        self.assertFalse(browser.js("return document.getElementById('moments').hidden"))
-        play = "document.querySelector('#moments button').click()"
-        browser.js("window.seen = new Set(); const {moments} = oriel, tell = moments.tell.bind(moments); "
-                   "moments.tell = () => { seen.add(moments.moment); tell(); };" + play)
+        self.assertFalse(browser.js("return document.getElementById('time-steps').hidden"))
+        play = "document.querySelector('#time-steps button').click()"
+        browser.js("window.seen = new Set(); const {timeSteps} = oriel, tell = timeSteps.tell.bind(timeSteps); "
+                   "timeSteps.tell = () => { seen.add(timeSteps.timeStep); tell(); };" + play)
         browser.wait("return seen.size === 3") # again and again
         # The viewer moves while time runs.
         browser.js("oriel.navigator.goTo(oriel.photos[1]); seen.clear(); oriel.wake()")
         browser.wait("return seen.size === 3 && oriel.navigator.at === oriel.photos[1]")
-        browser.js(play + "; oriel.moments.show(2)")
+        browser.js(play + "; oriel.timeSteps.show(2)")
         browser.wait("return oriel.settled")
-        self.assertEqual(browser.js("return document.querySelector('#moments output').textContent"), "3 / 3")
-        self.assertFalse(browser.js("return oriel.moments.playing"))
+        self.assertEqual(browser.js("return document.querySelector('#time-steps output').textContent"), "3 / 3")
+        self.assertFalse(browser.js("return oriel.timeSteps.playing"))
         self.assertEqual(browser.errors(), [])
         if len(sys.argv) > 3:
             browser.screenshot(sys.argv[3])

@@ -1,24 +1,24 @@
-// The time of a sequence: which moment shows, and the bar that plays it.
+// The time of a sequence: which time step shows, and the bar that plays it.
 import {text} from "./strings.js";
 
-const RATE = 25; // moments a second at normal speed
+const RATE = 25; // time steps a second at normal speed
 const SPEEDS = [0.25, 0.5, 1, 2];
 
-export class Moments {
-    // onChange(): another moment is to be shown.
+export class TimeSteps {
+    // onChange(): another time step is to be shown.
     constructor(count, bar, onChange)
     {
-        Object.assign(this, {count, onChange, moment: 0, playing: false, loops: true, speed: 1});
+        Object.assign(this, {count, onChange, timeStep: 0, playing: false, loops: true, speed: 1});
         this.button = this.add(bar, "button", {type: "button", onclick: () => this.toggle()});
-        this.add(bar, "button", {type: "button", textContent: "\u2039", title: text.moments.back,
-                                 onclick: () => this.show(this.moment - 1)});
-        this.add(bar, "button", {type: "button", textContent: "\u203a", title: text.moments.forth,
-                                 onclick: () => this.show(this.moment + 1)});
+        this.add(bar, "button", {type: "button", textContent: "\u2039", title: text.timeSteps.back,
+                                 onclick: () => this.show(this.timeStep - 1)});
+        this.add(bar, "button", {type: "button", textContent: "\u203a", title: text.timeSteps.forth,
+                                 onclick: () => this.show(this.timeStep + 1)});
         this.slider = this.add(bar, "input", {type: "range", min: 0, max: count - 1, step: 1, value: 0,
-                                              title: text.moments.slider,
+                                              title: text.timeSteps.slider,
                                               oninput: () => this.show(Number(this.slider.value))});
         this.place = this.add(bar, "output", {});
-        const speed = this.add(bar, "select", {title: text.moments.speed, onchange: () => {
+        const speed = this.add(bar, "select", {title: text.timeSteps.speed, onchange: () => {
             this.speed = Number(speed.value);
             this.restart();
         }});
@@ -28,7 +28,7 @@ export class Moments {
             type: "checkbox", checked: true, onchange: () => {
                 this.loops = loop.checked;
             }});
-        loop.after(text.moments.loop);
+        loop.after(text.timeSteps.loop);
         bar.hidden = false;
         this.tell();
     }
@@ -43,53 +43,53 @@ export class Moments {
     toggle()
     {
         this.playing = !this.playing;
-        if (this.playing && !this.loops && this.moment === this.count - 1)
-            this.moment = 0;
+        if (this.playing && !this.loops && this.timeStep === this.count - 1)
+            this.timeStep = 0;
         this.restart();
         this.tell();
         this.onChange();
     }
 
-    // One moment, at rest.
-    show(moment)
+    // One time step, at rest.
+    show(timeStep)
     {
         this.playing = false;
-        this.moment = (moment + this.count) % this.count;
+        this.timeStep = (timeStep + this.count) % this.count;
         this.tell();
         this.onChange();
     }
 
     restart()
     {
-        this.from = this.moment;
+        this.from = this.timeStep;
         this.since = performance.now();
     }
 
     tell()
     {
         this.button.textContent = this.playing ? "\u275a\u275a" : "\u25b6";
-        this.button.title = this.playing ? text.moments.pause : text.moments.play;
-        this.slider.value = this.moment;
-        this.place.textContent = text.moments.place(this.moment + 1, this.count);
+        this.button.title = this.playing ? text.timeSteps.pause : text.timeSteps.play;
+        this.slider.value = this.timeStep;
+        this.place.textContent = text.timeSteps.place(this.timeStep + 1, this.count);
     }
 
-    // Lets time run to now. Moments that a slow picture has no time for are left out.
+    // Lets time run to now. Time steps that a slow picture has no time for are left out.
     advance()
     {
         if (!this.playing)
             return;
         const at = this.from + Math.floor((performance.now() - this.since) / 1000 * RATE * this.speed);
-        this.moment = this.loops ? at % this.count : Math.min(at, this.count - 1);
-        this.playing = this.loops || this.moment < this.count - 1;
+        this.timeStep = this.loops ? at % this.count : Math.min(at, this.count - 1);
+        this.playing = this.loops || this.timeStep < this.count - 1;
         this.tell();
     }
 
-    // The moment that shows, and the one that the picture after next will show if each takes so long.
+    // The time step that shows, and the one that the picture after next will show if each takes so long.
     get pair()
     {
         const ahead = this.playing ? Math.max(1, Math.round(this.step || 1)) : 0;
-        const next = this.moment + ahead;
-        return [this.moment, this.loops ? next % this.count : Math.min(next, this.count - 1)];
+        const next = this.timeStep + ahead;
+        return [this.timeStep, this.loops ? next % this.count : Math.min(next, this.count - 1)];
     }
 
     // Says how long a picture took, milliseconds.
