@@ -100,7 +100,7 @@ static struct passage passage_between(const struct orl_depth_map *from,
     return p;
 }
 
-struct verdict {
+struct votes {
     int agree, past;
     float finest; // least size of a pixel on the surface among those that show it, scene units
 };
@@ -114,7 +114,7 @@ static double shift_in_pixels(const struct passage *p, const double q[3], float 
 }
 
 // Asks one map about a point of the other camera's frame.
-static void ask(const struct passage *p, const double q[3], struct verdict *v)
+static void ask(const struct passage *p, const double q[3], struct votes *v)
 {
     const struct orl_camera *c = &p->to->view.camera;
     const struct orl_image *depth = &p->to->depth;
@@ -136,7 +136,7 @@ static void ask(const struct passage *p, const double q[3], struct verdict *v)
     }
 }
 
-static bool keeps(const struct verdict *v, float own_size)
+static bool keeps(const struct votes *v, float own_size)
 {
     return v->agree >= AGREE_LEAST && AGREE_FOR_EACH_PAST * v->past <= v->agree &&
            own_size <= FINER * v->finest;
@@ -157,7 +157,7 @@ static void find(const struct orl_depth_map *map, const uint8_t *near,
                 continue;
             const double q[3] = {(x + 0.5 - c->cx) / c->fx * z, (y + 0.5 - c->cy) / c->fy * z, z};
             float size = (float)(z / c->fx);
-            struct verdict v = {.agree = 1, .finest = size};
+            struct votes v = {.agree = 1, .finest = size};
             for (size_t i = 0; i < count; i++)
                 ask(&passages[i], q, &v);
             if (!keeps(&v, size))

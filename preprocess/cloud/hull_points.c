@@ -43,8 +43,8 @@ static int pardoned(const struct orl_hull_points *hull)
 
 // --- silhouettes ---
 
-enum orl_silhouette_verdict orl_silhouette_ask(const struct orl_silhouette *s,
-                                               const double world[3], double pixel[2])
+enum orl_silhouette_test orl_silhouette_ask(const struct orl_silhouette *s,
+                                            const double world[3], double pixel[2])
 {
     double depth;
     if (!orl_view_project(&s->view, world, pixel, &depth) ||

@@ -7,11 +7,11 @@
 #include "scene/hull.h"
 
 // What a silhouette says of a place.
-enum orl_silhouette_verdict { ORL_SILHOUETTE_UNSEEN, ORL_SILHOUETTE_OUTSIDE, ORL_SILHOUETTE_INSIDE };
+enum orl_silhouette_test { ORL_SILHOUETTE_UNSEEN, ORL_SILHOUETTE_OUTSIDE, ORL_SILHOUETTE_INSIDE };
 
 // `pixel`: where the photograph shows the place, if it does.
-enum orl_silhouette_verdict orl_silhouette_ask(const struct orl_silhouette *silhouette,
-                                               const double world[3], double pixel[2]);
+enum orl_silhouette_test orl_silhouette_ask(const struct orl_silhouette *silhouette,
+                                            const double world[3], double pixel[2]);
 
 // A cube of voxels around the points, carved by silhouettes (the visual hull, Laurentini 1994) and
 // by what depth maps see through (space carving, Kutulakos and Seitz 2000).

@@ -94,7 +94,7 @@ static bool same_camera(const struct orl_source *a, const struct orl_source *b)
     return strcmp(a->exif.make, b->exif.make) == 0 && strcmp(a->exif.model, b->exif.model) == 0;
 }
 
-// The response of photographs with more than 8 bits is known: their 8-bit twins are sRGB.
+// The response of photographs with more than 8 bits is known: their 8-bit copies are sRGB.
 static void set_cameras(struct exposing *e)
 {
     int cameras = 0;

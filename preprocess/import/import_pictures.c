@@ -79,7 +79,7 @@ static enum orl_result write_photo(const struct import_job *job, const struct im
     return result;
 }
 
-// Writes the linear light of a photograph with more than 8 bits a sample, beside its 8-bit twin.
+// Writes the linear light of a photograph with more than 8 bits a sample, beside its 8-bit copy.
 static enum orl_result write_linear(const struct import_job *job, const struct import_view *view)
 {
     struct orl_picture_info info;

@@ -78,7 +78,7 @@ static void drop_unreadable(struct orl_job *job)
 
 // Drops the JPEG that a camera writes beside a RAW file: two photographs from one place would
 // mislead COLMAP.
-static void drop_twins(struct orl_job *job)
+static void drop_jpegs_of_raw(struct orl_job *job)
 {
     drop_unreadable(job);
     size_t kept = 0;
@@ -323,7 +323,7 @@ enum orl_result orl_stage_collect(struct orl_job *job)
     enum orl_result result;
     if ((result = orl_photos_list(job)) != ORL_OK)
         return result;
-    drop_twins(job);
+    drop_jpegs_of_raw(job);
     if ((result = drop_duplicates(job)) != ORL_OK || (result = inspect_all(job)) != ORL_OK)
         return result;
     drop_copies(job);

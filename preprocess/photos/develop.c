@@ -11,7 +11,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 
-enum { TWIN_QUALITY = 98 };
+enum { COPY_QUALITY = 98 };
 
 static const float light_max = 65504; // greatest half float; infinities would spread
 
@@ -55,7 +55,7 @@ static double log_average(const struct orl_image *image)
     return used > 0 ? sum / used : 0;
 }
 
-// The result is stored beside the twins, since it takes decoding the whole file.
+// The result is stored beside the copies, since it takes decoding the whole file.
 static enum orl_result read_light(const struct orl_job *job, const struct orl_source *source,
                                   double *light)
 {
@@ -122,30 +122,30 @@ enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_sou
     return result;
 }
 
-// --- 8-bit twins ---
+// --- 8-bit copies ---
 
 // COLMAP reads PNG of 8 bits alone, and drops colour profiles.
-static bool needs_twin(const struct orl_source *source)
+static bool needs_copy(const struct orl_source *source)
 {
     return orl_develop_wanted(source->given) || source->deep || source->profiled;
 }
 
-static enum orl_result write_twin(const struct orl_job *job, const struct orl_source *source,
+static enum orl_result write_copy(const struct orl_job *job, const struct orl_source *source,
                                   const char *path)
 {
-    struct orl_image linear = {0}, twin = {0};
+    struct orl_image linear = {0}, copy = {0};
     enum orl_result result = orl_develop_read(job, source, &linear);
     if (result == ORL_OK)
-        result = orl_image_init(job->log, &twin, linear.width, linear.height, 3, ORL_PIXEL_U8);
-    size_t count = result == ORL_OK ? orl_image_bytes(&twin) : 0;
+        result = orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8);
+    size_t count = result == ORL_OK ? orl_image_bytes(&copy) : 0;
     for (size_t i = 0; i < count; i++)
-        twin.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(linear.f32[i]));
+        copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(linear.f32[i]));
     if (result == ORL_OK)
         result = orl_picture_is_png(source->name)
-                     ? orl_png_write(job->log, path, &twin)
-                     : orl_jpeg_write(job->log, path, &twin, TWIN_QUALITY, &source->exif);
+                     ? orl_png_write(job->log, path, &copy)
+                     : orl_jpeg_write(job->log, path, &copy, COPY_QUALITY, &source->exif);
     orl_image_finish(&linear);
-    orl_image_finish(&twin);
+    orl_image_finish(&copy);
     return result;
 }
 
@@ -158,7 +158,7 @@ static enum orl_result develop(const struct orl_job *job, struct orl_source *sou
     char *path = cache_path(job, source, end);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && !orl_path_is_file(path))
-        result = write_twin(job, source, path);
+        result = write_copy(job, source, path);
     if (result == ORL_OK) {
         source->original = source->path;
         source->path = path;
@@ -172,7 +172,7 @@ enum orl_result orl_develop(struct orl_job *job)
 {
     size_t count = 0, done = 0;
     for (size_t i = 0; i < job->source_count; i++)
-        count += needs_twin(&job->sources[i]);
+        count += needs_copy(&job->sources[i]);
     if (!count)
         return ORL_OK;
     char *dir = orl_job_path(job, ".oriel/developed");
@@ -182,7 +182,7 @@ enum orl_result orl_develop(struct orl_job *job)
         result = choose_scale(job);
     for (size_t i = 0; i < job->source_count && result == ORL_OK; i++) {
         struct orl_source *source = &job->sources[i];
-        if (!needs_twin(source))
+        if (!needs_copy(source))
             continue;
         if (orl_progress_cancelled(job->progress))
             return ORL_ERR_CANCELLED;

@@ -1,17 +1,17 @@
-// Develop: 8-bit sRGB twins of photographs that COLMAP cannot read, or whose colour profile it would
+// Develop: 8-bit sRGB copies of photographs that COLMAP cannot read, or whose colour profile it would
 // drop, and the linear light of those with more than 8 bits (docs/reference/files.md, images_linear).
 #ifndef ORL_PREPROCESS_DEVELOP_H
 #define ORL_PREPROCESS_DEVELOP_H
 
 #include "preprocess/job/job.h"
 
-// True when COLMAP needs an 8-bit twin of the file, by its extension.
+// True when COLMAP needs an 8-bit copy of the file, by its extension.
 bool orl_develop_wanted(const char *name);
-// The twin's name; the caller releases it with free().
+// The copy's name; the caller releases it with free().
 char *orl_develop_name(const struct orl_log *log, const char *name);
-// Makes missing twins and sets source->path to the twin's. Sets job->linear_scale.
+// Makes missing copies and sets source->path to the copy's. Sets job->linear_scale.
 enum orl_result orl_develop(struct orl_job *job) ORL_CHECK_RESULT;
-// Reads the photograph as given, in linear light, F32 x3. 1 is its twin's white.
+// Reads the photograph as given, in linear light, F32 x3. 1 is its copy's white.
 enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_source *source,
                                  struct orl_image *image) ORL_CHECK_RESULT;
 

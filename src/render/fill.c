@@ -103,9 +103,9 @@ void orl_fill_depth(const struct frame *frame)
 }
 
 // Pixels that clip in every photograph take the brightness of the sufficiently bright light around.
-static void lift(const struct frame *frame)
+static void restore_highlights(const struct frame *frame)
 {
-    static const struct step apply = {"fill/fill_lift.comp", NULL, 2, NULL};
+    static const struct step apply = {"fill/fill_highlights.comp", NULL, 2, NULL};
     seed(frame, "SEED_LEAST", frame->picture, NULL, GL_WRITE_ONLY);
     spread(frame, NULL);
     seed(frame, "SEED_BRIGHTER", frame->picture, NULL, GL_READ_WRITE);
@@ -128,7 +128,7 @@ void orl_fill_color(const struct frame *frame)
     // Before a complete room only surfaces are left to fill, and the walls' colours are not theirs.
     bool surfaces = orl_frame_shows_room(frame) && !orl_painter_of(frame->params)->layers;
     if (frame->radiance)
-        lift(frame);
+        restore_highlights(frame);
     if (!frame->finishes)
         seed(frame, surfaces ? "SEED_SURFACES" : NULL, frame->picture, frame->surface.depth,
              GL_WRITE_ONLY);

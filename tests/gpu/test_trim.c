@@ -157,7 +157,7 @@ static void add_striped(struct fixture *f, double x)
 }
 
 // Photographs side by side, of which the last repeats the first.
-static void setup_twins(struct fixture *f)
+static void setup_same_places(struct fixture *f)
 {
     enum { PHOTOS = 5 };
     setup_wall(f);
@@ -186,7 +186,7 @@ static void a_budget_that_cannot_be_kept_is_refused(void **state)
                                      .params = orl_method_find(NULL, "points")->params};
     const struct orl_trim_params params = {.start = &start, .max_bytes = 1, .views = 2,
                                            .size_divide = 1, .settings_only = true};
-    setup_twins(&f);
+    setup_same_places(&f);
     assert_int_equal(orl_trim_run(gpu, &f.scene, &params, &result), ORL_ERR_DATA);
     assert_null(result.steps);
     teardown(&f);
@@ -198,7 +198,7 @@ static void the_tolerance_is_kept(void **state)
     (void)state;
     static const double tolerances[] = {0.02, 0.5};
     struct fixture f;
-    setup_twins(&f);
+    setup_same_places(&f);
     for (size_t i = 0; i < ORL_COUNT(tolerances); i++) {
         struct orl_trim result;
         trim(&f, tolerances[i], 1, &result);
@@ -219,7 +219,7 @@ static void the_tolerance_of_ssim_is_kept(void **state)
     static const double tolerances[] = {1, 0.002};
     double lost[ORL_COUNT(tolerances)];
     struct fixture f;
-    setup_twins(&f);
+    setup_same_places(&f);
     for (size_t i = 0; i < ORL_COUNT(tolerances); i++) {
         struct orl_trim result;
         trim(&f, 20, tolerances[i], &result);
@@ -255,7 +255,7 @@ static void one_step_of_many_is_taken_back(void **state)
     (void)state;
     enum { STEPS = 5 };
     struct fixture f;
-    setup_twins(&f);
+    setup_same_places(&f);
     struct orl_heldout views[5] = {{.photo = 0}, {.photo = 1}, {.photo = 2}, {.photo = 3},
                                    {.photo = 4}};
     struct orl_trim_step steps[STEPS] = {0};
@@ -379,7 +379,7 @@ static void a_photograph_that_repeats_another_goes(void **state)
     struct fixture f;
     struct orl_trim result;
     struct orl_scene *whole, *small;
-    setup_twins(&f);
+    setup_same_places(&f);
     move_to_folder(&f);
     save_scene(&f);
     char *out = orl_path_join(NULL, f.dir, "../trimmed-scene");
@@ -455,7 +455,7 @@ static void adapting_stores_the_best_method(void **state)
     const struct orl_names none = {0};
     const struct orl_adapt_params params = {.search = true, .views = 3, .size_divide = 1,
                                             .budget_s = 1};
-    setup_twins(&f);
+    setup_same_places(&f);
     save_scene(&f);
     assert_int_equal(orl_scene_open(NULL, f.dir, &scene), ORL_OK);
     assert_int_equal(orl_adapt_run(gpu, scene, &params, &adapt), ORL_OK);
@@ -479,7 +479,7 @@ static void held_out_photographs_never_steer(void **state)
     (void)state;
     struct fixture f;
     struct orl_trim with, without;
-    setup_twins(&f);
+    setup_same_places(&f);
     trim(&f, 0.1, 1, &without);
     struct orl_photo *held = &f.photos[f.scene.photo_count++];
     *held = f.photos[1];

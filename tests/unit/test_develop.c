@@ -104,7 +104,7 @@ static void prepare(struct said *said, bool resume)
         fail_msg("%s", said->text);
 }
 
-// scale: of light, as the 8-bit twin has it.
+// scale: of light, as the 8-bit copy has it.
 static void check_photo(const struct orl_scene *scene, const char *name, float scale, bool clips)
 {
     int index = orl_scene_find_photo(scene, name);
@@ -135,7 +135,7 @@ static void check_photo(const struct orl_scene *scene, const char *name, float s
     free(path);
 }
 
-static void deep_photographs_get_twins_and_linear_light(void **state)
+static void deep_photographs_get_copies_and_linear_light(void **state)
 {
     (void)state;
     struct said said;
@@ -273,7 +273,7 @@ static void cameras_are_told_apart_and_places_kept(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(deep_photographs_get_twins_and_linear_light),
+        cmocka_unit_test(deep_photographs_get_copies_and_linear_light),
         cmocka_unit_test(true_radiance_is_undistorted),
         cmocka_unit_test(without_deep_photographs_the_folder_goes),
         cmocka_unit_test(cameras_are_told_apart_and_places_kept),

@@ -432,7 +432,7 @@ static void names_black_masks(void **state)
 
 // --- single pictures, points, meshes ---
 
-// Light above white is kept beside the 8-bit twin.
+// Light above white is kept beside the 8-bit copy.
 static void keeps_linear_light(void **state)
 {
     const struct work *w = *state;
