@@ -10,7 +10,7 @@
 // near; it confirms the point when a fair share does. A point is dropped that at least two
 // photographs look through, and at least three times as many as confirm it. Points in no
 // photograph's frame stay, and so do those that a known number of photographs agree on: fusion has
-// compared them with whole depth maps (thin.h). Needs no radii. `views`: the photographs' cameras;
+// compared them with whole depth maps. Needs no radii. `views`: the photographs' cameras;
 // of many some are taken, evenly chosen.
 // After the free-space violations of Merrell et al. 2007, "Real-time visibility-based fusion of
 // depth maps", of points in place of depth maps.

@@ -210,7 +210,7 @@ All methods and their settings on the held-out photographs of five scenes, one r
 a frame, the geometric mean over the scenes; the figure and the sentences have the wall time, which other work on the
 machine lengthens. *Front*: no other row is both faster, by processor time, and better by PSNR. `sd` is the standard
 deviation over the scenes. A time is the median of few frames and scatters by up to 15 % beside other programs: no setting
-that draws more is faster. [Columns](../reference/chart.md), [another program](peers.md).
+that draws more is faster. [Columns](../reference/chart.md).
 END
     command_block "$chart"
     printf '![PSNR against the time of a frame, means over the scenes](charts.svg)\n\n'

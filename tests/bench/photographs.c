@@ -1,5 +1,5 @@
 // photographs SCENE WxH [METHOD]..: what a frame costs with every photograph of the scene
-// and with 20 of them, spread evenly, in CPU time (cpu_time.h). The least of several draws in
+// and with 20 of them, spread evenly, in CPU time. The least of several draws in
 // turn, without reading back, standing still halfway between two photographs (`still`), and the
 // mean along a short walk there, for the first time, when photographs that come into question
 // are read and their depth is drawn (`first`), and again (`walk`).

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Every relative link of README.md and docs/**/*.md leads to a file and, with #, to a heading of it;
-# every page of docs can be reached from its index, and every page that a comment names is there.
+# every page of docs can be reached from its index, and files that comments and pages name are there.
 # Links to other sites are not followed.
 # usage: links.sh SOURCE_DIR [INDEX]
 set -eu
@@ -52,9 +52,17 @@ for page in README.md $pages; do
         echo "$page $file" >>"$table"
     done
 done
-for page in $(grep -rhoE 'docs/[a-z]+/[a-z_-]+\.md' src preprocess include datasets shaders web tests .ci \
-    2>/dev/null | sort -u); do
-    [ -f "$page" ] || { echo "$page: no such page: $(grep -rl "$page" src preprocess include datasets shaders web tests .ci | tr '\n' ' ')"; bad=1; }
+# Files that comments and pages name by their path; COLMAP's are its own.
+folders=
+for folder in src preprocess include datasets shaders web docs; do
+    [ ! -d "$folder" ] || folders="$folders $folder"
+done
+for mention in $(grep -rhIvE 'COLMAP|^#include|^ *(import|from) ' --exclude-dir=measured $folders |
+    grep -owE '(docs|include|preprocess|shaders|src|tests)/[a-z0-9_/]+\.(c|h|comp|frag|glsl|md|sh|vert)' | sort -u); do
+    [ -e "$mention" ] || [ -e "web/$mention" ] || [ ! -d src ] || {
+        echo "$mention is named and not there: $(grep -rlIF -e "$mention" $folders | tr '\n' ' ')"
+        bad=1
+    }
 done
 
 [ "$(wc -l <"$table")" -gt 10 ] || { echo "found no links to check below $1"; exit 1; }

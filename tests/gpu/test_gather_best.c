@@ -20,7 +20,7 @@ static struct orl_render_params best(void)
     return params;
 }
 
-// Penalty of photo_choice.glsl on known surfaces, for the wall point at pixel (x, y), cameras side by
+// Penalty of shaders/gather/penalty.glsl on known surfaces, for the wall point at pixel (x, y), cameras side by
 // side.
 static double penalty(double eye, double photo, int x, int y)
 {

@@ -1,4 +1,4 @@
-// Blends the best few photographs into each pixel, as shaders/gather/gather_best.comp does.
+// Blends the best few photographs into each pixel, as shaders/gather/tiled.comp does.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/guess_blur.glsl"
