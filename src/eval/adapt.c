@@ -7,7 +7,7 @@
 #include "core/process.h"
 #include "eval/trim.h"
 #include "eval/tune.h"
-#include "eval/verdict.h"
+#include "eval/score.h"
 #include "scene/tuned_settings.h"
 
 // Of the time that is left after the methods are compared, tuning may take this share.
@@ -47,9 +47,9 @@ struct job {
     const struct orl_adapt_params *params;
     struct orl_adapt *adapt;
     struct orl_renderer *renderer;
-    struct orl_judges judges;
+    struct orl_validation validation;
     struct orl_choice choice;   // the best so far
-    struct orl_verdict verdict; // of it
+    struct orl_score score; // of it
     size_t renderings;          // done, in steps
     double start_s;
 };
@@ -65,15 +65,15 @@ static enum orl_result add_method(struct job *job, const struct orl_method *meth
 {
     struct orl_adapt *adapt = job->adapt;
     struct orl_render_params render;
-    struct orl_verdict verdict = {0};
+    struct orl_score score = {0};
     enum orl_result result = orl_render_params_tuned(job->log, method, job->scene, &render);
     if (result == ORL_OK)
-        result = orl_verdict_measure(job->log, job->renderer, &job->judges, &render,
-                                     job->params->progress, &verdict);
+        result = orl_score_measure(job->log, job->renderer, &job->validation, &render,
+                                   job->params->progress, &score);
     if (result == ORL_OK)
         adapt->rows[adapt->row_count++] =
-            (struct orl_adapt_row){method, verdict.psnr_db, verdict.ssim};
-    orl_verdict_finish(&verdict);
+            (struct orl_adapt_row){method, score.psnr_db, score.ssim};
+    orl_score_finish(&score);
     bool fatal = result == ORL_ERR_MEMORY || result == ORL_ERR_GPU || result == ORL_ERR_CANCELLED;
     return fatal ? result : ORL_OK;
 }
@@ -106,8 +106,8 @@ static enum orl_result compare_methods(struct job *job)
         result = orl_render_params_tuned(job->log, job->choice.method, job->scene,
                                          &job->choice.params);
     if (result == ORL_OK)
-        result = orl_verdict_measure(job->log, job->renderer, &job->judges, &job->choice.params,
-                                     job->params->progress, &job->verdict);
+        result = orl_score_measure(job->log, job->renderer, &job->validation, &job->choice.params,
+                                   job->params->progress, &job->score);
     return result;
 }
 
@@ -120,22 +120,22 @@ static enum orl_result try_value(struct job *job, const struct orl_render_option
 {
     char assignment[2 * ORL_OPTION_NAME_BYTES + 2], own[ORL_OPTION_NAME_BYTES];
     struct orl_render_params render = job->choice.params;
-    struct orl_verdict verdict = {0};
+    struct orl_score score = {0};
     orl_render_option_print(option, &render, own, sizeof own);
     snprintf(assignment, sizeof assignment, "%s=%s", option->key, value);
     if (strcmp(own, value) == 0 || orl_render_params_set(NULL, &render, assignment) != ORL_OK)
         return ORL_OK;
-    enum orl_result result = orl_verdict_measure(job->log, job->renderer, &job->judges, &render,
-                                                 job->params->progress, &verdict);
-    if (result == ORL_OK && orl_verdict_better(&verdict, &job->verdict, gain_db)) {
-        orl_logf(job->log, ORL_LOG_INFO, "%s: %.2f dB, SSIM %.4f", assignment, verdict.psnr_db,
-                 verdict.ssim);
-        orl_verdict_finish(&job->verdict);
-        job->verdict = verdict;
+    enum orl_result result = orl_score_measure(job->log, job->renderer, &job->validation, &render,
+                                               job->params->progress, &score);
+    if (result == ORL_OK && orl_score_better(&score, &job->score, gain_db)) {
+        orl_logf(job->log, ORL_LOG_INFO, "%s: %.2f dB, SSIM %.4f", assignment, score.psnr_db,
+                 score.ssim);
+        orl_score_finish(&job->score);
+        job->score = score;
         job->choice.params = render;
         return ORL_OK;
     }
-    orl_verdict_finish(&verdict);
+    orl_score_finish(&score);
     return result == ORL_ERR_ARGUMENT || result == ORL_ERR_NOT_FOUND ? ORL_OK : result;
 }
 
@@ -215,12 +215,12 @@ static enum orl_result trim(struct job *job)
 static enum orl_result search(struct job *job)
 {
     enum orl_result result = compare_methods(job);
-    job->adapt->plain_db = job->verdict.psnr_db;
-    job->adapt->plain_ssim = job->verdict.ssim;
+    job->adapt->plain_db = job->score.psnr_db;
+    job->adapt->plain_ssim = job->score.ssim;
     if (result == ORL_OK && left_s(job) > 0)
         result = borrow(job);
-    job->adapt->tuned_db = job->verdict.psnr_db;
-    job->adapt->tuned_ssim = job->verdict.ssim;
+    job->adapt->tuned_db = job->score.psnr_db;
+    job->adapt->tuned_ssim = job->score.ssim;
     if (result == ORL_OK && left_s(job) > 0)
         result = tune(job);
     // Trimming has a renderer of its own.
@@ -297,42 +297,42 @@ static bool is_same(const struct orl_choice *a, const struct orl_choice *b)
 }
 
 static enum orl_result render_views(struct job *job, const struct orl_choice *choice, size_t count,
-                              struct orl_verdict *verdict)
+                              struct orl_score *score)
 {
     orl_progress_report(job->params->progress, "adapt", (double)job->renderings,
                         (double)orl_adapt_renderings(job->scene), NULL);
-    job->renderings += count - verdict->count;
-    return orl_verdict_extend(job->log, job->renderer, &job->judges, &choice->params,
-                              job->params->progress, count, verdict);
+    job->renderings += count - score->count;
+    return orl_score_extend(job->log, job->renderer, &job->validation, &choice->params,
+                            job->params->progress, count, score);
 }
 
 // Takes the step if it is clearly better. Half of the views suffice to see that it is not.
 static enum orl_result try_step(struct job *job, const struct step *step, bool *taken)
 {
     struct orl_choice choice;
-    struct orl_verdict verdict = {0};
-    size_t count = job->judges.count;
+    struct orl_score score = {0};
+    size_t count = job->validation.count;
     *taken = false;
     enum orl_result result = set_step(job, step, &choice);
     if (result != ORL_OK || is_same(&choice, &job->choice))
         return result;
-    result = render_views(job, &choice, (count + 1) / 2, &verdict);
-    if (result == ORL_OK && orl_verdict_gain_db(&verdict, &job->verdict) >= step_gain_db / 2) {
-        result = render_views(job, &choice, count, &verdict);
+    result = render_views(job, &choice, (count + 1) / 2, &score);
+    if (result == ORL_OK && orl_score_gain_db(&score, &job->score) >= step_gain_db / 2) {
+        result = render_views(job, &choice, count, &score);
         *taken = result == ORL_OK &&
-                 orl_verdict_clearly_better(&verdict, &job->verdict, step_gain_db);
+                 orl_score_clearly_better(&score, &job->score, step_gain_db);
     }
     if (*taken) {
         for (size_t i = 0; i < ORL_COUNT(step->settings) && step->settings[i]; i++)
             orl_logf(job->log, ORL_LOG_INFO, "adapt: %s", step->settings[i]);
         orl_logf(job->log, ORL_LOG_INFO, "adapt: %s: %.2f dB, SSIM %.4f", choice.method->name,
-                 verdict.psnr_db, verdict.ssim);
-        orl_verdict_finish(&job->verdict);
-        job->verdict = verdict;
+                 score.psnr_db, score.ssim);
+        orl_score_finish(&job->score);
+        job->score = score;
         job->choice = choice;
         return ORL_OK;
     }
-    orl_verdict_finish(&verdict);
+    orl_score_finish(&score);
     return result;
 }
 
@@ -345,14 +345,14 @@ static enum orl_result take_steps(struct job *job)
 {
     struct orl_adapt *adapt = job->adapt;
     const struct orl_names none = {0};
-    size_t most = orl_adapt_renderings(job->scene), count = job->judges.count;
+    size_t most = orl_adapt_renderings(job->scene), count = job->validation.count;
     bool taken = false;
     enum orl_result result =
         orl_choice_make(job->log, job->scene, ORL_SAMPLE_SRGB, NULL, &none, &job->choice);
     if (result == ORL_OK)
-        result = render_views(job, &job->choice, count, &job->verdict);
-    adapt->plain_db = job->verdict.psnr_db;
-    adapt->plain_ssim = job->verdict.ssim;
+        result = render_views(job, &job->choice, count, &job->score);
+    adapt->plain_db = job->score.psnr_db;
+    adapt->plain_ssim = job->score.ssim;
     adapt->complete = true;
     for (size_t i = 0; result == ORL_OK && adapt->complete && i < ORL_COUNT(steps); i++) {
         if (!is_for(steps[i].condition, taken))
@@ -361,8 +361,8 @@ static enum orl_result take_steps(struct job *job)
         if (adapt->complete)
             result = try_step(job, &steps[i], &taken);
     }
-    adapt->tuned_db = job->verdict.psnr_db;
-    adapt->tuned_ssim = job->verdict.ssim;
+    adapt->tuned_db = job->score.psnr_db;
+    adapt->tuned_ssim = job->score.ssim;
     orl_progress_report(job->params->progress, "adapt", 1, 1, NULL);
     return result;
 }
@@ -377,15 +377,15 @@ enum orl_result orl_adapt_run(struct orl_gpu *gpu, const struct orl_scene *scene
     memset(adapt, 0, sizeof *adapt);
     adapt->defaults = scene->defaults;
     enum orl_result result =
-        orl_judges_load(job.log, scene, params->views, params->size_divide, &job.judges);
+        orl_validation_load(job.log, scene, params->views, params->size_divide, &job.validation);
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, NULL, &job.renderer);
-    adapt->views = job.judges.count;
+    adapt->views = job.validation.count;
     if (result == ORL_OK)
         result = params->search ? search(&job) : take_steps(&job);
     orl_renderer_destroy(&job.renderer);
-    orl_judges_finish(&job.judges);
-    orl_verdict_finish(&job.verdict);
+    orl_validation_finish(&job.validation);
+    orl_score_finish(&job.score);
     adapt->choice = job.choice;
     if (result == ORL_OK)
         adapt->defaults.method = (char *)job.choice.method->name;

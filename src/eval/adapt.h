@@ -48,10 +48,10 @@ size_t orl_adapt_renderings(const struct orl_scene *scene);
 size_t orl_adapt_choose(const struct orl_adapt_row *rows, size_t count);
 
 // Steps: tries a few changes of the scene's method that gained on scenes that were measured, and
-// keeps what is clearly better (verdict.h). Search: compares all methods. Of the best one, tries
+// keeps what is clearly better (score.h). Search: compares all methods. Of the best one, tries
 // for each option the values that other methods have, keeps what is better, then tunes its numbers
 // (tune.h), and finds which of the renderer's settings save memory or time without a loss that
-// counts (trim.h). ORL_ERR_DATA: fewer than ORL_JUDGES_TRAIN_MIN training photographs.
+// counts (trim.h). ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN training photographs.
 enum orl_result orl_adapt_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_adapt_params *params,
                               struct orl_adapt *adapt) ORL_CHECK_RESULT;

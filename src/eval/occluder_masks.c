@@ -7,7 +7,7 @@
 #include "bridge/bridge.h"
 #include "core/color.h"
 #include "core/memory.h"
-#include "eval/judges.h"
+#include "eval/validation.h"
 
 // Pixels of pictures of ORL_OCCLUDERS_SIDE, and differences in square roots of light, as the length
 // of the vector of channels.
@@ -266,17 +266,17 @@ static int by_apart(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-// Skips what the rendering of a photograph's view does without: see orl_judges_leave_out, and all
-// but the nearest.
+// Skips what the rendering of a photograph's view does without: see orl_validation_leave_out, and
+// all but the nearest.
 static void set_skip(const struct finder *f, size_t photo, const bool *removed)
 {
     size_t count = 0;
-    orl_judges_leave_out(f->scene, photo, removed, f->skip);
+    orl_validation_leave_out(f->scene, photo, removed, f->skip);
     for (size_t i = 0; i < f->scene->photo_count; i++) {
         double distance, angle;
         if (f->skip[i] || f->scene->photos[i].test)
             continue;
-        orl_judges_apart(f->scene, photo, i, &distance, &angle);
+        orl_validation_apart(f->scene, photo, i, &distance, &angle);
         f->others[count++] = (struct other){i, distance + angle};
     }
     qsort(f->others, count, sizeof *f->others, by_apart);
@@ -343,7 +343,7 @@ static enum orl_result confirm(struct finder *f, size_t train)
     while (result == ORL_OK && (photo = next_accused(f)) < f->scene->photo_count) {
         double first = f->shares[photo];
         f->shares[photo] = 0;
-        if (train - proven < ORL_JUDGES_TRAIN_MIN)
+        if (train - proven < ORL_VALIDATION_TRAIN_MIN)
             orl_image_finish(&f->masks[photo]);
         else if (proven > 0)
             result = find_of(f, photo, f->proven);
@@ -379,7 +379,7 @@ enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *
     struct finder f = {.log = orl_gpu_log(gpu), .scene = scene, .progress = progress,
                        .masks = masks, .shares = shares};
     size_t train = scene->photo_count - orl_heldout_count(scene);
-    if (train < ORL_JUDGES_TRAIN_MIN)
+    if (train < ORL_VALIDATION_TRAIN_MIN)
         return orl_fail(f.log, ORL_ERR_DATA, "%s: %zu photographs that are not held out; three are "
                         "needed, to compare one with two others", scene->dir, train);
     f.others = orl_array(f.log, scene->photo_count, sizeof *f.others);

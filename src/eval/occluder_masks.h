@@ -35,7 +35,7 @@ enum orl_result orl_occluder_mask(const struct orl_log *log,
 // An occluder also makes the few differ that see what it hides: so the photographs are compared
 // again, the most occluded first, without those that were found before. masks and shares: one for
 // each photograph of the scene; those of held-out photographs stay empty. The masks are the caller's
-// (orl_image_finish), also after a failure. ORL_ERR_DATA: fewer than ORL_JUDGES_TRAIN_MIN photographs
+// (orl_image_finish), also after a failure. ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN photographs
 // are for training.
 enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *scene,
                                    const struct orl_progress *progress, struct orl_image *masks,

@@ -84,8 +84,8 @@ static enum orl_result search(struct trim_search *s)
     return result;
 }
 
-// The judges are few, so that steps may cost less than they said: the search goes on with what is
-// left of the tolerance, as long as it finds more to leave out. It also goes on without steps that
+// The validation photographs are few, so that steps may cost less than they said: the search goes
+// on with what is left of the tolerance, as long as it finds more to leave out. It also goes on without steps that
 // were taken back. Those that make a frame too slow are taken back only when the search finds
 // nothing any more that makes it faster.
 static enum orl_result search_and_confirm(struct trim_search *s)
@@ -168,7 +168,7 @@ static enum orl_result start(struct trim_search *s)
     const struct orl_trim_params *p = s->params;
     size_t photos = source->scene->photo_count;
     enum orl_result result =
-        orl_judges_load(source->log, source->scene, 0, p->size_divide, &s->targets);
+        orl_validation_load(source->log, source->scene, 0, p->size_divide, &s->targets);
     size_t n = s->targets.count;
     s->first_db = orl_array(source->log, n, sizeof *s->first_db);
     s->now = orl_array(source->log, n, sizeof *s->now);
@@ -259,7 +259,7 @@ static void finish(struct trim_search *s)
 {
     orl_trim_model_close(&s->model);
     orl_point_ranking_finish(&s->source.ranking);
-    orl_judges_finish(&s->targets);
+    orl_validation_finish(&s->targets);
     for (size_t i = 0; i < s->history_count; i++)
         free(s->history[i].state.removed);
     free(s->history);

@@ -1,6 +1,6 @@
 // All training photographs have the last word on the steps that were taken. Where they lose more
-// than the judges said, photographs that a view needs come back, or steps are taken back that give
-// much for few bytes (trim_repair.c).
+// than those few photographs said, photographs that a view needs come back, or steps are taken back
+// that give much for few bytes (trim_repair.c).
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,8 +92,8 @@ static size_t nearest_removed(const struct trim_search *s, size_t view,
         double d, angle;
         if (i == view || removal_of(s, i) == s->history_count)
             continue;
-        orl_judges_apart(s->source.scene, s->targets.views[view].photo,
-                         s->targets.views[i].photo, &d, &angle);
+        orl_validation_apart(s->source.scene, s->targets.views[view].photo,
+                             s->targets.views[i].photo, &d, &angle);
         d += angle;
         size_t at = count < PUT_BACK_TRIED ? count : PUT_BACK_TRIED - 1;
         if (count == PUT_BACK_TRIED && d >= distance[at])

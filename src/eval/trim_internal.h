@@ -2,7 +2,7 @@
 #ifndef ORL_EVAL_TRIM_INTERNAL_H
 #define ORL_EVAL_TRIM_INTERNAL_H
 
-#include "eval/judges.h"
+#include "eval/validation.h"
 #include "eval/trim.h"
 #include "eval/trim_points.h"
 

@@ -127,7 +127,7 @@ void orl_trim_apply(const struct trim_search *s, const struct trim_move *move,
 
 // --- the plan ---
 
-size_t orl_trim_judge(const struct trim_search *s, size_t i, size_t count)
+size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t count)
 {
     return (2 * i + 1) * s->targets.count / (2 * count);
 }
@@ -139,8 +139,8 @@ static void find_nearest(struct trim_search *s, size_t target)
     size_t count = 0;
     for (size_t i = 0; i < s->targets.count; i++) {
         double d, angle;
-        orl_judges_apart(s->source.scene, s->targets.views[target].photo,
-                         s->targets.views[i].photo, &d, &angle);
+        orl_validation_apart(s->source.scene, s->targets.views[target].photo,
+                             s->targets.views[i].photo, &d, &angle);
         d += angle;
         size_t at = count < s->near_count ? count : s->near_count;
         if (i == target || (at == s->near_count && d >= distance[at - 1]))
@@ -189,7 +189,7 @@ enum orl_result orl_trim_plan(struct trim_search *s)
 {
     size_t n = s->targets.count, views = s->params->views;
     views = views && views < n ? views : n;
-    s->judge_count = views < TRIM_VIEWS_MAX ? views : TRIM_VIEWS_MAX;
+    s->validation_count = views < TRIM_VIEWS_MAX ? views : TRIM_VIEWS_MAX;
     s->near_count = n - 1 < TRIM_NEAR ? n - 1 : TRIM_NEAR;
     s->nearest = orl_array(s->source.log, n, sizeof *s->nearest);
     s->moves = orl_array(s->source.log,

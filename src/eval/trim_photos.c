@@ -42,8 +42,8 @@ bool orl_trim_has_group(const struct trim_search *s)
 static double apart(const struct trim_search *s, size_t a, size_t b)
 {
     double distance, angle;
-    orl_judges_apart(s->source.scene, s->targets.views[a].photo, s->targets.views[b].photo,
-                     &distance, &angle);
+    orl_validation_apart(s->source.scene, s->targets.views[a].photo, s->targets.views[b].photo,
+                         &distance, &angle);
     return distance + angle;
 }
 
@@ -267,7 +267,7 @@ static enum orl_result take(struct trim_search *s, struct group *g)
     return result;
 }
 
-static enum orl_result judge_and_take(struct trim_search *s, struct group *g)
+static enum orl_result measure_and_take(struct trim_search *s, struct group *g)
 {
     size_t n = s->targets.count;
     enum orl_result result = choose(s, g);
@@ -305,7 +305,7 @@ enum orl_result orl_trim_try_group(struct trim_search *s)
     if (result == ORL_OK)
         result = orl_trim_state_copy(log, &s->state, s->source.scene->photo_count, &g.state);
     if (result == ORL_OK)
-        result = judge_and_take(s, &g);
+        result = measure_and_take(s, &g);
     free(g.state.removed);
     free(g.moves);
     free(g.is_member);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "eval/judges.h"
+#include "eval/validation.h"
 #include "render/importance.h"
 #include "scene/nearest_points.h"
 #include "scene/point_radii.h"
@@ -45,7 +45,7 @@ static size_t neighbour(const struct orl_scene *scene, size_t photo)
     for (size_t i = 0; i < scene->photo_count; i++) {
         if (i == photo || scene->photos[i].test)
             continue;
-        orl_judges_apart(scene, i, photo, &distance, &angle);
+        orl_validation_apart(scene, i, photo, &distance, &angle);
         if (distance + angle < least) {
             least = distance + angle;
             found = i;

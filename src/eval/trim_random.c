@@ -43,14 +43,14 @@ static enum orl_result measure(struct trim_search *s, double share, const uint32
         result = orl_trim_model_open_with(&s->source, &state, points,
                                           (size_t)(share * (double)scene->points.count + 0.5),
                                           &model);
-    for (size_t i = 0; result == ORL_OK && i < s->judge_count; i++) {
-        size_t view = orl_trim_judge(s, i, s->judge_count);
+    for (size_t i = 0; result == ORL_OK && i < s->validation_count; i++) {
+        size_t view = orl_trim_validation_view(s, i, s->validation_count);
         result = orl_trim_measure_view(s, model->renderer, &state, view, true, &metrics);
         sum += s->first_db[view] - metrics.psnr_db;
     }
     if (result == ORL_OK)
         *row = (struct orl_trim_random){orl_trim_model_bytes(s, model, &state),
-                                        sum / (double)s->judge_count};
+                                        sum / (double)s->validation_count};
     orl_trim_model_close(&model);
     free(state.removed);
     return result;

@@ -1,5 +1,5 @@
-// Steps taken back. The judges of a step are few and its loss is small, so that all steps together
-// may lose more than they may. What is taken back then need not be the last step: each is left out
+// Steps taken back. The validation photographs of a step are few and its loss is small, so that all
+// steps together may lose more than they may. What is taken back then need not be the last step: each is left out
 // in turn, and the one that mends most for what it saves goes.
 #include <math.h>
 #include <stdlib.h>
@@ -140,7 +140,7 @@ static size_t choose_views(const struct trim_search *s, size_t views[LOOKED_AT])
     for (size_t i = 1; i < n; i++)
         worst = s->lost_db[i] > s->lost_db[worst] ? i : worst;
     for (size_t i = 0; i < count; i++) {
-        views[i] = orl_trim_judge(s, i, count);
+        views[i] = orl_trim_validation_view(s, i, count);
         has_worst |= views[i] == worst;
     }
     if (!has_worst)

@@ -51,8 +51,8 @@ struct trim_search {
     const struct orl_trim_params *params;
     struct orl_trim *trim;
     const char *part; // the folder that becomes params->out when it is whole
-    struct orl_judges targets; // all training photographs
-    size_t judge_count; // targets that judge what changes all views
+    struct orl_validation targets; // all training photographs
+    size_t validation_count; // targets that judge what changes all views
     size_t (*nearest)[TRIM_NEAR]; // owned, per target: the others that stand nearest
     size_t near_count;
     double *first_db;       // owned, per target: PSNR of the whole scene
@@ -80,7 +80,7 @@ struct trim_search {
 // Lists the moves that the scene and the parameters allow.
 enum orl_result orl_trim_plan(struct trim_search *s) ORL_CHECK_RESULT;
 // The i-th of `count` targets, evenly chosen.
-size_t orl_trim_judge(const struct trim_search *s, size_t i, size_t count);
+size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t count);
 bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *move);
 // Whether the step changes the splats, so that the photographs' depth maps are drawn anew.
 bool orl_trim_redraws_depth(const struct trim_move *move);

@@ -20,7 +20,7 @@ static const double trial_error = 0.025;
 // A difference within so many standard errors counts as none.
 static const double same_errors = 2;
 
-// Two models whose frames are timed in turns. Each round has the view of another judge.
+// Two models whose frames are timed in turns. Each round has another view.
 struct pair {
     struct trim_search *s;
     struct trim_drawn drawn[2];
@@ -28,11 +28,11 @@ struct pair {
 };
 
 static enum orl_result time_frame(struct trim_search *s, const struct trim_drawn *drawn,
-                                  size_t judge, double *ms)
+                                  size_t round, double *ms)
 {
     bool software = orl_gpu_caps(s->source.gpu)->software;
     struct orl_render_params render = drawn->state->render;
-    size_t target = orl_trim_judge(s, judge % s->judge_count, s->judge_count);
+    size_t target = orl_trim_validation_view(s, round % s->validation_count, s->validation_count);
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
     render.leave_out |= ORL_LAYER_NORMAL;
@@ -55,9 +55,9 @@ static enum orl_result warm_up(struct pair *pair)
 {
     enum orl_result result = ORL_OK;
     double unused;
-    for (size_t judge = 0; result == ORL_OK && judge < pair->s->judge_count; judge++)
+    for (size_t k = 0; result == ORL_OK && k < pair->s->validation_count; k++)
         for (int i = 0; result == ORL_OK && i < 2; i++)
-            result = time_frame(pair->s, &pair->drawn[i], judge, &unused);
+            result = time_frame(pair->s, &pair->drawn[i], k, &unused);
     return result;
 }
 

@@ -19,7 +19,7 @@ static const double between_most_db = 3;
 static const double good_enough = 0.8;
 // A step that lost too much is tried again when steps have gained this share of the tolerance.
 static const double least_room = 0.1;
-// Tuned options are chosen by six photographs: these many judge them at most.
+// Tuned options are chosen by six photographs: at most so many.
 enum { TUNED_JUDGES = 32 };
 
 // A step on trial.
@@ -40,8 +40,8 @@ enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer
     memset(metrics, 0, sizeof *metrics);
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
-    return orl_judges_compare(s->source.log, renderer, &s->targets, view, &state->render,
-                              state->removed, brief, metrics);
+    return orl_validation_compare(s->source.log, renderer, &s->targets, view, &state->render,
+                                  state->removed, brief, metrics);
 }
 
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
@@ -243,7 +243,7 @@ static enum orl_result measure_global(struct trim_search *s, const struct trial 
     struct trim_measured *m = &t->move->measured;
     m->view_count = count < TRIM_VIEWS_MAX ? count : TRIM_VIEWS_MAX;
     for (size_t i = 0; i < m->view_count; i++)
-        m->views[i] = orl_trim_judge(s, i, m->view_count);
+        m->views[i] = orl_trim_validation_view(s, i, m->view_count);
     enum orl_result result = measure_views(s, t);
     m->loss_db /= (double)m->view_count;
     m->loss_ssim /= (double)m->view_count;
@@ -277,7 +277,8 @@ static bool is_nearly_good(const struct trim_search *s, const struct trial *t)
     return is_good(s, &other);
 }
 
-// True if the few judges refuse a step on average that others may allow: all targets decide then.
+// True if the few validation photographs refuse a step on average that others may allow: all
+// targets decide then.
 static bool is_doubtful(const struct trim_search *s, const struct trial *t)
 {
     return !is_good(s, t) && is_nearly_good(s, t) && t->bytes < s->bytes;
@@ -314,7 +315,7 @@ static enum orl_result measure(struct trim_search *s, struct trial *t)
     if (is_measured(s, t))
         return ORL_OK;
     enum orl_result result =
-        is_local(t) ? measure_local(s, t) : measure_global(s, t, s->judge_count);
+        is_local(t) ? measure_local(s, t) : measure_global(s, t, s->validation_count);
     if (result == ORL_OK && !is_local(t) && is_doubtful(s, t))
         result = measure_global(s, t, s->targets.count);
     m->slower = 1;

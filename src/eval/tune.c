@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/process.h"
-#include "eval/verdict.h"
+#include "eval/score.h"
 
 enum { ROUNDS_MAX = 8 };
 
@@ -17,8 +17,8 @@ struct job {
     const struct orl_scene *scene;
     const struct orl_tune_params *params;
     struct orl_tune *tune;
-    struct orl_judges targets;
-    struct orl_verdict best; // of tune->best
+    struct orl_validation targets;
+    struct orl_score best; // of tune->best
     double start_s;
     double done, total; // number of renderings, for the progress report
 };
@@ -26,23 +26,23 @@ struct job {
 // --- one trial ---
 
 static enum orl_result run_trial(struct job *job, const struct orl_render_params *render,
-                                 struct orl_tune_trial *trial, struct orl_verdict *verdict)
+                                 struct orl_tune_trial *trial, struct orl_score *score)
 {
     orl_progress_report(job->params->progress, "tune", job->done, job->total, trial->key);
-    enum orl_result result = orl_verdict_measure(job->log, job->renderer, &job->targets, render,
-                                                 job->params->progress, verdict);
+    enum orl_result result = orl_score_measure(job->log, job->renderer, &job->targets, render,
+                                               job->params->progress, score);
     job->done += (double)job->targets.count;
-    trial->psnr_db = verdict->psnr_db;
-    trial->ssim = verdict->ssim;
+    trial->psnr_db = score->psnr_db;
+    trial->ssim = score->ssim;
     return result;
 }
 
-// Takes the verdict over as that of the best values.
-static void take(struct job *job, struct orl_verdict *verdict)
+// Takes the score over as that of the best values.
+static void take(struct job *job, struct orl_score *score)
 {
-    orl_verdict_finish(&job->best);
-    job->best = *verdict;
-    memset(verdict, 0, sizeof *verdict);
+    orl_score_finish(&job->best);
+    job->best = *score;
+    memset(score, 0, sizeof *score);
     job->tune->best_db = job->best.psnr_db;
     job->tune->best_ssim = job->best.ssim;
 }
@@ -80,17 +80,17 @@ static enum orl_result try_value(struct job *job, const struct orl_render_option
     struct orl_render_params render = tune->best;
     struct orl_tune_trial trial = {.key = option->key, .value = value};
     *field(&render, option) = (float)value;
-    struct orl_verdict verdict = {0};
-    enum orl_result result = run_trial(job, &render, &trial, &verdict);
+    struct orl_score score = {0};
+    enum orl_result result = run_trial(job, &render, &trial, &score);
     if (result != ORL_OK)
         return result;
-    *kept = trial.kept = orl_verdict_better(&verdict, &job->best, job->params->gain_db);
+    *kept = trial.kept = orl_score_better(&score, &job->best, job->params->gain_db);
     *same = trial.psnr_db == tune->best_db && trial.ssim == tune->best_ssim;
     if (trial.kept) {
         tune->best = render;
-        take(job, &verdict);
+        take(job, &score);
     }
-    orl_verdict_finish(&verdict);
+    orl_score_finish(&score);
     return note_trial(job, &trial);
 }
 
@@ -154,10 +154,10 @@ static enum orl_result search(struct job *job)
 {
     struct orl_tune *tune = job->tune;
     struct orl_tune_trial start = {.kept = true};
-    struct orl_verdict verdict = {0};
-    enum orl_result result = run_trial(job, &tune->best, &start, &verdict);
+    struct orl_score score = {0};
+    enum orl_result result = run_trial(job, &tune->best, &start, &score);
     if (result == ORL_OK) {
-        take(job, &verdict);
+        take(job, &score);
         tune->start_db = tune->best_db;
         result = note_trial(job, &start);
     }
@@ -184,8 +184,8 @@ enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     tune->best = *params->start;
     enum orl_result result = check_keys(&job);
     if (result == ORL_OK)
-        result = orl_judges_load(job.log, scene, params->views, params->size_divide,
-                                 &job.targets);
+        result = orl_validation_load(job.log, scene, params->views, params->size_divide,
+                                     &job.targets);
     tune->views = job.targets.count;
     for (const struct orl_render_option *o = orl_render_options; o->key; o++)
         // An estimate, for the progress report.
@@ -194,8 +194,8 @@ enum orl_result orl_tune_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
         result = search(&job);
     if (result == ORL_OK)
         orl_progress_report(params->progress, "tune", 1, 1, NULL);
-    orl_judges_finish(&job.targets);
-    orl_verdict_finish(&job.best);
+    orl_validation_finish(&job.targets);
+    orl_score_finish(&job.best);
     if (result != ORL_OK)
         orl_tune_finish(tune);
     return result;

@@ -11,7 +11,7 @@ struct orl_tune_trial {
     const char *key; // the changed option; NULL: the starting values
     double value;
     double psnr_db, ssim; // means over the photographs, whole pictures
-    bool kept;            // better than all before (orl_verdict_better)
+    bool kept;            // better than all before (orl_score_better)
 };
 
 struct orl_tune_params {
@@ -20,7 +20,7 @@ struct orl_tune_params {
     const struct orl_names *keys;          // options to tune; NULL or none: all that are tunable
     int size_divide;   // pictures have 1/n of the photographs' size, [1, 16]
     size_t views;      // greatest number of photographs to compare with, evenly chosen; 0: all
-    double gain_db;    // a change is kept when it is better by at least this much (verdict.h)
+    double gain_db;    // a change is kept when it is better by at least this much (score.h)
     double budget_s;   // no new trial starts after this time; 0: no limit. With a limit, the result
                        // depends on the machine's speed
     void (*on_trial)(void *priv, const struct orl_tune_trial *trial); // may be NULL

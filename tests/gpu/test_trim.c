@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "eval/adapt.h"
-#include "eval/judges.h"
+#include "eval/validation.h"
 #include "eval/trim.h"
 #include "eval/trim_points.h"
 #include "eval/trim_search.h"
@@ -97,8 +97,8 @@ static void same_places_are_left_out_together(void **state)
     setup_empty(&f, 4);
     look_along(&f, 2, 0.5);
     add_photo(&f, look_from(0.001, 0, 0, SIDE, SIDE), red);
-    assert_true(orl_judges_same_place(&f.scene, 0, 2));
-    assert_false(orl_judges_same_place(&f.scene, 0, 1));
+    assert_true(orl_validation_same_place(&f.scene, 0, 2));
+    assert_false(orl_validation_same_place(&f.scene, 0, 1));
     teardown(&f);
 }
 
@@ -114,13 +114,13 @@ static void an_exposure_that_none_could_guess_does_not_judge(void **state)
         f.scene.photos[1].gain[c] = 2;
     f.scene.photos[3].test = true;
     for (int guessed = 0; guessed < 2; guessed++) {
-        struct orl_judges judges;
+        struct orl_validation validation;
         f.scene.photos[3].gain[0] = guessed ? 1.5f : 1;
-        assert_int_equal(orl_judges_load(NULL, &f.scene, 0, 1, &judges), ORL_OK);
-        assert_int_equal(judges.count, 3);
-        assert_float_equal(judges.photos[1].gain[0], guessed ? 2 : 1, 0);
+        assert_int_equal(orl_validation_load(NULL, &f.scene, 0, 1, &validation), ORL_OK);
+        assert_int_equal(validation.count, 3);
+        assert_float_equal(validation.photos[1].gain[0], guessed ? 2 : 1, 0);
         assert_float_equal(f.scene.photos[1].gain[0], 2, 0); // the scene's own stays
-        orl_judges_finish(&judges);
+        orl_validation_finish(&validation);
     }
     teardown(&f);
 }

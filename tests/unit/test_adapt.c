@@ -1,6 +1,6 @@
 // What the stage adapt chooses, and how much it may render.
 #include "eval/adapt.h"
-#include "eval/verdict.h"
+#include "eval/score.h"
 #include "test.h"
 
 static void the_best_of_both_is_chosen(void **state)
@@ -22,10 +22,10 @@ static void ranks_decide_where_figures_disagree(void **state)
 }
 
 // Verdicts of four photographs, each by its PSNR; SSIM is the same for all.
-static struct orl_verdict verdict(double views[4][2], double a, double b, double c, double d)
+static struct orl_score score(double views[4][2], double a, double b, double c, double d)
 {
     const double psnr[] = {a, b, c, d};
-    struct orl_verdict v = {.views = views, .count = 4, .ssim = 0.9};
+    struct orl_score v = {.views = views, .count = 4, .ssim = 0.9};
     for (int i = 0; i < 4; i++) {
         views[i][0] = psnr[i];
         views[i][1] = 0.9;
@@ -38,24 +38,24 @@ static void steps_are_for_most_photographs(void **state)
 {
     (void)state;
     double views[5][4][2];
-    const struct orl_verdict before = verdict(views[0], 20, 22, 24, 26);
-    struct orl_verdict all = verdict(views[1], 20.5, 22.6, 24.4, 26.5);
-    struct orl_verdict three = verdict(views[2], 20.5, 22.6, 24.9, 25.9);
-    struct orl_verdict two = verdict(views[3], 20.9, 23, 24, 25.9);
-    struct orl_verdict one = verdict(views[4], 30, 21.9, 23.9, 25.9);
-    assert_true(orl_verdict_clearly_better(&all, &before, 0.15));
-    assert_true(orl_verdict_clearly_better(&three, &before, 0.15));
-    assert_false(orl_verdict_clearly_better(&two, &before, 0.15));
-    assert_false(orl_verdict_clearly_better(&one, &before, 0.15));
+    const struct orl_score before = score(views[0], 20, 22, 24, 26);
+    struct orl_score all = score(views[1], 20.5, 22.6, 24.4, 26.5);
+    struct orl_score three = score(views[2], 20.5, 22.6, 24.9, 25.9);
+    struct orl_score two = score(views[3], 20.9, 23, 24, 25.9);
+    struct orl_score one = score(views[4], 30, 21.9, 23.9, 25.9);
+    assert_true(orl_score_clearly_better(&all, &before, 0.15));
+    assert_true(orl_score_clearly_better(&three, &before, 0.15));
+    assert_false(orl_score_clearly_better(&two, &before, 0.15));
+    assert_false(orl_score_clearly_better(&one, &before, 0.15));
     // Half of a gain of PSNR alone counts: 0.25 dB here.
-    assert_float_equal(orl_verdict_gain_db(&all, &before), 0.25, 1e-9);
-    assert_false(orl_verdict_clearly_better(&all, &before, 0.26));
+    assert_float_equal(orl_score_gain_db(&all, &before), 0.25, 1e-9);
+    assert_false(orl_score_clearly_better(&all, &before, 0.26));
     // SSIM that gets worse refuses whatever PSNR gains.
     all.ssim = 0.8999;
-    assert_false(orl_verdict_clearly_better(&all, &before, 0.15));
+    assert_false(orl_score_clearly_better(&all, &before, 0.15));
     // Of the first photographs alone, while the others are not rendered.
     three.count = 2;
-    assert_float_equal(orl_verdict_gain_db(&three, &before), 0.275, 1e-9);
+    assert_float_equal(orl_score_gain_db(&three, &before), 0.275, 1e-9);
 }
 
 // `count` training photographs of so many pixels, and held-out ones, which do not count.

@@ -1,4 +1,4 @@
-#include "eval/judges.h"
+#include "eval/validation.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,59 +25,61 @@ static bool exposure_is_unknown(const struct orl_scene *scene)
 }
 
 static enum orl_result copy_photos(const struct orl_log *log, const struct orl_scene *scene,
-                                   struct orl_judges *judges)
+                                   struct orl_validation *validation)
 {
     bool unknown = exposure_is_unknown(scene);
-    judges->photos = orl_array(log, scene->photo_count, sizeof *judges->photos);
-    if (!judges->photos)
+    validation->photos = orl_array(log, scene->photo_count, sizeof *validation->photos);
+    if (!validation->photos)
         return ORL_ERR_MEMORY;
-    memcpy(judges->photos, scene->photos, scene->photo_count * sizeof *judges->photos);
+    memcpy(validation->photos, scene->photos, scene->photo_count * sizeof *validation->photos);
     for (size_t i = 0; unknown && i < scene->photo_count; i++)
         for (int c = 0; c < 3; c++)
-            judges->photos[i].gain[c] = 1;
-    judges->scene = *scene;
-    judges->scene.photos = judges->photos;
+            validation->photos[i].gain[c] = 1;
+    validation->scene = *scene;
+    validation->scene.photos = validation->photos;
     return ORL_OK;
 }
 
-enum orl_result orl_judges_load(const struct orl_log *log, const struct orl_scene *scene,
-                                size_t most, int divide, struct orl_judges *judges)
+enum orl_result orl_validation_load(const struct orl_log *log, const struct orl_scene *scene,
+                                    size_t most, int divide, struct orl_validation *validation)
 {
     size_t train = scene->photo_count - orl_heldout_count(scene), at = 0;
-    memset(judges, 0, sizeof *judges);
-    if (train < ORL_JUDGES_TRAIN_MIN)
+    memset(validation, 0, sizeof *validation);
+    if (train < ORL_VALIDATION_TRAIN_MIN)
         return orl_fail(log, ORL_ERR_DATA,
                         "%s: %zu photographs that are not held out; three are needed, to render "
                         "one from two others", scene->dir, train);
     size_t wanted = most && most < train ? most : train;
-    judges->views = orl_array(log, wanted, sizeof *judges->views);
-    judges->skip = orl_array(log, scene->photo_count, sizeof *judges->skip);
+    validation->views = orl_array(log, wanted, sizeof *validation->views);
+    validation->skip = orl_array(log, scene->photo_count, sizeof *validation->skip);
     enum orl_result result =
-        judges->views && judges->skip ? copy_photos(log, scene, judges) : ORL_ERR_MEMORY;
+        validation->views && validation->skip ? copy_photos(log, scene, validation)
+                                              : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         if (scene->photos[i].test)
             continue;
         if ((at + 1) * wanted / train > at * wanted / train)
-            result = orl_heldout_load(log, scene, i, divide, &judges->views[judges->count++]);
+            result = orl_heldout_load(log, scene, i, divide,
+                                      &validation->views[validation->count++]);
         at++;
     }
     if (result != ORL_OK)
-        orl_judges_finish(judges);
+        orl_validation_finish(validation);
     return result;
 }
 
-void orl_judges_finish(struct orl_judges *judges)
+void orl_validation_finish(struct orl_validation *validation)
 {
-    for (size_t i = 0; i < judges->count; i++)
-        orl_heldout_finish(&judges->views[i]);
-    free(judges->views);
-    free(judges->skip);
-    free(judges->photos);
-    memset(judges, 0, sizeof *judges);
+    for (size_t i = 0; i < validation->count; i++)
+        orl_heldout_finish(&validation->views[i]);
+    free(validation->views);
+    free(validation->skip);
+    free(validation->photos);
+    memset(validation, 0, sizeof *validation);
 }
 
-void orl_judges_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
-                      double *angle)
+void orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
+                          double *angle)
 {
     const struct orl_pose *pose[] = {&scene->photos[a].view.cam_from_world,
                                      &scene->photos[b].view.cam_from_world};
@@ -92,19 +94,19 @@ void orl_judges_apart(const struct orl_scene *scene, size_t a, size_t b, double 
     *angle = acos(fmin(fmax(cosine, -1), 1));
 }
 
-bool orl_judges_same_place(const struct orl_scene *scene, size_t a, size_t b)
+bool orl_validation_same_place(const struct orl_scene *scene, size_t a, size_t b)
 {
     double distance, angle;
-    orl_judges_apart(scene, a, b, &distance, &angle);
+    orl_validation_apart(scene, a, b, &distance, &angle);
     return distance < same_distance && angle < same_angle;
 }
 
-void orl_judges_leave_out(const struct orl_scene *scene, size_t photo, const bool *removed,
-                          bool *skip)
+void orl_validation_leave_out(const struct orl_scene *scene, size_t photo, const bool *removed,
+                              bool *skip)
 {
     size_t left = 0;
     for (size_t i = 0; i < scene->photo_count; i++) {
-        skip[i] = (removed && removed[i]) || orl_judges_same_place(scene, i, photo);
+        skip[i] = (removed && removed[i]) || orl_validation_same_place(scene, i, photo);
         left += !skip[i] && !scene->photos[i].test;
     }
     for (size_t i = 0; left == 0 && i < scene->photo_count; i++)
@@ -112,13 +114,13 @@ void orl_judges_leave_out(const struct orl_scene *scene, size_t photo, const boo
     skip[photo] = true;
 }
 
-enum orl_result orl_judges_compare(const struct orl_log *log, struct orl_renderer *renderer,
-                                   const struct orl_judges *judges, size_t view,
-                                   const struct orl_render_params *render, const bool *removed,
-                                   bool brief, struct orl_metrics *metrics)
+enum orl_result orl_validation_compare(const struct orl_log *log, struct orl_renderer *renderer,
+                                       const struct orl_validation *validation, size_t view,
+                                       const struct orl_render_params *render, const bool *removed,
+                                       bool brief, struct orl_metrics *metrics)
 {
-    const struct orl_heldout *target = &judges->views[view];
-    orl_judges_leave_out(&judges->scene, target->photo, removed, judges->skip);
-    return orl_heldout_compare(log, renderer, &judges->scene, target, render, judges->skip,
+    const struct orl_heldout *target = &validation->views[view];
+    orl_validation_leave_out(&validation->scene, target->photo, removed, validation->skip);
+    return orl_heldout_compare(log, renderer, &validation->scene, target, render, validation->skip,
                                brief, metrics);
 }

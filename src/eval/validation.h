@@ -1,0 +1,48 @@
+// Validation photographs: those for training that are compared with renderings from the others, by
+// which tune, trim and adapt decide without looking at a held-out photograph.
+#ifndef ORL_EVAL_VALIDATION_H
+#define ORL_EVAL_VALIDATION_H
+
+#include "eval/heldout.h"
+#include "eval/metrics.h"
+
+// Training photographs that a scene needs, to render one from two others.
+enum { ORL_VALIDATION_TRAIN_MIN = 3 };
+
+struct orl_validation {
+    struct orl_scene scene; // shares all but `photos`, whose gains are those for validation
+    struct orl_photo *photos;  // owned
+    struct orl_heldout *views; // owned: the photographs, in ascending order
+    size_t count;
+    bool *skip; // owned: photographs that the current rendering does without
+};
+
+// Loads at most `most` training photographs, evenly chosen (0: all), at 1/divide of their size.
+// Where the exposure of held-out photographs cannot be guessed, that of training photographs is not
+// used, either: a rendering that knows it would gain what no held-out photograph confirms.
+// ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN photographs are for training.
+enum orl_result orl_validation_load(const struct orl_log *log, const struct orl_scene *scene,
+                                    size_t most, int divide,
+                                    struct orl_validation *validation) ORL_CHECK_RESULT;
+void orl_validation_finish(struct orl_validation *validation);
+// How far apart two photographs are: the distance of their centres as a share of the distance to
+// what they see, and the angle between their directions.
+void orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
+                          double *angle);
+// True when photograph b stands where a stands and looks where a looks, as repeated photographs
+// and exposure series do. Rendering the view of one from the other would tell nothing.
+bool orl_validation_same_place(const struct orl_scene *scene, size_t a, size_t b);
+// Marks in `skip` what a rendering of the photograph's view does without: that photograph, those from
+// the same place (unless no other is left) and those that `removed` marks (NULL: none).
+void orl_validation_leave_out(const struct orl_scene *scene, size_t photo, const bool *removed,
+                              bool *skip);
+// Renders the view of validation->views[view] without what orl_validation_leave_out marks, and
+// compares as orl_heldout_compare does. The renderer's scene must have the photographs of the
+// validation's scene, in the same order.
+enum orl_result orl_validation_compare(const struct orl_log *log, struct orl_renderer *renderer,
+                                       const struct orl_validation *validation, size_t view,
+                                       const struct orl_render_params *render, const bool *removed,
+                                       bool brief,
+                                       struct orl_metrics *metrics) ORL_CHECK_RESULT;
+
+#endif
