@@ -341,7 +341,9 @@ class Without3d(unittest.TestCase):
         server, browser = Server(SITE), Browser(WIDTH, HEIGHT, flags=("--disable-3d-apis",))
         self.addCleanup(server.close)
         self.addCleanup(browser.close)
+        browser.resize(360, 240)
         browser.open(server.address + "/")
+        self.assertEqual(browser.js("return document.getElementById('over').scrollTop"), 0)
         text = "return document.getElementById(arguments[0]).textContent"
         self.assertIn("WebGL 2", browser.js(text, "hint"))
         self.assertEqual(browser.js(text, "problem"), "")
@@ -353,14 +355,20 @@ class Without3d(unittest.TestCase):
             seen.add(browser.js("return oriel.photo.name"))
             browser.js("document.querySelectorAll('#tools button')[1].click()")
         self.assertEqual(len(seen), count)
-        for width, height in SIZES[1:]: # the smallest has no room for it all
-            browser.resize(width, height)
-            self.assertEqual(browser.js(OVERLAPS), [], (width, height))
+        for size in ((360, 240), *SIZES):
+            browser.resize(*size)
+            wrong = [w for w in browser.js(OVERLAPS) if w not in SCROLLS]
+            self.assertEqual(wrong, [], size)
+            self.assertLessEqual(browser.js("return document.getElementById('tools').scrollWidth"), size[0])
+
+
+# What the album of a small window shows when it is scrolled: all but the photograph and its buttons.
+SCROLLS = [f"{name} leaves the window" for name in ("thumbs", "hint", "note", "attribution")]
 
 
 # Pairs of what lies over the picture that cover one another, and what leaves the window.
 OVERLAPS = """
-const boxes = [...document.querySelectorAll("#over .panel, #tools, #thumbs, #map, #head, #hint, #attribution")]
+const boxes = [...document.querySelectorAll("#over .panel, #tools, #thumbs, #map, #head, #hint, #album, #attribution")]
     .filter(e => e.offsetWidth && e.textContent + e.id !== "").map(e => [e.id, e.getBoundingClientRect()]);
 const found = [];
 boxes.forEach(([a, p], i) => {

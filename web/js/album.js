@@ -15,12 +15,12 @@ export class Album {
         Object.assign(this, {files, photos, why});
         this.home = new Navigator(manifest, photos, {calm: true, pivotAt: () => null}).home;
         this.image = make("img", {id: "album", alt: ""});
-        byId("canvas").replaceWith(this.image);
-        byId("poster").remove();
+        byId("stage").remove();
+        byId("over").classList.add("album");
+        byId("head").after(this.image, byId("tools"), byId("thumbs"));
         this.thumbs = new Thumbs(photos, files, photo => this.show(photo));
         byId("thumbs").hidden = false;
         this.thumbs.open();
-        byId("tools").style.gridTemplateColumns = "auto auto";
         byId("tools").append(...[-1, 1].map(by => button(by < 0 ? text.actions.previous : text.actions.next,
                                                          () => this.step(by))));
         byId("attribution").textContent = manifest.walk.attribution || "";

@@ -198,8 +198,11 @@ export class Thumbs {
         for (const [i, b] of this.buttons.entries())
             b.button.setAttribute("aria-current", String(photo !== null && i === photo.number));
         this.current = photo;
-        if (photo && !this.element.hidden)
-            this.buttons[photo.number].button.scrollIntoView({block: "nearest", inline: "nearest"});
+        if (photo && !this.element.hidden) {
+            // The strip alone, not what it stands in.
+            const {button} = this.buttons[photo.number], strip = this.element;
+            strip.scrollLeft = button.offsetLeft - strip.offsetLeft - (strip.clientWidth - button.offsetWidth) / 2;
+        }
     }
 }
 
