@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # Measures Oriel on the GPU of this machine, in ten minutes at most: the tests of label gpu, frames a
 # second of all methods, points splatted a second beside GL_POINTS, stereo, memory, and the passes of
-# Airieau 2012's Table 2. Leaves OUT/gpu.json and the page OUT/gpu.md; that of a device that is not
-# software belongs to docs/measured.
-# usage: tests/bench/gpu.sh BUILD OUT [--small]
+# Airieau 2012's Table 2. Leaves OUT/gpu.json and the page OUT/gpu.md, which belongs to docs/measured.
+# A device that is software gets fewer and smaller pictures and fewer points; what ten minutes do not
+# reach is named.
+# usage: tests/bench/gpu.sh BUILD OUT
 #        tests/bench/gpu.sh --pack BUILD FILE.tar.gz
-# --small: tiny pictures and few points, to try the script without a GPU.
 # --pack: what the measurement needs, with its libraries but for the C library and the driver, for a
 # machine that has neither a compiler nor packages: unpack it there and run
 #     ./gpu.sh build OUT
 set -eu
-usage() { sed -n '2,12s/^# *//p' "$0"; exit 2; }
+usage() { sed -n '2,11s/^# *//p' "$0"; exit 2; }
 here=$(cd "$(dirname "$0")" && pwd)
 
 pack() {
@@ -36,7 +36,7 @@ if [ "${1:-}" = --pack ]; then
     pack "$2" "$3"
     exit
 fi
-[ $# -ge 2 ] && [ "${3:---small}" = --small ] || usage
+[ $# -eq 2 ] || usage
 build=$(realpath "$1") out=$(realpath -m "$2")
 if [ -d "$here/lib" ]; then # what --pack made
     export LD_LIBRARY_PATH=$here/lib PATH=$here:$PATH
@@ -46,57 +46,80 @@ else
 fi
 commit=$("$build/oriel" version --verbose 2>/dev/null | tail -n 1)
 commit=$(git -C "$source" rev-parse --short HEAD 2>/dev/null || echo "$commit")
-photographs=(--size 768x512 --count 24) sizes=(512x512 1024x1024 1920x1080) points=1000000,10000000
-seconds=0.3 step=2 stereo=full
-if [ "${3:-}" ]; then
-    photographs=(--size 192x128 --count 8) sizes=(128x128 256x256) points=100000,1000000
-    seconds=0.05 step=1 stereo=
-fi
 mkdir -p "$out"
 cd "$out"
 
-# A point takes 150 bytes of this machine's memory on its way to the device.
-free_mib=$(awk '/^MemAvailable/ { print int($2 / 1024) }' /proc/meminfo)
-[ "${3:-}" ] || [ "$free_mib" -lt 24000 ] || points=$points,100000000
+# A part has until so many seconds after the beginning. by SECONDS COMMAND
+by() {
+    local end=$1
+    shift
+    [ $SECONDS -lt "$end" ] && timeout $((end - SECONDS)) "$@"
+}
+
+# The scene: photographs of a synthetic monument, and its true points. make_scene STEP SYNTH-OPTIONS
+make_scene() {
+    local step=$1
+    shift
+    rm -rf photos photos-truth scene
+    "$build/oriel" synth monument --out photos "$@" --quiet
+    mkdir scene
+    "$here/truth_cloud" photos-truth "$step" >scene/fused.ply
+    mv photos scene/images
+    mv photos-truth/sparse scene/sparse
+    rm -r photos-truth
+}
+
+echo "== the device"
+make_scene 1 --size 192x128 --count 8
+"$build/oriel" bench scene --method points --size 64x64 --quick --seconds 0.01 --quiet --json device.json >/dev/null
+jq -r '.device' device.json
+if [ "$(jq .software device.json)" = true ]; then
+    sizes=(256x256 512x512) points=100000,1000000 seconds=0.05 stereo=
+else
+    sizes=(512x512 1024x1024 1920x1080) points=1000000,10000000 seconds=0.3 stereo=full
+    # A point takes 150 bytes of this machine's memory on its way to the device.
+    free_mib=$(awk '/^MemAvailable/ { print int($2 / 1024) }' /proc/meminfo)
+    [ "$free_mib" -lt 24000 ] || points=$points,100000000
+    make_scene 2 --size 768x512 --count 24
+fi
+
+# What a part that fails or is not done in time leaves.
+echo null | tee frames.json points.json >/dev/null
+echo "== frames"
+wanted=()
+for size in "${sizes[@]}"; do wanted+=(--size "$size"); done
+by 180 "$build/oriel" bench scene --method all "${wanted[@]}" --quick --seconds $seconds --quiet \
+    --json frames.json >frames.txt || echo "the frames are not measured: see frames.txt"
+echo "== points"
+by 280 "$build/oriel" bench scene --method points --size "${sizes[1]}" --points $points --seconds $seconds \
+    --quiet --json points.json >points.txt || echo "the points are not measured: see points.txt"
+echo "== stereo"
+by 360 "$build/tests/gpu_test_densify_truth" $stereo >stereo.log 2>&1 ||
+    echo "the stereo differs from the truth, or was not done in time"
+stereo_s=$(sed -nE 's/^stereo: ([0-9.]+) s a photograph.*/\1/p' stereo.log)
 
 echo "== the tests"
 tests=()
 for test in "$build"/tests/gpu_test_*; do
     name=${test##*/gpu_}
-    [ "$name" != test_densify_truth ] || continue # below
-    status=0
-    timeout 300 "$test" >"$name.log" 2>&1 || status=$?
-    case $status in 0) said=passed ;; 77) said=skipped ;; *) said=failed ;; esac
-    [ $said = passed ] || echo "$name: $said"
+    [ "$name" != test_densify_truth ] || continue # above
+    status=124
+    if [ $SECONDS -lt 590 ]; then
+        status=0
+        by 590 "$test" >"$name.log" 2>&1 || status=$?
+    fi
+    case $status in 0) said=passed ;; 77) said=skipped ;; 124) said="not reached" ;; *) said=failed ;; esac
+    [ "$said" = passed ] || echo "$name: $said"
     tests+=("{\"name\": \"$name\", \"result\": \"$said\"}")
 done
 (IFS=,; echo "[${tests[*]}]") >tests.json
 
-echo "== a scene: photographs of a synthetic monument, and its true points"
-rm -rf photos photos-truth scene
-"$build/oriel" synth monument --out photos "${photographs[@]}" --quiet
-mkdir scene
-"$here/truth_cloud" photos-truth $step >scene/fused.ply
-mv photos scene/images
-mv photos-truth/sparse scene/sparse
-rm -r photos-truth
-
-echo "== frames"
-wanted=()
-for size in "${sizes[@]}"; do wanted+=(--size "$size"); done
-"$build/oriel" bench scene --method all "${wanted[@]}" --quick --seconds $seconds --quiet --json frames.json >frames.txt
-echo "== points"
-"$build/oriel" bench scene --method points --size "${sizes[1]}" --points $points --seconds $seconds \
-    --quiet --json points.json >points.txt
-echo "== stereo"
-"$build/tests/gpu_test_densify_truth" $stereo >stereo.log 2>&1 || echo "the stereo differs from the truth"
-stereo_s=$(sed -nE 's/^stereo: ([0-9.]+) s a photograph.*/\1/p' stereo.log)
-
 jq -n --arg commit "$commit" --arg date "$(date -u +%F)" --argjson stereo "${stereo_s:-null}" \
     --arg cpu "$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), $(nproc) cores" \
     --slurpfile tests tests.json --slurpfile frames frames.json --slurpfile points points.json \
-    '{commit: $commit, date: $date, device: $frames[0].device, driver: $frames[0].driver,
-      software: $frames[0].software, cpu: $cpu, tests: $tests[0], stereo_s_a_photograph: $stereo,
+    --slurpfile device device.json --argjson seconds $SECONDS --argjson photographs "$(ls scene/images | wc -l)" \
+    '{commit: $commit, date: $date, device: $device[0].device, driver: $device[0].driver,
+      software: $device[0].software, photographs: $photographs, cpu: $cpu, seconds: $seconds, tests: $tests[0], stereo_s_a_photograph: $stereo,
       frames: $frames[0], points: $points[0]}' >gpu.json
 jq -r '
 def fixed(d): if . == null then "-" else . * pow(10; d) | round / pow(10; d) end;
@@ -104,23 +127,25 @@ def row: "| " + (map(tostring) | join(" | ")) + " |";
 def table(head; rows): (head | row), (head | map("---") | row), (rows | row), "";
 "# On a GPU", "",
 "- Commit: \(.commit)",
-"- Scenes: a synthetic monument of \(.frames.photographs) photographs",
+"- Scenes: a synthetic monument of \(.photographs) photographs",
 "- Device: \(.device), driver \(.driver)\(if .software then
  ", which is software: no GPU has been measured here" else "" end); \(.cpu)",
 "- Date: \(.date)",
-"- Made by: `tests/bench/gpu.sh BUILD OUT`", "",
-"Tests of label `gpu`: \([.tests[] | select(.result == "passed")] | length) passed, " +
-"\([.tests[] | select(.result == "failed") | .name] | if length > 0 then "failed: " + join(", ") else "none failed" end), " +
-"\([.tests[] | select(.result == "skipped")] | length) skipped. Stereo: \(.stereo_s_a_photograph // "not measured;") s a photograph.", "",
-"Frames of \(.frames.photographs) photographs of \(.frames.photo_size | map(tostring) | join("x")) " +
-"and \(.frames.points) points.", "",
-([.frames.sizes[].size] | unique) as $sizes | .frames.sizes as $runs |
+"- Made by: `tests/bench/gpu.sh BUILD OUT`, in \(.seconds) s of the 600 that it may take", "",
+def tests(result): [.tests[] | select(.result == result) | .name];
+def named(what): if length > 0 then what + " " + join(", ") else "none " + what end;
+"Tests of label `gpu`: \(tests("passed") | length) passed, \(tests("failed") | named("failed")), " +
+"\(tests("skipped") | length) skipped, \(tests("not reached") | named("not reached")). " +
+"Stereo: \(if .stereo_s_a_photograph then "\(.stereo_s_a_photograph) s a photograph" else "not measured" end).", "",
+(if .frames then "Frames of \(.photographs) photographs of \(.frames.photo_size | map(tostring) | join("x")) " +
+"and \(.frames.points) points." else "Frames were not measured: the bench failed, or took too long." end), "",
+([.frames.sizes // [] | .[].size] | unique) as $sizes | (.frames.sizes // []) as $runs |
 table(["method"] + [$sizes[] | map(tostring) | join("x") + ", fps"] + ["device memory, MiB"];
       ([$runs[].method] | unique)[] as $m |
       [$m] + [$sizes[] as $s | [$runs[] | select(.method == $m and .size == $s) | .fps][0] | fixed(1)] +
       [[$runs[] | select(.method == $m) | .device_bytes] | max / 1048576 | round]),
 table(["points", "picture", "splat, ms", "G points a second", "GL_POINTS, ms", "ratio"];
-      .points.gl_points[] | [.points, (.size | map(tostring) | join("x")), (.splat_ms | fixed(3)),
+      .points.gl_points // [] | .[] | [.points, (.size | map(tostring) | join("x")), (.splat_ms | fixed(3)),
       (.points / .splat_ms / 1e6 | fixed(4)), (.gl_points_ms | fixed(3)), (.gl_points_ms / .splat_ms | fixed(1))]),
 "Airieau 2012, Table 2 (a GeForce GTX 570), beside the method `airieau` here; milliseconds.", "",
 table(["scene", "size", "raster", "pull-push", "accumulate", "frame"];
