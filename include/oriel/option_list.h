@@ -85,7 +85,7 @@
         "How far two depths may differ and still count as the same surface.") \
     NUMBER(min_support, 0, 0, 25, "pixels of 5x5", "proxy=splats", ORL_TRIES(0, 4, 8, 12, 16), \
         "How many pixels around it must have a surface at the same depth, or else a pixel is " \
-        "dropped as a stray point. Above 0, a hole with 13 such pixels around it is closed.") \
+        "dropped as an outlier. Above 0, a hole with 13 such pixels around it is closed.") \
     NUMBER(front_layer, 0, 0, 0.1, "fraction of depth", "proxy=splats", \
         ORL_TRIES(0, 0.005, 0.01, 0.02), \
         "Splats no farther than this behind the nearest one are averaged with it. With 0 the " \

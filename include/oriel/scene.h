@@ -84,7 +84,7 @@ struct orl_scene {
     int frame;             // the frame that the photographs show; -1: SCENE/images
     double photo_distance; // median distance from training photographs to the points they see
     double near_distance;  // a quarter of the least distance from which a photograph shows surfaces;
-                           // large splats nearer to a viewer are strays; 0: not known
+                           // large splats nearer to a viewer are outliers; 0: not known
     struct orl_ground ground;
     bool backdrop_rests; // what lies behind the points stays where it is in photographs, as behind a
                          // turntable

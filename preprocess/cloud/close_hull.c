@@ -12,7 +12,7 @@
 #include "preprocess/cloud/silhouettes.h"
 
 // Share of the points that may lie outside, each counted as often as other photographs agree on it:
-// strays, which few agree on, and what stands beside the subject. Masks that hide passers-by and
+// outliers, which few agree on, and what stands beside the subject. Masks that hide passers-by and
 // pictures taken at night exclude more.
 static const double OUTSIDE_MOST = 0.3;
 

@@ -20,7 +20,7 @@ static const double OUTERMOST = 0.005, ROOM = 1.5;
 static const double VOXEL_PX = 2;   // least size of a voxel, pixels of the photographs
 static const double THROUGH = 1.5;  // voxels that a map must see behind the centre of one
 static const double APART = 0.5;    // voxels from any other point to a new one
-static const double NEAR_HULL = 0.1; // of the cube: nearer points outside are the subject's strays
+static const double NEAR_HULL = 0.1; // of the cube: nearer points outside are outliers
 
 static size_t voxel_count(const struct orl_hull *cube)
 {

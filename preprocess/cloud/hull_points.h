@@ -35,7 +35,7 @@ enum orl_result orl_hull_points_begin(const struct orl_log *log,
 // does not count.
 void orl_hull_points_see(struct orl_hull_points *hull, size_t which,
                          const struct orl_depth_map *map);
-// Drops the points outside silhouettes that lie near what is left, strays and fringes, and appends
+// Drops the points outside silhouettes that lie near what is left, outliers and fringes, and appends
 // points on its surface, where there are no others: with normals, without radius and colour, on which
 // 0 photographs agree. Parts without any points are left out. `added`: the first of the new points.
 enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_points *hull,

@@ -284,16 +284,16 @@ float agreed_cost(vec3 plane, vec2 pixel, float best)
 {
     opinion o = ask_sources(plane, pixel);
     float total = o.weights.x + o.weights.y + o.weights.z;
-    float doubt = LONELY * exp2(-total) + AGAINST * float(min(o.against, 3));
+    float uncertainty = LONELY * exp2(-total) + AGAINST * float(min(o.against, 3));
     if (!(total > 0.0)) {
-        doubt += NOBODY;
+        uncertainty += NOBODY;
         o.views = uvec3(0u, 1u, 0u);
         bool second = SOURCES > 1 && extent[min(1, SOURCES - 1)].z > 0.0;
         o.weights = vec3(1.0, second ? 1.0 : 0.0, 0.0);
         total = o.weights.x + o.weights.y;
     }
-    doubt += tune.z * dot(o.weights, o.errors) / total;
-    float cost = doubt;
+    uncertainty += tune.z * dot(o.weights, o.errors) / total;
+    float cost = uncertainty;
     for (int k = 0; k < 3; k++) {
         float weight = k == 0 ? o.weights.x : k == 1 ? o.weights.y : o.weights.z;
         int view = int(k == 0 ? o.views.x : k == 1 ? o.views.y : o.views.z);

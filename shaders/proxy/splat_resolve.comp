@@ -7,8 +7,8 @@
 #include "proxy/surfel.glsl"
 
 // A splat this large, as a share of the picture's height, that is nearer than any photograph was to
-// a surface, is a stray that the viewer has come upon: no surface is known so coarsely.
-const float STRAY_SHARE = 1.0 / 16.0;
+// a surface, is an outlier that the viewer has come upon: no surface is known so coarsely.
+const float OUTLIER_SHARE = 1.0 / 16.0;
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rg32ui, binding = 0) readonly uniform uimageBuffer points; // proxy/point.glsl
@@ -69,8 +69,8 @@ surfel splat(ivec2 at, int point)
     p *= 1.0 + behind * front_layer;
     vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
     float radius = point_radius(code, corner.w) * splat_scale * radius_factor(block);
-    bool stray = p.z < near && radius * focal.y > STRAY_SHARE * float(view_size.y) * p.z;
-    radius = stray ? 0.0 : radius;
+    bool outlier = p.z < near && radius * focal.y > OUTLIER_SHARE * float(view_size.y) * p.z;
+    radius = outlier ? 0.0 : radius;
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));
 }

@@ -30,7 +30,7 @@ ORL_BLOCK(splat_block)
     FLOAT(splat_scale); // this and the next two: the options of the same names
     FLOAT(front_layer);
     FLOAT(points_per_pixel);
-    FLOAT(near);        // depth nearer than which large splats are strays
+    FLOAT(near);        // depth nearer than which large splats are outliers
 };
 #endif
 

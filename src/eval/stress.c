@@ -52,8 +52,8 @@ static enum orl_result make_severity(struct job *job, struct severity *s)
 {
     char *dir = work_path(job, "changed");
     enum orl_result result =
-        dir ? orl_stress_worsen(&job->base, job->params, s->axis, s->axis->levels[s->level], dir,
-                                &s->changed)
+        dir ? orl_stress_perturb(&job->base, job->params, s->axis, s->axis->levels[s->level], dir,
+                                 &s->changed)
             : ORL_ERR_MEMORY;
     free(dir);
     s->made = true;

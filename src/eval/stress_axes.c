@@ -106,10 +106,10 @@ static uint64_t seed_of(const struct stress_axis *axis, uint32_t seed)
     return hash;
 }
 
-enum orl_result orl_stress_worsen(const struct stress_case *base,
-                                  const struct orl_stress_params *params,
-                                  const struct stress_axis *axis, double level, const char *dir,
-                                  struct stress_case *c)
+enum orl_result orl_stress_perturb(const struct stress_case *base,
+                                   const struct orl_stress_params *params,
+                                   const struct stress_axis *axis, double level, const char *dir,
+                                   struct stress_case *c)
 {
     enum orl_result result;
     if (axis->generate) {
@@ -121,8 +121,8 @@ enum orl_result orl_stress_worsen(const struct stress_case *base,
     } else {
         result = orl_stress_copy(base, c);
     }
-    if (result == ORL_OK && axis->worsen)
-        result = axis->worsen(c, level, seed_of(axis, params->seed));
+    if (result == ORL_OK && axis->perturb)
+        result = axis->perturb(c, level, seed_of(axis, params->seed));
     if (result == ORL_OK && axis->flags & STRESS_RECOLORS)
         result = orl_stress_color_points(orl_gpu_log(c->gpu), c->photos, &c->scene);
     if (result == ORL_OK && axis->flags & STRESS_CHANGES_POINTS)

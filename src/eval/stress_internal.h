@@ -93,7 +93,7 @@ struct stress_axis {
     void (*generate)(struct orl_synth_params *generator, double level);
     // Changes the scene; NULL: nothing. ORL_ERR_NOT_FOUND, not logged: the scene cannot be made as
     // bad as this.
-    enum orl_result (*worsen)(struct stress_case *c, double level, uint64_t seed);
+    enum orl_result (*perturb)(struct stress_case *c, double level, uint64_t seed);
     const char *settings[3]; // KEY=VALUE for the methods that read the key; ended by NULL
 };
 extern const struct stress_axis orl_stress_axes[]; // ended by a NULL name
@@ -102,10 +102,10 @@ extern const struct stress_axis orl_stress_axes[]; // ended by a NULL name
 void orl_stress_axis_options(const struct stress_axis *axis, struct orl_render_params *render);
 // The scene at a severity. `base`: the unchanged scene, whose files are used where they stay the
 // same; others are written into `dir`. ORL_ERR_NOT_FOUND: the scene cannot be made as bad as this.
-enum orl_result orl_stress_worsen(const struct stress_case *base,
-                                  const struct orl_stress_params *params,
-                                  const struct stress_axis *axis, double level, const char *dir,
-                                  struct stress_case *c);
+enum orl_result orl_stress_perturb(const struct stress_case *base,
+                                   const struct orl_stress_params *params,
+                                   const struct stress_axis *axis, double level, const char *dir,
+                                   struct stress_case *c);
 
 // --- perturbations ---
 

@@ -155,7 +155,7 @@ static double distance(const double a[3], const double b[3])
 }
 
 // Sorts what one photograph sees, and lowers *near to a quarter of the distance beyond which all but
-// a twentieth of it lies: few things that a photograph sees may be strays.
+// a twentieth of it lies: few things that a photograph sees may be outliers.
 static void lower_near(double *values, size_t count, double *near)
 {
     double nearest = 0.25 * quantile(values, count, 0.05);

@@ -46,10 +46,10 @@ static int finish_base(void **state)
     return 0;
 }
 
-static struct stress_case worsened(const char *axis, double level)
+static struct stress_case perturbed(const char *axis, double level)
 {
     struct stress_case c;
-    assert_int_equal(orl_stress_worsen(&base, &params, axis_named(axis), level, changed_dir, &c),
+    assert_int_equal(orl_stress_perturb(&base, &params, axis_named(axis), level, changed_dir, &c),
                      ORL_OK);
     return c;
 }
@@ -70,7 +70,7 @@ static void the_first_severity_is_the_scene(void **state)
     for (const struct stress_axis *axis = orl_stress_axes; axis->name; axis++) {
         if (axis->flags & STRESS_OWN_START || axis->generate)
             continue;
-        struct stress_case c = worsened(axis->name, axis->levels[0]);
+        struct stress_case c = perturbed(axis->name, axis->levels[0]);
         // Radii that are set again may leave another point or two alone.
         size_t more = axis->flags & STRESS_CHANGES_POINTS ? base.scene.points.count / 100 : 0;
         assert_between(c.scene.points.count, base.scene.points.count - more,
@@ -99,7 +99,7 @@ static void photographs_are_left_out(void **state)
     const double levels[3] = {0, 25, 100};
     const size_t left[3] = {5, 4, 3};
     for (int i = 0; i < 3; i++) {
-        struct stress_case c = worsened("photographs", levels[i]);
+        struct stress_case c = perturbed("photographs", levels[i]);
         assert_int_equal(photos_in_use(&c), left[i]);
         orl_stress_case_finish(&c);
     }
@@ -109,7 +109,7 @@ static void points_are_as_bad_as_asked(void **state)
 {
     (void)state;
     double count = (double)base.scene.points.count, off = 0, moved = 0;
-    struct stress_case few = worsened("points", 80), more = {0}, noisy = {0};
+    struct stress_case few = perturbed("points", 80), more = {0}, noisy = {0};
     assert_float_equal((double)few.scene.points.count / count, 0.2, 0.02);
     assert_int_equal(orl_stress_copy(&base, &more), ORL_OK);
     assert_int_equal(orl_stress_outliers(&more, 20, 1), ORL_OK);
@@ -138,7 +138,7 @@ static void points_are_as_bad_as_asked(void **state)
 static void cameras_are_as_wrong_as_asked(void **state)
 {
     (void)state;
-    struct stress_case posed = worsened("pose", 2), zoomed = worsened("focal", 3);
+    struct stress_case posed = perturbed("pose", 2), zoomed = perturbed("focal", 3);
     for (size_t i = 0; i < base.scene.photo_count; i++) {
         const struct orl_view *right = &base.scene.photos[i].view;
         double sum = 0, count = 0;
@@ -165,7 +165,7 @@ static void cameras_are_as_wrong_as_asked(void **state)
 static void photographs_are_as_bad_as_asked(void **state)
 {
     (void)state;
-    struct stress_case people = worsened("passers-by", 15), gain = worsened("exposure-aligned", 2);
+    struct stress_case people = perturbed("passers-by", 15), gain = perturbed("exposure-aligned", 2);
     double low = 9, high = -9;
     for (size_t i = 0; i < base.scene.photo_count; i++) {
         const struct orl_image *now = &people.photos[i], *old = &base.photos[i];
@@ -187,12 +187,12 @@ static void photographs_are_as_bad_as_asked(void **state)
 static void near_photographs_are_skipped(void **state)
 {
     (void)state;
-    struct stress_case c = worsened("angle", 25), far;
+    struct stress_case c = perturbed("angle", 25), far;
     size_t skipped = 0;
     for (size_t i = 0; i < c.scene.photo_count; i++)
         skipped += c.views[0].scene->photos[i].test && !c.scene.photos[i].test;
     assert_true(skipped > 0 && skipped + 2 <= photos_in_use(&c));
-    assert_int_equal(orl_stress_worsen(&base, &params, axis_named("angle"), 170, changed_dir, &far),
+    assert_int_equal(orl_stress_perturb(&base, &params, axis_named("angle"), 170, changed_dir, &far),
                      ORL_ERR_NOT_FOUND);
     orl_stress_case_finish(&c);
     orl_stress_case_finish(&far);
@@ -217,7 +217,7 @@ static void forbidden_photographs_color_no_point(void **state)
 {
     (void)state;
     static const uint8_t forbidden[3] = {255, 0, 255}, allowed[3] = {0, 255, 0};
-    struct stress_case c = worsened("angle", 25), marked;
+    struct stress_case c = perturbed("angle", 25), marked;
     assert_int_equal(orl_stress_copy(&base, &marked), ORL_OK);
     for (size_t i = 0; i < marked.scene.photo_count; i++)
         if (!marked.scene.photos[i].test)
@@ -311,7 +311,7 @@ static void every_method_keeps_the_invariants(void **state)
         for (int level = unchanged && axis != orl_stress_axes; level < ORL_STRESS_LEVELS; level++) {
             struct stress_case c;
             enum orl_result result =
-                orl_stress_worsen(&base, &params, axis, axis->levels[level], changed_dir, &c);
+                orl_stress_perturb(&base, &params, axis, axis->levels[level], changed_dir, &c);
             if (result == ORL_OK)
                 assert_int_equal(orl_stress_open(&c), ORL_OK);
             else

@@ -11,7 +11,7 @@ uniform vec4 view_focal;
 uniform float near; // depth nearer than which large splats are strays
 
 // As in shaders/proxy/splat_resolve.comp.
-const float STRAY_SHARE = 1.0 / 16.0;
+const float OUTLIER_SHARE = 1.0 / 16.0;
 
 bool within(ivec2 at, ivec2 area)
 {
@@ -26,8 +26,8 @@ surfel level0(ivec2 at)
     vec2 layer = texelFetch(layers, at, 0).xy;
     float behind = layer.y > 1.5 ? min(layer.x / layer.y, 1.0) : 0.0;
     float depth = splat.x * (1.0 + behind * front_layer);
-    bool stray = depth < near && splat.y * view_focal.y > STRAY_SHARE * float(textureSize(splats, 0).y) * depth;
-    float radius = stray ? 0.0 : splat.y;
+    bool outlier = depth < near && splat.y * view_focal.y > OUTLIER_SHARE * float(textureSize(splats, 0).y) * depth;
+    float radius = outlier ? 0.0 : splat.y;
     vec3 n = octahedron_decode(unpackSnorm2x16(texelFetch(splat_normals, at, 0).x));
     return surfel(depth, depth + radius, depth, radius, n, splat.zw);
 }
