@@ -11,10 +11,10 @@
 
 enum {
     SIDE = 256,        // longer side of the reduced photographs, pixels
-    SHOTS_LEAST = 5,   // fewer photographs may agree by chance
+    SHOTS_MIN = 5,   // fewer photographs may agree by chance
     PHOTOS_MAX = 24,
     STEP = 2,          // every STEP-th row and column is compared
-    SAMPLES_LEAST = 500, // of a photograph, on average, or else nothing is known
+    SAMPLES_MIN = 500, // of a photograph, on average, or else nothing is known
     BLUR_TAPS = 121,
 };
 static const double BLUR_SIGMA = 30;  // pixels; skies and vignetting vary more slowly than this
@@ -73,7 +73,7 @@ static enum orl_result read_photos(const struct orl_log *log, const struct orl_s
         train += !scene->photos[i].test;
     size_t step = (train + PHOTOS_MAX - 1) / PHOTOS_MAX;
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; train >= SHOTS_LEAST && result == ORL_OK && i < scene->photo_count; i++)
+    for (size_t i = 0; train >= SHOTS_MIN && result == ORL_OK && i < scene->photo_count; i++)
         if (!scene->photos[i].test && seen++ % step == 0)
             result = read_photo(log, scene, i, &photos[(*count)++]);
     return result;
@@ -131,7 +131,7 @@ static double correlation(const struct photo *photos, int count, bool far)
         for (int b = 0; b < count; b++)
             if (a != b)
                 compare(&photos[a], &photos[b], far, &tally);
-    return tally.samples < (long)SAMPLES_LEAST * count || !(tally.sum > 0)
+    return tally.samples < (long)SAMPLES_MIN * count || !(tally.sum > 0)
                ? 0
                : 1 - tally.off / tally.sum;
 }

@@ -14,7 +14,7 @@
 // Share of the points that may lie outside, each counted as often as other photographs agree on it:
 // outliers, which few agree on, and what stands beside the subject. Masks that hide passers-by and
 // pictures taken at night exclude more.
-static const double OUTSIDE_MOST = 0.3;
+static const double OUTSIDE_MAX = 0.3;
 
 // --- colours of new points ---
 
@@ -137,7 +137,7 @@ static enum orl_result close_with(struct orl_job *job, const struct orl_colmap_m
     if (result == ORL_OK)
         orl_logf(job->log, ORL_LOG_DEBUG, "fuse: %.1f %% of the points lie outside silhouettes",
                  100 * hull.outside_share);
-    if (result == ORL_OK && hull.outside_share <= OUTSIDE_MOST)
+    if (result == ORL_OK && hull.outside_share <= OUTSIDE_MAX)
         result = take_points(job, model, found, &hull, points, record);
     orl_hull_points_finish(&hull);
     return result;

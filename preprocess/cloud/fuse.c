@@ -13,7 +13,7 @@
 #include "preprocess/cloud/fuse_photographs.h"
 #include "scene/point_stream.h"
 
-enum { CLUSTER_MOST = 400 }; // photographs that are fused together when nobody asks for more
+enum { CLUSTER_MAX = 400 }; // photographs that are fused together when nobody asks for more
 
 enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_colmap_model *model,
                                   const struct orl_names *train, int asked, double budget,
@@ -21,7 +21,7 @@ enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_co
 {
     size_t size = (size_t)asked;
     enum orl_result result = asked ? ORL_OK
-                                   : orl_fuse_plan_size(log, model, train, CLUSTER_MOST, budget,
+                                   : orl_fuse_plan_size(log, model, train, CLUSTER_MAX, budget,
                                                         &size);
     return result == ORL_OK ? orl_clusters_make(log, model, train, size, clusters) : result;
 }
@@ -33,7 +33,7 @@ static size_t chosen_before(const struct orl_job *job)
     const char *key = orl_json_text(chosen, "key");
     json_int_t size = json_integer_value(json_object_get(chosen, "cluster_size"));
     bool same = key && strcmp(key, job->keys[ORL_STAGE_FUSE]) == 0;
-    return same && size > 0 && size <= CLUSTER_MOST ? (size_t)size : 0;
+    return same && size > 0 && size <= CLUSTER_MAX ? (size_t)size : 0;
 }
 
 enum orl_result orl_fuse_choose(struct orl_job *job, const struct orl_colmap_model *model,
@@ -43,7 +43,7 @@ enum orl_result orl_fuse_choose(struct orl_job *job, const struct orl_colmap_mod
     *size = max_ram ? 0 : chosen_before(job);
     if (*size)
         return ORL_OK;
-    enum orl_result result = orl_fuse_plan_size(job->log, model, train, CLUSTER_MOST,
+    enum orl_result result = orl_fuse_plan_size(job->log, model, train, CLUSTER_MAX,
                                                 orl_fuse_budget(max_ram), size);
     if (result != ORL_OK)
         return result;
@@ -61,7 +61,7 @@ json_t *orl_stage_fuse_settings(const struct orl_job *job)
         most += !job->sources[i].test;
     // One fusion of all has no "cluster" in the key, so older keys stay valid. A size that memory
     // decides is not in it either: a fusion is not done again because other memory is free.
-    int size = job->params->fuse_cluster ? job->params->fuse_cluster : CLUSTER_MOST;
+    int size = job->params->fuse_cluster ? job->params->fuse_cluster : CLUSTER_MAX;
     return json_pack("{s:o*, s:s*}", "cluster", most > (size_t)size ? json_integer(size) : NULL,
                      "hull", job->params->hull == ORL_HULL_NONE ? "none" : NULL);
 }
@@ -212,7 +212,7 @@ static enum orl_result make_clusters(struct orl_job *job, const struct orl_colma
     if (result == ORL_OK && !job->params->fuse_cluster && clusters->count > 1)
         orl_logf(job->log, ORL_LOG_INFO, "fuse: %zu clusters of at most %zu of the %zu "
                  "photographs, and %zu more to help each%s", clusters->count, size, train->count,
-                 orl_clusters_helpers(size), size < CLUSTER_MOST ? ", so that they fit in memory"
+                 orl_clusters_helpers(size), size < CLUSTER_MAX ? ", so that they fit in memory"
                                                                  : "");
     return result;
 }

@@ -12,10 +12,10 @@
 static const float TOLERANCE = 0.01f;
 // A map that shows it agrees on the point if its own point would be seen within so many pixels of it.
 // Where photographs stand far apart, depths that agree by chance do not.
-static const double SHIFT_MOST = 1.5;
+static const double SHIFT_MAX = 1.5;
 // A point stays if at least so many photographs agree on it, its own included, for each that sees
 // past it.
-enum { AGREE_LEAST = 2, AGREE_FOR_EACH_PAST = 3 };
+enum { AGREE_MIN = 2, AGREE_FOR_EACH_PAST = 3 };
 // Of photographs that see a surface in nearly the same detail, each may keep its points: with no
 // margin, places are lost where each leaves a point to the other.
 static const float FINER = 1.05f;
@@ -131,14 +131,14 @@ static void ask(const struct passage *p, const double q[3], struct votes *v)
     float farther = seen / (float)z - 1; // -1: it has no depth there
     v->past += farther > 2 * TOLERANCE;
     if (fabsf(farther) < TOLERANCE) {
-        v->agree += shift_in_pixels(p, q, farther) < SHIFT_MOST;
+        v->agree += shift_in_pixels(p, q, farther) < SHIFT_MAX;
         v->finest = fminf(v->finest, (float)(z / c->fx));
     }
 }
 
 static bool keeps(const struct votes *v, float own_size)
 {
-    return v->agree >= AGREE_LEAST && AGREE_FOR_EACH_PAST * v->past <= v->agree &&
+    return v->agree >= AGREE_MIN && AGREE_FOR_EACH_PAST * v->past <= v->agree &&
            own_size <= FINER * v->finest;
 }
 

@@ -18,7 +18,7 @@ enum {
     PHOTOS_MAX = 24,
     NEAR_MAX = 6,       // photographs that each one is compared with
     SPOTS = 12000,      // approximate number of pixels compared in a photograph
-    SAMPLES_LEAST = 1000,
+    SAMPLES_MIN = 1000,
     BLUR_TAPS = 31,
     STEPS = 5, ROUNDS_MAX = 4, // of the search: number of halvings, and moves of each length
 };
@@ -29,7 +29,7 @@ static const double QUIET = 0.005;     // contrast that carries no information, 
                                        // white
 static const double NEAR_PLANE = 0.03; // greatest difference of depths on the plane, as a fraction
 // First steps of the search and its bounds: shifts as fractions of the height, tilts in radians.
-static const double SHIFT = 0.15, TILT = 0.02, SHIFT_MOST = 0.5, TILT_MOST = 0.08;
+static const double SHIFT = 0.15, TILT = 0.02, SHIFT_MAX = 0.5, TILT_MAX = 0.08;
 // A move by one sigma costs COST of disagreement, so that the plane stays near the points.
 static const double SHIFT_SIGMA = 0.2, TILT_SIGMA = 0.03, COST = 0.01;
 
@@ -280,8 +280,8 @@ static bool improve(const struct search *s, double length, long samples_least, s
         struct move to = {from.log_height + (i % 3 - 1) * length * SHIFT,
                           {from.tilt[0] + (i / 3 % 3 - 1) * length * TILT,
                            from.tilt[1] + (i / 9 - 1) * length * TILT}};
-        if (fabs(to.log_height) > SHIFT_MOST || fabs(to.tilt[0]) > TILT_MOST ||
-            fabs(to.tilt[1]) > TILT_MOST)
+        if (fabs(to.log_height) > SHIFT_MAX || fabs(to.tilt[0]) > TILT_MAX ||
+            fabs(to.tilt[1]) > TILT_MAX)
             continue;
         double here = disagreement(s, &to, samples_least);
         if (here >= *least)
@@ -301,12 +301,12 @@ static void search(const struct orl_log *log, const struct search *s, struct orl
     struct tally tally = {0};
     for (int i = 0; i < s->photo_count; i++)
         compare(s, &s->photos[i], s->found, &tally);
-    if (tally.samples + tally.covered < SAMPLES_LEAST) {
+    if (tally.samples + tally.covered < SAMPLES_MIN) {
         orl_logf(log, ORL_LOG_INFO,
                  "ground: not known: photographs hardly show the plane that points tell");
         ground->height = 0;
     }
-    if (tally.samples < SAMPLES_LEAST)
+    if (tally.samples < SAMPLES_MIN)
         return;
     // A plane with fewer samples is a different plane, which the photographs see less of.
     long samples_least = tally.samples / 2;

@@ -16,7 +16,7 @@ enum {
 };
 // Share of the pixels at the border that may be the subject's, on average and in any photograph. A
 // subject that leaves the pictures is not one that they go around, and masks may leave the room in.
-static const double BORDER_MOST = 0.1, BORDER_MOST_ONE = 0.5;
+static const double BORDER_MAX = 0.1, BORDER_MOST_ONE = 0.5;
 // Length of the mean of the directions to the photographs: 0 all around, 1 from one side.
 static const double ONE_SIDED = 0.8;
 
@@ -86,7 +86,7 @@ static bool add_border(const struct orl_image *mask, size_t count, double *mean)
 {
     double share = border_share(mask);
     *mean += share / (double)count;
-    return share <= BORDER_MOST_ONE && *mean <= BORDER_MOST;
+    return share <= BORDER_MOST_ONE && *mean <= BORDER_MAX;
 }
 
 // --- masks of the scene ---

@@ -3,8 +3,8 @@
 #include "preprocess/densify/densify_internal.h"
 
 enum {
-    SOURCES_LEAST = 4, // fewer sources lose more than halving the size does
-    SIDE_LEAST = 16, // of any photograph, so that it has as many levels as the others
+    SOURCES_MIN = 4, // fewer sources lose more than halving the size does
+    SIDE_MIN = 16, // of any photograph, so that it has as many levels as the others
 };
 
 // Drivers refuse larger textures, or are slow with them.
@@ -39,8 +39,8 @@ uint64_t orl_densify_bytes(const struct densify_need *need, int sources, int shr
 bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_bytes,
                      struct densify_budget *budget)
 {
-    int fewest = sources < SOURCES_LEAST ? sources : SOURCES_LEAST;
-    for (int shrink = 0; shrink == 0 || need->least_side >> shrink >= SIDE_LEAST; shrink++)
+    int fewest = sources < SOURCES_MIN ? sources : SOURCES_MIN;
+    for (int shrink = 0; shrink == 0 || need->least_side >> shrink >= SIDE_MIN; shrink++)
         for (int count = sources; count >= fewest; count--) {
             uint64_t layer = 4 * pixels(need->width >> shrink, need->height >> shrink,
                                         need->padding);

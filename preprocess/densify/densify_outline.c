@@ -11,8 +11,8 @@
 
 enum {
     WINDOW = 9,        // pixels around one that are compared with it, each way
-    FARTHER_LEAST = 8, // pixels of the background, and of the surface, that a decision needs
-    INSIDE_LEAST = 4,
+    FARTHER_MIN = 8, // pixels of the background, and of the surface, that a decision needs
+    INSIDE_MIN = 4,
     OPEN_SHARE = 1000, // holes of at least this share of the picture show the background
     PROBES = 16,
 };
@@ -99,7 +99,7 @@ static bool is_beyond_outline(const struct outline *o, size_t at)
                      fabsf(o->plane[3 * there] - inverse) <= STEP * inverse)
                 add(&surface, luma, alike);
         }
-    return farther.count >= FARTHER_LEAST && surface.count >= INSIDE_LEAST &&
+    return farther.count >= FARTHER_MIN && surface.count >= INSIDE_MIN &&
            farther.alike / farther.count > CLEARLY * surface.alike / surface.count + DOUBT &&
            fabsf(farther.luma / farther.count - surface.luma / surface.count) > DISTINCT;
 }

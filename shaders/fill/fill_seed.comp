@@ -37,7 +37,7 @@ layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
 #ifdef SEED_DEPTH
 // A surface that is seen at a flatter angle, as a cosine, counts as if it faced the view: what its
 // slope would give grows without limit.
-const float FACING_LEAST = 0.1;
+const float FACING_MIN = 0.1;
 
 // The depth's value for the centre of its block, `by` pixels away; see fill.glsl.
 vec4 seed_depth(float z, ivec2 at, vec2 by)
@@ -46,7 +46,7 @@ vec4 seed_depth(float z, ivec2 at, vec2 by)
     vec3 ray = vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0);
     float facing = dot(normal, ray);
     vec2 slope = normal.xy / (focal.xy * z * facing);
-    slope = abs(facing) > FACING_LEAST * length(ray) ? slope : vec2(0.0);
+    slope = abs(facing) > FACING_MIN * length(ray) ? slope : vec2(0.0);
     float weight = clamp(pow(z / depth_scale, 14.0), 1e-15, 1e15); // sums fit floats
     return vec4(1.0 / z + dot(slope, by), 2.0 * slope, 1.0) * weight;
 }

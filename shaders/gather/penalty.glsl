@@ -23,10 +23,10 @@ float photo_surface_penalty(float penalty)
 
 // A photograph with this penalty, an angle of about 50 degrees, shows other sides of objects. It is
 // of no use where the depth is only estimated.
-const float GUESS_PENALTY_MOST = 0.9;
+const float GUESS_PENALTY_MAX = 0.9;
 
-// Falls from 1 to 0 towards GUESS_PENALTY_MOST.
+// Falls from 1 to 0 towards GUESS_PENALTY_MAX.
 float photo_beside(float penalty)
 {
-    return clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MOST), 0.0, 1.0);
+    return clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MAX), 0.0, 1.0);
 }

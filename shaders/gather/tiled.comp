@@ -61,7 +61,7 @@ void insert(sight s, inout ranking r)
 }
 
 // Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
-const float GUESS_SURE_LEAST = 0.1;
+const float GUESS_SURE_MIN = 0.1;
 
 void consider(int i, photo source, spot s, inout ranking r)
 {
@@ -85,7 +85,7 @@ void consider(int i, photo source, spot s, inout ranking r)
     penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
 #endif
     float sure = sees * photo_border(source, pixel, is_guess(s));
-    bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_LEAST : 1e-4);
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_MIN : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z)), r);
 }
 

@@ -20,13 +20,13 @@ const int AT_ONCE = 4; // planes for which the parameters of a photograph are lo
 // Cost of photographs that differ, at most, and at which difference in square roots of light. It is
 // less than the cost of being seen past: photographs that show the sky or a black cloth agree at any
 // depth, and those that show different things at one depth do not say which depth is right.
-const float DIFFER_COST = 0.3, DIFFER_MOST = 0.15;
+const float DIFFER_COST = 0.3, DIFFER_MAX = 0.15;
 // Cost of leaving the estimate by FAR planes or more, and by fewer in proportion.
 const float PRIOR = 0.2, FAR = 4.0;
 // A cell with surfaces in more than this share of the (2 AROUND + 1)^2 cells around it is closed:
 // the surfaces around a small hole know its depth better than photographs do.
 const int AROUND = 4;
-const float SURFACES_MOST = 0.8;
+const float SURFACES_MAX = 0.8;
 
 // Mean inverse depth of the estimates in a cell; 0: there are none, or surfaces all around.
 float open_estimate(ivec2 cell)
@@ -45,7 +45,7 @@ float open_estimate(ivec2 cell)
                                                                                           : 0.0;
         }
     float side = float(2 * AROUND + 1);
-    return count > 0.0 && surfaces <= SURFACES_MOST * side * side ? sum / count : 0.0;
+    return count > 0.0 && surfaces <= SURFACES_MAX * side * side ? sum / count : 0.0;
 }
 
 // What the photographs say of a point.
@@ -86,7 +86,7 @@ float cost_of(opinion o)
     vec3 mean = o.sum.rgb / weight;
     float variance = max(o.squares / weight - dot(mean, mean), 0.0) * voices /
                      max(voices - 1.0, 0.5);
-    float differ = min(sqrt(variance) / DIFFER_MOST, 1.0);
+    float differ = min(sqrt(variance) / DIFFER_MAX, 1.0);
     return DIFFER_COST * mix(1.0, differ, clamp(voices - 1.0, 0.0, 1.0)) +
            o.past / max(o.past + o.sum.a, 1e-30);
 }

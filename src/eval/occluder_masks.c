@@ -240,7 +240,7 @@ enum orl_result orl_occluder_mask(const struct orl_log *log,
 
 // Photographs that one is compared with, at most: the nearest, so that the work grows with the number
 // of photographs and not with its square.
-enum { OTHERS_MOST = 16 };
+enum { OTHERS_MAX = 16 };
 
 struct other {
     size_t photo;
@@ -280,7 +280,7 @@ static void set_skip(const struct finder *f, size_t photo, const bool *removed)
         f->others[count++] = (struct other){i, distance + angle};
     }
     qsort(f->others, count, sizeof *f->others, by_apart);
-    for (size_t k = OTHERS_MOST; k < count; k++)
+    for (size_t k = OTHERS_MAX; k < count; k++)
         f->skip[f->others[k].photo] = true;
 }
 

@@ -45,13 +45,13 @@ static bool is_enough(const struct orl_pair_timing_params *params,
     bool clear_of_limit = orl_pair_timing_above(timing, params->limit) ||
                           orl_pair_timing_below(timing, params->limit);
     bool precise = params->error <= 0 || timing->error <= params->error;
-    return timing->rounds >= ORL_PAIR_ROUNDS_LEAST && clear_of_limit && precise;
+    return timing->rounds >= ORL_PAIR_ROUNDS_MIN && clear_of_limit && precise;
 }
 
 enum orl_result orl_pair_timing_take(const struct orl_pair_timing_params *params,
                                      struct orl_pair_timing *timing)
 {
-    double logs[ORL_PAIR_ROUNDS_MOST], first[ORL_PAIR_ROUNDS_MOST];
+    double logs[ORL_PAIR_ROUNDS_MAX], first[ORL_PAIR_ROUNDS_MAX];
     *timing = (struct orl_pair_timing){.error = INFINITY};
     enum orl_result result = ORL_OK;
     while (timing->rounds < params->rounds_most && !is_enough(params, timing)) {

@@ -7,7 +7,7 @@
 
 #include "oriel/log.h"
 
-enum { ORL_PAIR_ROUNDS_LEAST = 4, ORL_PAIR_ROUNDS_MOST = 128 };
+enum { ORL_PAIR_ROUNDS_MIN = 4, ORL_PAIR_ROUNDS_MAX = 128 };
 
 struct orl_pair_timing_params {
     // Draws one frame, of the second way if `second`, and gives its time in ms.
@@ -16,7 +16,7 @@ struct orl_pair_timing_params {
     double limit;       // the ratio that is asked about
     double error;       // the standard error of the ratio's logarithm that is asked for as well;
                         // 0: only whether the ratio is above or below the limit
-    size_t rounds_most; // at most ORL_PAIR_ROUNDS_MOST
+    size_t rounds_most; // at most ORL_PAIR_ROUNDS_MAX
 };
 
 struct orl_pair_timing {

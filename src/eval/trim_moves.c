@@ -9,7 +9,7 @@
 #include "eval/trim_search.h"
 
 // A view is rendered from two photographs at least when it is left out itself.
-enum { TRAIN_LEAST = 3 };
+enum { TRAIN_MIN = 3 };
 
 // Options whose cheaper values save time.
 static const char *const cheaper[] = {
@@ -59,7 +59,7 @@ bool orl_trim_is_possible(const struct trim_search *s, const struct trim_move *m
         return state->points + move->index < TRIM_POINT_LEVELS &&
                s->source.scene->points.count > 0;
     case ORL_TRIM_PHOTOGRAPH:
-        return s->targets.count - state->removed_count > TRAIN_LEAST;
+        return s->targets.count - state->removed_count > TRAIN_MIN;
     case ORL_TRIM_TEXTURES:
         return is_smaller(s, state->textures, (enum orl_textures)move->index);
     case ORL_TRIM_DEPTH:

@@ -9,9 +9,9 @@
 #include "eval/trim_search.h"
 
 enum {
-    GROUP_LEAST = 32,  // fewer photographs are tried one by one
+    GROUP_MIN = 32,  // fewer photographs are tried one by one
     STAY_NEAREST = 2,  // of a member's neighbours
-    PASSES_MOST = 6,   // of putting members back
+    PASSES_MAX = 6,   // of putting members back
     BACK_DIVIDE = 8,   // at least this part of the members comes back while too much is lost
 };
 
@@ -36,7 +36,7 @@ bool orl_trim_has_group(const struct trim_search *s)
     size_t open = 0;
     for (size_t i = 0; i < s->move_count; i++)
         open += s->moves[i].part == ORL_TRIM_PHOTOGRAPH && is_open(&s->moves[i]);
-    return !orl_trim_has_budget(s) && open >= GROUP_LEAST;
+    return !orl_trim_has_budget(s) && open >= GROUP_MIN;
 }
 
 static double apart(const struct trim_search *s, size_t a, size_t b)
@@ -278,7 +278,7 @@ static enum orl_result measure_and_take(struct trim_search *s, struct group *g)
     if (result == ORL_OK)
         result = measure(s, g);
     bool shrunk = true;
-    for (int pass = 0; result == ORL_OK && shrunk && pass < PASSES_MOST; pass++) {
+    for (int pass = 0; result == ORL_OK && shrunk && pass < PASSES_MAX; pass++) {
         shrunk = shrink(s, g);
         if (shrunk)
             result = measure(s, g);

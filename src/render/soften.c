@@ -4,7 +4,7 @@
 
 // The largest blur as a share of the picture's longer side: with a larger one, holes of a surface would
 // take the colours of what is beside it.
-static const float BLUR_MOST = 0.012f;
+static const float BLUR_MAX = 0.012f;
 
 void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
 {
@@ -13,7 +13,7 @@ void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
 
 float orl_soften_most(int width, int height)
 {
-    return BLUR_MOST * (float)(width > height ? width : height);
+    return BLUR_MAX * (float)(width > height ? width : height);
 }
 
 enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,

@@ -91,7 +91,7 @@ enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *c
                 const double centre[3] = {cones->bounds.origin[0] + (x + 0.5) * voxel,
                                           cones->bounds.origin[1] + (y + 0.5) * voxel,
                                           cones->bounds.origin[2] + (z + 0.5) * voxel};
-                *at++ = value_at(cones, centre, ORL_CONES_MOST * voxel);
+                *at++ = value_at(cones, centre, ORL_CONES_MAX * voxel);
             }
     return ORL_OK;
 }

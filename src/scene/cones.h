@@ -5,7 +5,7 @@
 #include "scene/hull.h"
 
 // Distances to a cone are told apart up to so many voxels.
-#define ORL_CONES_MOST 4.0
+#define ORL_CONES_MAX 4.0
 
 // One camera's partial hull.
 struct cone {

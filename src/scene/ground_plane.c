@@ -19,9 +19,9 @@ static const double BENEATH = 2;      // in tolerances: deeper points contradict
 static const double EXTENT = 1;       // smallest RMS spread of inliers, in mean heights
 // Limits of the mean absolute cosines between the plane's normal and the photographs' axes: z, and
 // the larger of x and y.
-static const double FORWARD_MOST = 0.5, UPWARD_LEAST = 0.85;
+static const double FORWARD_MAX = 0.5, UPWARD_MIN = 0.85;
 // As fractions of all points.
-static const double BENEATH_MOST = 0.005, SCORE_LEAST = 0.02;
+static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.02;
 // Smallest cosine of a point's normal with the plane's for the two to agree, and the weights of
 // such inliers and of points beneath.
 static const double ALIGNED_COSINE = 0.7;
@@ -134,7 +134,7 @@ static double stood_height(const struct sample *s, double plane[4])
             across[k] += fabs(orl_dot3(s->poses[i]->r[k], plane)) / s->photo_count;
     }
     // A camera may be held upright or on its side, so x or y may be the vertical axis.
-    bool level = across[2] <= FORWARD_MOST && fmax(across[0], across[1]) >= UPWARD_LEAST;
+    bool level = across[2] <= FORWARD_MAX && fmax(across[0], across[1]) >= UPWARD_MIN;
     return level && least > 0 && sqrt(squares) <= HEIGHT_SPREAD * mean ? mean : 0;
 }
 
@@ -158,7 +158,7 @@ static double score(const struct sample *s, const double plane[4], double height
             mean[k] += at[k];
     }
     double extent2 = on ? squares / on - orl_dot3(mean, mean) / ((double)on * on) : 0;
-    if (beneath > BENEATH_MOST * s->count || extent2 < EXTENT * EXTENT * height * height)
+    if (beneath > BENEATH_MAX * s->count || extent2 < EXTENT * EXTENT * height * height)
         return -1;
     return (counted - BENEATH_COUNTS * beneath) / s->count;
 }
@@ -190,7 +190,7 @@ enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scen
     enum orl_result result = take_sample(log, scene, &s);
     if (result != ORL_OK || s.photo_count < 3)
         goto finish;
-    double best = SCORE_LEAST;
+    double best = SCORE_MIN;
     for (int i = 0; i < s.count; i++)
         for (int pair = 0; pair <= PAIRS; pair++) {
             double plane[4], height;

@@ -15,7 +15,7 @@
 
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
 
-static const double SECONDS_LEAST = 0.01, SECONDS_MOST = 3600; // from a keyframe to the next
+static const double SECONDS_MIN = 0.01, SECONDS_MAX = 3600; // from a keyframe to the next
 static const double pi = 3.14159265358979323846;
 
 struct orl_camera orl_camera_reframed(const struct orl_camera *camera, int width, int height)
@@ -288,7 +288,7 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
         set_fov_y(&view->camera, degrees * pi / 180);
     }
     *seconds = time ? json_number_value(time) : 1;
-    return *seconds >= SECONDS_LEAST && *seconds <= SECONDS_MOST;
+    return *seconds >= SECONDS_MIN && *seconds <= SECONDS_MAX;
 }
 
 static enum orl_result read_keyframes(const struct orl_log *log, const struct orl_scene *scene,

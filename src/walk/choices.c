@@ -7,7 +7,7 @@
 
 #include "core/json.h"
 
-enum { SETTINGS_MOST = 64, SETTING_BYTES_MOST = 160 };
+enum { SETTINGS_MAX = 64, SETTING_BYTES_MAX = 160 };
 
 // --- what there is ---
 
@@ -67,10 +67,10 @@ bool orl_walk_choice_asked(const json_t *message)
     size_t i;
     json_t *one;
     if (!orl_json_text(message, "method") || !json_is_array(set) ||
-        json_array_size(set) > SETTINGS_MOST)
+        json_array_size(set) > SETTINGS_MAX)
         return false;
     json_array_foreach(set, i, one)
-        if (!json_is_string(one) || json_string_length(one) > SETTING_BYTES_MOST)
+        if (!json_is_string(one) || json_string_length(one) > SETTING_BYTES_MAX)
             return false;
     return true;
 }

@@ -10,7 +10,7 @@
 #include "walk/choices.h"
 #include "walk/internal.h"
 
-enum { SIDE_LEAST = 16, SIDE_MOST = 4096, PIXELS_MOST = 4000000 };
+enum { SIDE_MIN = 16, SIDE_MAX = 4096, PIXELS_MAX = 4000000 };
 
 // --- requests ---
 
@@ -27,8 +27,8 @@ static bool read_view(const json_t *root, struct orl_view *view)
         !orl_json_read_numbers(json_object_get(root, "r"), 9, &pose->r[0][0]) ||
         !orl_json_read_numbers(json_object_get(root, "eye"), 3, eye))
         return false;
-    if (!(size[0] >= SIDE_LEAST && size[1] >= SIDE_LEAST && size[0] <= SIDE_MOST &&
-          size[1] <= SIDE_MOST && size[0] * size[1] <= PIXELS_MOST))
+    if (!(size[0] >= SIDE_MIN && size[1] >= SIDE_MIN && size[0] <= SIDE_MAX &&
+          size[1] <= SIDE_MAX && size[0] * size[1] <= PIXELS_MAX))
         return false;
     *c = (struct orl_camera){(int)size[0], (int)size[1], focal[0], focal[1], focal[2], focal[3]};
     for (int i = 0; i < 3; i++)
@@ -59,7 +59,7 @@ static bool read_picks(const json_t *root, struct walk_request *request)
     const struct orl_camera *c = &request->view.camera;
     size_t i;
     double at[2];
-    if (picks && (!json_is_array(picks) || json_array_size(picks) > WALK_PICKS_MOST))
+    if (picks && (!json_is_array(picks) || json_array_size(picks) > WALK_PICKS_MAX))
         return false;
     json_array_foreach(picks, i, pick) {
         if (!orl_json_read_numbers(pick, 2, at) || !(at[0] >= 0 && at[0] < c->width) ||
@@ -143,7 +143,7 @@ static double loading_seconds(const struct walk_renderer *walk, bool at_rest)
 // What a frame says beside its picture.
 struct outcome {
     size_t missing; // photographs that are not complete yet
-    float picked[WALK_PICKS_MOST]; // depth under each picked pixel; 0: none
+    float picked[WALK_PICKS_MAX]; // depth under each picked pixel; 0: none
 };
 
 // A time step that there is not is that of the last one.
@@ -216,14 +216,14 @@ static enum orl_result draw(struct walk_renderer *walk, const struct walk_reques
 
 // --- what a frame took ---
 
-enum { PASSES_MOST = 32 };
+enum { PASSES_MAX = 32 };
 
 static json_t *passes_json(struct orl_gpu *gpu)
 {
-    struct orl_pass_time times[PASSES_MOST];
-    size_t count = orl_gpu_take_times(gpu, times, PASSES_MOST);
+    struct orl_pass_time times[PASSES_MAX];
+    size_t count = orl_gpu_take_times(gpu, times, PASSES_MAX);
     json_t *passes = json_array();
-    for (size_t i = 0; i < count && i < PASSES_MOST; i++)
+    for (size_t i = 0; i < count && i < PASSES_MAX; i++)
         json_array_append_new(passes, json_pack("[s,f]", times[i].name, times[i].ms));
     return passes;
 }

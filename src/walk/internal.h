@@ -96,7 +96,7 @@ enum orl_result orl_site_keep(const struct site *site, const char *old);
 
 enum walk_layer { WALK_COLOR, WALK_DEPTH, WALK_NORMAL, WALK_COVERAGE, WALK_POINTS, WALK_LAYERS };
 
-enum { WALK_PICKS_MOST = 256 };
+enum { WALK_PICKS_MAX = 256 };
 
 // A client's message, which arrives in parts.
 struct walk_message {
@@ -118,7 +118,7 @@ struct walk_request {
     int time_step, expected;
     bool measures;   // asks for what the frame took
     size_t pick_count;
-    int picks[WALK_PICKS_MOST][2]; // pixels whose depth it asks for
+    int picks[WALK_PICKS_MAX][2]; // pixels whose depth it asks for
 };
 // Reads a request from a message. Returns false for a message that the server does not answer.
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request);

@@ -15,7 +15,7 @@ static const char *const shared_shaders[] = {
     "gather/bicubic.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl",
     "gather/projection.glsl", "gather/sample/srgb.glsl", "proxy/octahedron.glsl",
     "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl", NULL};
-static const size_t FILE_MOST = (size_t)1 << 30;
+static const size_t FILE_MAX = (size_t)1 << 30;
 
 // --- growing text ---
 
@@ -271,7 +271,7 @@ static void add_file(const struct site *site, const char *path, struct text *tex
     size_t size = 0;
     char *file = orl_site_path(site, path);
     if (text->result == ORL_OK)
-        text->result = file ? orl_file_read(site->log, file, FILE_MOST, &data, &size)
+        text->result = file ? orl_file_read(site->log, file, FILE_MAX, &data, &size)
                             : ORL_ERR_MEMORY;
     if (data) {
         add(text, text->size ? ",\n\"" : "\"");

@@ -12,7 +12,7 @@
 #include "render/sequence.h"
 #include "walk/internal.h"
 
-enum { WIDTH = 1280, HEIGHT = 720, FPS = 24, FRAMES_MOST = 100000, NUMBER_MOST = 999 };
+enum { WIDTH = 1280, HEIGHT = 720, FPS = 24, FRAMES_MAX = 100000, NUMBER_MAX = 999 };
 
 bool orl_walk_rendering_asked(const json_t *message)
 {
@@ -50,7 +50,7 @@ static enum orl_result name_files(struct run *run, const char *format)
     char *folder = orl_path_join(log, run->rendering->scene->dir, "renders");
     enum orl_result result = folder ? orl_dir_make(log, folder) : ORL_ERR_MEMORY;
     bool is_free = false;
-    for (int number = 1; result == ORL_OK && !is_free && number <= NUMBER_MOST; number++) {
+    for (int number = 1; result == ORL_OK && !is_free && number <= NUMBER_MAX; number++) {
         free(run->stem);
         free(run->keys);
         run->stem = orl_format(log, "%s/%03d", folder, number);
@@ -75,7 +75,7 @@ static enum orl_result read_path(struct run *run, const json_t *keyframes)
     enum orl_result result = orl_json_write(r->log, run->keys, keyframes);
     if (result == ORL_OK)
         result = orl_path_read(r->log, r->scene, run->keys, &run->path);
-    if (result == ORL_OK && run->path.count > FRAMES_MOST)
+    if (result == ORL_OK && run->path.count > FRAMES_MAX)
         result = orl_fail(r->log, ORL_ERR_FORMAT, "%s: %zu frames", run->keys, run->path.count);
     for (size_t i = 0; result == ORL_OK && i < run->path.count; i++) {
         struct orl_camera *c = &run->path.views[i].camera;

@@ -21,9 +21,9 @@
 #include "walk/rendering.h"
 
 enum {
-    MESSAGE_MOST = 65536, // greatest size of a message, bytes
+    MESSAGE_MAX = 65536, // greatest size of a message, bytes
     RECEIVE = 4096,      // bytes of a message that are received at once
-    CLIENTS_MOST = 64,
+    CLIENTS_MAX = 64,
     CHUNK = 16384,       // bytes of a file that are written at once
     TOKEN_BYTES = 16,
     HEADERS = 2048,      // bytes of an answer's headers
@@ -338,7 +338,7 @@ static int take_message(struct server *server, struct lws *wsi, struct session *
 {
     if (lws_frame_is_binary(wsi))
         return close_for(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE);
-    if (size > MESSAGE_MOST - session->message.size)
+    if (size > MESSAGE_MAX - session->message.size)
         return close_for(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE);
     if (orl_walk_message_add(server->log, &session->message, data, size) != ORL_OK)
         return -1;
@@ -451,7 +451,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         return 0;
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
         return asks_from_here(server, wsi) && has_token(server, wsi) &&
-                       server->session_count < CLIENTS_MOST
+                       server->session_count < CLIENTS_MAX
                    ? 0
                    : -1;
     case LWS_CALLBACK_ESTABLISHED:

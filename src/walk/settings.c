@@ -8,7 +8,7 @@
 #include "core/json.h"
 #include "scene/json_views.h"
 
-enum { LINE_MOST = 500, TEXT_MOST = 4000, NOTES_MOST = 200 };
+enum { TITLE_MAX = 500, TEXT_MAX = 4000, NOTES_MAX = 200 };
 static const char file_name[] = "walk.json";
 static const double pi = 3.14159265358979323846;
 
@@ -92,7 +92,7 @@ static bool is_note(const json_t *note)
 {
     double position[3];
     const json_t *view = json_object_get(note, "view"), *text = json_object_get(note, "text");
-    return is_text(json_object_get(note, "title"), LINE_MOST) && (!text || is_text(text, TEXT_MOST)) &&
+    return is_text(json_object_get(note, "title"), TITLE_MAX) && (!text || is_text(text, TEXT_MAX)) &&
            orl_json_read_numbers(json_object_get(note, "position"), 3, position) &&
            (!view || is_view(view));
 }
@@ -104,12 +104,12 @@ static bool are_notes(const json_t *notes)
     json_array_foreach(notes, i, note)
         if (!is_note(note))
             return false;
-    return json_is_array(notes) && json_array_size(notes) <= NOTES_MOST;
+    return json_is_array(notes) && json_array_size(notes) <= NOTES_MAX;
 }
 
 static bool is_line(const json_t *value)
 {
-    return is_text(value, LINE_MOST);
+    return is_text(value, TITLE_MAX);
 }
 
 enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *where,

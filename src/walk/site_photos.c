@@ -22,7 +22,7 @@ enum {
     // Depth is stored as round(STEPS_PER_FOLD * ln(z / nearest)) + 1, or 0 where there is none. A
     // step is a twentieth of the tolerance of the occlusion test.
     STEPS_PER_FOLD = 2048,
-    DEPTH_MOST = 32767, // the highest bit is left to the page
+    DEPTH_MAX = 32767, // the highest bit is left to the page
 };
 
 static struct orl_camera within(const struct orl_camera *camera, int side)
@@ -155,7 +155,7 @@ static enum orl_result pack_depth(const struct orl_log *log, const struct orl_im
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         float z = depth->f32[i];
         float steps = z > 0 ? STEPS_PER_FOLD * logf(z / nearest) + 1 : 0;
-        long value = lrintf(fminf(steps, DEPTH_MOST));
+        long value = lrintf(fminf(steps, DEPTH_MAX));
         packed->u8[3 * i] = (uint8_t)(value >> 8);
         packed->u8[3 * i + 1] = (uint8_t)value;
     }

@@ -9,7 +9,7 @@
 #include "walk/internal.h"
 #include "walk/publish.h"
 
-static const size_t FILE_MOST = (size_t)1 << 30;
+static const size_t FILE_MAX = (size_t)1 << 30;
 
 // A folder that only this user can read; released with free().
 static enum orl_result make_private(const struct orl_log *log, char **dir)
@@ -35,7 +35,7 @@ static enum orl_result add(const struct orl_log *log, const char *dir, const cha
     enum orl_result result = orl_grow(log, (void **)&table->files, &table->capacity,
                                       table->count + 1, sizeof *table->files);
     if (result == ORL_OK)
-        result = full && file.path ? orl_file_read(log, full, FILE_MOST, &file.data, &file.size)
+        result = full && file.path ? orl_file_read(log, full, FILE_MAX, &file.data, &file.size)
                                    : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         table->files[table->count++] = file;

@@ -29,7 +29,7 @@ static void use_camera(struct orl_known_cameras *known, size_t index, int width,
 
 static void read_cameras(const char *path, double pixel_centre)
 {
-    enum { CAMERAS_MOST = 4 };
+    enum { CAMERAS_MAX = 4 };
     struct orl_known_cameras known;
     if (orl_known_cameras_read(&fuzz_log, path, pixel_centre, &known) != ORL_OK)
         return;
@@ -44,7 +44,7 @@ static void read_cameras(const char *path, double pixel_centre)
         for (size_t k = 0; k < image->point_count; k++)
             fuzz_require(image->points[k] < known.model.point_count, "observed points are there");
     }
-    for (size_t i = 0; i < known.model.camera_count && i < CAMERAS_MOST; i++)
+    for (size_t i = 0; i < known.model.camera_count && i < CAMERAS_MAX; i++)
         use_camera(&known, i, 64, 48);
     orl_known_cameras_finish(&known);
 }

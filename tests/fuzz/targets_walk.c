@@ -18,7 +18,7 @@ static void use_request(const struct walk_request *request)
     const struct orl_camera *camera = &request->view.camera;
     fuzz_require(!orl_view_problem(&request->view), "a requested view is usable");
     fuzz_require(request->quality >= 1 && request->quality <= 100 && request->layer < WALK_LAYERS &&
-                     isfinite(request->tone.exposure_ev) && request->pick_count <= WALK_PICKS_MOST,
+                     isfinite(request->tone.exposure_ev) && request->pick_count <= WALK_PICKS_MAX,
                  "a request is within its limits");
     for (size_t i = 0; i < request->pick_count; i++)
         fuzz_require(request->picks[i][0] >= 0 && request->picks[i][0] < camera->width &&

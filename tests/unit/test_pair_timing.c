@@ -39,7 +39,7 @@ static int refused(struct clock clock, double limit, double *rounds)
     for (int i = 0; i < TRIALS; i++) {
         struct orl_pair_timing timing;
         const struct orl_pair_timing_params params = {
-            .time = tick, .priv = &clock, .limit = limit, .rounds_most = ORL_PAIR_ROUNDS_MOST};
+            .time = tick, .priv = &clock, .limit = limit, .rounds_most = ORL_PAIR_ROUNDS_MAX};
         clock.frames = 0;
         assert_int_equal(orl_pair_timing_take(&params, &timing), ORL_OK);
         count += orl_pair_timing_above(&timing, limit);
@@ -75,9 +75,9 @@ static void doubt_takes_more_rounds(void **state)
     (void)state;
     double plain, doubtful;
     assert_int_equal(refused((struct clock){.ms = {100, 80}, .noise = 0.05}, 1.02, &plain), 0);
-    assert_true(plain < ORL_PAIR_ROUNDS_LEAST + 0.1);
+    assert_true(plain < ORL_PAIR_ROUNDS_MIN + 0.1);
     refused((struct clock){.ms = {100, 102}, .noise = 0.05}, 1.02, &doubtful);
-    assert_true(doubtful > 0.8 * ORL_PAIR_ROUNDS_MOST);
+    assert_true(doubtful > 0.8 * ORL_PAIR_ROUNDS_MAX);
 }
 
 // A machine that becomes slower all the time favours neither.

@@ -6,10 +6,10 @@ import {isBehind, project} from "./view.js";
 const HEADER_WORDS = 6;
 const LAYERS = ["color", "depth", "normal", "coverage", "points"];
 const QUALITY_MOVING = 75, QUALITY_STILL = 90;
-const PIXELS_MOST = 2.0e6; // the server refuses more than 4 million
+const PIXELS_MAX = 2.0e6; // the server refuses more than 4 million
 const RETRY_MS = 1500;
 const SILENT_MS = 8000; // a server that has not answered for so long is said to hang
-const LOADING_MOST = 48; // photographs of a frame
+const LOADING_MAX = 48; // photographs of a frame
 const MAP_POINT_BYTES = 16;
 
 export class LivePicture {
@@ -29,7 +29,7 @@ export class LivePicture {
         this.onChange = onChange;
         this.layers = LAYERS;
         this.remote = true;    // frames come later than they are asked for
-        this.pixelsMost = PIXELS_MOST;
+        this.pixelsMost = PIXELS_MAX;
         this.number = 0;       // of the last request
         this.asked = null;     // {number, at, marks} of the one that is under way
         this.next = null;      // to ask for once it has come
@@ -190,7 +190,7 @@ export class LivePicture {
 
     get complete() { return !this.asked && !this.next && !this.lost && this.shown !== null; }
     get presentable() { return this.shown !== null; }
-    get loadedShare() { return this.shown ? 1 - Math.min(this.shown.missing / LOADING_MOST, 0.9) : 0; }
+    get loadedShare() { return this.shown ? 1 - Math.min(this.shown.missing / LOADING_MAX, 0.9) : 0; }
 
     // A frame of its own.
     async capture(camera, layer)

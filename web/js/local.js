@@ -9,7 +9,7 @@ import {isBehind, project} from "./view.js";
 
 const RANK_EVERY = 250; // milliseconds, while moving
 const LOOK_EVERY = 200;
-const MIDDLE_MOST = 5; // of the scene's distance: a guess may lie a thousand times as far
+const MIDDLE_MAX = 5; // of the scene's distance: a guess may lie a thousand times as far
 const handheld = matchMedia("(pointer: coarse)").matches;
 
 // Bytes for photographs on the graphics chip: what phones stand, more where there is more.
@@ -177,7 +177,7 @@ export class LocalPicture {
     middle()
     {
         const f = this.renderer.frame;
-        const most = MIDDLE_MOST * this.manifest.distance;
+        const most = MIDDLE_MAX * this.manifest.distance;
         return f ? this.renderer.pointAt(f.width / 2, f.height / 2, most) : null;
     }
 

@@ -8,8 +8,8 @@ const SPEED = 0.35;          // of the scene's distance, a second
 const FASTER = 3;
 const TURN_SPEED = 1.2;      // radians a second
 const SETTLE = 0.12;         // seconds in which speed follows the keys
-const FLIGHT_LEAST = 0.5, FLIGHT_MOST = 1.8; // seconds
-const PITCH_MOST = 1.45;     // radians from the horizon
+const FLIGHT_MIN = 0.5, FLIGHT_MAX = 1.8; // seconds
+const PITCH_MAX = 1.45;     // radians from the horizon
 const NEAR = 0.35;           // of the way to a point that is left when one goes there
 const UNDERFOOT = 0.3;       // of the eye's height: no more above the ground is the ground
 const ROOM = 0.3;            // of the scene's distance, around photographs, that is free to walk
@@ -73,7 +73,7 @@ export class Navigator {
         this.flight = null;
         const {view, up} = this;
         const height = Math.asin(clamp(dot(forwardOf(view), up), -1, 1));
-        const least = Math.min(-PITCH_MOST, height), most = Math.max(PITCH_MOST, height);
+        const least = Math.min(-PITCH_MAX, height), most = Math.max(PITCH_MAX, height);
         pitch = clamp(height + pitch, least, most) - height;
         // New rows are the old ones turned in the world: r' = r * turn^-1.
         const yawed = multiply(view.r, rotation(up, yaw));
@@ -210,7 +210,7 @@ export class Navigator {
         this.speed = [0, 0, 0];
         const angle = Math.acos(clamp(dot(forwardOf(view), forwardOf(this.view)), -1, 1));
         const far = distance(view.eye, this.view.eye) / this.distance;
-        const seconds = clamp(0.4 + 0.5 * angle + 0.8 * far, FLIGHT_LEAST, FLIGHT_MOST);
+        const seconds = clamp(0.4 + 0.5 * angle + 0.8 * far, FLIGHT_MIN, FLIGHT_MAX);
         this.flight = this.calm ? null : {from: this.view, to: view, photo, seconds, passed: 0};
         if (this.calm)
             this.setView(view, photo);

@@ -6,8 +6,8 @@ import {photoView, viewFromKey, viewToKey} from "./view.js";
 
 const FPS = 24;
 const SIZE = [1280, 720]; // of a video
-const SECONDS_LEAST = 0.01, SECONDS_MOST = 3600; // from a keyframe to the next, as src/scene/path.c
-const KEYS_MOST = 2000;
+const SECONDS_MIN = 0.01, SECONDS_MAX = 3600; // from a keyframe to the next, as src/scene/path.c
+const KEYS_MAX = 2000;
 
 // --- writing ---
 
@@ -117,12 +117,12 @@ function orielKeys(json, photos, frame)
 // Throws an error that says what is wrong.
 export function readPath(content, photos, frame)
 {
-    const json = JSON.parse(content), isList = list => Array.isArray(list) && list.length > 0 && list.length <= KEYS_MOST;
+    const json = JSON.parse(content), isList = list => Array.isArray(list) && list.length > 0 && list.length <= KEYS_MAX;
     if (!json || !isList(json.camera_path || json.keyframes))
-        throw new Error(text.path.noPath(KEYS_MOST));
+        throw new Error(text.path.noPath(KEYS_MAX));
     const keys = json.camera_path ? nerfstudioKeys(json, frame) : orielKeys(json, photos, frame);
     const wrong = keys.findIndex(key => !key || !isRotation(key.r) || !key.eye.every(Number.isFinite) ||
-                                        !(key.seconds >= SECONDS_LEAST && key.seconds <= SECONDS_MOST));
+                                        !(key.seconds >= SECONDS_MIN && key.seconds <= SECONDS_MAX));
     if (wrong >= 0)
         throw new Error(text.path.badKey(wrong + 1));
     return keys;

@@ -12,7 +12,7 @@ const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "lev
     "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
     "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
-const LEVELS_MOST = 9;     // of the surfel pyramid
+const LEVELS_MAX = 9;     // of the surfel pyramid
 const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
 export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points"];
 export const TONES = ["srgb", "reinhard", "filmic"]; // as show.frag numbers them
@@ -62,7 +62,7 @@ class Frame {
         this.layer = make(width, height, ["RG16F"]);
         this.pulled = [null];
         this.pushed = [null];
-        for (let w = half(width), h = half(height); this.pulled.length < LEVELS_MOST; w = half(w), h = half(h)) {
+        for (let w = half(width), h = half(height); this.pulled.length < LEVELS_MAX; w = half(w), h = half(h)) {
             this.pulled.push(make(w, h, ["RGBA32F", "RG32UI"]));
             this.pushed.push(make(w, h, ["RGBA32F", "RG32UI"]));
             if (w === 1 && h === 1)

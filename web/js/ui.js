@@ -40,7 +40,7 @@ function icon(name)
     return svg;
 }
 
-const BUTTON_LEAST = 28, BUTTON_MOST = 42; // CSS pixels
+const BUTTON_MIN = 28, BUTTON_MAX = 42; // CSS pixels
 
 // actions: {id: {run, key, pressed}}; pressed() for those that are on or off.
 export class Tools {
@@ -65,9 +65,9 @@ export class Tools {
     // In rows of equal length, as few as the window has room for.
     fit()
     {
-        const room = window.innerWidth - 30, rows = Math.ceil(this.count * BUTTON_LEAST / room);
-        const wide = rows === 1 && this.count * BUTTON_MOST > room ? 2 : rows;
-        byId("tools").style.gridTemplateColumns = `repeat(${Math.ceil(this.count / wide)}, minmax(0, ${BUTTON_MOST}px))`;
+        const room = window.innerWidth - 30, rows = Math.ceil(this.count * BUTTON_MIN / room);
+        const wide = rows === 1 && this.count * BUTTON_MAX > room ? 2 : rows;
+        byId("tools").style.gridTemplateColumns = `repeat(${Math.ceil(this.count / wide)}, minmax(0, ${BUTTON_MAX}px))`;
     }
 
     update()

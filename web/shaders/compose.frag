@@ -5,7 +5,7 @@
 uniform sampler2D filled, guesses; // of seed_color.frag; guesses are mipmapped
 layout(location = 0) out vec4 composed;
 
-const float GUESS_BLUR_MOST = 0.012; // of the picture's longer side
+const float GUESS_BLUR_MAX = 0.012; // of the picture's longer side
 
 // The same for 2x2 pixels: single sharp pixels in what is blurred look like dirt.
 float blur_around(ivec2 at)
@@ -28,7 +28,7 @@ void main()
         return;
     }
     float blur = own.a > 0.5 ? 0.0 : blur_around(at);
-    blur = clamp(blur, 0.0, max(log2(GUESS_BLUR_MOST * float(max(area.x, area.y))), 0.0));
+    blur = clamp(blur, 0.0, max(log2(GUESS_BLUR_MAX * float(max(area.x, area.y))), 0.0));
     vec3 color = own.rgb;
     if (blur > 0.0) {
         vec2 where = (vec2(at) + 0.5) / vec2((area + 1) / 2 * 2);

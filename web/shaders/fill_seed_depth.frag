@@ -6,7 +6,7 @@ uniform vec4 view_focal;
 uniform float typical;
 layout(location = 0) out vec4 seeded;
 
-const float FACING_LEAST = 0.1;
+const float FACING_MIN = 0.1;
 
 // The depth's value for the centre of its block, `by` pixels away; see fill_finer.glsl.
 vec4 seed_depth(float z, ivec2 at, vec2 by)
@@ -16,7 +16,7 @@ vec4 seed_depth(float z, ivec2 at, vec2 by)
     vec3 ray = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0);
     float facing = dot(normal, ray);
     vec2 slope = normal.xy / (view_focal.xy * z * facing);
-    slope = abs(facing) > FACING_LEAST * length(ray) ? slope : vec2(0.0);
+    slope = abs(facing) > FACING_MIN * length(ray) ? slope : vec2(0.0);
     float weight = clamp(pow(z / typical, 14.0), 1e-15, 1e15); // sums fit floats
     return vec4(1.0 / z + dot(slope, by), 2.0 * slope, 1.0) * weight;
 }

@@ -21,7 +21,7 @@ struct sight {
     float mip;
 };
 
-const float GUESS_SURE_LEAST = 0.1;
+const float GUESS_SURE_MIN = 0.1;
 
 sight consider(int i, vec3 p, bool guessed)
 {
@@ -37,7 +37,7 @@ sight consider(int i, vec3 p, bool guessed)
                        : photo_seen_share(seen, z);
     penalty = guessed ? penalty : photo_surface_penalty(penalty);
     float sure = sees * photo_border(source, pixel, guessed);
-    bool paints = sees > (guessed ? GUESS_SURE_LEAST : 1e-4);
+    bool paints = sees > (guessed ? GUESS_SURE_MIN : 1e-4);
     return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, p.z));
 }
 
