@@ -32,12 +32,12 @@ root_run sh -c 'cd /build && lintian --allow-root --fail-on error oriel_*.change
     tee "$packages/lintian.txt"
 [ "${PIPESTATUS[0]}" -eq 0 ] || { echo "lintian finds errors"; exit 1; }
 cp "$root"/build/*.deb "$packages/"
-# The packages and cmake --install put the same files: dh_missing has refused to leave one out, and
-# these are all that a package adds.
+# The packages and cmake --install put the same files: dh_missing has refused to leave one out, these
+# are all that a package adds, and pages of the manual are compressed.
 for deb in "$packages"/*oriel*.deb; do
     case $deb in *-dbgsym_*) continue ;; esac
     dpkg-deb -c "$deb" | awk '$1 !~ /^d/ { print substr($6, 2) }'
-done | grep -v '/copyright$\|/changelog.gz$' | sort >"$packages/packaged"
+done | grep -v '/copyright$\|/changelog.gz$' | sed '/\/man\//s/\.gz$//' | sort >"$packages/packaged"
 root_run sh -c 'cd /build/oriel && DESTDIR=/build/installed cmake --install obj-* >/dev/null &&
     cd /build/installed && find * ! -type d' | sed 's|^|/|' | sort >"$packages/installed"
 diff "$packages/packaged" "$packages/installed" || { echo "these files differ"; exit 1; }
@@ -50,7 +50,7 @@ cp "$packages"/oriel_*.deb "$root/packages/"
 root_run sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends \
     /packages/*.deb' >>"$packages/install.log" 2>&1 || { tail -n 20 "$packages/install.log"; exit 1; }
 root_run sh -euc 'cd /root && export QT_QPA_PLATFORM=offscreen
-    oriel synth monument --out photos --size 288x192 --count 12
+    oriel synth monument --out photos --size 192x128 --count 8
     oriel prepare photos --out scene --quality draft --test-list 0005.jpg
     oriel eval scene --quiet --json eval.json
     oriel publish scene --out walk.html --single-file
