@@ -49,7 +49,7 @@ static int compare_falling(const void *left, const void *right)
 }
 
 // Bytes of a fusion of `count` photographs at most, when they are the largest.
-static double most_bytes(const double *falling, size_t count)
+static double max_bytes(const double *falling, size_t count)
 {
     double pixels = 0;
     for (size_t i = 0; i < count; i++)
@@ -72,7 +72,7 @@ enum orl_result orl_fuse_plan_size(const struct orl_log *log, const struct orl_c
     size_t members = count < most ? count : most;
     for (size_t clusters = 2; members > LEAST; clusters++) {
         size_t fused = members < count ? members + orl_clusters_helpers(members) : count;
-        if (most_bytes(falling, fused < count ? fused : count) <= budget)
+        if (max_bytes(falling, fused < count ? fused : count) <= budget)
             break;
         size_t fewer = (count + clusters - 1) / clusters;
         members = fewer < members ? fewer : members;

@@ -256,13 +256,13 @@ static void compare(const struct search *s, const struct photo *photo,
 
 // The disagreement is relative to the contrast: an absolute one would be least where the ground has
 // no texture.
-static double disagreement(const struct search *s, const struct move *move, long samples_least)
+static double disagreement(const struct search *s, const struct move *move, long samples_min)
 {
     struct orl_ground ground = moved(s, move);
     struct tally tally = {0};
     for (int i = 0; i < s->photo_count; i++)
         compare(s, &s->photos[i], &ground, &tally);
-    if (tally.samples < samples_least)
+    if (tally.samples < samples_min)
         return INFINITY;
     double shift = move->log_height / SHIFT_SIGMA, tilt = hypot(move->tilt[0], move->tilt[1]);
     return tally.off / tally.contrast +
@@ -271,7 +271,7 @@ static double disagreement(const struct search *s, const struct move *move, long
 
 // Finds the best of a move's 26 neighbours, if one is better than the move. Height and tilt vary
 // together because they depend on each other.
-static bool improve(const struct search *s, double length, long samples_least, struct move *best,
+static bool improve(const struct search *s, double length, long samples_min, struct move *best,
                     double *least)
 {
     struct move from = *best;
@@ -283,7 +283,7 @@ static bool improve(const struct search *s, double length, long samples_least, s
         if (fabs(to.log_height) > SHIFT_MAX || fabs(to.tilt[0]) > TILT_MAX ||
             fabs(to.tilt[1]) > TILT_MAX)
             continue;
-        double here = disagreement(s, &to, samples_least);
+        double here = disagreement(s, &to, samples_min);
         if (here >= *least)
             continue;
         *least = here;
@@ -309,10 +309,10 @@ static void search(const struct orl_log *log, const struct search *s, struct orl
     if (tally.samples < SAMPLES_MIN)
         return;
     // A plane with fewer samples is a different plane, which the photographs see less of.
-    long samples_least = tally.samples / 2;
-    double before = disagreement(s, &best, samples_least), least = before, length = 1;
+    long samples_min = tally.samples / 2;
+    double before = disagreement(s, &best, samples_min), least = before, length = 1;
     for (int i = 0; i < STEPS; i++, length /= 2)
-        for (int k = 0; k < ROUNDS_MAX && improve(s, length, samples_least, &best, &least); k++)
+        for (int k = 0; k < ROUNDS_MAX && improve(s, length, samples_min, &best, &least); k++)
             ;
     *ground = moved(s, &best);
     orl_logf(log, ORL_LOG_INFO, "ground: %.2f times as far below as points tell, tilted by %.1f "

@@ -494,7 +494,7 @@ static enum orl_result plan_memory(struct densifier *d)
         need.width = width > need.width ? width : need.width;
         need.height = height > need.height ? height : need.height;
         int side = width < height ? width : height;
-        need.least_side = i == 0 || side < need.least_side ? side : need.least_side;
+        need.min_side = i == 0 || side < need.min_side ? side : need.min_side;
     }
     bool fits = orl_densify_fit(&need, asked, d->params.max_vram_bytes, &budget);
     if (!fits)

@@ -47,7 +47,7 @@ enum orl_result orl_densify_plans_make(const struct orl_log *log,
 
 struct densify_need {
     int width, height; // largest of any photograph
-    int least_side;    // smallest of any photograph
+    int min_side;    // smallest of any photograph
     int padding;       // texels around a source
     bool geometric;    // sources' depths are used
 };

@@ -40,7 +40,7 @@ bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_
                      struct densify_budget *budget)
 {
     int fewest = sources < SOURCES_MIN ? sources : SOURCES_MIN;
-    for (int shrink = 0; shrink == 0 || need->least_side >> shrink >= SIDE_MIN; shrink++)
+    for (int shrink = 0; shrink == 0 || need->min_side >> shrink >= SIDE_MIN; shrink++)
         for (int count = sources; count >= fewest; count--) {
             uint64_t layer = 4 * pixels(need->width >> shrink, need->height >> shrink,
                                         need->padding);

@@ -232,12 +232,12 @@ enum orl_result orl_densify_plans_make(const struct orl_log *log,
     *plans = orl_array(log, photos->count, sizeof **plans);
     scratch.tallies = orl_array(log, photos->count, sizeof *scratch.tallies);
     scratch.centres = orl_array(log, photos->count, sizeof *scratch.centres);
-    size_t most_points = 0;
+    size_t max_points = 0;
     for (size_t i = 0; i < photos->count; i++) {
         size_t points = photos->model->images[photos->images[i]].point_count;
-        most_points = points > most_points ? points : most_points;
+        max_points = points > max_points ? points : max_points;
     }
-    scratch.depths = orl_array(log, most_points, sizeof *scratch.depths);
+    scratch.depths = orl_array(log, max_points, sizeof *scratch.depths);
     if (!*plans || !scratch.tallies || !scratch.centres || !scratch.depths)
         goto end;
     result = point_views_init(log, photos, &scratch.seen_by);

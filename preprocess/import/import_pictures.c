@@ -293,11 +293,11 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
 static enum orl_result check_lens(const struct import_job *job, const struct import_view *view,
                                   const char *path)
 {
-    const double least = 0.05, focal_least = 0.1; // of the side
+    const double least = 0.05, focal_min = 0.1; // of the side
     const struct orl_camera *from = &camera_of(job, view)->pinhole;
     struct orl_camera to = orl_import_target(camera_of(job, view), 0);
     int larger = from->width > from->height ? from->width : from->height;
-    if (from->fx < focal_least * larger)
+    if (from->fx < focal_min * larger)
         return orl_fail(job->log, ORL_ERR_DATA, "%s: a focal length of %.4g pixels for a picture of "
                         "%dx%d, which no lens has: panoramas must be cut into flat views", path,
                         from->fx, from->width, from->height);

@@ -40,7 +40,7 @@ vec4 guesses_around(ivec2 at, float blur)
 // than none. Only pixels of estimated depth are mixed: colour on known depth is in its place.
 vec3 softened(ivec2 at, vec3 sharp, float blur)
 {
-    blur = clamp(blur, 0.0, log2(max(blur_most, 1.0)));
+    blur = clamp(blur, 0.0, log2(max(blur_max, 1.0)));
     vec4 around = guesses_around(at, blur);
     // The weight may vanish where a driver's mipmaps omit an isolated pixel.
     vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp;

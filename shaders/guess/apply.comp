@@ -28,6 +28,6 @@ void main()
         sum += abs(other - own) < SAME ? vec2(other, 1.0) * weight : vec2(0.0);
     }
     float on_ground = dot(ground.xyz, vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0));
-    float inverse = max(sum.x / sum.y / -depth, least_inverse);
+    float inverse = max(sum.x / sum.y / -depth, min_inverse);
     imageStore(view_depth, at, vec4(-1.0 / max(inverse, on_ground > ground.w ? on_ground : 0.0)));
 }

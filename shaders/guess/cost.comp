@@ -117,7 +117,7 @@ void main()
             photo source = photo_at(max(i, 0));
             for (int n = 0; n < AT_ONCE; n++)
                 ask(source, i >= 0,
-                    ray / max(estimate * plane_share(float(first + n)), least_inverse),
+                    ray / max(estimate * plane_share(float(first + n)), min_inverse),
                     opinions[n]);
             c++;
             i = c < asked ? chosen[list + c] : -1;

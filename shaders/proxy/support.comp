@@ -41,7 +41,7 @@ void main()
             }
         }
     for (int i = 0; i < 4; i++) {
-        bool keep = depth[i] > 0.0 && agree[i] >= float(least_support);
+        bool keep = depth[i] > 0.0 && agree[i] >= float(min_support);
         bool close = depth[i] == 0.0 && agree[i] >= MOST && far < 1.06 * near;
         imageStore(depth_out, at + ivec2(i & 1, i >> 1),
                    vec4(keep ? depth[i] : close ? sum / known : 0.0));

@@ -54,7 +54,7 @@ ORL_BLOCK(pyramid_block)
     VEC4(camera); // fx fy cx cy, pixels of level 0
     IVEC2(level_size);  // of the written level, pixels
     INT(level_number);
-    INT(least_support); // opt.min_support, rounded to a whole number
+    INT(min_support); // opt.min_support, rounded to a whole number
 };
 #endif
 
@@ -114,12 +114,12 @@ ORL_BLOCK(gather_block)
     FLOAT(outlier_severity); // 1 / opt.outliers^2; 0: no outlier rejection
     FLOAT(blur_per_radian);  // opt.guess_blur if background depth is estimated, else 0; radians
     FLOAT(model_variance);   // of radiance: variance of the relative error at full exposure
-    FLOAT(least_radiance);   // least radiance that differs from darkness
+    FLOAT(min_radiance);   // least radiance that differs from darkness
     FLOAT(voxel);            // edge of a voxel, scene units
     INT(voxel_side);         // voxels each way
     FLOAT(billboard_half);   // half the width of a billboard, scene units
     INT(planes);             // planes of shaders/guess
-    FLOAT(least_inverse);    // inverse depth of the farthest one
+    FLOAT(min_inverse);    // inverse depth of the farthest one
     INT(tile_side);          // pixels of a tile each way, even
     FLOAT(unused_1);
     FLOAT(unused_2);
@@ -174,7 +174,7 @@ ORL_BLOCK(image_block)
     FLOAT(depth_scale); // a typical depth of the scene
     INT(layers);        // compose: 1: a pixel's weight is alpha, and it lies over what is behind
     IVEC2(pictures);    // mean: index of the picture, number of them
-    FLOAT(blur_most);   // compose: largest blur of estimated depth, pixels
+    FLOAT(blur_max);   // compose: largest blur of estimated depth, pixels
     FLOAT(footprint);   // antialias: pixels of a photograph in one of the view, each way
     FLOAT(unused_2);
     FLOAT(unused_3);

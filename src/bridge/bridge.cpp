@@ -149,10 +149,10 @@ enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_i
             return;
         }
         // Mantiuk's pyramid needs a minimum size.
-        const int least_side = 8;
+        const int min_side = 8;
         cv::Mat bgr, out;
-        cv::copyMakeBorder(source, bgr, 0, std::max(0, least_side - source.rows), 0,
-                           std::max(0, least_side - source.cols), cv::BORDER_REPLICATE);
+        cv::copyMakeBorder(source, bgr, 0, std::max(0, min_side - source.rows), 0,
+                           std::max(0, min_side - source.cols), cv::BORDER_REPLICATE);
         cv::Ptr<cv::Tonemap> map;
         if (kind == ORL_TONEMAP_DRAGO)
             map = cv::createTonemapDrago();
@@ -207,7 +207,7 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
         if (cleaning->close_px > 1)
             cv::morphologyEx(target, target, cv::MORPH_CLOSE, disc(cleaning->close_px));
         // Pieces touch at corners too, so holes may not: else a diagonal would part both.
-        flip_small(target, 255, cleaning->least_px, 8);
+        flip_small(target, 255, cleaning->min_px, 8);
         flip_small(target, 0, cleaning->hole_px, 4);
     });
 }

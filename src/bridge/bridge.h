@@ -38,7 +38,7 @@ enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_ima
 // Clean-up of a mask: U8 x1, 0 or 255.
 struct orl_mask_cleaning {
     int open_px, close_px; // diameters of the discs that it is opened and closed with; 0: not
-    int least_px;          // smaller pieces of the subject are removed, pixels
+    int min_px;          // smaller pieces of the subject are removed, pixels
     int hole_px;           // smaller holes in it are filled, pixels
 };
 enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct orl_image *mask,

@@ -20,10 +20,10 @@ static const float guess_difference = 0.5f;
 // another light leaves of a surface's likeness.
 enum { LIKENESS_TAPS = 25 };
 static const double likeness_px = 4;
-static const float noise = 1e-4f, likeness_most = 0.5f;
+static const float noise = 1e-4f, likeness_max = 0.5f;
 // Shares of the picture: the surfaces that a region must prove to hide, and all that is plausible. A
 // photograph that differs nearly everywhere is in another light, or has a wrong pose.
-static const double proven_least = 0.01, occluded_most = 0.67;
+static const double proven_min = 0.01, occluded_max = 0.67;
 // Of a region's surfaces: less is proven along the edges of shadows.
 static const double proven_share = 0.5;
 
@@ -151,7 +151,7 @@ static enum orl_result contradict(const struct orl_log *log,
         rough[0].u8[i] = length_of(consensus.f32 + 3 * i) > least ? 255 : 0;
         bool proves = surface && length_of(nearest.f32 + 3 * i) > least &&
                       length_of(points.f32 + 3 * i) > least &&
-                      fmaxf(like[0].f32[i], like[1].f32[i]) < likeness_most;
+                      fmaxf(like[0].f32[i], like[1].f32[i]) < likeness_max;
         rough[1].u8[i] = proves ? rough[0].u8[i] : 0;
     }
     if (result == ORL_OK)
@@ -192,7 +192,7 @@ static enum orl_result keep_proven(const struct orl_log *log, const struct orl_i
     }
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         const struct tally *region = &of[(size_t)labels.f32[i]];
-        if ((double)region->proven < fmax(proven_least * (double)count,
+        if ((double)region->proven < fmax(proven_min * (double)count,
                                           proven_share * (double)region->surface))
             mask->u8[i] = 0;
     }
@@ -228,7 +228,7 @@ enum orl_result orl_occluder_mask(const struct orl_log *log,
         result = grow(log, mask);
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         marked += mask->u8[i] > 0;
-    if (result == ORL_OK && (double)marked <= occluded_most * (double)count)
+    if (result == ORL_OK && (double)marked <= occluded_max * (double)count)
         *share = (double)marked / (double)count;
     if (!(*share > 0))
         orl_image_finish(mask);

@@ -7,7 +7,7 @@
 // Standard errors that make a difference clear.
 static const double clear = 3;
 // A few rounds may agree by chance: a round's standard deviation is taken to be this at least.
-static const double least_deviation = 0.01;
+static const double min_deviation = 0.01;
 // Of normal noise, sqrt(pi / 2): the standard error of the median divided by that of the mean.
 static const double normal_noise = 1.2533;
 
@@ -54,7 +54,7 @@ enum orl_result orl_pair_timing_take(const struct orl_pair_timing_params *params
     double logs[ORL_PAIR_ROUNDS_MAX], first[ORL_PAIR_ROUNDS_MAX];
     *timing = (struct orl_pair_timing){.error = INFINITY};
     enum orl_result result = ORL_OK;
-    while (timing->rounds < params->rounds_most && !is_enough(params, timing)) {
+    while (timing->rounds < params->rounds_max && !is_enough(params, timing)) {
         double ms[2];
         size_t n = timing->rounds;
         result = take_round(params, n, ms);
@@ -67,7 +67,7 @@ enum orl_result orl_pair_timing_take(const struct orl_pair_timing_params *params
         double median = orl_median(logs, n);
         timing->ratio = exp(median);
         if (n >= 2)
-            timing->error = normal_noise * fmax(deviation(logs, n, median), least_deviation) /
+            timing->error = normal_noise * fmax(deviation(logs, n, median), min_deviation) /
                             sqrt((double)n);
     }
     return ORL_OK;

@@ -16,7 +16,7 @@ struct orl_pair_timing_params {
     double limit;       // the ratio that is asked about
     double error;       // the standard error of the ratio's logarithm that is asked for as well;
                         // 0: only whether the ratio is above or below the limit
-    size_t rounds_most; // at most ORL_PAIR_ROUNDS_MAX
+    size_t rounds_max; // at most ORL_PAIR_ROUNDS_MAX
 };
 
 struct orl_pair_timing {

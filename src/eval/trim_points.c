@@ -17,7 +17,7 @@ static const float surface_depth = 0.01f;
 // Views are drawn at most so large.
 enum { SIDE_MAX = 1024 };
 // A thinned cloud's radii grow with its spacing, by no more than this factor times the mean growth.
-static const double growth_most = 1.5;
+static const double growth_max = 1.5;
 
 // --- the views ---
 
@@ -179,7 +179,7 @@ static enum orl_result sort(const struct orl_log *log, const struct ranker *r)
 }
 
 enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                       size_t most_views, const struct orl_progress *progress,
+                                       size_t max_views, const struct orl_progress *progress,
                                        struct orl_point_ranking *ranking)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
@@ -193,7 +193,7 @@ enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_sce
     enum orl_result result =
         ranking->order && ranking->pixels && r.level ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = choose_views(log, scene, most_views, &views);
+        result = choose_views(log, scene, max_views, &views);
     if (result == ORL_OK)
         result = draw_views(gpu, scene, &views, progress, &r);
     for (size_t i = 0; result == ORL_OK && i < views.count; i++)
@@ -294,7 +294,7 @@ enum orl_result orl_points_thin_out(const struct orl_log *log, const struct orl_
     if (count == from->count)
         return ORL_OK;
     // Radii that are unknown are those of a cloud of this density.
-    float most = (float)(growth_most * sqrt((double)from->count / (double)count));
+    float most = (float)(growth_max * sqrt((double)from->count / (double)count));
     result = orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS}, NULL,
                                   0, to);
     for (size_t k = 0; result == ORL_OK && k < count; k++)

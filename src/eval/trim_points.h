@@ -11,13 +11,13 @@ struct orl_point_ranking {
     uint32_t *pixels; // owned, per point of the scene: pixels of all views that it wins
     size_t count;
 };
-// Ranks by the views of training photographs and views between neighbours, at most `most_views`. At
+// Ranks by the views of training photographs and views between neighbours, at most `max_views`. At
 // every pixel of coarser and coarser pictures of a view one point of the nearest surface is chosen:
 // that which wins the most pixels of all views. A point ranks by the coarsest picture that it is
 // chosen in, then by its pixels. So the points that no view shows are last, those that only full
 // resolution needs are before them, and a first part of the order is spread evenly over pictures.
 enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                       size_t most_views, const struct orl_progress *progress,
+                                       size_t max_views, const struct orl_progress *progress,
                                        struct orl_point_ranking *ranking) ORL_CHECK_RESULT;
 void orl_point_ranking_finish(struct orl_point_ranking *ranking);
 

@@ -13,7 +13,7 @@ enum {
     PHOTOGRAPHS_DIVIDE = 4, // this part of the removals comes back together
 };
 // The weight of a frame's time beside bytes, and what every step is worth at least.
-static const double weight_of_time = 0.1, least_worth = 1e-3;
+static const double weight_of_time = 0.1, min_worth = 1e-3;
 
 // --- history ---
 
@@ -104,7 +104,7 @@ static double worth_of(const struct trim_search *s, size_t step)
 {
     const struct orl_trim_step *report = &s->trim->steps[s->history[step].step];
     return fmax(report->saved_bytes / s->first_bytes, 0) +
-           weight_of_time * fmax(report->saved_ms / s->first_ms, 0) + least_worth;
+           weight_of_time * fmax(report->saved_ms / s->first_ms, 0) + min_worth;
 }
 
 // The state after the history without these steps; its `removed` is owned by the caller.

@@ -12,7 +12,7 @@ enum { FRAMES_FIRST = 5, ROUNDS_OF_TRIAL = 24, ROUNDS_OF_WHOLE = 64 };
 // In the end no frame may be slower than the whole scene's by more than this share, or so many
 // milliseconds, which no one sees. On the way it may, by as much as compressed textures take on a
 // software renderer.
-static const double slower_most = 0.02, slower_ms = 0.5, slower_software_ms = 8,
+static const double slower_max = 0.02, slower_ms = 0.5, slower_software_ms = 8,
                     slower_on_way = 0.3;
 // Standard error of a trial's ratio that is asked for, if as many rounds are enough for it: in the
 // end both models are timed more closely.
@@ -61,11 +61,11 @@ static enum orl_result warm_up(struct pair *pair)
     return result;
 }
 
-static enum orl_result compare(struct pair *pair, double limit, double error, size_t rounds_most,
+static enum orl_result compare(struct pair *pair, double limit, double error, size_t rounds_max,
                                struct orl_pair_timing *timing)
 {
     const struct orl_pair_timing_params params = {.time = time_one, .priv = pair, .limit = limit,
-                                                  .error = error, .rounds_most = rounds_most};
+                                                  .error = error, .rounds_max = rounds_max};
     enum orl_result result = warm_up(pair);
     if (result == ORL_OK)
         result = orl_pair_timing_take(&params, timing);
@@ -79,7 +79,7 @@ static enum orl_result compare(struct pair *pair, double limit, double error, si
 double orl_trim_slow_limit(const struct trim_search *s)
 {
     double least = orl_gpu_caps(s->source.gpu)->software ? slower_software_ms : slower_ms;
-    return 1 + fmax(slower_most, least / s->first_ms);
+    return 1 + fmax(slower_max, least / s->first_ms);
 }
 
 double orl_trim_slow_limit_on_way(const struct trim_search *s)

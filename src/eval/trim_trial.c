@@ -9,7 +9,7 @@
 
 // Losses below this are noise. Time and files decide between steps that save as many bytes on the
 // device: a time is measured with noise, and a pass that goes would use up the tolerance.
-static const double least_loss_db = 0.002, weight_of_time = 0.03, weight_of_files = 0.03;
+static const double min_loss_db = 0.002, weight_of_time = 0.03, weight_of_files = 0.03;
 // The weight of time while a frame takes too long. What saves time at next to no loss is taken at
 // once; what costs more comes after what makes the model smaller, which mostly makes it faster.
 static const double weight_of_waiting = 0.3;
@@ -18,7 +18,7 @@ static const double between_most_db = 3;
 // A step is taken when no other promises more than its own gain divided by this.
 static const double good_enough = 0.8;
 // A step that lost too much is tried again when steps have gained this share of the tolerance.
-static const double least_room = 0.1;
+static const double min_room = 0.1;
 // Tuned options are chosen by six photographs: at most so many.
 enum { TUNED_JUDGES = 32 };
 
@@ -457,7 +457,7 @@ static bool may_fit(const struct trim_search *s, struct trim_move *move)
     const struct trial t = {.move = move};
     double room_db = move->measured.total_loss_db - s->total_loss_db;
     return is_good(s, &t) ||
-           (room_db > least_room * s->params->tolerance_db && is_nearly_good(s, &t));
+           (room_db > min_room * s->params->tolerance_db && is_nearly_good(s, &t));
 }
 
 void orl_trim_make_room(struct trim_search *s)
@@ -492,11 +492,11 @@ enum orl_result orl_trim_try(struct trim_search *s, struct trim_move *move)
     orl_logf(s->source.log, ORL_LOG_DEBUG, "%s: %.3f dB, SSIM %.4f of %zu photographs, worst "
              "%.3f dB in all, gain %.3f", t.what, move->measured.loss_db, move->measured.loss_ssim,
              move->measured.view_count, worst_loss(s, &t), gain);
-    move->ratio = gain / fmax(loss, least_loss_db);
+    move->ratio = gain / fmax(loss, min_loss_db);
     const struct trim_move *other = orl_trim_best_move(s, move);
     // What loses nothing need not be compared, except photographs, which stand in for each other.
     // Nor is there time to compare options that end what makes a frame too slow.
-    bool lossless = loss <= least_loss_db && move->part != ORL_TRIM_PHOTOGRAPH;
+    bool lossless = loss <= min_loss_db && move->part != ORL_TRIM_PHOTOGRAPH;
     bool taken = good && !slow &&
                  (!other || lossless || s->options_only || comes_later(s, other) != comes_later(s, move) ||
                   good_enough * other->ratio <= move->ratio);

@@ -56,11 +56,11 @@ static char *mesa_cache_dir(void)
 
 void orl_mesa_cache_guard(const struct orl_log *log)
 {
-    static const unsigned long long least_bytes = 64 << 20;
+    static const unsigned long long min_bytes = 64 << 20;
     struct statvfs disk;
     char *dir = mesa_cache_dir();
     if (dir && statvfs(dir, &disk) == 0 &&
-        (unsigned long long)disk.f_bavail * disk.f_frsize < least_bytes) {
+        (unsigned long long)disk.f_bavail * disk.f_frsize < min_bytes) {
         orl_logf(log, ORL_LOG_DEBUG, "%s: little room, so that Mesa keeps no programs there", dir);
         setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
     }

@@ -47,17 +47,17 @@ struct cloud_pages {
 
 // --- memory ---
 
-static size_t count_slots(const struct orl_gpu *gpu, const struct orl_lod *lod, size_t most_bytes)
+static size_t count_slots(const struct orl_gpu *gpu, const struct orl_lod *lod, size_t max_bytes)
 {
     size_t slots = orl_cloud_chunk_points(gpu) / PAGE_POINTS;
-    if (most_bytes && most_bytes / PAGE_BYTES < slots)
-        slots = most_bytes / PAGE_BYTES;
+    if (max_bytes && max_bytes / PAGE_BYTES < slots)
+        slots = max_bytes / PAGE_BYTES;
     slots = slots < LEAST_SLOTS ? LEAST_SLOTS : slots;
     return slots < lod->page_count ? slots : lod->page_count;
 }
 
 enum orl_result orl_cloud_pages_init(struct orl_gpu *gpu, const struct orl_lod *lod,
-                                     size_t most_bytes, struct cloud *cloud)
+                                     size_t max_bytes, struct cloud *cloud)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct cloud_pages *p = orl_array(log, 1, sizeof *p);
@@ -66,7 +66,7 @@ enum orl_result orl_cloud_pages_init(struct orl_gpu *gpu, const struct orl_lod *
         return ORL_ERR_MEMORY;
     cloud->pages = p;
     p->lod = lod;
-    p->slot_count = count_slots(gpu, lod, most_bytes);
+    p->slot_count = count_slots(gpu, lod, max_bytes);
     p->slots = orl_array(log, p->slot_count, sizeof *p->slots);
     p->slot_of = orl_array(log, lod->page_count, sizeof *p->slot_of);
     p->heap = orl_array(log, p->slot_count + ORL_LOD_CHILDREN, sizeof *p->heap);

@@ -38,7 +38,7 @@ static void compose(const struct frame *frame)
         .points_show = orl_painter_of(frame->params) == &orl_paint_points,
         .fills = fills(frame),
         .layers = orl_painter_of(frame->params)->layers,
-        .blur_most = orl_soften_most(frame->surface.width, frame->surface.height),
+        .blur_max = orl_soften_max(frame->surface.width, frame->surface.height),
     };
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block,

@@ -156,7 +156,7 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
         .outlier_severity = params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
         .blur_per_radian = orl_frame_guesses(frame) ? params->guess_blur : 0,
         .model_variance = (float)(photos->sensor.model * photos->sensor.model),
-        .least_radiance = orl_least_radiance(&photos->sensor, photos->ev_brightest, true),
+        .min_radiance = orl_least_radiance(&photos->sensor, photos->ev_brightest, true),
     };
     orl_set_focal(&frame->view->camera, block.view_focal);
     orl_frame_ground(frame, block.ground);

@@ -90,7 +90,7 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     double distance = frame->scene->photo_distance > 0 ? frame->scene->photo_distance : 1;
     struct gather_block planes = *block;
     planes.planes = plane_count(frame);
-    planes.least_inverse = (float)(1 / (ORL_GUESS_FARTHEST * distance));
+    planes.min_inverse = (float)(1 / (ORL_GUESS_FARTHEST * distance));
     int width = guess->picked->params.width, height = guess->picked->params.height;
     struct orl_dispatch d = *choice;
     d.params = &planes;

@@ -16,9 +16,9 @@ struct hull_state {
 };
 
 static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t most_bytes, void **out)
+                              size_t max_bytes, void **out)
 {
-    (void)scene, (void)most_bytes; // update makes the mesh
+    (void)scene, (void)max_bytes; // update makes the mesh
     *out = orl_array(orl_gpu_log(gpu), 1, sizeof(struct hull_state));
     return *out ? ORL_OK : ORL_ERR_MEMORY;
 }

@@ -96,10 +96,10 @@ static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
 }
 
 static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t most_bytes, void **out)
+                              size_t max_bytes, void **out)
 {
     struct mesh_state *state = orl_array(orl_gpu_log(gpu), 1, sizeof *state);
-    (void)most_bytes; // a mesh is on the device as a whole
+    (void)max_bytes; // a mesh is on the device as a whole
     enum orl_result result = state ? load(gpu, scene, state) : ORL_ERR_MEMORY;
     *out = state;
     if (result != ORL_OK)

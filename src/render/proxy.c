@@ -65,11 +65,11 @@ static enum orl_result find_vertices(const struct orl_log *log, struct proxy *pr
 }
 
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                 const struct proxy_kind *kind, size_t most_bytes,
+                                 const struct proxy_kind *kind, size_t max_bytes,
                                  struct proxy *proxy)
 {
     *proxy = (struct proxy){.kind = kind};
-    enum orl_result result = kind->create(gpu, scene, most_bytes, &proxy->state);
+    enum orl_result result = kind->create(gpu, scene, max_bytes, &proxy->state);
     if (result == ORL_OK)
         result = find_vertices(orl_gpu_log(gpu), proxy, scene);
     return result;

@@ -25,9 +25,9 @@ struct paint_into {
 // One kind of proxy. `state`: its data on the device; `target`: its textures for one picture size.
 struct proxy_kind {
     const char *name;
-    // most_bytes: of device memory that a proxy keeps to which can; 0: as it needs.
+    // max_bytes: of device memory that a proxy keeps to which can; 0: as it needs.
     enum orl_result (*create)(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t most_bytes, void **state);
+                              size_t max_bytes, void **state);
     // Brings what depends on the frame's photographs and options up to date; *changed: the surfaces
     // are others now. NULL: nothing does.
     enum orl_result (*update)(const struct frame *frame, void *state, bool *changed);
@@ -95,7 +95,7 @@ struct proxy {
 // True if this option belongs to proxies of the kind.
 bool orl_proxy_reads(const struct orl_render_option *option, const struct proxy_kind *kind);
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                 const struct proxy_kind *kind, size_t most_bytes,
+                                 const struct proxy_kind *kind, size_t max_bytes,
                                  struct proxy *proxy);
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
 // Frees what photographs' depth maps are drawn into, until the next one is drawn.

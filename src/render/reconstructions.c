@@ -5,7 +5,7 @@
 #include "shared/render_blocks.h"
 
 // The largest splats are so many times as large as the scene's own, the smallest as much smaller.
-static const float most_scale = 1.75f;
+static const float max_scale = 1.75f;
 // So far to each side the pictures lie: enough for another grid, and too little to blur.
 static const double shift_px = 0.17;
 
@@ -23,7 +23,7 @@ void orl_reconstruction_vary(int index, int count, struct orl_render_params *par
         return;
     // The exponents of 1 2 3 4 of 5 are -1/2 1/2 -1 1, so that the mean size is the frame's.
     int steps = (index + 1) / 2 * (index % 2 ? -1 : 1), most = count / 2;
-    params->splat_scale *= powf(most_scale, (float)steps / (float)most);
+    params->splat_scale *= powf(max_scale, (float)steps / (float)most);
     camera->cx += shift_px * corners[(index - 1) % 4][0];
     camera->cy += shift_px * corners[(index - 1) % 4][1];
 }

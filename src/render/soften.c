@@ -11,7 +11,7 @@ void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
     orl_tex_destroy(gpu, &soften->guesses);
 }
 
-float orl_soften_most(int width, int height)
+float orl_soften_max(int width, int height)
 {
     return BLUR_MAX * (float)(width > height ? width : height);
 }
@@ -25,7 +25,7 @@ enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, in
                                     .tag = "guesses"};
     // A texel of the coarsest level is as large as the largest blur, or as the whole picture.
     int longer = width > height ? width : height;
-    float most = orl_soften_most(width, height);
+    float most = orl_soften_max(width, height);
     while ((float)(1 << params.levels) < most && longer >> (params.levels + 1) > 0)
         params.levels++;
     if (old && old->params.width == params.width && old->params.height == params.height &&

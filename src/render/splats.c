@@ -10,12 +10,12 @@
 #include "render/frame.h"
 
 static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t most_bytes, void **state)
+                              size_t max_bytes, void **state)
 {
     struct cloud *cloud = orl_array(orl_gpu_log(gpu), 1, sizeof *cloud);
     enum orl_result result =
         !cloud       ? ORL_ERR_MEMORY
-        : scene->lod ? orl_cloud_pages_init(gpu, scene->lod, most_bytes, cloud)
+        : scene->lod ? orl_cloud_pages_init(gpu, scene->lod, max_bytes, cloud)
                      : orl_cloud_init(gpu, &scene->points, cloud);
     if (result != ORL_OK) {
         free(cloud);
@@ -282,11 +282,11 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
     orl_gpu_dispatch(gpu, &d);
 }
 
-static void drop_strays(struct orl_gpu *gpu, struct pyramid_block *block, int least,
+static void drop_outliers(struct orl_gpu *gpu, struct pyramid_block *block, int least,
                         struct splat_target *t)
 {
     set_level(block, t->depth, 0);
-    block->least_support = least;
+    block->min_support = least;
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, NULL),
                              .params = block, .params_size = sizeof *block,
                              .images = {{t->pushed_depth, 0, GL_READ_ONLY},
@@ -298,7 +298,7 @@ static void drop_strays(struct orl_gpu *gpu, struct pyramid_block *block, int le
     orl_gpu_dispatch(gpu, &d);
 }
 
-static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, int least_support,
+static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, int min_support,
                       const struct orl_tex *depth, bool normals, struct splat_target *t)
 {
     struct pyramid_block block = {0};
@@ -307,8 +307,8 @@ static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, int leas
         pull(gpu, &block, t, i);
     for (int i = t->levels - 2; i >= 0; i--)
         push(gpu, &block, t, i, depth, normals);
-    if (least_support > 0)
-        drop_strays(gpu, &block, least_support, t);
+    if (min_support > 0)
+        drop_outliers(gpu, &block, min_support, t);
 }
 
 static enum orl_result bring(const void *state, const struct orl_view *view,
@@ -324,14 +324,14 @@ static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *
 {
     struct splat_target *t = target;
     struct splat_block block = splat_params(state, view, params);
-    int least_support = (int)params->min_support;
-    const struct orl_tex *depth = least_support > 0 ? t->pushed_depth : t->depth;
+    int min_support = (int)params->min_support;
+    const struct orl_tex *depth = min_support > 0 ? t->pushed_depth : t->depth;
     orl_pass_begin(gpu, "splat");
     splat(gpu, state, &block, t);
     orl_pass_end(gpu);
     orl_pass_begin(gpu, "pull-push");
     resolve(gpu, state, &block, depth, normals, t);
-    pull_push(gpu, view, least_support, depth, normals, t);
+    pull_push(gpu, view, min_support, depth, normals, t);
     orl_pass_end(gpu);
     *surface = (struct surface){.width = t->width, .height = t->height, .depth = t->depth,
                                 .normal = t->normal};

@@ -14,9 +14,9 @@
 #include "shared/hull_blocks.h"
 
 static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t most_bytes, void **out)
+                              size_t max_bytes, void **out)
 {
-    (void)scene, (void)most_bytes; // update makes the voxels
+    (void)scene, (void)max_bytes; // update makes the voxels
     *out = orl_array(orl_gpu_log(gpu), 1, sizeof(struct voxel_state));
     return *out ? ORL_OK : ORL_ERR_MEMORY;
 }

@@ -12,7 +12,7 @@ enum {
     RADIUS_CODES = 255,   // of radii above 0
     CODES_PER_OCTAVE = 16 // radii are rounded by 2.2 % at most
 };
-static const float least_steps = 16; // see orl_point_range_is_precise
+static const float min_steps = 16; // see orl_point_range_is_precise
 
 const struct point_code orl_point_code_none = {{0}, {0}, 0};
 
@@ -31,8 +31,8 @@ void orl_point_range_add(struct point_range *range, const float position[3], flo
         range->high[k] = fmaxf(range->high[k], position[k]);
     }
     if (radius > 0) {
-        range->least_radius = fminf(range->least_radius, radius);
-        range->most_radius = fmaxf(range->most_radius, radius);
+        range->min_radius = fminf(range->min_radius, radius);
+        range->max_radius = fmaxf(range->max_radius, radius);
     }
 }
 
@@ -52,21 +52,21 @@ static float extent_step(const struct point_range *range)
 
 bool orl_point_range_is_precise(const struct point_range *range)
 {
-    float step = fmaxf(extent_step(range), range->most_radius / radius_steps(RADIUS_CODES));
-    return least_steps * step <= range->least_radius;
+    float step = fmaxf(extent_step(range), range->max_radius / radius_steps(RADIUS_CODES));
+    return min_steps * step <= range->min_radius;
 }
 
 struct point_frame orl_point_frame(const struct point_range *range)
 {
     float least = extent_step(range);
     struct point_frame frame = {{range->low[0], range->low[1], range->low[2]}, least};
-    if (!(range->most_radius > 0))
+    if (!(range->max_radius > 0))
         return frame;
     // The largest radius gets a code of its own, so that equal radii are kept exactly. The step
     // grows by 4.4 % at most for it.
-    float code = CODES_PER_OCTAVE * log2f(range->most_radius / least);
+    float code = CODES_PER_OCTAVE * log2f(range->max_radius / least);
     code = fminf(fmaxf(floorf(code), 1), RADIUS_CODES); // a step of 0 makes it infinite
-    frame.step = fmaxf(range->most_radius / radius_steps((int)code), least);
+    frame.step = fmaxf(range->max_radius / radius_steps((int)code), least);
     return frame;
 }
 

@@ -16,7 +16,7 @@ struct point_frame {
 // Bounds of positions and radii, to choose a frame for.
 struct point_range {
     float low[3], high[3];           // of positions
-    float least_radius, most_radius; // of radii above 0; least INFINITY, most 0: there are none
+    float min_radius, max_radius; // of radii above 0; least INFINITY, most 0: there are none
 };
 struct point_range orl_point_range_none(void);
 void orl_point_range_add(struct point_range *range, const float position[3], float radius);

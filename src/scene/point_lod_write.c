@@ -109,7 +109,7 @@ static enum orl_result add_blocks(struct writer *w, size_t part)
 
 uint64_t orl_lod_most_in_memory(size_t max_bytes)
 {
-    return orl_point_parts_most(max_bytes);
+    return orl_point_parts_max(max_bytes);
 }
 
 // Says how much disk is needed before any of it is taken.

@@ -194,7 +194,7 @@ static enum orl_result count_cells(struct maker *m)
 
 // --- parts ---
 
-uint64_t orl_point_parts_most(size_t max_bytes)
+uint64_t orl_point_parts_max(size_t max_bytes)
 {
     uint64_t most = (max_bytes ? max_bytes : orl_memory_available() / 2) / POINT_BYTES;
     return most < LEAST_PART ? LEAST_PART : most;
@@ -203,7 +203,7 @@ uint64_t orl_point_parts_most(size_t max_bytes)
 static enum orl_result assign_cells(struct maker *m)
 {
     struct point_parts *parts = m->parts;
-    uint64_t most = orl_point_parts_most(m->max_bytes);
+    uint64_t most = orl_point_parts_max(m->max_bytes);
     uint64_t limit = parts->flat ? MOST_FLAT_PART : MOST_PART;
     most = most < limit ? most : limit;
     size_t capacity = 0;

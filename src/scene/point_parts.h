@@ -37,7 +37,7 @@ enum orl_result orl_point_parts_write(const struct point_parts *parts, size_t pa
                                       const struct orl_points *points,
                                       const float *scales) ORL_CHECK_RESULT;
 // Points of a part at most. max_bytes: of memory; 0: half of what is free.
-uint64_t orl_point_parts_most(size_t max_bytes);
+uint64_t orl_point_parts_max(size_t max_bytes);
 // Bytes of disk that the parts of this many points without radii take, about.
 double orl_point_parts_bytes(double points);
 

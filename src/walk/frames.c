@@ -311,7 +311,7 @@ enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_sc
                                  const struct orl_render_params *params)
 {
     enum { WIDTH = 640 };
-    static const double most_s = 4; // of processor time: a busy machine gets as far as an idle one
+    static const double max_s = 4; // of processor time: a busy machine gets as far as an idle one
     struct walk_request request = {.quality = 75, .tone = {ORL_TONE_DEFAULTS}};
     size_t start_photo;
     enum orl_result result = orl_walk_start(walk->log, scene, &start_photo);
@@ -331,7 +331,7 @@ enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_sc
         if (i < 4) { // the later ones compile those that photographs need
             start = orl_cpu_time_s();
             walk->draw_s = 0;
-        } else if (orl_cpu_time_s() - start > most_s) {
+        } else if (orl_cpu_time_s() - start > max_s) {
             break;
         }
     }

@@ -346,7 +346,7 @@ END
       table(["scene", "PSNR before, dB", "now", "SSIM before", "now", "covered PSNR before, dB", "now",
              "own place before, dB", "now", "now, least", "covered, %"];
         .[] | [name, both(.psnr_db; 2), both(.ssim; 3), both(.psnr_covered_db; 2),
-               (.own_before.mean_db | fixed(1)), (.own.mean_db | fixed(1)), (.own.least_db | fixed(1)),
+               (.own_before.mean_db | fixed(1)), (.own.mean_db | fixed(1)), (.own.min_db | fixed(1)),
                (100 * .own.coverage | fixed(0))])'
 }
 

@@ -51,7 +51,7 @@ static enum orl_result measure(const struct orl_log *log, const struct place *p)
         covered += metrics.coverage;
         count++;
     }
-    printf("{\"scene\": \"%s\", \"least_db\": %.2f, \"mean_db\": %.2f, \"coverage\": %.4f}\n",
+    printf("{\"scene\": \"%s\", \"min_db\": %.2f, \"mean_db\": %.2f, \"coverage\": %.4f}\n",
            p->scene->dir, least, sum / count, covered / count);
     return ORL_OK;
 }

@@ -221,7 +221,7 @@ struct paged {
     char *dir, *ply, *file;
 };
 
-static void open_pages(struct paged *p, size_t most_bytes)
+static void open_pages(struct paged *p, size_t max_bytes)
 {
     static const struct orl_lod_params params = {ORL_LOD_DEFAULTS};
     make_wall(&p->s);
@@ -231,7 +231,7 @@ static void open_pages(struct paged *p, size_t most_bytes)
     assert_int_equal(orl_lod_write(NULL, NULL, &params, p->ply, p->file), ORL_OK);
     assert_int_equal(orl_lod_open(NULL, p->file, &p->lod), ORL_OK);
     const struct orl_scene scene = {.points = p->s.points, .lod = p->lod};
-    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, most_bytes, &p->s.proxy),
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, max_bytes, &p->s.proxy),
                      ORL_OK);
 }
 

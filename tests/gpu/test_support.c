@@ -16,7 +16,7 @@ static void support(float *depth)
                                     .tag = "test depth"};
     struct orl_tex_params normal_params = params;
     normal_params.format = GL_RGBA16F;
-    struct pyramid_block block = {.level_size = {SIDE, SIDE}, .least_support = LEAST};
+    struct pyramid_block block = {.level_size = {SIDE, SIDE}, .min_support = LEAST};
     assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &normal_params, &normal), ORL_OK);

@@ -84,7 +84,7 @@ static enum orl_result draw(struct soak *soak, struct orl_renderer *renderer,
 
 // The slope of memory over what has been done, by least squares. A leak is a slope; what a driver
 // keeps after some rare frame is a step, which matters less the more has been done.
-static void check_memory(struct soak *soak, int done, int all, const char *what, double most_kib)
+static void check_memory(struct soak *soak, int done, int all, const char *what, double max_kib)
 {
     if (done == 1)
         memset(soak->sum, 0, sizeof soak->sum);
@@ -100,7 +100,7 @@ static void check_memory(struct soak *soak, int done, int all, const char *what,
     double spread = s[4] * s[2] - s[0] * s[0];
     double slope = spread > 0 ? (s[4] * s[3] - s[0] * s[1]) / spread : 0;
     printf("soaked: %d %s, memory %+.3f KiB each\n", all, what, slope);
-    soak->failed = soak->failed || slope > most_kib;
+    soak->failed = soak->failed || slope > max_kib;
 }
 
 static enum orl_result draw_frames(struct soak *soak, struct orl_gpu *gpu, int frames,

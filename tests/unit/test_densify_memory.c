@@ -8,7 +8,7 @@ static const uint64_t MIB = (uint64_t)1 << 20;
 static struct densify_need photographs(int width, int height)
 {
     const struct orl_densify_params params = {ORL_DENSIFY_DEFAULTS};
-    return (struct densify_need){.width = width, .height = height, .least_side = height,
+    return (struct densify_need){.width = width, .height = height, .min_side = height,
                                  .padding = orl_densify_padding(&params), .geometric = true};
 }
 
@@ -78,7 +78,7 @@ static void test_nothing_fits(void **state)
     assert_true(budget.bytes > 1000);
     // A tiny photograph among them cannot be halved.
     struct densify_need mixed = need;
-    mixed.least_side = 24;
+    mixed.min_side = 24;
     assert_false(orl_densify_fit(&mixed, 8, 500 * MIB, &budget));
 }
 

@@ -39,7 +39,7 @@ static int refused(struct clock clock, double limit, double *rounds)
     for (int i = 0; i < TRIALS; i++) {
         struct orl_pair_timing timing;
         const struct orl_pair_timing_params params = {
-            .time = tick, .priv = &clock, .limit = limit, .rounds_most = ORL_PAIR_ROUNDS_MAX};
+            .time = tick, .priv = &clock, .limit = limit, .rounds_max = ORL_PAIR_ROUNDS_MAX};
         clock.frames = 0;
         assert_int_equal(orl_pair_timing_take(&params, &timing), ORL_OK);
         count += orl_pair_timing_above(&timing, limit);
@@ -87,7 +87,7 @@ static void drift_cancels(void **state)
     struct clock clock = {.ms = {100, 100}, .drift = 0.01};
     struct orl_pair_timing timing;
     const struct orl_pair_timing_params params = {.time = tick, .priv = &clock, .limit = 1.02,
-                                                  .error = 1e-6, .rounds_most = 10};
+                                                  .error = 1e-6, .rounds_max = 10};
     assert_int_equal(orl_pair_timing_take(&params, &timing), ORL_OK);
     assert_float_equal(timing.ratio, 1, 1e-3);
     assert_int_equal(timing.rounds, 10); // so small an error is not reached
@@ -106,7 +106,7 @@ static void a_frame_that_fails_ends_it(void **state)
 {
     (void)state;
     struct orl_pair_timing timing;
-    const struct orl_pair_timing_params params = {.time = fails, .limit = 1, .rounds_most = 10};
+    const struct orl_pair_timing_params params = {.time = fails, .limit = 1, .rounds_max = 10};
     assert_int_equal(orl_pair_timing_take(&params, &timing), ORL_ERR_GPU);
 }
 

@@ -196,8 +196,8 @@ void heed_clipped(bool guessed)
     float other = 0.0, contradicted = 0.0;
     EACH_SAMPLE(k) {
         float weight = samples[k].clip < CLIPS_BELOW ? 0.0 : weights[k];
-        float below = log2(max(least, least_radiance) /
-                           max(dot(samples[k].color, LUMINANCE), least_radiance));
+        float below = log2(max(least, min_radiance) /
+                           max(dot(samples[k].color, LUMINANCE), min_radiance));
         other += weight;
         contradicted += weight * smoothstep(opt.ghosts, 2.0 * opt.ghosts, below);
     }
@@ -214,7 +214,7 @@ vec3 weigh(bool guessed)
 {
     // The confidence of a sample depends on the amount of light. The median estimates that amount,
     // so that the sample's own noise has no influence.
-    vec3 level = max(median_color(), least_radiance), inverse = 1.0 / level;
+    vec3 level = max(median_color(), min_radiance), inverse = 1.0 / level;
     float noise[ORL_RADIANCE_KEPT];
     EACH_SAMPLE(k) {
         noise[k] = noise_of(photo_at(samples[k].source), inverse);

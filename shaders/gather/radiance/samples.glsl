@@ -22,7 +22,7 @@ float total_weight(Sample s, float noise)
 // Squared difference in stops, averaged over the channels.
 float stops2(vec3 a, vec3 b)
 {
-    vec3 d = log2(max(a, least_radiance) / max(b, least_radiance));
+    vec3 d = log2(max(a, min_radiance) / max(b, min_radiance));
     return dot(d, d) / 3.0;
 }
 
