@@ -121,7 +121,7 @@ void orl_chart_sentence(const struct orl_chart_point *points, size_t count, size
         return;
     }
     const struct orl_chart_point *q = &points[p->dominated_by];
-    add(text, " By PSNR nobody should use it here: ");
+    add(text, " Here ");
     add_name(text, q);
     add(text, " is ");
     add_db(text, q->db - p->db, q->covered_db - p->covered_db);

@@ -103,10 +103,12 @@ head_of() {
     printf -- '- Made by: `tests/bench/measured.sh BUILD SCENES DATASETS %s`\n' "$section"
 }
 
-# Words with commas between.
+# Scenes and the larger sides of their photographs, with commas between.
 list() {
-    local all=$*
-    echo "${all// /, }"
+    local name
+    for name in "$@"; do
+        jq -r --arg name "$name" '"\($name) (\(.stages.undistort.largest | max) px)"' "$scenes/$name/scene.json"
+    done | paste -sd, | sed 's/,/, /g'
 }
 
 processor() {
@@ -256,8 +258,6 @@ END
       | table(["method"] + $names;
           .overall[] | select(.setting == "") | .method as $m | ["`" + $m + "`"] + [$names[] as $n
             | [$rows[] | select(.scene == $n and .method == $m and .setting == "")][0].cpu_ms | fixed(0)])'
-    printf '**What each method buys**, over all scenes\n\n'
-    jq -r '.overall[] | select(.setting == "" or (.setting | startswith("on the "))) | "- " + .sentence' "$work/chart/chart.json"
 }
 
 # A row for each method on a scene, with these options: accuracy from eval, processor time and memory of
@@ -424,7 +424,7 @@ page_memory() {
         jq -s --arg kind "$kind" '.[0] + {kind: $kind, mean: .[1].mean}' "$work/memory_bench.json" \
             "$work/memory_eval.json"
     done | jq -s . >"$work/memory.json"
-    head_of "Memory" "$name" "$work/memory.json"
+    head_of "Memory" "$(list "$name")" "$work/memory.json"
     printf '\nMemory on the device after frames of 768x512 of scene `%s`, in MiB, and what compressed photographs\n' \
         "$name"
     printf 'cost in accuracy and time.\n'
