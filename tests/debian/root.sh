@@ -51,7 +51,7 @@ root_make() {
         # A mirror may stand still, and a crash during unpacking costs nothing here.
         echo 'Acquire::Check-Valid-Until "false";'
         echo 'Dpkg::Options { "--force-unsafe-io"; };'
-        apt-config dump | grep -iE '^Acquire::https?::Proxy'
+        apt-config dump | sed -nE '/^Acquire::https?::Proxy/Ip'
     } >"$root/etc/apt/apt.conf.d/90oriel"
 }
 
