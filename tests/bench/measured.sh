@@ -141,7 +141,7 @@ page_scenes() {
     for name in $(scene_names); do
         jq --arg scene "$name" '. + {scene: $scene}' "$scenes/$name/scene.json"
     done | jq -s . >"$work/scenes.json"
-    head_of "Scenes of the measurements" "all"
+    head_of "Scenes of the measurements" "$(list $(scene_names))"
     cat <<'END'
 
 Every figure of these pages is of one of these scenes. `measured.sh` prepares those that are missing; its function
