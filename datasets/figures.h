@@ -4,6 +4,7 @@
 #define ORL_DATASETS_FIGURES_H
 
 #include "oriel/image.h"
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 #include "oriel/camera.h"
 #include "oriel/scene.h"
@@ -16,12 +17,18 @@ enum {
     ORL_FIGURES_SIDE_MAX = 4096,
 };
 
+// On a ring around the figure; 25 time steps to a second.
+#define ORL_FIGURES_OPTIONS(ROW) \
+    ROW(cameras, "cameras", INT(8, 2, ORL_FIGURES_CAMERAS_MAX, "N"), "figures: cameras around", \
+        "figures") \
+    ROW(frames, "frames", INT(1, 1, ORL_FIGURES_FRAMES_MAX, "N"), \
+        "figures: time steps, 25 to a second", "figures")
 struct orl_figures_params {
-    int cameras;       // [2, ORL_FIGURES_CAMERAS_MAX], on a ring around the figure
-    int frames;        // time steps, [1, ORL_FIGURES_FRAMES_MAX]; 25 to a second
+    ORL_FIGURES_OPTIONS(ORL_OPTION_MEMBER)
     int width, height; // pixels, [ORL_FIGURES_SIDE_MIN, ORL_FIGURES_SIDE_MAX]
 };
-#define ORL_FIGURES_DEFAULTS .cameras = 8, .frames = 1, .width = 640, .height = 480
+#define ORL_FIGURES_DEFAULTS \
+    ORL_FIGURES_OPTIONS(ORL_OPTION_PRESET) .width = 640, .height = 480
 
 // ORL_ERR_ARGUMENT, logged, for a value out of range.
 enum orl_result orl_figures_check(const struct orl_log *log,

@@ -4,6 +4,7 @@
 #define ORL_DATASETS_SYNTH_H
 
 #include "oriel/image.h"
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 #include "oriel/gpu.h"
 #include "oriel/camera.h"
@@ -15,35 +16,42 @@ enum {
     ORL_SYNTH_EXPOSURES_MAX = 16,
 };
 
-// How the camera turns light in [0, 1] into values in [0, 1].
-enum orl_synth_response {
-    ORL_SYNTH_SRGB,
-    ORL_SYNTH_FILM, // the sRGB curve with a camera's contrast: darker shadows, soft highlights
-};
+// How the camera turns light in [0, 1] into values in [0, 1]. FILM: the sRGB curve with a camera's
+// contrast, darker shadows and soft highlights.
+#define ORL_SYNTH_RESPONSES(NAME) NAME(ORL_SYNTH_SRGB, "srgb") NAME(ORL_SYNTH_FILM, "film")
+enum orl_synth_response { ORL_SYNTH_RESPONSES(ORL_ENUMERATOR) };
 
+// Contrast also makes the sun contrast_ev / 4 stops stronger. Noise is the standard deviation. Drift
+// is of each photograph's exposure, and of the balance of each colour up to a quarter of it. Plain
+// walls are in cubes of 1.2 m.
+#define ORL_SYNTH_OPTIONS(ROW) \
+    ROW(count, "count", INT(24, 2, ORL_SYNTH_COUNT_MAX, "N"), "photographs", "monument") \
+    ROW(seed, "seed", SEED, "another set of cameras and stones", "monument") \
+    ROW(contrast_ev, "contrast", NUMBER(0, 0, 16, "EV"), \
+        "deepens the shade by this many stops, and strengthens the sun", "monument") \
+    ROW(noise, "noise", NUMBER(0, 0, 0.5, "SIGMA"), "sensor noise at white, linear", "monument") \
+    ROW(response, "response", CHOICE(orl_synth_response, ORL_SYNTH_RESPONSES, ORL_SYNTH_SRGB, \
+                                     "NAME"), "the camera's curve", "monument") \
+    ROW(vignette, "vignette", NUMBER(0, 0, 0.9, "SHARE"), "light lost in the corners", "monument") \
+    ROW(drift_ev, "drift", NUMBER(0, 0, 2, "EV"), \
+        "exposure and colour wander by up to this, untold by EXIF", "monument") \
+    ROW(gloss, "gloss", NUMBER(0, 0, 1, "SHARE"), \
+        "makes the monument shine; 1: as a mirror", "monument") \
+    ROW(bars_m, "bars", NUMBER(0, 0, 1.5, "METRES"), \
+        "upright bars of this diameter before the monument", "monument") \
+    ROW(plain, "plain", NUMBER(0, 0, 1, "SHARE"), \
+        "share of the walls that has no texture", "monument")
 struct orl_synth_params {
+    ORL_SYNTH_OPTIONS(ORL_OPTION_MEMBER)
     const char *name;      // one of orl_synth_names
     int width, height;     // pixels, [ORL_SYNTH_SIDE_MIN, ORL_SYNTH_SIDE_MAX]
-    int count;             // photographs, [2, ORL_SYNTH_COUNT_MAX]
-    uint32_t seed;         // seed of cameras, stones and sensor noise
     // Photograph i is taken at exposures_ev[i % exposure_count]. Neighbours on the path belong to
     // different series, and no two photographs share a viewpoint.
     double exposures_ev[ORL_SYNTH_EXPOSURES_MAX]; // [-12, 12]; 0: a normal exposure
     int exposure_count;    // 0: all photographs at 0 EV
-    // Makes the sun contrast_ev / 4 stops stronger, and the passage and the far side of the square
-    // up to contrast_ev stops darker; [0, 16].
-    double contrast_ev;
-    double noise;          // sensor noise: standard deviation at white, linear, [0, 0.5]
-    enum orl_synth_response response;
-    double vignette;       // light lost in the corners, fraction, [0, 0.9]
-    // Error of each photograph's exposure that EXIF does not record, up to this many EV, and of the
-    // balance of each colour, up to a quarter of it; [0, 2].
-    double drift_ev;
-    double gloss;  // share of the monument's light that is a mirror's, [0, 1]
-    double bars_m; // diameter of upright bars before the monument, metres, [0, 1.5]; 0: no bars
-    double plain;  // share of the walls, in cubes of 1.2 m, that have one colour, [0, 1]
 };
-#define ORL_SYNTH_DEFAULTS .name = "monument", .width = 768, .height = 512, .count = 24, .seed = 1
+#define ORL_SYNTH_DEFAULTS \
+    ORL_SYNTH_OPTIONS(ORL_OPTION_PRESET) .name = "monument", .width = 768, .height = 512
 
 // All names, terminated by NULL, and a description of each.
 const char *const *orl_synth_names(void);
@@ -83,7 +91,7 @@ void orl_synth_frame_finish(struct orl_synth_frame *frame);
 double orl_synth_encode(enum orl_synth_response response, double light);
 double orl_synth_decode(enum orl_synth_response response, double value);
 // "srgb", "film", terminated by NULL, in the order of the enum.
-const char *const *orl_synth_response_names(void);
+const char *orl_synth_response_name(enum orl_synth_response response);
 
 // The sensor and lens of one photograph.
 struct orl_synth_sensor {

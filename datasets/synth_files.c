@@ -219,7 +219,7 @@ static enum orl_result write_summary(const struct job *job)
                                 "seed", (json_int_t)p->seed, "contrast", p->contrast_ev, "noise",
                                 p->noise, "vignette", p->vignette, "drift", p->drift_ev, "gloss",
                                 p->gloss, "bars", p->bars_m, "plain", p->plain, "response",
-                                orl_synth_response_names()[p->response], "linear", curve,
+                                orl_synth_response_name(p->response), "linear", curve,
                                 "oriel", ORL_VERSION, "photographs", photos));
 }
 

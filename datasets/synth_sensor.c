@@ -32,10 +32,10 @@ double orl_synth_decode(enum orl_synth_response response, double value)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-const char *const *orl_synth_response_names(void)
+const char *orl_synth_response_name(enum orl_synth_response response)
 {
-    static const char *const names[] = {"srgb", "film", NULL};
-    return names;
+    static const char *const names[] = {ORL_SYNTH_RESPONSES(ORL_ENUM_NAME)};
+    return names[response];
 }
 
 static uint32_t next_word(uint32_t *state)

@@ -8,7 +8,7 @@
 json_t *orl_stage_adapt_settings(const struct orl_job *job)
 {
     const struct orl_prepare_params *p = job->params;
-    return json_pack("{s:s, s:o*}", "adapt", orl_adapt_effort_names[p->adapt], "budget_s",
+    return json_pack("{s:o*}", "budget_s",
                      p->adapt == ORL_ADAPT_LONG ? json_real(p->adapt_budget_s) : NULL);
 }
 

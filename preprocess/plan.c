@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/arguments.h"
 #include "preprocess/calibrate/parts.h"
 #include "preprocess/cloud/clusters.h"
 #include "preprocess/cloud/fuse.h"
@@ -34,13 +35,13 @@ struct planner {
     const struct orl_log *log;
     char *dir;         // owned; the scene, absolute
     json_t *arguments; // of oriel prepare
+    struct orl_prepare_params params; // parsed from them
     bool undistorted;  // else the calibration is planned,
     size_t given;      // of so many photographs
     struct orl_names photos;
     struct orl_colmap_model model;
     struct orl_densify_params densify;
-    const char *max_vram; // MiB, NULL: no limit
-    bool masks;
+    char *masks;       // owned; the folder, NULL: none
     int parts;
     double max_ram;    // bytes; INFINITY: no limit, since the machines of the jobs are not known
     struct orl_clusters clusters; // of fusion
@@ -51,24 +52,6 @@ struct planner {
 
 // --- what the scene says ---
 
-static const char *argument(const struct planner *p, const char *option)
-{
-    for (size_t i = 0; i + 1 < json_array_size(p->arguments); i++)
-        if (strcmp(json_string_value(json_array_get(p->arguments, i)), option) == 0)
-            return json_string_value(json_array_get(p->arguments, i + 1));
-    return NULL;
-}
-
-static enum orl_quality quality_of(const struct planner *p)
-{
-    const char *name = argument(p, "--quality");
-    int quality = ORL_QUALITY_STANDARD;
-    for (int i = 0; name && orl_quality_names[i]; i++)
-        if (strcmp(name, orl_quality_names[i]) == 0)
-            quality = i;
-    return (enum orl_quality)quality;
-}
-
 // The photographs of a calibration that has begun; *begun stays NULL where none has.
 static enum orl_result read_begun(const struct planner *p, json_t **begun)
 {
@@ -77,6 +60,26 @@ static enum orl_result read_begun(const struct planner *p, json_t **begun)
     if (result == ORL_OK && orl_path_is_file(path))
         result = orl_json_read(p->log, path, begun);
     free(path);
+    return result;
+}
+
+// Reads p->params, whose texts belong to p->arguments.
+static enum orl_result parse_arguments(struct planner *p, const char *path)
+{
+    const struct orl_option_set sets[] = {{orl_prepare_options(), &p->params}, {0}};
+    size_t count = json_array_size(p->arguments), inputs;
+    const char **texts = orl_array(p->log, 2 * count, sizeof *texts);
+    enum orl_result result = texts ? ORL_OK : ORL_ERR_MEMORY;
+    p->params = (struct orl_prepare_params){ORL_PREPARE_DEFAULTS};
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        texts[i] = json_string_value(json_array_get(p->arguments, i));
+        if (!texts[i])
+            result = orl_fail(p->log, ORL_ERR_FORMAT, "%s: \"arguments\" are not texts", path);
+    }
+    if (result == ORL_OK)
+        result = orl_arguments_parse(p->log, path, sets, (int)count, texts, count, texts + count,
+                                   &inputs);
+    free(texts);
     return result;
 }
 
@@ -92,15 +95,12 @@ static enum orl_result read_arguments(struct planner *p)
         result = read_begun(p, &begun);
     p->given = json_array_size(json_object_get(begun, "photographs"));
     json_decref(begun);
-    json_t *arguments = json_object_get(stages, "arguments");
-    bool texts = json_array_size(arguments) > 0;
-    for (size_t i = 0; i < json_array_size(arguments); i++)
-        texts = texts && json_is_string(json_array_get(arguments, i));
-    if (result == ORL_OK && ((!p->undistorted && !p->given) || !texts))
+    p->arguments = json_incref(json_object_get(stages, "arguments"));
+    if (result == ORL_OK && ((!p->undistorted && !p->given) || !json_array_size(p->arguments)))
         result = orl_fail(p->log, ORL_ERR_DATA, "%s: nothing to plan yet: run oriel prepare PHOTOS "
                           "--out %s --until undistort (or collect) first", p->dir, p->dir);
     if (result == ORL_OK)
-        p->arguments = json_incref(arguments);
+        result = parse_arguments(p, path);
     json_decref(stages);
     free(path);
     return result;
@@ -135,16 +135,18 @@ static enum orl_result read_scene(struct planner *p, int photographs)
         return result;
     size_t count = p->photos.count;
     p->parts = (int)((count + (size_t)photographs - 1) / (size_t)photographs);
-    p->densify = orl_densify_quality(quality_of(p));
-    p->max_vram = argument(p, "--max-vram");
-    p->masks = argument(p, "--masks") != NULL;
+    p->densify = orl_densify_quality(p->params.quality);
+    p->densify.seed = p->params.seed;
+    p->densify.max_vram_bytes = p->params.max_vram_bytes;
+    if (p->params.masks_dir && !(p->masks = orl_path_join(p->log, p->dir, "masks")))
+        return ORL_ERR_MEMORY;
+    p->densify.masks_dir = p->masks;
     p->pixels = orl_array(p->log, count + 1, sizeof *p->pixels);
     p->reads = orl_array(p->log, (size_t)p->parts * (size_t)p->parts + 1, sizeof *p->reads);
     if (!p->pixels || !p->reads)
         return ORL_ERR_MEMORY;
-    const char *max_ram = argument(p, "--max-ram"), *asked = argument(p, "--fuse-cluster");
-    p->max_ram = max_ram ? atof(max_ram) * (1 << 20) : (double)INFINITY;
-    result = orl_fuse_clusters(p->log, &p->model, &p->photos, asked ? atoi(asked) : 0, p->max_ram,
+    p->max_ram = p->params.max_ram_bytes ? (double)p->params.max_ram_bytes : (double)INFINITY;
+    result = orl_fuse_clusters(p->log, &p->model, &p->photos, p->params.fuse_cluster, p->max_ram,
                                &p->clusters);
     if (result != ORL_OK)
         return result;
@@ -189,25 +191,9 @@ static void add_option(json_t *list, const char *option, int value)
 
 static json_t *densify_command(const struct planner *p, int pass, int part)
 {
-    json_t *list = json_array();
-    add_text(list, "oriel");
-    add_text(list, "densify");
-    add_text(list, p->dir);
-    add_text(list, "--photos");
-    json_array_append_new(list, json_sprintf("%s/stereo/fusion.cfg", p->dir));
-    add_option(list, "--sources", p->densify.sources);
-    add_option(list, "--iterations", p->densify.iterations);
-    add_option(list, "--geometric-passes", p->densify.geometric_passes);
-    add_text(list, "--seed");
-    add_text(list, argument(p, "--seed"));
-    if (p->masks) {
-        add_text(list, "--masks");
-        json_array_append_new(list, json_sprintf("%s/masks", p->dir));
-    }
-    if (p->max_vram) {
-        add_text(list, "--max-vram");
-        add_text(list, p->max_vram);
-    }
+    json_t *list = json_pack("[s, s, s, s, s+]", "oriel", "densify", p->dir, "--photos", p->dir,
+                             "/stereo/fusion.cfg");
+    orl_arguments_record(list, orl_densify_options(), &p->densify, NULL);
     add_option(list, "--pass", pass);
     add_text(list, "--part");
     json_array_append_new(list, json_sprintf("%d/%d", part + 1, p->parts));
@@ -266,15 +252,12 @@ static json_t *fuse_name(int cluster)
 
 static json_t *fuse_command(const struct planner *p, int cluster)
 {
-    json_t *list = json_pack("[s, s, s]", "oriel", "fuse", p->dir);
-    const char *max_ram = argument(p, "--max-ram");
+    json_t *list = json_pack("[s, s, s, s]", "oriel", "job", "fuse", p->dir);
     add_option(list, "--photographs", (int)p->clusters.size);
     if (p->masks)
         add_text(list, "--masks");
-    if (max_ram) {
-        add_text(list, "--max-ram");
-        add_text(list, max_ram);
-    }
+    if (p->params.max_ram_bytes)
+        add_option(list, "--max-ram", (int)(p->params.max_ram_bytes >> 20));
     add_text(list, "--part");
     json_array_append_new(list, json_sprintf("%d/%zu", cluster + 1, p->clusters.count));
     return list;
@@ -347,7 +330,7 @@ static void plan_finish(struct planner *p)
     bool fuses = p->clusters.count < 2;
     json_t *command = prepare_command(p, NULL);
     // The clusters that are planned, whatever memory the machine of this job has.
-    if (!argument(p, "--max-ram") && !argument(p, "--fuse-cluster"))
+    if (!p->params.max_ram_bytes && !p->params.fuse_cluster)
         add_option(command, "--fuse-cluster", p->clusters.size > 2 ? (int)p->clusters.size : 2);
     json_array_append_new(p->jobs, json_pack(
         "{s:s, s:s, s:o, s:o, s:[s+], s:[s+, s+], s:i, s:f, s:f, s:f, s:f}", "name", "finish",
@@ -385,7 +368,7 @@ static void plan_step(struct planner *p, enum orl_part_step step, int part, int 
                       json_t *needs, double cpu_s, double bytes)
 {
     const char *name = orl_part_step_names[step];
-    json_t *command = json_pack("[s, s, s, s, s]", "oriel", "calibrate", p->dir, "--step", name);
+    json_t *command = json_pack("[s, s, s, s, s, s]", "oriel", "job", "calibrate", p->dir, "--step", name);
     if (step != ORL_PART_PAIRS) {
         add_text(command, "--part");
         json_array_append_new(command, json_sprintf("%d/%d", part + 1, parts));
@@ -407,8 +390,7 @@ static void plan_calibration(struct planner *p, int photographs)
     double count = (double)p->given, pairs = count * PARTNERS;
     int parts = (int)((p->given + (size_t)photographs - 1) / (size_t)photographs);
     int chunks = (int)(pairs / PART_PAIRS) + 1;
-    const char *matching = argument(p, "--matching");
-    bool retrieves = orl_match_retrieves(matching, p->given);
+    bool retrieves = orl_match_way(p->params.matching, p->given) == ORL_MATCHING_RETRIEVAL;
     for (int k = 0; retrieves && k < parts; k++) {
         double share = count / parts;
         plan_step(p, ORL_PART_FEATURES, k, parts, json_array(), share * FEATURES_S,
@@ -478,9 +460,11 @@ enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photo
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: a name is not UTF-8", scene);
     json_decref(p.jobs);
     json_decref(p.arguments);
+    orl_arguments_finish(orl_prepare_options(), &p.params);
     orl_names_finish(&p.photos);
     orl_clusters_finish(&p.clusters);
     orl_colmap_finish(&p.model);
+    free(p.masks);
     free(p.pixels);
     free(p.reads);
     free(p.dir);

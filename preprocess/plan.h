@@ -17,9 +17,9 @@ enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photo
 struct orl_plan_report {
     const char *kind;    // the command: "chart" or "stress"
     const char *out;     // the report's folder
-    const char *const *words; // options of the command that decide which rows there are, and how
-    size_t word_count;        // they are measured: the parts and the whole have the same
-    bool quick;
+    const json_t *options; // arguments of the command that decide which rows there are, and how they
+                           // are measured: the parts and the whole have the same
+    bool quick;            // one of them is --quick
     int parts;
 };
 // Adds these jobs to a plan; they need its job `finish`, where the scene is not whole.

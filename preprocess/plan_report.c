@@ -33,10 +33,8 @@ static json_t *command_of(const struct orl_plan_report *report, const char *scen
                           int part)
 {
     json_t *list = json_pack("[s, s, s, s, s]", "oriel", report->kind, scene, "--out", out);
-    if (report->quick)
-        json_array_append_new(list, json_string("--quick"));
-    for (size_t i = 0; i < report->word_count; i++)
-        json_array_append_new(list, json_string(report->words[i]));
+    for (size_t i = 0; i < json_array_size(report->options); i++)
+        json_array_append(list, json_array_get(report->options, i));
     if (part >= 0) {
         json_array_append_new(list, json_string("--part"));
         json_array_append_new(list, json_sprintf("%d/%d", part + 1, report->parts));

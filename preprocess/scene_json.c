@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/json.h"
+#include "core/arguments.h"
 #include "scene/manifest.h"
 
 static json_t *stage_value(const json_t *done, const char *stage, const char *key)
@@ -14,12 +15,10 @@ static json_t *stage_value(const json_t *done, const char *stage, const char *ke
 
 static json_t *settings(const struct orl_prepare_params *p)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:b}", "quality",
-                     orl_quality_names[p->quality], "camera_sharing",
-                     orl_camera_sharing_names[p->sharing], "matching",
-                     orl_matching_names[p->matching], "densifier",
-                     orl_densifier_names[p->densifier], "max_size", orl_prepare_max_size(p),
-                     "seed", (int)p->seed, "masks", p->masks_dir != NULL);
+    json_t *settings = json_pack("{s:i, s:b}", "max_size", orl_prepare_max_size(p), "masks",
+                                 p->masks_dir != NULL);
+    orl_arguments_settings(settings, orl_prepare_options(), p, "scene");
+    return settings;
 }
 
 // The stages' records in order, without the parts that scene.json has elsewhere.

@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include "core/json.h"
+#include "core/arguments.h"
 #include "core/process.h"
 #include "preprocess/calibrate/calibrate.h"
 #include "preprocess/calibrate/undistort.h"
@@ -20,7 +21,6 @@
 #include "preprocess/cloud/radii.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/adapt_stage.h"
-#include "preprocess/arguments.h"
 #include "preprocess/densify_stage.h"
 #include "preprocess/expose/expose.h"
 #include "preprocess/occluders_stage.h"
@@ -62,13 +62,7 @@ static json_t *test_names(const struct orl_job *job)
 
 static json_t *calibrate_settings(const struct orl_job *job)
 {
-    const struct orl_prepare_params *p = job->params;
-    // The default is not in the key, so older keys stay valid.
-    return json_pack("{s:s, s:s, s:s, s:s*, s:i, s:o, s:o*}", "quality",
-                     orl_quality_names[p->quality], "sharing", orl_camera_sharing_names[p->sharing], "matching",
-                     orl_matching_names[p->matching], "mapper",
-                     p->mapper ? orl_mapper_names[p->mapper] : NULL, "seed", (int)p->seed, "masks",
-                     mask_hashes(job), "normalised",
+    return json_pack("{s:o, s:o*}", "masks", mask_hashes(job), "normalised",
                      orl_normalise_wanted(job) ? json_string(job->exposures_hash) : NULL);
 }
 
@@ -77,26 +71,14 @@ static json_t *undistort_settings(const struct orl_job *job)
     return json_pack("{s:i}", "max_size", orl_prepare_max_size(job->params));
 }
 
-static json_t *densify_settings(const struct orl_job *job)
+static json_t *test_settings(const struct orl_job *job)
 {
-    const struct orl_prepare_params *p = job->params;
-    // Without a limit there is no "max_vram" in the key, so older keys stay valid.
-    return json_pack("{s:s, s:s, s:i, s:o, s:o*}", "quality", orl_quality_names[p->quality],
-                     "densifier", orl_densifier_names[p->densifier], "seed", (int)p->seed, "test",
-                     test_names(job), "max_vram",
-                     p->max_vram_bytes ? json_integer((json_int_t)p->max_vram_bytes) : NULL);
+    return json_pack("{s:o}", "test", test_names(job));
 }
 
 static json_t *expose_settings(const struct orl_job *job)
 {
     return json_pack("{s:o, s:s}", "test", test_names(job), "exposures", job->exposures_hash);
-}
-
-static json_t *mesh_settings(const struct orl_job *job)
-{
-    const struct orl_prepare_params *p = job->params;
-    return json_pack("{s:s, s:s, s:o}", "mesh", orl_prepare_mesh_names[p->mesh], "quality",
-                     orl_quality_names[p->quality], "test", test_names(job));
 }
 
 static bool is_mesh_wanted(const struct orl_job *job)
@@ -120,12 +102,6 @@ static bool is_adapt_wanted(const struct orl_job *job)
     return job->params->adapt != ORL_ADAPT_NONE;
 }
 
-static json_t *no_settings(const struct orl_job *job)
-{
-    (void)job;
-    return json_object();
-}
-
 // --- the stages ---
 
 enum { RESULTS_MAX = 4 };
@@ -134,7 +110,8 @@ struct stage {
     const char *name;
     int version; // raised when the stage's result changes for the same settings
     enum orl_stage_id needs;
-    json_t *(*settings)(const struct orl_job *job);
+    json_t *(*settings)(const struct orl_job *job); // besides options that are settings (`of` of
+                                                    // their rows) themselves; NULL: no others
     enum orl_result (*run)(struct orl_job *job, json_t *record);
     const char *results[RESULTS_MAX + 1]; // files and folders that it writes
     const char *tells; // part of the record that scene.json needs
@@ -152,17 +129,17 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                              orl_stage_undistort,
                              {"sparse", "images", "images_linear", "masks"}, "largest", true, NULL},
     // Depth maps may be deleted once they are read, and COLMAP's differ from run to run.
-    [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, densify_settings,
+    [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, test_settings,
                            orl_stage_densify, {0}, "tool", false, NULL},
     [ORL_STAGE_FUSE] = {"fuse", ORL_FUSE_VERSION, ORL_STAGE_DENSIFY,
                         orl_stage_fuse_settings, orl_stage_fuse, {".oriel/fused.ply"}, "points", true, NULL},
     [ORL_STAGE_RADII] = {"radii", 4, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
                          {"points.ply", ORL_LOD_NAME}, "points", true, NULL},
-    [ORL_STAGE_GROUND] = {"ground", 2, ORL_STAGE_RADII, no_settings, orl_stage_ground, {0},
+    [ORL_STAGE_GROUND] = {"ground", 2, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
                           "ground", true, NULL},
-    [ORL_STAGE_BACKDROP] = {"backdrop", 1, ORL_STAGE_RADII, no_settings, orl_stage_backdrop, {0},
+    [ORL_STAGE_BACKDROP] = {"backdrop", 1, ORL_STAGE_RADII, NULL, orl_stage_backdrop, {0},
                             "backdrop", true, NULL},
-    [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, mesh_settings, orl_stage_mesh, {"mesh.ply"},
+    [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, test_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 4, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
                           "photographs", true, NULL},
@@ -206,12 +183,20 @@ static enum orl_result sum_record(const struct orl_job *job, json_t *record, cha
     return result;
 }
 
+json_t *orl_stage_settings(const struct orl_job *job, enum orl_stage_id id)
+{
+    json_t *settings = stages[id].settings ? stages[id].settings(job) : json_object();
+    orl_arguments_settings(settings, orl_prepare_options(), job->params, stages[id].name);
+    return settings;
+}
+
 static enum orl_result set_keys(struct orl_job *job)
 {
     for (int i = 0; i < ORL_STAGE_COUNT; i++) {
         json_t *inputs = json_pack("{s:s, s:i, s:s, s:o}", "stage", stages[i].name, "version",
                                    stages[i].version, "after", job->keys[stages[i].needs],
-                                   "settings", stages[i].settings(job));
+                                   "settings",
+                                   orl_stage_settings(job, (enum orl_stage_id)i));
         enum orl_result result = sum_json(job, inputs, 0, job->keys[i]);
         json_decref(inputs);
         if (result != ORL_OK)
@@ -531,6 +516,19 @@ enum orl_result orl_stages_run_points(struct orl_job *job)
     return result;
 }
 
+// Texts that follow "oriel prepare" so that it does the same again in any folder.
+static json_t *recorded_arguments(const struct orl_prepare_params *params)
+{
+    json_t *arguments = json_array();
+    for (size_t i = 0; i < params->input_count; i++) {
+        char *real = realpath(params->inputs[i], NULL);
+        json_array_append_new(arguments, json_string(real ? real : params->inputs[i]));
+        free(real);
+    }
+    orl_arguments_record(arguments, orl_prepare_options(), params, NULL);
+    return arguments;
+}
+
 enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
 {
     enum orl_result result = set_keys(job);
@@ -540,8 +538,7 @@ enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
                         json_pack("{s:s, s:f, s:o, s:O}", "key", job->keys[ORL_STAGE_COLLECT],
                                   "wall_s", wall_s, "photographs", photo_hashes(job), "skipped",
                                   job->skipped));
-    json_t *arguments = orl_prepare_arguments(job->log, job->params);
-    if (!arguments || json_object_set_new(job->stages, "arguments", arguments) != 0)
+    if (json_object_set_new(job->stages, "arguments", recorded_arguments(job->params)) != 0)
         return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the arguments");
     return orl_job_save_stages(job);
 }

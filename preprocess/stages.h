@@ -6,6 +6,9 @@
 
 // Loads the records of earlier runs from .oriel/stages.json; none when there is no such file.
 enum orl_result orl_stages_load(struct orl_job *job) ORL_CHECK_RESULT;
+// What a stage's result depends on besides the stages before it, as its key has it. The caller
+// releases it with json_decref.
+json_t *orl_stage_settings(const struct orl_job *job, enum orl_stage_id id);
 // Computes each stage's key from the collected photographs and the settings. Records the stage
 // collect, which took `wall_s`, as done.
 enum orl_result orl_stages_begin(struct orl_job *job, double wall_s) ORL_CHECK_RESULT;

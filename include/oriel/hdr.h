@@ -5,15 +5,11 @@
 #include "oriel/radiance.h"
 #include "oriel/render.h"
 
-enum orl_hdr_merge {
-    // One gather in radiance. The weight of each photograph is its geometric weight times how well
-    // exposed it is at that pixel.
-    ORL_HDR_FUSED,
-    // Airieau 2012, section 4: renders an ordinary picture from each series of photographs, then
-    // merges the pictures by how well exposed they are.
-    ORL_HDR_SERIES,
-    ORL_HDR_MERGE_COUNT
-};
+// FUSED: one gather in radiance; the weight of each photograph is its geometric weight times how
+// well exposed it is at that pixel. SERIES: Airieau 2012, section 4, renders an ordinary picture
+// from each series of photographs, then merges the pictures by how well exposed they are.
+#define ORL_HDR_MERGES(NAME) NAME(ORL_HDR_FUSED, "fused") NAME(ORL_HDR_SERIES, "series")
+enum orl_hdr_merge { ORL_HDR_MERGES(ORL_ENUMERATOR) ORL_HDR_MERGE_COUNT };
 // By enum orl_hdr_merge, ended by NULL.
 extern const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1];
 

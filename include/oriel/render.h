@@ -5,6 +5,7 @@
 #include "oriel/image.h"
 #include "oriel/gpu.h"
 #include "oriel/option_list.h"
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 #include "oriel/scene.h"
 
@@ -134,14 +135,12 @@ struct orl_sensor;
 
 // Texture format of photographs on the device. AUTO: FULL if they fit max_vram_bytes, else BC7, or
 // BC1 on software renderers.
-enum orl_textures {
-    ORL_TEXTURES_AUTO,
-    ORL_TEXTURES_FULL, // 4 bytes per pixel, lossless
-    ORL_TEXTURES_BC7,  // 1 byte per pixel
-    ORL_TEXTURES_YCC,  // luma, and chroma at half the size: 3/4 byte per pixel
-    ORL_TEXTURES_BC1,  // half a byte per pixel
-    ORL_TEXTURES_COUNT
-};
+// BC7: 1 byte a pixel. BC1: half a byte. YCC: luma, and chroma at half the size, 3/4 byte. FULL: 4
+// bytes, lossless.
+#define ORL_TEXTURES(NAME) \
+    NAME(ORL_TEXTURES_AUTO, "auto") NAME(ORL_TEXTURES_FULL, "full") NAME(ORL_TEXTURES_BC7, "bc7") \
+    NAME(ORL_TEXTURES_YCC, "ycc") NAME(ORL_TEXTURES_BC1, "bc1")
+enum orl_textures { ORL_TEXTURES(ORL_ENUMERATOR) ORL_TEXTURES_COUNT };
 // By enum orl_textures, ended by NULL.
 extern const char *const orl_textures_names[ORL_TEXTURES_COUNT + 1];
 // True if the device can sample photographs of this format.

@@ -454,7 +454,7 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
     static const char *const ways[] = {
         [ORL_MATCHING_EXHAUSTIVE] = "all pairs", [ORL_MATCHING_SEQUENTIAL] = "neighbours by name",
         [ORL_MATCHING_RETRIEVAL] = "pairs that look alike"};
-    struct calibration c = {.job = job, .way = orl_match_way(job)};
+    struct calibration c = {.job = job, .way = orl_match_way(job->params->matching, job->source_count)};
     enum orl_result result = orl_job_find_colmap(job);
     if (result == ORL_OK)
         result = orl_mapper_choose(job, &c.mapper);

@@ -17,18 +17,11 @@ enum {
 };
 static const double VERIFYING = 0.1; // of the time that matching a pair takes
 
-enum orl_matching orl_match_way(const struct orl_job *job)
+enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs)
 {
-    if (job->params->matching != ORL_MATCHING_AUTO)
-        return job->params->matching;
-    return job->source_count <= EXHAUSTIVE_MAX ? ORL_MATCHING_EXHAUSTIVE : ORL_MATCHING_RETRIEVAL;
-}
-
-bool orl_match_retrieves(const char *matching, size_t photographs)
-{
-    bool any = !matching || strcmp(matching, orl_matching_names[ORL_MATCHING_AUTO]) == 0;
-    return any ? photographs > EXHAUSTIVE_MAX
-               : strcmp(matching, orl_matching_names[ORL_MATCHING_RETRIEVAL]) == 0;
+    if (asked != ORL_MATCHING_AUTO)
+        return asked;
+    return photographs <= EXHAUSTIVE_MAX ? ORL_MATCHING_EXHAUSTIVE : ORL_MATCHING_RETRIEVAL;
 }
 
 static void matcher_settings(const struct orl_job *job, const char *database, bool guided,

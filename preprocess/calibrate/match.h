@@ -14,10 +14,8 @@
 // Opens the database `name`, a name below the scene; closed with orl_database_close.
 enum orl_result orl_match_open_database(const struct orl_job *job, const char *name,
                                         struct orl_database **db) ORL_CHECK_RESULT;
-// The way that these parameters and this many photographs ask for; never auto.
-enum orl_matching orl_match_way(const struct orl_job *job);
-// Does the option --matching (NULL: auto) mean retrieval for so many photographs?
-bool orl_match_retrieves(const char *matching, size_t photographs);
+// The way that this choice and this many photographs ask for; never auto.
+enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs);
 // What retrieval did. Zeroes for the other ways, whose pairs COLMAP chooses.
 struct orl_match_summary {
     size_t tried, chosen; // pairs

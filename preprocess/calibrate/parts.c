@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/lock.h"
+#include "core/arguments.h"
 #include "core/memory.h"
 #include "preprocess/job/colmap_run.h"
 
@@ -16,7 +17,7 @@
 #define STATE ORL_PARTS_STATE
 #define PAIRS WORK "/chosen.json"
 
-const char *const orl_part_step_names[] = {"features", "pairs", "matches", NULL};
+const char *const orl_part_step_names[] = {ORL_PART_STEPS(ORL_ENUM_NAME) NULL};
 
 // --- what the jobs need of the collected photographs ---
 
@@ -45,9 +46,9 @@ enum orl_result orl_parts_begin(struct orl_job *job, const struct orl_camera_gro
     json_t *photos = json_array();
     for (size_t i = 0; i < job->source_count; i++)
         json_array_append_new(photos, photo_state(&job->sources[i], groups->of[i]));
-    json_t *state = json_pack("{s:s, s:s, s:i, s:b, s:o}", "key", job->keys[ORL_STAGE_CALIBRATE],
-                              "quality", orl_quality_names[p->quality], "seed", (int)p->seed,
-                              "masks", p->masks_dir != NULL, "photographs", photos);
+    json_t *state = json_pack("{s:s, s:b, s:o}", "key", job->keys[ORL_STAGE_CALIBRATE], "masks",
+                              p->masks_dir != NULL, "photographs", photos);
+    orl_arguments_settings(state, orl_prepare_options(), p, "parts");
     char *path = orl_job_path(job, STATE);
     enum orl_result result = path && state ? orl_features_link_masks(job) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
@@ -55,15 +56,6 @@ enum orl_result orl_parts_begin(struct orl_job *job, const struct orl_camera_gro
     json_decref(state);
     free(path);
     return result;
-}
-
-static enum orl_quality quality_named(const char *name)
-{
-    int quality = ORL_QUALITY_STANDARD;
-    for (int i = 0; name && orl_quality_names[i]; i++)
-        if (strcmp(name, orl_quality_names[i]) == 0)
-            quality = i;
-    return (enum orl_quality)quality;
 }
 
 static enum orl_result read_photo(struct orl_job *job, const json_t *state,
@@ -104,8 +96,8 @@ static enum orl_result read_state(struct orl_job *job, struct orl_prepare_params
         result = orl_json_read(job->log, path, &state);
     const json_t *photos = json_object_get(state, "photographs");
     size_t count = json_array_size(photos);
-    params->quality = quality_named(orl_json_text(state, "quality"));
-    params->seed = (uint32_t)json_integer_value(json_object_get(state, "seed"));
+    if (result == ORL_OK)
+        result = orl_arguments_take(job->log, state, orl_prepare_options(), params, "parts");
     params->masks_dir = json_is_true(json_object_get(state, "masks")) ? "masks" : NULL;
     if (result == ORL_OK) {
         job->sources = orl_array(job->log, count + 1, sizeof *job->sources);

@@ -20,7 +20,10 @@ enum orl_result orl_parts_join(struct orl_job *job, struct orl_match_summary *su
 // Removes what the jobs have left.
 enum orl_result orl_parts_remove(const struct orl_job *job) ORL_CHECK_RESULT;
 
-enum orl_part_step { ORL_PART_FEATURES, ORL_PART_PAIRS, ORL_PART_MATCHES };
+#define ORL_PART_STEPS(NAME) \
+    NAME(ORL_PART_FEATURES, "features") NAME(ORL_PART_PAIRS, "pairs") \
+    NAME(ORL_PART_MATCHES, "matches")
+enum orl_part_step { ORL_PART_STEPS(ORL_ENUMERATOR) };
 extern const char *const orl_part_step_names[]; // NULL after the last
 
 // Runs a job of the calibration that has begun in `scene`: the features of one part of the

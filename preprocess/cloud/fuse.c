@@ -62,8 +62,7 @@ json_t *orl_stage_fuse_settings(const struct orl_job *job)
     // One fusion of all has no "cluster" in the key, so older keys stay valid. A size that memory
     // decides is not in it either: a fusion is not done again because other memory is free.
     int size = job->params->fuse_cluster ? job->params->fuse_cluster : CLUSTER_MAX;
-    return json_pack("{s:o*, s:s*}", "cluster", most > (size_t)size ? json_integer(size) : NULL,
-                     "hull", job->params->hull == ORL_HULL_NONE ? "none" : NULL);
+    return json_pack("{s:o*}", "cluster", most > (size_t)size ? json_integer(size) : NULL);
 }
 
 static enum orl_result write_cloud(struct orl_job *job, const char *path, struct orl_points *points)

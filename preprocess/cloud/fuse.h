@@ -8,7 +8,7 @@
 enum { ORL_FUSE_VERSION = 9 }; // raised when the points of the same maps change
 
 json_t *orl_stage_fuse_settings(const struct orl_job *job);
-// Writes .oriel/fused.ply. Clouds of clusters that oriel fuse has made are used.
+// Writes .oriel/fused.ply. Clouds of clusters that oriel job fuse has made are used.
 enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 
 // Clusters the photographs `train` of the model: at most `asked` a cluster (--fuse-cluster), or where

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "scene/nearest_points.h"
 
 enum {
@@ -142,12 +143,6 @@ static enum orl_result keep_parts(const struct orl_log *log, const struct orl_po
 
 // --- the cube ---
 
-static int compare_floats(const void *left, const void *right)
-{
-    float a = *(const float *)left, b = *(const float *)right;
-    return (a > b) - (a < b);
-}
-
 // The middle and the longest extent of the points inside all silhouettes.
 static enum orl_result find_extent(const struct orl_log *log, const struct orl_points *points,
                                    const bool *outside, double middle[3], double *extent)
@@ -163,7 +158,7 @@ static enum orl_result find_extent(const struct orl_log *log, const struct orl_p
                 sorted[count++] = points->position[i][k];
         if (!count)
             break;
-        qsort(sorted, count, sizeof *sorted, compare_floats);
+        qsort(sorted, count, sizeof *sorted, orl_order_floats);
         size_t cut = (size_t)(OUTERMOST * (double)count);
         double low = (double)sorted[cut], high = (double)sorted[count - 1 - cut];
         middle[k] = 0.5 * (low + high);

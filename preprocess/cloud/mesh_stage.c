@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "preprocess/job/colmap_run.h"
 #include "scene/mesh.h"
 #include "scene/point_lod.h"
@@ -26,12 +27,6 @@ static struct detail detail_of(const struct orl_prepare_params *params)
 
 // --- input ---
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // Drops points far outside the box of the middle 98 % of the points. The octree divides the bounding
 // box, so that a few outliers at the horizon would leave the subject a handful of cells.
 static enum orl_result crop(const struct orl_log *log, struct orl_points *points)
@@ -44,7 +39,7 @@ static enum orl_result crop(const struct orl_log *log, struct orl_points *points
     for (int k = 0; k < 3; k++) {
         for (size_t i = 0; i < points->count; i++)
             values[i] = points->position[i][k];
-        qsort(values, points->count, sizeof *values, compare_floats);
+        qsort(values, points->count, sizeof *values, orl_order_floats);
         float first = values[points->count / 100];
         float last = values[points->count - 1 - points->count / 100];
         low[k] = first - margin * (last - first);

@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "core/vec3.h"
 #include "io/picture.h"
 #include "scene/silhouette.h"
@@ -126,11 +127,6 @@ static enum orl_result read_dark(struct orl_job *job, const struct orl_silhouett
     return result;
 }
 
-static int compare_ints(const void *left, const void *right)
-{
-    return *(const int *)left - *(const int *)right;
-}
-
 // The threshold for all photographs is the lower quartile of those of each: shadows of the subject
 // should not be cut out of it, and a hull that is too large by what the backdrop reflects in one
 // photograph is carved by others. Negative: the backdrop is not dark.
@@ -149,7 +145,7 @@ static enum orl_result find_threshold(struct orl_job *job, const struct orl_silh
     }
     *threshold = -1;
     if (result == ORL_OK && dark) {
-        qsort(used, found->count, sizeof *used, compare_ints);
+        qsort(used, found->count, sizeof *used, orl_order_ints);
         if (used[found->count / 4] <= DARKEST)
             *threshold = used[found->count / 4];
     }

@@ -13,6 +13,8 @@
 #include "io/picture.h"
 #include "preprocess/densify/densify_internal.h"
 
+ORL_OPTION_ROWS(orl_densify_options, orl_densify_params, ORL_DENSIFY_OPTIONS)
+
 enum {
     LEVELS_MAX = 9, // pyramid levels of the reference; sources that show the scene finer have more
     COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this

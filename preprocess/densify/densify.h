@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "oriel/progress.h"
 #include "oriel/gpu.h"
+#include "oriel/option_row.h"
 #include "scene/colmap.h"
 
 // Raised when the same photographs and settings give different maps.
@@ -19,28 +20,31 @@ struct orl_densify_part {
     int index, count; // part `index` of `count` about equal parts of the photographs, from 0 on
 };
 
+// Cost grows with the number of source photographs. There are two photometric red-black sweeps more
+// at the coarsest level, and half as many at each finer one; each geometric pass uses the depths of
+// the previous one. The patch is about half as large at the finest level, where coarser levels have
+// found the rough shape. When one photograph needs more device memory than the limit, orl_densify
+// uses fewer sources, down to four, then halves photographs and maps until they fit; it logs a
+// warning.
+#define ORL_DENSIFY_OPTIONS(ROW) \
+    ROW(masks_dir, "masks", TEXT("DIR"), "DIR/NAME.png: no depth where it is 0") \
+    ROW(sources, "sources", INT(8, 1, 16, "N"), "source photographs each") \
+    ROW(iterations, "iterations", INT(4, 1, 16, "N"), "photometric sweeps") \
+    ROW(geometric_passes, "geometric-passes", INT(2, 0, 8, "N"), \
+        "sweeps with geometric consistency") \
+    ROW(window_radius, "window-radius", INT(5, 1, 15, "PX"), "patch radius") \
+    ROW(window_step, "window-step", INT(2, 1, 4, "PX"), "patch sampling") \
+    ROW(seed, "seed", SEED, "of the random hypotheses") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 struct orl_densify_params {
-    int sources;          // source photographs per reference, [1, 16]; cost grows with it
-    int iterations;       // photometric red-black sweeps, [1, 16]: two more at the coarsest level,
-                          // half as many at each finer one
-    int geometric_passes; // passes with geometric consistency, [0, 8]; each uses the depths of the
-                          // previous pass
-    int window_radius;    // NCC patch radius in pixels, [1, 15]; about half of it at the finest
-                          // level, where coarser levels have found the rough shape
-    int window_step;      // patch sampling step in pixels, [1, 4]
-    uint32_t seed;
+    ORL_DENSIFY_OPTIONS(ORL_OPTION_MEMBER)
     const struct orl_colmap_model *model; // of WORKSPACE/sparse, when already read; NULL: read by
                                           // orl_densify
-    const char *masks_dir; // MASKS/NAME.png, where 0 marks the background; NULL: none
-    size_t max_vram_bytes; // limit of device memory, 0: none. When one photograph needs more,
-                           // orl_densify uses fewer sources, down to four, then halves photographs
-                           // and maps until they fit; it logs a warning
     const struct orl_densify_part *part; // NULL: everything. A part needs orl_densify_begin, with
                                          // the same settings and photographs, to have run
 };
-#define ORL_DENSIFY_DEFAULTS                                                               \
-    .sources = 8, .iterations = 4, .geometric_passes = 2, .window_radius = 5, .window_step = 2, \
-    .seed = 1
+const struct orl_option *orl_densify_options(void);
+#define ORL_DENSIFY_DEFAULTS ORL_DENSIFY_OPTIONS(ORL_OPTION_PRESET) .model = NULL
 
 // Writes WORKSPACE/stereo/{depth_maps,normal_maps}/NAME.{photometric,geometric}.bin for every
 // photograph in `photos` (names; NULL: all of the model), and the last pass's

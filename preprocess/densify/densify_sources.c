@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "preprocess/densify/densify_internal.h"
 
 // Fewer shared points than this may be chance matches.
@@ -133,19 +134,13 @@ struct tally {
     size_t shared;
 };
 
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Range of inverse depth. Sparse points cluster on well textured surfaces, so the range extends
 // well beyond them, mostly towards greater depth, where inverse depth changes little.
 static bool depth_range(double *depths, size_t count, struct densify_plan *plan)
 {
     if (!count)
         return false;
-    qsort(depths, count, sizeof *depths, by_value);
+    qsort(depths, count, sizeof *depths, orl_order_doubles);
     double near = depths[count / 100], far = depths[count - 1 - count / 100];
     plan->w_max = 1.0 / (0.6 * near);
     plan->w_min = 1.0 / (50.0 * far);

@@ -7,6 +7,7 @@
 #include "core/cholesky.h"
 #include "core/color.h"
 #include "core/memory.h"
+#include "core/order.h"
 
 enum {
     ITERATIONS = 6,
@@ -120,18 +121,12 @@ static void add_point(const struct problem *p, size_t point, int channel, bool w
     }
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // Median of the first `count` values in p->scratch, which are not negative.
 static double median(struct problem *p, size_t count)
 {
     if (!count)
         return 0;
-    qsort(p->scratch, count, sizeof *p->scratch, compare_floats);
+    qsort(p->scratch, count, sizeof *p->scratch, orl_order_floats);
     return (double)p->scratch[count / 2];
 }
 

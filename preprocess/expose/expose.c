@@ -5,18 +5,13 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "preprocess/expose/align.h"
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/expose/metered.h"
 #include "preprocess/expose/response.h"
 #include "oriel/scene.h"
 #include "scene/point_lod.h"
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 // The series of the nearest known exposure. `sorted` ascends.
 static int nearest_series(const double *sorted, size_t count, double step_ev, double ev)
@@ -44,7 +39,7 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposu
     for (size_t i = 0; i < count; i++)
         if (exposures[i].known && !exposures[i].test)
             sorted[known++] = exposures[i].ev;
-    qsort(sorted, known, sizeof *sorted, compare_doubles);
+    qsort(sorted, known, sizeof *sorted, orl_order_doubles);
     double median = known ? sorted[(known - 1) / 2] : 0; // the lower one: a photograph has it
     *series_count = 1;
     for (size_t i = 1; i < known; i++)

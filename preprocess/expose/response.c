@@ -7,6 +7,7 @@
 #include "core/cholesky.h"
 #include "core/color.h"
 #include "core/memory.h"
+#include "core/order.h"
 
 enum {
     NODES = 256,       // 8-bit values; 0 is not used, since its logarithm is unbounded
@@ -211,12 +212,6 @@ static void set_residuals(struct problem *p)
     }
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // Robust standard deviation of the residuals, absolute or relative to their sigmas.
 static double spread(struct problem *p, bool relative)
 {
@@ -226,7 +221,7 @@ static double spread(struct problem *p, bool relative)
             p->scratch[count++] = fabsf(p->residual[i]) / (relative ? p->sigma[i] : 1);
     if (!count)
         return 0;
-    qsort(p->scratch, count, sizeof *p->scratch, compare_floats);
+    qsort(p->scratch, count, sizeof *p->scratch, orl_order_floats);
     return 1.4826 * (double)p->scratch[count / 2];
 }
 

@@ -276,16 +276,16 @@ static enum orl_result choose_test(struct orl_job *job)
         job->sources[i].test = true;
     for (size_t i = 0; params->test_every && i < job->source_count; i += (size_t)params->test_every)
         job->sources[i].test = true;
-    for (size_t n = 0; params->test_list && n < params->test_list->count; n++) {
+    for (size_t n = 0; n < params->test_list.count; n++) {
         bool found = false;
         for (size_t i = 0; i < job->source_count; i++)
-            if (same_photo(job->sources[i].name, params->test_list->items[n]) ||
-                same_photo(job->sources[i].given, params->test_list->items[n]))
+            if (same_photo(job->sources[i].name, params->test_list.items[n]) ||
+                same_photo(job->sources[i].given, params->test_list.items[n]))
                 found = job->sources[i].test = true;
         if (!found)
             return orl_fail(job->log, ORL_ERR_ARGUMENT,
                             "--test-list %s: no usable photograph of this name",
-                            params->test_list->items[n]);
+                            params->test_list.items[n]);
     }
     for (size_t i = 0; i < job->source_count; i++)
         held_out += job->sources[i].test;

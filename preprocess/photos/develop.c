@@ -10,6 +10,7 @@
 #include "core/color.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 
 enum { COPY_QUALITY = 98 };
 
@@ -83,12 +84,6 @@ end:
     return result;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Chooses one factor for all photographs, so that their brightness stays comparable: the median
 // picture's average becomes middle grey. A power of two is exact in half floats.
 static enum orl_result choose_scale(struct orl_job *job)
@@ -101,7 +96,7 @@ static enum orl_result choose_scale(struct orl_job *job)
             result = read_light(job, &job->sources[i], &lights[count++]);
     job->linear_scale = 1;
     if (result == ORL_OK && count) {
-        qsort(lights, count, sizeof *lights, compare_doubles);
+        qsort(lights, count, sizeof *lights, orl_order_doubles);
         job->linear_scale = exp2(round(log2(0.18) - lights[count / 2]));
     }
     free(lights);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 
 enum {
     BLOCK = 8,
@@ -146,12 +147,6 @@ bool orl_look_same_picture(const struct orl_look *a, const struct orl_look *b)
     return share_alike(a, b, 0.97f, MEAN_MAX) >= 0.95f;
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 enum orl_result orl_look_blurred_below(const struct orl_log *log, const float *sharpness,
                                        size_t count, float *limit)
 {
@@ -163,7 +158,7 @@ enum orl_result orl_look_blurred_below(const struct orl_log *log, const float *s
     for (size_t i = 0; i < count; i++)
         if (isfinite(sharpness[i]))
             sorted[told++] = sharpness[i];
-    qsort(sorted, told, sizeof *sorted, compare_floats);
+    qsort(sorted, told, sizeof *sorted, orl_order_floats);
     if (told >= BLURRED_COUNT)
         *limit = sorted[told / 2] + BLURRED_LOG2;
     free(sorted);

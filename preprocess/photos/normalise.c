@@ -6,18 +6,13 @@
 
 #include "core/color.h"
 #include "core/memory.h"
+#include "core/order.h"
 
 // Least range of exposures for which copies are made, and how much darker than the median a
 // photograph must be to be copied.
 static const double RANGE_MIN_EV = 1, DARKER_MIN_EV = 0.5;
 static const double BRIGHTEN_MAX_EV = 8; // beyond this, a copy holds only noise
 enum { JPEG_QUALITY = 98 };
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 // Finds the exposure that darker photographs are brought to; false when copies are not needed.
 static bool find_target(const struct orl_job *job, double *target)
@@ -28,7 +23,7 @@ static bool find_target(const struct orl_job *job, double *target)
         count += orl_source_exposure(job, &job->sources[i], &known[count]) !=
                  ORL_EXPOSURE_UNKNOWN;
     if (count)
-        qsort(known, count, sizeof *known, compare_doubles);
+        qsort(known, count, sizeof *known, orl_order_doubles);
     bool needed = count > 1 && known[count - 1] - known[0] >= RANGE_MIN_EV;
     *target = count ? known[count / 2] : 0;
     free(known);

@@ -3,20 +3,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "cli/command_output.h"
 #include "eval/bench.h"
 
 enum { SIZES_MAX = 8, POINTS_MAX = 16 };
 
-struct options {
-    struct orl_names methods, sizes, points, settings;
-    const char *json, *trace, *out;
-    struct arg_enum textures;
-    double seconds;
-    int frames, max_vram_mib;
-    bool quick;
-};
+#define BENCH_OPTIONS(ROW) \
+    ROW(methods, "method", LIST("NAME"), "methods, or all; default: the scene's, or the first") \
+    ROW(settings, "set", LIST("KEY=VALUE"), "change an option of the methods") \
+    ROW(sizes, "size", LIST("WxH"), "of the picture; default: 512x512 and 1024x1024") \
+    ROW(points, "points", LIST("N,N,.."), \
+        "numbers of points to try; beyond the scene's, points are split") \
+    ROW(seconds, "seconds", NUMBER(1, 0, 3600, "S"), "for each median, about") \
+    ROW(frames, "frames", INT(100, 3, 100000, "N"), "for each median, at most") \
+    ROW(quick, "quick", FLAG, "sizes only: no growth, no GL_POINTS") \
+    ROW(json, "json", TEXT("FILE"), "write the figures as JSON; - for stdout") \
+    ROW(trace, "trace", TEXT("FILE"), "write a few frames for chrome://tracing or ui.perfetto.dev") \
+    ROW(out, "out", TEXT("DIR"), "write plots (SVG) and pictures") \
+    TEXTURES_OPTION(ROW) \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
+COMMAND_OPTIONS(bench_options, BENCH_OPTIONS)
 
 // The options as parameters of the library.
 struct plan {
@@ -26,7 +33,7 @@ struct plan {
     size_t points[POINTS_MAX + 1];
 };
 
-static enum orl_result plan_sizes(const struct orl_log *log, const struct options *o,
+static enum orl_result plan_sizes(const struct orl_log *log, const struct bench_options *o,
                                   struct plan *plan)
 {
     static const char *const usual[] = {"512x512", "1024x1024"};
@@ -44,7 +51,7 @@ static enum orl_result plan_sizes(const struct orl_log *log, const struct option
     return ORL_OK;
 }
 
-static enum orl_result plan_points(const struct orl_log *log, const struct options *o,
+static enum orl_result plan_points(const struct orl_log *log, const struct bench_options *o,
                                    struct plan *plan)
 {
     if (o->points.count > POINTS_MAX)
@@ -152,7 +159,7 @@ static void print_tables(const struct orl_bench *bench)
 
 // --- the command ---
 
-static enum orl_result report(const struct orl_log *log, const struct options *o,
+static enum orl_result report(const struct orl_log *log, const struct bench_options *o,
                               const struct orl_bench *bench)
 {
     enum orl_result result = ORL_OK;
@@ -165,10 +172,10 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
     return result;
 }
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *dir)
+static enum orl_result run_bench(struct terminal *terminal, const void *options,
+                                 const struct common_options *common, const char *const *inputs)
 {
-    const struct options *o = options;
+    const struct bench_options *o = options;
     const struct orl_log *log = &terminal->log;
     struct plan plan = {0};
     struct orl_scene *scene = NULL;
@@ -178,7 +185,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = plan_points(log, o, &plan);
     if (result == ORL_OK)
-        result = orl_scene_open(log, dir, &scene);
+        result = orl_scene_open(log, inputs[0], &scene);
     if (result == ORL_OK)
         result = orl_choices_make(log, scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
                                   &plan.choices);
@@ -190,8 +197,8 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
         .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
         .point_counts = o->points.count ? plan.points : NULL, .seconds = o->seconds,
         .frames_max = (size_t)o->frames, .growth = !o->quick,
-        .max_vram_bytes = (size_t)o->max_vram_mib << 20,
-        .textures = (enum orl_textures)o->textures.value,
+        .max_vram_bytes = o->max_vram_bytes,
+        .textures = o->textures,
         .image_dir = o->out, .trace = o->trace,
         .progress = &terminal->progress};
     if (result == ORL_OK)
@@ -205,35 +212,11 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     return result;
 }
 
-int cmd_bench(int argc, char **argv)
-{
-    struct options o = {.textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .seconds = 1,
-                        .frames = 100};
-    const struct arg_option table[] = {
-        {"method", ARG_LIST, &o.methods, "NAME", "methods, or all; default: the scene's, or the first", 0, 0},
-        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the methods", 0, 0},
-        {"size", ARG_LIST, &o.sizes, "WxH", "of the picture; default: 512x512 and 1024x1024", 0, 0},
-        {"points", ARG_LIST, &o.points, "N,N,..",
-         "numbers of points to try; beyond the scene's, points are split", 0, 0},
-        {"seconds", ARG_NUMBER, &o.seconds, "S", "for each median, about; default 1", 0, 3600},
-        {"frames", ARG_INT, &o.frames, "N", "for each median, at most; default 100", 3, 100000},
-        {"quick", ARG_FLAG, &o.quick, NULL, "sizes only: no growth, no GL_POINTS", 0, 0},
-        {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
-        {"trace", ARG_STRING, &o.trace, "FILE",
-         "write a few frames for chrome://tracing or ui.perfetto.dev", 0, 0},
-        {"out", ARG_STRING, &o.out, "DIR", "write plots (SVG) and pictures", 0, 0},
-        {"textures", ARG_ENUM, &o.textures, "KIND", "photographs on the device", 0, 0},
-        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
-        {0},
-    };
-    const struct arg_command command = {
-        "bench", "SCENE [options]",
-        "Measures frames: time pass by pass, memory by owner, and how both grow with points,\n"
-        "photographs and their resolution. Medians; the device is named.", table, 1, 1};
-    int status = command_main(&command, argc, argv, run, &o);
-    orl_names_finish(&o.methods);
-    orl_names_finish(&o.sizes);
-    orl_names_finish(&o.points);
-    orl_names_finish(&o.settings);
-    return status;
-}
+const struct command command_bench = {
+    .name = "bench", .group = COMMAND_MEASURE,
+    .brief = "time and memory of frames, pass by pass",
+    .usage = "SCENE [options]",
+    .summary = "Measures frames: time pass by pass, memory by owner, and how both grow with points,\n"
+               "photographs and their resolution. Medians; the device is named.",
+    COMMAND_TABLE(bench_options), .inputs_min = 1, .inputs_max = 1, .run = run_bench,
+};

@@ -1,45 +1,34 @@
-// oriel calibrate: a part of a calibration, as a job beside others.
+// oriel job calibrate: a part of a calibration, as a job beside others.
 #include <stdlib.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "preprocess/calibrate/parts.h"
 
-struct options {
-    const char *part;
-    struct arg_enum step;
-};
+#define CALIBRATE_OPTIONS(ROW) \
+    ROW(step, "step", CHOICE(orl_part_step, ORL_PART_STEPS, ORL_PART_FEATURES, "NAME"), \
+        "features of photographs, choice of pairs, or matches") \
+    ROW(part, "part", PART, "the K-th of N parts of the photographs or pairs")
+COMMAND_OPTIONS(calibrate_options, CALIBRATE_OPTIONS)
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *scene)
+static enum orl_result run_calibrate(struct terminal *terminal, const void *options,
+                                     const struct common_options *common, const char *const *inputs)
 {
-    const struct options *o = options;
+    const struct calibrate_options *o = options;
     const struct orl_log *log = &terminal->log;
-    int part = 0, parts = 1;
     (void)common;
-    if (!o->part && o->step.value != ORL_PART_PAIRS)
+    if (!o->part.count && o->step != ORL_PART_PAIRS)
         return orl_fail(log, ORL_ERR_ARGUMENT, "calibrate: --part K/N is missing");
-    enum orl_result result = o->part ? args_part(log, o->part, &part, &parts) : ORL_OK;
-    if (result == ORL_OK && parts > 1 && o->step.value == ORL_PART_PAIRS)
-        result = orl_fail(log, ORL_ERR_ARGUMENT, "calibrate: pairs are chosen in one part");
-    return result == ORL_OK ? orl_part_run(log, scene, (enum orl_part_step)o->step.value, part,
-                                           parts, &terminal->progress)
-                            : result;
+    if (o->part.count > 1 && o->step == ORL_PART_PAIRS)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "calibrate: pairs are chosen in one part");
+    return orl_part_run(log, inputs[0], o->step, o->part.index, o->part.count ? o->part.count : 1,
+                        &terminal->progress);
 }
 
-int cmd_calibrate(int argc, char **argv)
-{
-    struct options o = {.step = {orl_part_step_names, ORL_PART_FEATURES}};
-    const struct arg_option table[] = {
-        {"step", ARG_ENUM, &o.step, "NAME", "features of photographs, choice of pairs, or matches",
-         0, 0},
-        {"part", ARG_STRING, &o.part, "K/N", "the K-th of N parts of the photographs or pairs", 0,
-         0},
-        {0},
-    };
-    const struct arg_command command = {
-        "calibrate", "SCENE --step NAME [--part K/N]",
-        "Does a part of the calibration that oriel prepare --until collect has begun (oriel plan).\n"
-        "oriel prepare --resume joins the parts and finds the cameras.",
-        table, 1, 1};
-    return command_main(&command, argc, argv, run, &o);
-}
+const struct command command_calibrate = {
+    .name = "calibrate", .group = COMMAND_JOB, .hidden = true,
+    .brief = "features or matches of a part of the photographs",
+    .usage = "SCENE --step NAME [--part K/N]",
+    .summary = "Does a part of the calibration that oriel prepare --until collect has begun (oriel plan).\n"
+               "oriel prepare --resume joins the parts and finds the cameras.",
+    COMMAND_TABLE(calibrate_options), .inputs_min = 1, .inputs_max = 1, .run = run_calibrate,
+};

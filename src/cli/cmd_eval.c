@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "cli/command_output.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -11,19 +11,33 @@
 #include "eval/stability.h"
 #include "oriel/hdr.h"
 
-struct options {
-    const char *method, *json, *images, *truth, *vary;
-    struct arg_enum merge, textures;
-    struct orl_names settings;
-    int max_vram_mib;
-    int walk, divide; // frames of a walk instead of held-out photographs; 0: no walk
-    int moment;       // of a sequence; -1: the scene's own photographs
-};
+#define EVAL_OPTIONS(ROW) \
+    ROW(method, "method", TEXT("NAME"), \
+        "a method, all, or paired: all, and those of papers again on the proxy of oriel; default: " \
+        "the scene's, or else the first of oriel methods") \
+    ROW(settings, "set", LIST("KEY=VALUE"), "change an option of the method") \
+    ROW(vary, "vary", TEXT("KEY=A,B,.."), "once for each value of an option") \
+    ROW(time_step, "frame", INT(-1, 0, 1 << 20, "N"), \
+        "time step of a sequence, from 0; default: the first") \
+    ROW(json, "json", TEXT("FILE"), "write the figures as JSON; - for stdout") \
+    ROW(images, "images", TEXT("DIR"), "write photographs, renderings, differences") \
+    ROW(merge, "merge", MAYBE(ORL_HDR_MERGES, "NAME"), "blend as radiance, as oriel hdr does") \
+    ROW(truth, "truth", TEXT("DIR"), \
+        "compare with true radiance too; DIR is what oriel synth wrote") \
+    ROW(walk, "walk", INT(0, 2, 100000, "N"), \
+        "instead: a walk of N frames past the photographs that are not held out; how much each " \
+        "frame, warped, differs from the next") \
+    ROW(divide, "divide", INT(1, 1, 64, "N"), \
+        "pictures at 1/N of their size, as small screens show them") \
+    ROW(textures, "textures", CHOICE(orl_textures, ORL_TEXTURES, ORL_TEXTURES_AUTO, "KIND"), \
+        "photographs on the device; not with --merge") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
+COMMAND_OPTIONS(eval_options, EVAL_OPTIONS)
 
 struct job {
     const struct orl_log *log;
     const struct orl_progress *progress;
-    const struct options *options;
+    const struct eval_options *options;
     bool verbose;
     struct orl_scene *scene;
     struct orl_gpu *gpu;
@@ -117,8 +131,8 @@ static enum orl_result start_hdr(struct job *job, const struct orl_render_params
 {
     struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
     params.render = *render;
-    params.max_vram_bytes = (size_t)job->options->max_vram_mib << 20;
-    params.merge = (enum orl_hdr_merge)job->options->merge.value;
+    params.max_vram_bytes = job->options->max_vram_bytes;
+    params.merge = (enum orl_hdr_merge)job->options->merge;
     return orl_hdr_create(job->gpu, job->scene, &params, &job->hdr);
 }
 
@@ -131,7 +145,7 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
                                      .progress = job->progress,
                                      .truth = job->options->truth ? &job->truth : NULL};
     struct orl_eval *eval = &job->evals[job->count];
-    if (job->options->merge.value >= 0) {
+    if (job->options->merge >= 0) {
         enum orl_result result = start_hdr(job, &choice->params);
         if (result != ORL_OK)
             return result;
@@ -156,7 +170,7 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
 
 static enum orl_result measure_walk(struct job *job, bool array)
 {
-    const struct options *o = job->options;
+    const struct eval_options *o = job->options;
     bool first = true;
     const struct orl_walk_params params = {
         .choices = job->choices.items, .choice_count = job->choices.count, .frames = o->walk,
@@ -179,7 +193,7 @@ static enum orl_result measure_walk(struct job *job, bool array)
 
 static enum orl_result measure_heldout(struct job *job, bool array)
 {
-    const struct options *o = job->options;
+    const struct eval_options *o = job->options;
     job->evals = orl_array(job->log, job->choices.count, sizeof *job->evals);
     enum orl_result result = job->evals ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; i < job->choices.count && result == ORL_OK; i++)
@@ -190,9 +204,9 @@ static enum orl_result measure_heldout(struct job *job, bool array)
     return result;
 }
 
-static enum orl_result check_together(const struct orl_log *log, const struct options *o)
+static enum orl_result check_together(const struct orl_log *log, const struct eval_options *o)
 {
-    if (o->walk && (o->merge.value >= 0 || o->truth))
+    if (o->walk && (o->merge >= 0 || o->truth))
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk compares frames with each other: "
                         "without --merge and --truth");
     if (o->walk && o->vary)
@@ -204,7 +218,7 @@ static enum orl_result check_together(const struct orl_log *log, const struct op
     if (o->vary && o->images)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary makes several pictures of one name: "
                         "without --images");
-    if (o->merge.value >= 0 && o->textures.value != ORL_TEXTURES_AUTO)
+    if (o->merge >= 0 && o->textures != ORL_TEXTURES_AUTO)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --merge keeps photographs as it needs them: "
                         "without --textures");
     return ORL_OK;
@@ -212,34 +226,34 @@ static enum orl_result check_together(const struct orl_log *log, const struct op
 
 static enum orl_result choose(struct job *job, const struct orl_scene *scene)
 {
-    const struct options *o = job->options;
+    const struct eval_options *o = job->options;
     struct orl_names methods = {0};
     enum orl_result result =
         o->method ? orl_names_add(job->log, &methods, o->method) : ORL_OK;
     orl_choices_finish(&job->choices);
     if (result == ORL_OK)
         result = orl_choices_make(job->log, scene,
-                                  o->merge.value < 0 ? ORL_SAMPLE_SRGB : ORL_SAMPLE_RADIANCE,
+                                  o->merge < 0 ? ORL_SAMPLE_SRGB : ORL_SAMPLE_RADIANCE,
                                   &methods, &o->settings, o->vary, &job->choices);
     orl_names_finish(&methods);
     return result;
 }
 
-static enum orl_result run(struct job *job, const char *scene_dir,
-                           const struct arg_common *common)
+static enum orl_result evaluate_scene(struct job *job, const char *scene_dir,
+                                      const struct common_options *common)
 {
-    const struct options *o = job->options;
+    const struct eval_options *o = job->options;
     const struct orl_renderer_params limits = {
-        .max_vram_bytes = (size_t)o->max_vram_mib << 20,
-        .textures = (enum orl_textures)o->textures.value,
+        .max_vram_bytes = o->max_vram_bytes,
+        .textures = o->textures,
         .progress = job->progress};
     enum orl_result result = check_together(job->log, o);
     if (result == ORL_OK && o->method) // reports wrong settings before the long work
         result = choose(job, NULL);
     if (result == ORL_OK)
         result = orl_scene_open(job->log, scene_dir, &job->scene);
-    if (result == ORL_OK && o->moment >= 0)
-        result = orl_scene_set_frame(job->log, job->scene, o->moment);
+    if (result == ORL_OK && o->time_step >= 0)
+        result = orl_scene_set_frame(job->log, job->scene, o->time_step);
     if (result == ORL_OK)
         result = choose(job, job->scene);
     if (result == ORL_OK && !o->walk)
@@ -251,7 +265,7 @@ static enum orl_result run(struct job *job, const char *scene_dir,
                                 &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                          .debug = common->verbose},
                                 &job->gpu);
-    if (result == ORL_OK && o->merge.value < 0)
+    if (result == ORL_OK && o->merge < 0)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     if (result != ORL_OK)
         return result;
@@ -273,51 +287,20 @@ static void finish(struct job *job)
     orl_scene_destroy(&job->scene);
 }
 
-int cmd_eval(int argc, char **argv)
+static enum orl_result run_eval(struct terminal *terminal, const void *options,
+                                const struct common_options *common, const char *const *inputs)
 {
-    struct options o = {.merge = {orl_hdr_merge_names, -1},
-                        .textures = {orl_textures_names, ORL_TEXTURES_AUTO}, .divide = 1,
-                        .moment = -1};
-    const struct arg_option table[] = {
-        {"method", ARG_STRING, &o.method, "NAME",
-         "a method, all, or paired: all, and those of papers again on the proxy of oriel; default: the "
-         "scene's, or else the first of oriel methods", 0, 0},
-        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
-        {"vary", ARG_STRING, &o.vary, "KEY=A,B,..", "once for each value of an option", 0, 0},
-        {"frame", ARG_INT, &o.moment, "N", "moment of a sequence, from 0; default: the first", 0,
-         1 << 20},
-        {"json", ARG_STRING, &o.json, "FILE", "write the figures as JSON; - for stdout", 0, 0},
-        {"images", ARG_STRING, &o.images, "DIR", "write photographs, renderings, differences",
-         0, 0},
-        {"merge", ARG_ENUM, &o.merge, "NAME", "blend as radiance, as oriel hdr does", 0, 0},
-        {"truth", ARG_STRING, &o.truth, "DIR",
-         "compare with true radiance too; DIR is what oriel synth wrote", 0, 0},
-        {"walk", ARG_INT, &o.walk, "N",
-         "instead: a walk of N frames past the photographs that are not held out; how much "
-         "each frame, warped, differs from the next", 2, 100000},
-        {"divide", ARG_INT, &o.divide, "N", "pictures at 1/N of their size, as small screens show them; default 1",
-         1, 64},
-        {"textures", ARG_ENUM, &o.textures, "KIND",
-         "photographs on the device; not with --merge", 0, 0},
-        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
-        {0},
-    };
-    const struct arg_command command = {
-        "eval", "SCENE [--method NAME|all] [--walk N] [--json FILE] [--images DIR]",
-        "Renders the photographs that were held out and says how close the renderings come.",
-        table, 1, 1};
-    struct arg_common common = {0};
-    struct terminal terminal;
-    const char *scene_dir;
-    size_t count;
-    int status;
-    if (command_begin(&command, argc, argv, &common, &terminal, &scene_dir, &count, &status)) {
-        struct job job = {.log = &terminal.log, .progress = &terminal.progress, .options = &o,
-                          .verbose = common.verbose};
-        status = command_status(run(&job, scene_dir, &common));
-        finish(&job);
-        terminal_finish(&terminal);
-    }
-    orl_names_finish(&o.settings);
-    return status;
+    struct job job = {.log = &terminal->log, .progress = &terminal->progress, .options = options,
+                      .verbose = common->verbose};
+    enum orl_result result = evaluate_scene(&job, inputs[0], common);
+    finish(&job);
+    return result;
 }
+
+const struct command command_eval = {
+    .name = "eval", .group = COMMAND_MEASURE,
+    .brief = "compare renderings with held-out photographs",
+    .usage = "SCENE [--method NAME|all] [--walk N] [--json FILE] [--images DIR]",
+    .summary = "Renders the photographs that were held out and says how close the renderings come.",
+    COMMAND_TABLE(eval_options), .inputs_min = 1, .inputs_max = 1, .run = run_eval,
+};

@@ -1,52 +1,43 @@
-// oriel fuse: the points of one cluster of photographs, as a job beside others.
+// oriel job fuse: the points of one cluster of photographs, as a job beside others.
 #include <stdlib.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "preprocess/cloud/fuse.h"
 
-struct options {
-    const char *part;
-    int photographs, max_ram_mib;
-    bool masks;
-};
+#define FUSE_OPTIONS(ROW) \
+    ROW(part, "part", PART, "the K-th of N clusters") \
+    ROW(photographs, "photographs", INT(0, 2, 100000, "N"), \
+        "of a cluster, at most; default: what fits in memory, and 400") \
+    ROW(masks, "masks", FLAG, "respect the scene's masks") \
+    ROW(max_ram_bytes, "max-ram", MIB(1 << 24), \
+        "memory to keep to; default: half of what is free")
+COMMAND_OPTIONS(fuse_options, FUSE_OPTIONS)
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *scene)
+static enum orl_result run_fuse(struct terminal *terminal, const void *options,
+                                const struct common_options *common, const char *const *inputs)
 {
-    const struct options *o = options;
+    const struct fuse_options *o = options;
     const struct orl_log *log = &terminal->log;
     struct orl_fuse_params params = {.size = o->photographs, .masks = o->masks,
-                                     .max_ram_bytes = (size_t)o->max_ram_mib << 20};
+                                     .max_ram_bytes = o->max_ram_bytes,
+                                     .cluster = o->part.index, .count = o->part.count};
     bool whole = false;
     (void)common;
-    if (!o->part)
+    if (!o->part.count)
         return orl_fail(log, ORL_ERR_ARGUMENT, "fuse: --part K/N is missing");
-    enum orl_result result = args_part(log, o->part, &params.cluster, &params.count);
-    if (result == ORL_OK)
-        result = command_is_whole(log, scene, &whole);
+    enum orl_result result = command_is_whole(log, inputs[0], &whole);
     if (result != ORL_OK || !whole)
-        return result == ORL_OK ? orl_fuse_cluster(log, scene, &params, &terminal->progress)
+        return result == ORL_OK ? orl_fuse_cluster(log, inputs[0], &params, &terminal->progress)
                                 : result;
-    orl_logf(log, ORL_LOG_INFO, "%s: a whole scene, so there is nothing left to do", scene);
+    orl_logf(log, ORL_LOG_INFO, "%s: a whole scene, so there is nothing left to do", inputs[0]);
     return ORL_OK;
 }
 
-int cmd_fuse(int argc, char **argv)
-{
-    struct options o = {0};
-    const struct arg_option table[] = {
-        {"part", ARG_STRING, &o.part, "K/N", "the K-th of N clusters", 0, 0},
-        {"photographs", ARG_INT, &o.photographs, "N",
-         "of a cluster, at most; default: what fits in memory, and 400", 2, 100000},
-        {"masks", ARG_FLAG, &o.masks, NULL, "respect the scene's masks", 0, 0},
-        {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
-         "memory to keep to; default: half of what is free", 1, 1 << 24},
-        {0},
-    };
-    const struct arg_command command = {
-        "fuse", "SCENE --part K/N [options]",
-        "Fuses the depth maps of one cluster of photographs (oriel plan). oriel prepare --resume\n"
-        "joins the clusters.",
-        table, 1, 1};
-    return command_main(&command, argc, argv, run, &o);
-}
+const struct command command_fuse = {
+    .name = "fuse", .group = COMMAND_JOB, .hidden = true,
+    .brief = "points of one cluster of a scene's photographs",
+    .usage = "SCENE --part K/N [options]",
+    .summary = "Fuses the depth maps of one cluster of photographs (oriel plan). oriel prepare --resume\n"
+               "joins the clusters.",
+    COMMAND_TABLE(fuse_options), .inputs_min = 1, .inputs_max = 1, .run = run_fuse,
+};

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "cli/command_output.h"
 #include "core/memory.h"
 #include "eval/choice.h"
@@ -14,17 +14,25 @@
 #include "scene/light.h"
 #include "scene/view_choice.h"
 
-struct options {
-    struct orl_view_choice views;
-    struct arg_size size;
-    struct output_options output;
-    const char *out, *method, *light;
-    struct arg_enum merge;
-    struct orl_names settings, exclude, position, up;
-    struct arg_size panorama;
-    int replace_series, samples, max_vram_mib;
-    bool half;
-};
+#define HDR_OPTIONS(ROW) \
+    VIEW_OPTIONS(ROW) \
+    ROW(replace_series, "replace-series", INT(-1, 0, 65535, "N"), \
+        "make a scene with the photographs of this series as radiance") \
+    ROW(panorama, "panorama", SIZE, "all directions, from --at PHOTO or --position") \
+    ROW(position, "position", LIST("X,Y,Z"), "of the panorama, in the scene's units") \
+    ROW(up, "up", LIST("X,Y,Z"), \
+        "of the panorama; default: the photographs' mean upward direction") \
+    ROW(out, "out", NEEDED("FILE|DIR"), ".exr or .png; for several views or a scene a folder") \
+    ROW(samples, "samples", INT(1, 1, 4, "N"), "N x N samples a pixel") \
+    ROW(merge, "merge", CHOICE(orl_hdr_merge, ORL_HDR_MERGES, ORL_HDR_FUSED, "NAME"), \
+        "one gather in radiance, or a picture of each series, merged") \
+    METHOD_OPTIONS(ROW) \
+    ROW(exclude, "exclude", LIST("A,B"), "photographs not to use") \
+    LIGHT_OPTION(ROW) \
+    OUTPUT_OPTIONS(ROW, "depth, normal, coverage, confidence; default: all in .exr") \
+    ROW(half, "half", FLAG, "of .exr: 16-bit colour, the default") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
+COMMAND_OPTIONS(hdr_options, HDR_OPTIONS)
 
 struct job {
     const struct orl_log *log;
@@ -67,13 +75,13 @@ static enum orl_result parse_vector(const struct orl_log *log, const char *optio
     return ORL_OK;
 }
 
-static enum orl_result draw_panorama(const struct options *options, struct job *job)
+static enum orl_result draw_panorama(const struct hdr_options *options, struct job *job)
 {
     struct orl_panorama p = {.width = options->panorama.width, .height = options->panorama.height};
     struct orl_frame frame;
     struct orl_view view;
-    enum orl_result result = orl_panorama_place(job->log, job->scene, options->views.at, &p);
-    if (result == ORL_OK && !options->views.at)
+    enum orl_result result = orl_panorama_place(job->log, job->scene, options->at, &p);
+    if (result == ORL_OK && !options->at)
         result = parse_vector(job->log, "position", &options->position, p.position);
     if (result == ORL_OK && options->up.count)
         result = parse_vector(job->log, "up", &options->up, p.up);
@@ -89,7 +97,7 @@ static enum orl_result draw_panorama(const struct options *options, struct job *
 
 // --- a series ---
 
-static enum orl_result replace_series(const struct options *o, struct job *job)
+static enum orl_result replace_series(const struct hdr_options *o, struct job *job)
 {
     const struct orl_replace_params params = {.series = o->replace_series, .out = o->out,
                                               .skip = job->skip, .tone = job->output.tone,
@@ -99,14 +107,12 @@ static enum orl_result replace_series(const struct options *o, struct job *job)
 
 // --- the command ---
 
-static enum orl_result check(const struct options *o, const struct orl_log *log)
+static enum orl_result check(const struct hdr_options *o, const struct orl_log *log)
 {
     bool panorama = o->panorama.width, replace = o->replace_series >= 0;
-    int views = !!o->views.at + !!o->views.camera + !!o->views.path + replace;
-    if (!o->out)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --out FILE|DIR is needed");
-    if (panorama && (!!o->views.at + !!o->position.count != 1 || o->views.camera ||
-                     o->views.path || replace))
+    int views = !!o->at + !!o->camera + !!o->path + replace;
+    if (panorama && (!!o->at + !!o->position.count != 1 || o->camera ||
+                     o->path || replace))
         return orl_fail(log, ORL_ERR_ARGUMENT,
                         "hdr: --panorama needs --at PHOTO or --position X,Y,Z, and no other view");
     if (!panorama && views != 1)
@@ -116,12 +122,12 @@ static enum orl_result check(const struct options *o, const struct orl_log *log)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --position and --up are of --panorama");
     if (panorama && o->size.width)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --panorama has its own size");
-    if (replace && (o->size.width || o->output.layers.count || o->light))
+    if (replace && (o->size.width || o->layers.count || o->light))
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --replace-series makes photographs: without "
                         "--size, --layers and --light");
-    if (o->half && o->output.float_color)
+    if (o->half && o->float_color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --half and --float exclude each other");
-    bool many = o->views.path || replace, file = orl_frame_can_write(o->out);
+    bool many = o->path || replace, file = orl_frame_can_write(o->out);
     if (many && file)
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: several views need a folder", o->out);
     if (!many && !file)
@@ -130,30 +136,29 @@ static enum orl_result check(const struct options *o, const struct orl_log *log)
 }
 
 // By default all layers; a picture format for viewing has colour only.
-static void default_layers(const struct options *o, struct orl_frame_layers *layers)
+static void default_layers(const struct hdr_options *o, struct orl_frame_layers *layers)
 {
-    if (!o->output.layers.count && !has_extension(o->out, ".png"))
+    if (!o->layers.count && !has_extension(o->out, ".png"))
         *layers = (struct orl_frame_layers){true, true, true, true};
 }
 
-static enum orl_result run(const struct options *o, const struct arg_common *common,
-                           const char *scene_dir, struct job *job)
+static enum orl_result hdr_scene(const struct hdr_options *o, const struct common_options *common,
+                                 const char *scene_dir, struct job *job)
 {
     const struct orl_log *log = job->log;
     enum orl_result result = check(o, log);
     struct orl_choice choice = {0};
-    struct orl_view_choice views = o->views;
-    views.width = o->size.width;
-    views.height = o->size.height;
+    const struct orl_view_choice views = {o->at, o->camera, o->path, o->frames, o->size.width,
+                                          o->size.height};
     if (result == ORL_OK && o->method) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
     if (result == ORL_OK)
-        result = output_choose(log, &o->output, true, &job->output);
+        result = output_choose(log, OUTPUT_OPTIONS_COPY, true, &job->output);
     if (result == ORL_OK)
         default_layers(o, &job->output.layers);
-    job->params.merge = (enum orl_hdr_merge)o->merge.value;
+    job->params.merge = o->merge;
     job->params.samples = o->samples;
-    job->params.max_vram_bytes = (size_t)o->max_vram_mib << 20;
+    job->params.max_vram_bytes = o->max_vram_bytes;
     if (result == ORL_OK)
         result = orl_scene_open(log, scene_dir, &job->scene);
     if (result == ORL_OK)
@@ -183,77 +188,29 @@ static enum orl_result run(const struct options *o, const struct arg_common *com
     const struct orl_sequence all = {.views = job->path.views, .count = job->path.count,
                                      .draw = draw, .priv = job, .output = &job->output,
                                      .step = "hdr", .progress = job->progress};
-    return o->views.path ? orl_sequence_write_dir(log, &all, o->out, "exr")
+    return o->path ? orl_sequence_write_dir(log, &all, o->out, "exr")
                          : orl_sequence_write_view(log, &all, &job->path.views[0], o->out);
 }
 
-static void finish(struct options *o, struct job *job)
+static enum orl_result run_hdr(struct terminal *terminal, const void *options,
+                               const struct common_options *common, const char *const *inputs)
 {
-    orl_hdr_destroy(&job->hdr);
-    orl_gpu_destroy(&job->gpu);
-    orl_scene_destroy(&job->scene);
-    orl_path_finish(&job->path);
-    free(job->skip);
-    orl_names_finish(&o->settings);
-    orl_names_finish(&o->exclude);
-    orl_names_finish(&o->position);
-    orl_names_finish(&o->up);
-    orl_names_finish(&o->output.layers);
+    struct job job = {.log = &terminal->log, .progress = &terminal->progress,
+                      .params = {ORL_HDR_DEFAULTS}, .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
+    enum orl_result result = hdr_scene(options, common, inputs[0], &job);
+    orl_hdr_destroy(&job.hdr);
+    orl_gpu_destroy(&job.gpu);
+    orl_scene_destroy(&job.scene);
+    orl_path_finish(&job.path);
+    free(job.skip);
+    return result;
 }
 
-int cmd_hdr(int argc, char **argv)
-{
-    struct options o = {.views = {.frames = 120},
-                        .merge = {orl_hdr_merge_names, ORL_HDR_FUSED},
-                        .replace_series = -1, .samples = 1};
-    output_options_init(&o.output);
-    const struct arg_option table[] = {
-        {"at", ARG_STRING, &o.views.at, "PHOTO", "from the viewpoint of this photograph", 0, 0},
-        {"camera", ARG_STRING, &o.views.camera, "FILE", "from the camera in FILE", 0, 0},
-        {"path", ARG_STRING, &o.views.path, "FILE",
-         "along the cameras in FILE; \"photos\": past all photographs; \"circle\": around what they "
-         "look at", 0, 0},
-        {"replace-series", ARG_INT, &o.replace_series, "N",
-         "make a scene with the photographs of this series as radiance", 0, 65535},
-        {"panorama", ARG_SIZE, &o.panorama, "WxH",
-         "all directions, from --at PHOTO or --position", 0, 0},
-        {"position", ARG_LIST, &o.position, "X,Y,Z", "of the panorama, in the scene's units", 0, 0},
-        {"up", ARG_LIST, &o.up, "X,Y,Z",
-         "of the panorama; default: the photographs' mean upward direction", 0, 0},
-        {"out", ARG_STRING, &o.out, "FILE|DIR",
-         ".exr or .png; for several views or a scene a folder", 0, 0},
-        {"size", ARG_SIZE, &o.size, "WxH", "picture size; default: the camera's", 0, 0},
-        {"samples", ARG_INT, &o.samples, "N", "N x N samples a pixel, from 1 to 4; default 1", 1,
-         4},
-        {"merge", ARG_ENUM, &o.merge, "NAME",
-         "one gather in radiance, or a picture of each series, merged", 0, 0},
-        {"method", ARG_STRING, &o.method, "NAME",
-         "of rendering; default: the scene's, or else the first of oriel methods", 0, 0},
-        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
-        {"exclude", ARG_LIST, &o.exclude, "A,B", "photographs not to use", 0, 0},
-        LIGHT_OPTION_ROW(&o.light),
-        OUTPUT_OPTION_ROWS(&o.output, "depth, normal, coverage, confidence; default: all in .exr"),
-        {"half", ARG_FLAG, &o.half, NULL, "of .exr: 16-bit colour, the default", 0, 0},
-        {"frames", ARG_INT, &o.views.frames, "N", "of --path photos and circle; default 120", 2, 100000},
-        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
-        {0},
-    };
-    const struct arg_command command = {
-        "hdr", "SCENE (--at PHOTO | --camera FILE | --path FILE | --replace-series N |\n"
-        "                  --panorama WxH) --out FILE|DIR [options]",
-        "Radiance views: photographs of several exposures, merged.", table, 1, 1};
-    struct arg_common common = {0};
-    struct terminal terminal;
-    const char *scene_dir;
-    size_t count;
-    int status;
-    struct job job = {.params = {ORL_HDR_DEFAULTS}, .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
-    if (command_begin(&command, argc, argv, &common, &terminal, &scene_dir, &count, &status)) {
-        job.log = &terminal.log;
-        job.progress = &terminal.progress;
-        status = command_status(run(&o, &common, scene_dir, &job));
-        terminal_finish(&terminal);
-    }
-    finish(&o, &job);
-    return status;
-}
+const struct command command_hdr = {
+    .name = "hdr", .group = COMMAND_LOOK,
+    .brief = "radiance views from photographs of several exposures",
+    .usage = "SCENE (--at PHOTO | --camera FILE | --path FILE | --replace-series N |\n"
+             "                  --panorama WxH) --out FILE|DIR [options]",
+    .summary = "Radiance views: photographs of several exposures, merged.",
+    COMMAND_TABLE(hdr_options), .inputs_min = 1, .inputs_max = 1, .run = run_hdr,
+};

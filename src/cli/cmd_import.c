@@ -4,18 +4,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "cli/summary.h"
 #include "core/memory.h"
 #include "preprocess/import.h"
 #include "scene/known_cameras.h"
 
-struct options {
-    const char *silhouettes, *points, *mesh, *frames, *quality, *room, *test_block;
-    int max_vram_mib;
-    struct orl_names test_list;
-    struct orl_import_params params;
-};
+#define IMPORT_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("SCENE"), "the scene folder to make") \
+    ROW(images_dir, "images", TEXT("DIR"), \
+        "pictures, numbered folders or clips, named as the cameras") \
+    ROW(masks_dir, "masks", TEXT("DIR"), "silhouettes, named as the cameras") \
+    ROW(silhouettes, "silhouettes", TEXT("dark[=T]"), \
+        "the subject is what is brighter than T (0 to 254; found unless told)") \
+    ROW(background, "background", TEXT("DIR"), \
+        "pictures or clips without the subject: what differs is the subject") \
+    ROW(frames, "frames", TEXT("A:B[:STEP]"), "time steps A to B - 1 of a sequence") \
+    ORL_HELD_OUT_OPTIONS(ROW) \
+    ROW(max_size, "max-size", INT(0, 64, 16384, "PX"), \
+        "larger side of photographs in the scene (any)") \
+    ROW(points, "points", TEXT("none|densify|FILE"), \
+        "a cloud as PLY, or made as prepare does (what the file of cameras names)") \
+    ROW(quality, "quality", CHOICE(orl_quality, ORL_QUALITIES, ORL_QUALITY_STANDARD, "NAME"), \
+        "of densify") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory that densify keeps to") \
+    ROW(mesh, "mesh", TEXT("FILE|hull"), \
+        "a mesh as PLY or OBJ, or hull[=SIDE[,TRIANGLES]] of the silhouettes") \
+    ROW(room, "room", TEXT("X,Y,Z,X,Y,Z"), \
+        "the room that the subject is in: its lowest and highest corner, world") \
+    ROW(pixel_centre, "pixel-centre", NUMBER(-1, 0, 0.5, "X"), \
+        "coordinate of the first pixel's centre, 0 or 0.5 (as is the format's custom)")
+COMMAND_OPTIONS(import_options, IMPORT_OPTIONS)
 
 // Parses a range of frames "A:B" or "A:B:STEP"; either end may be missing.
 static enum orl_result parse_frames(const struct orl_log *log, const char *text,
@@ -61,8 +80,7 @@ static enum orl_result parse_silhouettes(const struct orl_log *log, const char *
     return ORL_OK;
 }
 
-static enum orl_result parse_points(const struct orl_log *log, const struct options *o,
-                                    struct orl_import_params *params)
+static void choose_points(const struct import_options *o, struct orl_import_params *params)
 {
     bool densify = o->points && strcmp(o->points, "densify") == 0;
     bool none = o->points && strcmp(o->points, "none") == 0;
@@ -71,14 +89,6 @@ static enum orl_result parse_points(const struct orl_log *log, const struct opti
                      : none     ? ORL_IMPORT_NO_POINTS
                                 : ORL_IMPORT_CLOUD;
     params->points_file = params->points == ORL_IMPORT_CLOUD ? o->points : NULL;
-    for (int i = 0; o->quality && orl_quality_names[i]; i++)
-        if (strcmp(o->quality, orl_quality_names[i]) == 0) {
-            params->densify.quality = (enum orl_quality)i;
-            return ORL_OK;
-        }
-    return o->quality ? orl_fail(log, ORL_ERR_ARGUMENT, "--quality %s: must be draft, standard or "
-                                 "high", o->quality)
-                      : ORL_OK;
 }
 
 // Parses the name of a file, or hull[=SIDE[,TRIANGLES]].
@@ -118,25 +128,30 @@ static enum orl_result parse_room(const struct orl_log *log, const char *text,
     return ORL_OK;
 }
 
-static enum orl_result run(const struct terminal *terminal, const void *given,
-                           const struct arg_common *common, const char *cameras)
+static enum orl_result run_import(struct terminal *terminal, const void *options,
+                                  const struct common_options *common, const char *const *inputs)
 {
-    const struct options *o = given;
+    const struct import_options *o = options;
     const struct orl_log *log = &terminal->log;
-    struct orl_import_params params = o->params;
-    enum orl_result result = ORL_OK;
-    params.cameras = cameras;
+    struct orl_import_params params = {ORL_IMPORT_DEFAULTS};
+    params.cameras = inputs[0];
+    params.out = o->out;
+    params.images_dir = o->images_dir;
+    params.masks_dir = o->masks_dir;
+    params.background = o->background;
+    params.pixel_centre = o->pixel_centre;
+    params.max_size = o->max_size;
+    params.test_every = o->test_every;
     params.test_list = &o->test_list;
+    params.test_block = o->test_block;
+    params.densify.quality = o->quality;
     params.densify.shader_dir = common->shader_dir;
-    params.densify.max_vram_bytes = (size_t)o->max_vram_mib << 20;
-    if (!params.out)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "import: --out SCENE is missing");
-    result = args_held_out(log, params.test_every, &o->test_list, o->test_block,
-                           &params.test_block);
+    params.densify.max_vram_bytes = o->max_vram_bytes;
+    choose_points(o, &params);
+    enum orl_result result =
+        command_held_out(log, o->test_every, &o->test_list, o->test_block);
     if (result == ORL_OK && o->frames)
         result = parse_frames(log, o->frames, &params.frames);
-    if (result == ORL_OK)
-        result = parse_points(log, o, &params);
     if (result == ORL_OK)
         result = parse_silhouettes(log, o->silhouettes, &params);
     if (result == ORL_OK)
@@ -148,50 +163,18 @@ static enum orl_result run(const struct terminal *terminal, const void *given,
     return result == ORL_OK ? summary_print(log, params.out) : result;
 }
 
-int cmd_import(int argc, char **argv)
+static void print_formats(FILE *out)
 {
-    struct options o = {.params = {ORL_IMPORT_DEFAULTS}};
-    struct orl_import_params *p = &o.params;
-    const struct arg_option options[] = {
-        {"out", ARG_STRING, &p->out, "SCENE", "the scene folder to make", 0, 0},
-        {"images", ARG_STRING, &p->images_dir, "DIR",
-         "pictures, numbered folders or clips, named as the cameras", 0, 0},
-        {"masks", ARG_STRING, &p->masks_dir, "DIR", "silhouettes, named as the cameras", 0, 0},
-        {"silhouettes", ARG_STRING, &o.silhouettes, "dark[=T]",
-         "the subject is what is brighter than T (0 to 254; found unless told)", 0, 0},
-        {"background", ARG_STRING, &p->background, "DIR",
-         "pictures or clips without the subject: what differs is the subject", 0, 0},
-        {"frames", ARG_STRING, &o.frames, "A:B[:STEP]", "moments A to B - 1 of a sequence", 0, 0},
-        {"test-every", ARG_INT, &p->test_every, "N", "hold out every N-th photograph by name", 2,
-         100000},
-        {"test-list", ARG_LIST, &o.test_list, "A,B,..", "hold out these photographs", 0, 0},
-        {"test-block", ARG_STRING, &o.test_block, "A:B",
-         "hold out photographs A to B - 1 in the order of names, from 0: the protocol beyond", 0, 0},
-        {"max-size", ARG_INT, &p->max_size, "PX",
-         "larger side of photographs in the scene (any)", 64, 16384},
-        {"points", ARG_STRING, &o.points, "none|densify|FILE",
-         "a cloud as PLY, or made as prepare does (what the file of cameras names)", 0, 0},
-        {"quality", ARG_STRING, &o.quality, "NAME", "of densify: draft, standard or high", 0, 0},
-        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory that densify keeps to", 1,
-         1 << 20},
-        {"mesh", ARG_STRING, &o.mesh, "FILE|hull",
-         "a mesh as PLY or OBJ, or hull[=SIDE[,TRIANGLES]] of the silhouettes", 0, 0},
-        {"room", ARG_STRING, &o.room, "X,Y,Z,X,Y,Z",
-         "the room that the subject is in: its lowest and highest corner, world", 0, 0},
-        {"pixel-centre", ARG_NUMBER, &p->pixel_centre, "X",
-         "coordinate of the first pixel's centre, 0 or 0.5 (as is the format's custom)", 0, 0.5},
-        {0},
-    };
     char *formats = orl_known_formats_text(NULL);
-    char *summary = formats ? orl_format(NULL, "Makes a scene from known cameras. CAMERAS is one of these "
-                                         "files, or a folder that has one:\n%s", formats) : NULL;
-    const struct arg_command command = {
-        .name = "import", .usage = "CAMERAS --out SCENE [options]",
-        .summary = summary ? summary : "Makes a scene from known cameras.",
-        .options = options, .positionals_min = 1, .positionals_max = 1};
-    int status = command_main(&command, argc, argv, run, &o);
-    orl_names_finish(&o.test_list);
+    fprintf(out, "%s", formats ? formats : "");
     free(formats);
-    free(summary);
-    return status;
 }
+
+const struct command command_import = {
+    .name = "import", .group = COMMAND_MAKE,
+    .brief = "make a scene from known cameras, silhouettes, sequences",
+    .usage = "CAMERAS --out SCENE [options]",
+    .summary = "Makes a scene from known cameras. CAMERAS is one of these files, or a folder that has one:",
+    .print_more = print_formats,
+    COMMAND_TABLE(import_options), .inputs_min = 1, .inputs_max = 1, .run = run_import,
+};

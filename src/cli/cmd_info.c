@@ -2,8 +2,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "cli/summary.h"
+#include "core/file.h"
 #include "core/json.h"
 #include "core/text.h"
 #include "oriel/render.h"
@@ -104,9 +105,10 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
     return result;
 }
 
-struct options {
-    bool json, check;
-};
+#define INFO_OPTIONS(ROW) \
+    ROW(json, "json", FLAG, "as JSON") \
+    ROW(check, "check", FLAG, "compare all files with their checksums")
+COMMAND_OPTIONS(info_options, INFO_OPTIONS)
 
 // Compares every file with the checksum from when it was made.
 static enum orl_result check(const struct orl_log *log, const char *dir)
@@ -123,32 +125,25 @@ static enum orl_result check(const struct orl_log *log, const char *dir)
     return ORL_OK;
 }
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *dir)
+static enum orl_result run_info(struct terminal *terminal, const void *options,
+                                const struct common_options *common, const char *const *inputs)
 {
     (void)common;
-    const struct options *o = options;
+    const struct info_options *o = options;
     struct orl_scene *scene = NULL;
     if (o->check)
-        return check(&terminal->log, dir);
-    enum orl_result result = orl_scene_open(&terminal->log, dir, &scene);
+        return check(&terminal->log, inputs[0]);
+    enum orl_result result = orl_scene_open(&terminal->log, inputs[0], &scene);
     if (result == ORL_OK)
         result = o->json ? print_json(&terminal->log, scene) : print_text(&terminal->log, scene);
     orl_scene_destroy(&scene);
     return result;
 }
 
-int cmd_info(int argc, char **argv)
-{
-    struct options o = {0};
-    const struct arg_option options[] = {
-        {"json", ARG_FLAG, &o.json, NULL, "as JSON", 0, 0},
-        {"check", ARG_FLAG, &o.check, NULL, "compare all files with their checksums", 0, 0},
-        {0},
-    };
-    const struct arg_command command = {
-        "info", "SCENE [--json | --check]",
-        "Says what is in a scene: photographs, cameras, points, and how it was made.", options, 1,
-        1};
-    return command_main(&command, argc, argv, run, &o);
-}
+const struct command command_info = {
+    .name = "info", .group = COMMAND_LOOK,
+    .brief = "say what is in a scene",
+    .usage = "SCENE [--json | --check]",
+    .summary = "Says what is in a scene: photographs, cameras, points, and how it was made.",
+    COMMAND_TABLE(info_options), .inputs_min = 1, .inputs_max = 1, .run = run_info,
+};

@@ -2,16 +2,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "oriel/scene.h"
 #include "scene/point_lod.h"
 
-struct options {
-    const char *points;
-    int max_ram_mib;
-};
+#define LOD_OPTIONS(ROW) \
+    ROW(points, "points", TEXT("FILE"), "a binary PLY in the scene's frame; default: SCENE/points.ply") \
+    ROW(max_ram_bytes, "max-ram", MIB(1 << 24), \
+        "memory to keep to, about; default: half of what is free")
+COMMAND_OPTIONS(lod_options, LOD_OPTIONS)
 
 static enum orl_result report(const struct orl_log *log, const char *path)
 {
@@ -24,21 +25,21 @@ static enum orl_result report(const struct orl_log *log, const char *path)
     return result;
 }
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *dir)
+static enum orl_result run_lod(struct terminal *terminal, const void *options,
+                               const struct common_options *common, const char *const *inputs)
 {
-    const struct options *o = options;
+    const struct lod_options *o = options;
     const struct orl_log *log = &terminal->log;
     struct orl_scene *scene = NULL;
     struct orl_view *views = NULL;
-    char *from = NULL, *to = orl_path_join(log, dir, ORL_LOD_NAME);
-    struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = (size_t)o->max_ram_mib << 20};
-    enum orl_result result = to ? orl_scene_open_photos(log, dir, &scene) : ORL_ERR_MEMORY;
+    char *from = NULL, *to = orl_path_join(log, inputs[0], ORL_LOD_NAME);
+    struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = o->max_ram_bytes};
+    enum orl_result result = to ? orl_scene_open_photos(log, inputs[0], &scene) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_scene_training_views(log, scene, &views, &params.view_count);
     params.views = views;
     if (result == ORL_OK) {
-        from = o->points ? orl_strdup(log, o->points) : orl_path_join(log, dir, "points.ply");
+        from = o->points ? orl_strdup(log, o->points) : orl_path_join(log, inputs[0], "points.ply");
         result = from ? ORL_OK : ORL_ERR_MEMORY;
     }
     if (result == ORL_OK)
@@ -52,21 +53,12 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     return result;
 }
 
-int cmd_lod(int argc, char **argv)
-{
-    struct options o = {0};
-    const struct arg_option table[] = {
-        {"points", ARG_STRING, &o.points, "FILE",
-         "a binary PLY in the scene's frame; default: SCENE/points.ply", 0, 0},
-        {"max-ram", ARG_INT, &o.max_ram_mib, "MIB",
-         "memory to keep to, about; default: half of what is free", 1, 1 << 24},
-        {0},
-    };
-    const struct arg_command command = {
-        "lod", "SCENE [--points FILE] [--max-ram MIB]",
-        "Writes SCENE/points.lod: all points in levels of detail, of which each frame reads what\n"
-        "it shows. So a cloud may be larger than memory and than the device. Where there is such a\n"
-        "file, points.ply is not read and may be removed.",
-        table, 1, 1};
-    return command_main(&command, argc, argv, run, &o);
-}
+const struct command command_lod = {
+    .name = "lod", .group = COMMAND_MAKE,
+    .brief = "levels of detail for points that are more than memory holds",
+    .usage = "SCENE [--points FILE] [--max-ram MIB]",
+    .summary = "Writes SCENE/points.lod: all points in levels of detail, of which each frame reads what\n"
+               "it shows. So a cloud may be larger than memory and than the device. Where there is such a\n"
+               "file, points.ply is not read and may be removed.",
+    COMMAND_TABLE(lod_options), .inputs_min = 1, .inputs_max = 1, .run = run_lod,
+};

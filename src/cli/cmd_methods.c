@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "oriel/render.h"
 
 static void print_list(void)
@@ -52,23 +52,21 @@ static enum orl_result print_method(const struct orl_log *log, const char *name)
     return ORL_OK;
 }
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *name)
+static enum orl_result run_methods(struct terminal *terminal, const void *options,
+                                   const struct common_options *common, const char *const *inputs)
 {
     (void)options;
     (void)common;
-    if (name)
-        return print_method(&terminal->log, name);
+    if (inputs[0])
+        return print_method(&terminal->log, inputs[0]);
     print_list();
     return ORL_OK;
 }
 
-int cmd_methods(int argc, char **argv)
-{
-    const struct arg_option table[] = {{0}};
-    const struct arg_command command = {
-        "methods", "[NAME]",
-        "Lists the methods of rendering; of one, the options that it reads, with their values.",
-        table, 0, 1};
-    return command_main(&command, argc, argv, run, NULL);
-}
+const struct command command_methods = {
+    .name = "methods", .group = COMMAND_LOOK,
+    .brief = "list the methods of rendering and their options",
+    .usage = "[NAME]",
+    .summary = "Lists the methods of rendering; of one, the options that it reads, with their values.",
+    .rows = no_option_rows, .inputs_min = 0, .inputs_max = 1, .run = run_methods,
+};

@@ -5,10 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
 #include "core/memory.h"
 #include "datasets/figures.h"
 #include "datasets/synth.h"
+
+#define SYNTH_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("DIR"), "photographs go here: a new or empty folder") \
+    ROW(truth, "truth", TEXT("DIR"), \
+        "cameras, depth, normals, radiance; default: DIR-truth") \
+    ROW(size, "size", SIZE, "size of a photograph; default: 768x512, figures 640x480") \
+    ORL_SYNTH_OPTIONS(ROW) \
+    ROW(exposures, "exposures", LIST("EV,.."), \
+        "exposures, taken in turn, each photograph one; default: 0") \
+    ORL_FIGURES_OPTIONS(ROW)
+COMMAND_OPTIONS(synth_options, SYNTH_OPTIONS)
 
 static enum orl_result parse_exposures(const struct orl_log *log, const struct orl_names *names,
                                        struct orl_synth_params *params)
@@ -36,9 +47,9 @@ static char *sibling(const struct orl_log *log, const char *path, const char *su
     return orl_format(log, "%.*s%s", (int)length, path, suffix);
 }
 
-static enum orl_result run(struct terminal *terminal, const struct arg_common *common,
-                           const struct orl_synth_params *params, const char *out,
-                           const char *truth_given)
+static enum orl_result make_monument(struct terminal *terminal, const struct common_options *common,
+                                     const struct orl_synth_params *params, const char *out,
+                                     const char *truth_given)
 {
     struct orl_gpu *gpu = NULL;
     char *photos = sibling(&terminal->log, out, "");
@@ -60,29 +71,32 @@ static enum orl_result run(struct terminal *terminal, const struct arg_common *c
     return result;
 }
 
-// Refuses options that belong to the other set.
-static enum orl_result check_options(const struct orl_log *log,
-                                     const struct orl_synth_params *monument,
-                                     const struct orl_figures_params *figures, bool is_figures)
+// True when an option of this set is not as it is by default.
+static bool has_given(const struct synth_options *o, const char *set)
 {
-    const struct orl_synth_params m = {ORL_SYNTH_DEFAULTS};
-    const struct orl_figures_params f = {ORL_FIGURES_DEFAULTS};
-    bool of_monument = monument->count != m.count || monument->seed != m.seed ||
-                       monument->exposure_count || monument->contrast_ev > 0 ||
-                       monument->noise > 0 || monument->response != m.response ||
-                       monument->vignette > 0 || monument->drift_ev > 0 ||
-                       monument->gloss > 0 || monument->bars_m > 0 || monument->plain > 0;
-    bool of_figures = figures->cameras != f.cameras || figures->frames != f.frames;
-    if (is_figures && of_monument)
+    json_t *given = json_array(), *usual = json_array();
+    orl_arguments_record(given, synth_options_rows(), o, set);
+    orl_arguments_record(usual, synth_options_rows(), &synth_options_presets, set);
+    bool differ = !json_equal(given, usual);
+    json_decref(given);
+    json_decref(usual);
+    return differ;
+}
+
+// Refuses options that belong to the other set.
+static enum orl_result check_options(const struct orl_log *log, const struct synth_options *o,
+                                     const char *name, bool is_figures)
+{
+    if (is_figures && (has_given(o, "monument") || o->exposures.count))
         return orl_fail(log, ORL_ERR_ARGUMENT, "synth figures: takes --cameras, --frames and "
                         "--size; the other options are the monument's");
-    if (!is_figures && of_figures)
+    if (!is_figures && has_given(o, "figures"))
         return orl_fail(log, ORL_ERR_ARGUMENT, "synth %s: --cameras and --frames are those of "
-                        "figures", monument->name);
+                        "figures", name);
     return ORL_OK;
 }
 
-static enum orl_result run_figures(struct terminal *terminal,
+static enum orl_result make_figures(struct terminal *terminal,
                                    const struct orl_figures_params *params, const char *out)
 {
     char *dir = sibling(&terminal->log, out, "");
@@ -90,85 +104,46 @@ static enum orl_result run_figures(struct terminal *terminal,
                                  : ORL_ERR_MEMORY;
     terminal_finish(terminal);
     if (result == ORL_OK)
-        printf("%d cameras, %d moments in %s\n", params->cameras, params->frames, dir);
+        printf("%d cameras, %d time steps in %s\n", params->cameras, params->frames, dir);
     free(dir);
     return result;
 }
 
-int cmd_synth(int argc, char **argv)
+static enum orl_result run_synth(struct terminal *terminal, const void *options,
+                                 const struct common_options *common, const char *const *inputs)
 {
-    struct orl_synth_params params = {ORL_SYNTH_DEFAULTS};
-    struct orl_figures_params figures = {ORL_FIGURES_DEFAULTS};
-    struct arg_size size = {0, 0};
-    struct orl_names exposures = {0};
-    const char *out = NULL, *truth = NULL;
-    struct arg_enum response = {orl_synth_response_names(), 0};
-    int seed = (int)params.seed;
-    const struct arg_option options[] = {
-        {"out", ARG_STRING, &out, "DIR", "photographs go here: a new or empty folder", 0, 0},
-        {"truth", ARG_STRING, &truth, "DIR", "cameras, depth, normals, radiance (DIR-truth)", 0, 0},
-        {"size", ARG_SIZE, &size, "WxH", "size of a photograph (768x512; figures 640x480)", 0, 0},
-        {"count", ARG_INT, &params.count, "N", "photographs (24)", 2, ORL_SYNTH_COUNT_MAX},
-        {"seed", ARG_INT, &seed, "N", "another set of cameras and stones (1)", 0, INT32_MAX},
-        {"exposures", ARG_LIST, &exposures, "EV,..",
-         "exposures, taken in turn, each photograph one (0)", 0, 0},
-        {"contrast", ARG_NUMBER, &params.contrast_ev, "EV",
-         "deepens the shade by this many stops, and strengthens the sun, from 0 to 16 (0)", 0, 16},
-        {"noise", ARG_NUMBER, &params.noise, "SIGMA",
-         "sensor noise at white, linear, from 0 to 0.5 (0)", 0, 0.5},
-        {"response", ARG_ENUM, &response, "NAME", "the camera's curve; film has more contrast",
-         0, 0},
-        {"vignette", ARG_NUMBER, &params.vignette, "SHARE",
-         "light lost in the corners, from 0 to 0.9 (0)", 0, 0.9},
-        {"cameras", ARG_INT, &figures.cameras, "N", "figures: cameras around (8)", 2,
-         ORL_FIGURES_CAMERAS_MAX},
-        {"frames", ARG_INT, &figures.frames, "N", "figures: moments, 25 to a second (1)", 1,
-         ORL_FIGURES_FRAMES_MAX},
-        {"drift", ARG_NUMBER, &params.drift_ev, "EV",
-         "exposure and colour wander by up to this, untold by EXIF, from 0 to 2 (0)", 0, 2},
-        {"gloss", ARG_NUMBER, &params.gloss, "SHARE",
-         "makes the monument shine, from 0 to 1, a mirror (0)", 0, 1},
-        {"bars", ARG_NUMBER, &params.bars_m, "METRES",
-         "upright bars of this diameter before the monument, from 0 to 1.5 (0)", 0, 1.5},
-        {"plain", ARG_NUMBER, &params.plain, "SHARE",
-         "share of the walls that has no texture, from 0 to 1 (0)", 0, 1},
-        {0},
-    };
-    char summary[512] = "Synthetic photographs with ground truth. NAME is one of:\n"
-                        "  figures      a walking figure in a room, seen by fixed cameras";
-    for (const char *const *name = orl_synth_names(); *name; name++) {
-        size_t length = strlen(summary);
-        snprintf(summary + length, sizeof summary - length, "\n  %-12s %s", *name,
-                 orl_synth_summary(*name));
+    const struct synth_options *o = options;
+    const struct orl_log *log = &terminal->log;
+    struct orl_synth_params monument = {ORL_SYNTH_OPTIONS(ORL_OPTION_COPY) .name = inputs[0],
+                                        .width = 768, .height = 512};
+    struct orl_figures_params figures = {ORL_FIGURES_OPTIONS(ORL_OPTION_COPY) .width = 640,
+                                         .height = 480};
+    bool is_figures = strcmp(inputs[0], "figures") == 0;
+    if (o->size.width) {
+        monument.width = figures.width = o->size.width;
+        monument.height = figures.height = o->size.height;
     }
-    const struct arg_command command = {"synth", "NAME --out DIR [options]", summary, options,
-                                        1, 1};
-    struct arg_common common = {0};
-    struct terminal terminal;
-    const char *positionals[1];
-    size_t positional_count;
-    int status;
-    if (command_begin(&command, argc, argv, &common, &terminal, positionals, &positional_count,
-                      &status)) {
-        params.name = positionals[0];
-        bool is_figures = strcmp(positionals[0], "figures") == 0;
-        if (size.width) {
-            params.width = figures.width = size.width;
-            params.height = figures.height = size.height;
-        }
-        params.seed = (uint32_t)seed;
-        enum orl_result result = parse_exposures(&terminal.log, &exposures, &params);
-        params.response = (enum orl_synth_response)response.value;
-        if (result == ORL_OK && !out)
-            result = orl_fail(&terminal.log, ORL_ERR_ARGUMENT, "synth: --out DIR is needed");
-        if (result == ORL_OK)
-            result = check_options(&terminal.log, &params, &figures, is_figures);
-        if (result == ORL_OK)
-            result = is_figures ? run_figures(&terminal, &figures, out)
-                                : run(&terminal, &common, &params, out, truth);
-        terminal_finish(&terminal);
-        status = command_status(result);
-    }
-    orl_names_finish(&exposures);
-    return status;
+    enum orl_result result = parse_exposures(log, &o->exposures, &monument);
+    if (result == ORL_OK)
+        result = check_options(log, o, inputs[0], is_figures);
+    if (result == ORL_OK)
+        result = is_figures ? make_figures(terminal, &figures, o->out)
+                            : make_monument(terminal, common, &monument, o->out, o->truth);
+    return result;
 }
+
+static void print_names(FILE *out)
+{
+    fprintf(out, "  %-12s %s\n", "figures", "a walking figure in a room, seen by fixed cameras");
+    for (const char *const *name = orl_synth_names(); *name; name++)
+        fprintf(out, "  %-12s %s\n", *name, orl_synth_summary(*name));
+}
+
+const struct command command_synth = {
+    .name = "synth", .group = COMMAND_MAKE,
+    .brief = "synthetic photographs with ground truth",
+    .usage = "NAME --out DIR [options]",
+    .summary = "Synthetic photographs with ground truth. NAME is one of:",
+    .print_more = print_names,
+    COMMAND_TABLE(synth_options), .inputs_min = 1, .inputs_max = 1, .run = run_synth,
+};

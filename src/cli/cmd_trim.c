@@ -1,16 +1,32 @@
 // oriel trim: the least model of a scene that still serves.
 #include <stdio.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
+#include "cli/command_output.h"
 #include "eval/trim.h"
 
-struct options {
-    const char *method, *out, *json, *plots;
-    struct orl_names settings;
-    double tolerance_db, tolerance_ssim, worst_db, max_mib, max_frame_ms, budget_s;
-    int views, size_divide;
-    bool explain, random, keep_options;
-};
+#define TRIM_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("SCENE2"), "the folder to make") \
+    ROW(tolerance_db, "tolerance", NUMBER(0.1, 0, 100, "DB"), \
+        "training photographs may lose so much on average") \
+    ROW(tolerance_ssim, "tolerance-ssim", NUMBER(0.01, 0, 1, "SHARE"), \
+        "and so much of SSIM, which sees blur that PSNR does not") \
+    ROW(worst_db, "worst", NUMBER(0.5, 0, 100, "DB"), "and one of them so much") \
+    ROW(max_mib, "max-bytes", NUMBER(0, 0.001, 1 << 20, "MIB"), \
+        "instead: the best picture within so much device memory for points and photographs") \
+    ROW(max_frame_ms, "max-frame-ms", NUMBER(0, 0.001, 1e6, "MS"), \
+        "instead: the best picture within so long a frame; with --max-bytes, both") \
+    METHOD_OPTIONS(ROW) \
+    ROW(keep_options, "keep-options", FLAG, "do not tune the method's options first") \
+    ROW(views, "views", INT(6, 2, 64, "N"), "photographs that judge each step") \
+    ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
+    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
+        "try nothing new after so long, by the clock; default: no limit") \
+    ROW(explain, "explain", FLAG, "print what each part of the model buys") \
+    ROW(random, "random", FLAG, "also measure random removal") \
+    ROW(json, "json", TEXT("FILE"), "write figures and steps as JSON") \
+    ROW(plots, "plots", TEXT("DIR"), "write waterfall.svg and curve.svg")
+COMMAND_OPTIONS(trim_options, TRIM_OPTIONS)
 
 enum { MIB = 1 << 20 };
 
@@ -57,7 +73,7 @@ static void print_row(const char *name, const struct orl_trim_figures *f)
            f->ssim, f->held_psnr_db, f->held_ssim);
 }
 
-static void print_summary(const struct options *o, const struct orl_trim *trim)
+static void print_summary(const struct trim_options *o, const struct orl_trim *trim)
 {
     const struct orl_trim_figures *a = &trim->before, *b = &trim->after;
     printf("\n%-10s %9s %6s %9s %9s %9s %9s %8s %7s %8s %7s\n", "", "points", "photos",
@@ -79,25 +95,16 @@ static void print_summary(const struct options *o, const struct orl_trim *trim)
 
 // --- the job ---
 
-static enum orl_result check(const struct orl_log *log, const struct options *o)
+static enum orl_result run_trim(struct terminal *terminal, const void *options,
+                                const struct common_options *common, const char *const *inputs)
 {
-    if (!o->out)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "trim: --out SCENE2 is missing");
-    return ORL_OK;
-}
-
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *dir)
-{
-    const struct options *o = options;
+    const struct trim_options *o = options;
     const struct orl_log *log = &terminal->log;
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
     struct orl_choice start;
     struct orl_trim trim = {0};
-    enum orl_result result = check(log, o);
-    if (result == ORL_OK)
-        result = orl_scene_open(log, dir, &scene);
+    enum orl_result result = orl_scene_open(log, inputs[0], &scene);
     if (result == ORL_OK)
         result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
     if (result == ORL_OK)
@@ -128,44 +135,12 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     return result;
 }
 
-int cmd_trim(int argc, char **argv)
-{
-    struct options o = {.tolerance_db = 0.1, .tolerance_ssim = 0.01, .worst_db = 0.5, .views = 6,
-                        .size_divide = 1};
-    const struct arg_option table[] = {
-        {"out", ARG_STRING, &o.out, "SCENE2", "the folder to make", 0, 0},
-        {"tolerance", ARG_NUMBER, &o.tolerance_db, "DB",
-         "training photographs may lose so much on average; default 0.1", 0, 100},
-        {"tolerance-ssim", ARG_NUMBER, &o.tolerance_ssim, "SHARE",
-         "and so much of SSIM, which sees blur that PSNR does not; default 0.01", 0, 1},
-        {"worst", ARG_NUMBER, &o.worst_db, "DB", "and one of them so much; default 0.5", 0, 100},
-        {"max-bytes", ARG_NUMBER, &o.max_mib, "MIB",
-         "instead: the best picture within so much device memory for points and photographs",
-         0.001, 1 << 20},
-        {"max-frame-ms", ARG_NUMBER, &o.max_frame_ms, "MS",
-         "instead: the best picture within so long a frame; with --max-bytes, both", 0.001, 1e6},
-        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the scene's, or the first",
-         0, 0},
-        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "change an option of the method", 0, 0},
-        {"keep-options", ARG_FLAG, &o.keep_options, NULL, "do not tune the method's options first",
-         0, 0},
-        {"views", ARG_INT, &o.views, "N", "photographs that judge each step; default 6", 2, 64},
-        {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 1", 1,
-         16},
-        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS",
-         "try nothing new after so long, by the clock", 0, 1e6},
-        {"explain", ARG_FLAG, &o.explain, NULL, "print what each part of the model buys", 0, 0},
-        {"random", ARG_FLAG, &o.random, NULL, "also measure random removal", 0, 0},
-        {"json", ARG_STRING, &o.json, "FILE", "write figures and steps as JSON", 0, 0},
-        {"plots", ARG_STRING, &o.plots, "DIR", "write waterfall.svg and curve.svg", 0, 0},
-        {0},
-    };
-    const struct arg_command command = {
-        "trim", "SCENE --out SCENE2 [--tolerance DB]",
-        "Makes the least scene that serves as well: fewer points and photographs, smaller files,\n"
-        "and the method's cheaper options. Training photographs judge, each rendered from the\n"
-        "others; held-out ones confirm at the end.", table, 1, 1};
-    int status = command_main(&command, argc, argv, run, &o);
-    orl_names_finish(&o.settings);
-    return status;
-}
+const struct command command_trim = {
+    .name = "trim", .group = COMMAND_FIT,
+    .brief = "make the least scene that serves as well",
+    .usage = "SCENE --out SCENE2 [--tolerance DB]",
+    .summary = "Makes the least scene that serves as well: fewer points and photographs, smaller files,\n"
+               "and the method's cheaper options. Training photographs judge, each rendered from the\n"
+               "others; held-out ones confirm at the end.",
+    COMMAND_TABLE(trim_options), .inputs_min = 1, .inputs_max = 1, .run = run_trim,
+};

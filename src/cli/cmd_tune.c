@@ -1,21 +1,30 @@
 // oriel tune: fits a method's options to a scene's training photographs.
 #include <stdio.h>
 
-#include "cli/commands.h"
+#include "cli/command.h"
+#include "cli/command_output.h"
 #include "eval/adapt.h"
 #include "eval/tune_json.h"
 #include "oriel/prepare_params.h"
 
 enum { VIEWS = 16, ADAPT_BUDGET_S = 120 };
 
-struct options {
-    const char *method, *json;
-    struct orl_names settings, keys;
-    int size_divide, views, max_vram_mib;
-    double budget_s, gain_db;
-    struct arg_enum adapt;
-    bool apply, fresh;
-};
+#define TUNE_OPTIONS(ROW) \
+    METHOD_OPTIONS(ROW) \
+    ROW(keys, "only", LIST("KEY,KEY,.."), "tune these options; default: all that can be") \
+    ROW(apply, "apply", FLAG, "keep the result in scene.json: render, eval and others use it") \
+    ROW(fresh, "fresh", FLAG, "start from the method's values, not the scene's") \
+    ROW(adapt, "adapt", CHOICE(orl_adapt_effort, ORL_ADAPT_EFFORTS, ORL_ADAPT_NONE, "EFFORT"), \
+        "choose the method, too, and keep the result, as prepare --adapt does") \
+    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
+        "start no trial after so long; default: none, and 120 with --adapt long") \
+    ROW(views, "views", INT(0, 1, 100000, "N"), \
+        "photographs to compare with, at most; default 16, and 6 with --adapt") \
+    ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
+    ROW(gain_db, "gain", NUMBER(0.01, 0, 10, "DB"), "a change must bring so much") \
+    ROW(json, "json", TEXT("FILE"), "write result and trials as JSON") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
+COMMAND_OPTIONS(tune_options, TUNE_OPTIONS)
 
 static void print_trial(void *priv, const struct orl_tune_trial *trial)
 {
@@ -28,7 +37,7 @@ static void print_trial(void *priv, const struct orl_tune_trial *trial)
     fflush(stdout);
 }
 
-static enum orl_result report(const struct orl_log *log, const struct options *o,
+static enum orl_result report(const struct orl_log *log, const struct tune_options *o,
                               const struct orl_scene *scene, const char *device,
                               const struct orl_method *method, const struct orl_tune *tune)
 {
@@ -52,8 +61,8 @@ static enum orl_result report(const struct orl_log *log, const struct options *o
 }
 
 // As the stage adapt of prepare does.
-static enum orl_result adapt(const struct terminal *terminal, const struct options *o,
-                             const struct arg_common *common, const char *dir)
+static enum orl_result adapt(const struct terminal *terminal, const struct tune_options *o,
+                             const struct common_options *common, const char *dir)
 {
     const struct orl_log *log = &terminal->log;
     if (o->method || o->settings.count || o->keys.count || o->fresh || o->json)
@@ -64,7 +73,7 @@ static enum orl_result adapt(const struct terminal *terminal, const struct optio
     struct orl_gpu *gpu = NULL;
     struct orl_adapt found = {0};
     const struct orl_adapt_params params = {
-        .search = o->adapt.value == ORL_ADAPT_LONG,
+        .search = o->adapt == ORL_ADAPT_LONG,
         .views = (size_t)(o->views ? o->views : ORL_ADAPT_VIEWS), .size_divide = o->size_divide,
         .budget_s = o->budget_s > 0 ? o->budget_s : ADAPT_BUDGET_S,
         .progress = &terminal->progress};
@@ -88,12 +97,12 @@ static enum orl_result adapt(const struct terminal *terminal, const struct optio
     return result;
 }
 
-static enum orl_result run(const struct terminal *terminal, const void *options,
-                           const struct arg_common *common, const char *dir)
+static enum orl_result run_tune(struct terminal *terminal, const void *options,
+                                const struct common_options *common, const char *const *inputs)
 {
-    const struct options *o = options;
-    if (o->adapt.value != ORL_ADAPT_NONE)
-        return adapt(terminal, o, common, dir);
+    const struct tune_options *o = options;
+    if (o->adapt != ORL_ADAPT_NONE)
+        return adapt(terminal, o, common, inputs[0]);
     const struct orl_log *log = &terminal->log;
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
@@ -104,7 +113,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (o->method) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
     if (result == ORL_OK)
-        result = orl_scene_open(log, dir, &scene);
+        result = orl_scene_open(log, inputs[0], &scene);
     if (result == ORL_OK) // unless `fresh`, starts from the scene's tuned values
         result = orl_choice_make(log, o->fresh ? NULL : scene, ORL_SAMPLE_SRGB,
                                  o->method ? o->method : orl_method_default(scene),
@@ -112,7 +121,7 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                               .debug = common->verbose}, &gpu);
-    struct orl_renderer_params limits = {.max_vram_bytes = (size_t)o->max_vram_mib << 20};
+    struct orl_renderer_params limits = {.max_vram_bytes = o->max_vram_bytes};
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_tune_params params = {
@@ -133,39 +142,11 @@ static enum orl_result run(const struct terminal *terminal, const void *options,
     return result;
 }
 
-int cmd_tune(int argc, char **argv)
-{
-    struct options o = {.size_divide = 1, .gain_db = 0.01,
-                        .adapt = {orl_adapt_effort_names, ORL_ADAPT_NONE}};
-    const struct arg_option table[] = {
-        {"method", ARG_STRING, &o.method, "NAME", "a method; default: the scene's, or the first", 0,
-         0},
-        {"set", ARG_LIST, &o.settings, "KEY=VALUE", "start from another value", 0, 0},
-        {"only", ARG_LIST, &o.keys, "KEY,KEY,..", "tune these options; default: all that can be",
-         0, 0},
-        {"apply", ARG_FLAG, &o.apply, NULL,
-         "keep the result in scene.json: render, eval and others use it", 0, 0},
-        {"fresh", ARG_FLAG, &o.fresh, NULL, "start from the method's values, not the scene's", 0,
-         0},
-        {"adapt", ARG_ENUM, &o.adapt, "EFFORT",
-         "choose the method, too, and keep the result, as prepare --adapt does", 0, 0},
-        {"budget", ARG_NUMBER, &o.budget_s, "SECONDS",
-         "start no trial after so long; default: none, and 120 with --adapt long", 0, 1e6},
-        {"views", ARG_INT, &o.views, "N",
-         "photographs to compare with, at most; default 16, and 6 with --adapt", 1, 100000},
-        {"size-divide", ARG_INT, &o.size_divide, "N", "compare at 1/N of their size; default 1", 1,
-         16},
-        {"gain", ARG_NUMBER, &o.gain_db, "DB", "a change must bring so much; default 0.01", 0, 10},
-        {"json", ARG_STRING, &o.json, "FILE", "write result and trials as JSON", 0, 0},
-        {"max-vram", ARG_INT, &o.max_vram_mib, "MIB", "device memory to plan for", 1, 1 << 20},
-        {0},
-    };
-    const struct arg_command command = {
-        "tune", "SCENE [--method NAME] [--apply | --adapt short|long]",
-        "Finds the values of a method's options with which training photographs come out best,\n"
-        "each rendered from the others. Held-out photographs take no part.", table, 1, 1};
-    int status = command_main(&command, argc, argv, run, &o);
-    orl_names_finish(&o.settings);
-    orl_names_finish(&o.keys);
-    return status;
-}
+const struct command command_tune = {
+    .name = "tune", .group = COMMAND_FIT,
+    .brief = "fit a method's options to a scene",
+    .usage = "SCENE [--method NAME] [--apply | --adapt short|long]",
+    .summary = "Finds the values of a method's options with which training photographs come out best,\n"
+               "each rendered from the others. Held-out photographs take no part.",
+    COMMAND_TABLE(tune_options), .inputs_min = 1, .inputs_max = 1, .run = run_tune,
+};

@@ -4,16 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Indexed by enum orl_exr_compression.
-static const char *const compression_names[] = {"zip", "piz", NULL};
-_Static_assert(ORL_EXR_ZIP == 0 && ORL_EXR_PIZ == 1, "names in this order");
+#include "core/file.h"
 
-void output_options_init(struct output_options *o)
+const char *output_tone_name(size_t index)
 {
-    *o = (struct output_options){.white = 8, .compression = {compression_names, ORL_EXR_ZIP}};
-    for (int i = 0; i < ORL_TONE_COUNT; i++)
-        o->tone_names[i] = orl_tones[i].name;
-    o->tone = (struct arg_enum){o->tone_names, ORL_TONE_SRGB};
+    return index < ORL_TONE_COUNT ? orl_tones[index].name : NULL;
 }
 
 static enum orl_result choose_layers(const struct orl_log *log, const struct orl_names *names,
@@ -37,27 +32,25 @@ static enum orl_result choose_layers(const struct orl_log *log, const struct orl
     return ORL_OK;
 }
 
-enum orl_result output_choose(const struct orl_log *log, const struct output_options *options,
+enum orl_result output_choose(const struct orl_log *log, struct output_options options,
                               bool confidence, struct orl_frame_output *output)
 {
-    output->float_color = options->float_color;
-    output->tone.curve = (enum orl_tone_curve)options->tone.value;
-    output->tone.exposure_ev = options->exposure_ev;
-    output->tone.white = options->white;
-    output->compression = (enum orl_exr_compression)options->compression.value;
-    return choose_layers(log, &options->layers, confidence, &output->layers);
+    output->float_color = options.float_color;
+    output->tone.curve = (enum orl_tone_curve)options.tone;
+    output->tone.exposure_ev = options.exposure_ev;
+    output->tone.white = options.white;
+    output->compression = options.compression;
+    return choose_layers(log, &options.layers, confidence, &output->layers);
 }
 
-const char *const radiance_names[] = {"auto", "on", "off", NULL};
-
 bool radiance_chosen(const struct orl_log *log, const struct orl_scene *scene,
-                     const struct arg_enum *wish)
+                     enum radiance_wish wish)
 {
-    bool found = wish->value == RADIANCE_AUTO && orl_scene_is_bracketed(scene);
+    bool found = wish == RADIANCE_AUTO && orl_scene_is_bracketed(scene);
     if (found)
         orl_logf(log, ORL_LOG_INFO, "%s: photographs of several exposures are merged into radiance; "
                  "--radiance off shows them as they are", scene->dir);
-    return found || wish->value == RADIANCE_ON;
+    return found || wish == RADIANCE_ON;
 }
 
 bool report_on_stdout(const char *path)

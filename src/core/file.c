@@ -12,6 +12,7 @@
 #include <xxhash.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 
 char *orl_path_join(const struct orl_log *log, const char *dir, const char *name)
 {
@@ -250,15 +251,10 @@ bool orl_names_contain(const struct orl_names *names, const char *name)
     return false;
 }
 
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
 void orl_names_sort(struct orl_names *names)
 {
     if (names->count)
-        qsort(names->items, names->count, sizeof *names->items, compare_names);
+        qsort(names->items, names->count, sizeof *names->items, orl_order_texts);
 }
 
 void orl_names_finish(struct orl_names *names)

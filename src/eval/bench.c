@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "eval/bench_internal.h"
 #include "eval/metrics.h"
 #include "io/picture.h"
@@ -164,17 +165,11 @@ static enum orl_result measure_point_count(struct bench_job *job, size_t count)
     return result;
 }
 
-static int compare_sizes(const void *a, const void *b)
-{
-    size_t x = *(const size_t *)a, y = *(const size_t *)b;
-    return (x > y) - (x < y);
-}
-
 static enum orl_result measure_points(struct bench_job *job)
 {
     size_t all = job->scene->points.count;
     size_t usual[] = {all / 8, all / 4, all / 2, all, 1000000, 0}, previous = 0;
-    qsort(usual, ORL_COUNT(usual) - 1, sizeof *usual, compare_sizes);
+    qsort(usual, ORL_COUNT(usual) - 1, sizeof *usual, orl_order_sizes);
     const size_t *counts = job->params->point_counts ? job->params->point_counts : usual;
     enum orl_result result = ORL_OK;
     if (counts == usual) // the first counts of a tiny scene may be 0

@@ -148,12 +148,12 @@ static enum orl_result chart_scene(struct job *job, const char *dir)
         result = orl_chart_make_plan(job->gpu, scene.scene, job->params, &plan);
     if (job->total == 0)
         job->total = (double)(plan.count * job->params->scene_count) /
-                     (job->params->part.parts ? job->params->part.parts : 1);
+                     (job->params->part.count ? job->params->part.count : 1);
     for (size_t i = 0; result == ORL_OK && i < plan.count; i++)
         if (orl_row_part_has(&job->params->part, i))
             result = add_config(job, &scene, &plan.items[i]);
     // Rows of peers are not kept.
-    for (size_t i = 0; result == ORL_OK && !job->params->part.parts &&
+    for (size_t i = 0; result == ORL_OK && !job->params->part.count &&
                        i < job->params->peer_count; i++)
         result = add_peer(job, &scene, &job->params->peers[i]);
     free(plan.items);
@@ -215,7 +215,7 @@ enum orl_result orl_chart_run(struct orl_gpu *gpu, const struct orl_chart_params
         return orl_fail(job.log, ORL_ERR_MEMORY, "no memory for the chart");
     for (size_t i = 0; result == ORL_OK && i < params->scene_count; i++)
         result = chart_scene(&job, params->scenes[i]);
-    if (result == ORL_OK && !params->part.parts)
+    if (result == ORL_OK && !params->part.count)
         result = finish_chart(&job, root);
     if (result == ORL_OK)
         orl_progress_report(params->progress, "chart", 1, 1, NULL);

@@ -15,22 +15,25 @@ struct orl_chart_peer {
     double ms, mib; // of a frame; of device memory; as given by the user; 0: unknown
 };
 
+#define ORL_CHART_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("DIR"), \
+        "the report: chart.html, chart.json, figures; rows in it are used again") \
+    ROW(methods, "method", LIST("NAME"), "methods; default: all") \
+    ROW(varied, "vary", TEXT("KEY=A,B,.."), \
+        "each method that reads this option with each of these values, too") \
+    ROW(quick, "quick", FLAG, \
+        "an overview: methods as they are, two photographs a scene at half their size") \
+    ROW(views, "views", INT(8, 1, 100000, "N"), "held-out photographs of a scene, at most") \
+    ROW(seconds, "seconds", NUMBER(1, 0, 3600, "S"), "of timed frames for each row") \
+    ROW(part, "part", PART, \
+        "only the K-th of N parts of the rows, kept for a run of all (oriel plan)") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 struct orl_chart_params {
+    ORL_CHART_OPTIONS(ORL_OPTION_MEMBER) // views 0: all
     const char *const *scenes; // folders
     size_t scene_count;
-    const char *out;                 // folder for the report; rows in it are reused
-    const struct orl_names *methods; // names; none or "all": all methods
-    const char *varied;    // "KEY=A,B,..": also measures each method that reads the option with
-                           // each of these values; NULL: none
     const struct orl_chart_peer *peers;
     size_t peer_count;
-    size_t views;          // greatest number of held-out photographs of a scene, evenly chosen; 0:
-                           // all
-    double seconds;        // approximate duration of the timed frames of a row
-    bool quick;            // an overview: only the methods themselves, on two photographs at half
-                           // size
-    size_t max_vram_bytes; // 0: no limit
-    struct orl_row_part part; // of the rows of each scene
     const struct orl_progress *progress;
 };
 

@@ -127,11 +127,11 @@ enum orl_result orl_chart_make_plan(struct orl_gpu *gpu, const struct orl_scene 
     struct orl_choices choices = {0};
     memset(plan, 0, sizeof *plan);
     enum orl_result result = ORL_OK;
-    if (!params->methods->count)
+    if (!params->methods.count)
         result = orl_names_add(log, &methods, "paired");
     if (result == ORL_OK)
         result = orl_choices_make(log, scene, ORL_SAMPLE_SRGB,
-                                  methods.count ? &methods : params->methods, &none, NULL,
+                                  methods.count ? &methods : &params->methods, &none, NULL,
                                   &choices);
     for (size_t i = 0; result == ORL_OK && i < choices.count; i++) {
         struct chart_config base = {.method = choices.items[i].method,

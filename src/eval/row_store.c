@@ -23,9 +23,9 @@ void orl_row_id(const char *method, const char *setting, char id[ORL_ROW_ID_MAX]
             *c = '-';
 }
 
-bool orl_row_part_has(const struct orl_row_part *part, size_t row)
+bool orl_row_part_has(const struct orl_part *part, size_t row)
 {
-    return !part->parts || row % (size_t)part->parts == (size_t)part->part;
+    return !part->count || row % (size_t)part->count == (size_t)part->index;
 }
 
 const char *orl_row_text(const json_t *row, const char *key)

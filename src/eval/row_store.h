@@ -6,16 +6,14 @@
 #include <jansson.h>
 
 #include "oriel/gpu.h"
+#include "oriel/option_row.h"
 #include "oriel/scene.h"
 
 enum { ORL_ROW_ID_MAX = 128, ORL_ROW_CHECKSUM_SIZE = 32 };
 
-// The rows that a run measures: of each `parts` one after the other the one at `part`, from 0 on. A
-// run of a part keeps its rows for a later run of all and writes no report. parts 0: all rows.
-struct orl_row_part {
-    int part, parts;
-};
-bool orl_row_part_has(const struct orl_row_part *part, size_t row);
+// The rows that a run measures: of each `count` one after the other the one at `index`. A
+// run of a part keeps its rows for a later run of all and writes no report. count 0: all rows.
+bool orl_row_part_has(const struct orl_part *part, size_t row);
 
 struct orl_row_store {
     const struct orl_log *log;

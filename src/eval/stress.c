@@ -235,7 +235,7 @@ static bool is_served(const struct job *job, const struct stress_axis *axis)
     bool masks = false; // the synthetic scene has a figure with silhouettes beside the monument
     for (size_t i = 0; i < job->base.scene.photo_count; i++)
         masks = masks || (job->base.masks[i].data && !job->base.scene.photos[i].test);
-    return is_wanted(job->params->axes, axis->name) &&
+    return is_wanted(&job->params->axes, axis->name) &&
            (job->base.synth || !(axis->flags & STRESS_NEEDS_TRUTH)) &&
            (masks || job->base.synth || !(axis->flags & STRESS_NEEDS_MASKS));
 }
@@ -293,7 +293,7 @@ static enum orl_result open_scene(struct job *job)
 {
     const struct orl_names none = {0}, all = {1, 1, (char *[]){(char[]){"paired"}}};
     const struct orl_stress_params *params = job->params;
-    const struct orl_names *methods = params->methods->count ? params->methods : &all;
+    const struct orl_names *methods = params->methods.count ? &params->methods : &all;
     struct orl_scene *scene = NULL;
     enum orl_result result = ORL_OK;
     if (strcmp(params->scene, synth_name) == 0) {
@@ -363,9 +363,9 @@ static enum orl_result run(struct job *job)
     job->stress->json = root;
     job->rows = json_object_get(root, "rows");
     result = add_axes(job, json_object_get(root, "axes"));
-    if (result == ORL_OK && !params->part.parts)
+    if (result == ORL_OK && !params->part.count)
         result = orl_stress_analyse(job->log, root);
-    if (result == ORL_OK && !params->part.parts)
+    if (result == ORL_OK && !params->part.count)
         result = orl_stress_write(job->log, params->out, root);
     return result;
 }
@@ -400,13 +400,13 @@ enum orl_result orl_stress_run(struct orl_gpu *gpu, const struct orl_stress_para
     memset(stress, 0, sizeof *stress);
     job.store = (struct orl_row_store){job.log, params->out,
                                        orl_path_name(whole ? whole : params->scene)};
-    snprintf(job.work_folder, sizeof job.work_folder, ".work-%d", params->part.part);
-    enum orl_result result = check_axes(job.log, params->axes);
+    snprintf(job.work_folder, sizeof job.work_folder, ".work-%d", params->part.index);
+    enum orl_result result = check_axes(job.log, &params->axes);
     if (result == ORL_OK)
         result = orl_dir_make(job.log, params->out);
     if (result == ORL_OK)
         result = run(&job);
-    if (result == ORL_OK && !params->part.parts)
+    if (result == ORL_OK && !params->part.count)
         result = list_losses(job.log, stress);
     char *work = orl_path_join(job.log, params->out, job.work_folder);
     if (work && orl_dir_remove(NULL, work) != ORL_OK && result == ORL_OK)

@@ -17,20 +17,25 @@ enum {
 };
 extern const double orl_stress_losses_db[ORL_STRESS_LOSSES]; // 1, 3, 6
 
+#define ORL_STRESS_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("DIR"), \
+        "the report: stress.html, stress.json, figures; rows in it are used again") \
+    ROW(axes, "axes", LIST("NAME,.."), "what gets worse; default: all that the scene serves") \
+    ROW(methods, "method", LIST("NAME"), "methods; default: all") \
+    ROW(quick, "quick", FLAG, "an overview: one view, three of the six severities") \
+    ROW(side, "size", INT(192, ORL_STRESS_SIDE_MIN, ORL_STRESS_SIDE_MAX, "PX"), \
+        "longer side of photographs and pictures") \
+    ROW(photographs, "photographs", INT(16, ORL_STRESS_PHOTOGRAPHS_MIN, 500, "N"), \
+        "of the synthetic monument") \
+    ROW(views, "views", INT(2, 1, 100, "N"), "held-out photographs, at most") \
+    ROW(part, "part", PART, \
+        "only the K-th of N parts of the rows, kept for a run of all (oriel plan)") \
+    ROW(seed, "seed", SEED, "of everything random")
 struct orl_stress_params {
+    ORL_STRESS_OPTIONS(ORL_OPTION_MEMBER)
     const char *scene; // folder; "synth": the synthetic monument, whose truth is known
-    const char *out;   // folder for the report; rows in it are reused
-    const struct orl_names *methods, *axes; // names; none or "all": all
-    int side;          // longer side of pictures, pixels
-    int photographs;   // of the synthetic monument; those of a scene are used all
-    size_t views;      // greatest number of held-out photographs
-    uint32_t seed;
-    bool quick;        // an overview: one view, and of each axis the first, a middle and the last
-                       // severity
-    struct orl_row_part part; // of the severities of all axes
     const struct orl_progress *progress;
 };
-#define ORL_STRESS_DEFAULTS .side = 192, .photographs = 16, .views = 2, .seed = 1
 
 // A method on one axis. Texts belong to the report's JSON.
 struct orl_stress_loss {

@@ -76,7 +76,7 @@ struct orl_synth_params orl_stress_generator(const struct orl_stress_params *par
     struct orl_synth_params generator = {ORL_SYNTH_DEFAULTS};
     generator.width = params->side;
     generator.height = params->side * 2 / 3;
-    generator.count = params->photographs + (int)(params->quick ? 1 : params->views);
+    generator.count = params->photographs + (params->quick ? 1 : params->views);
     generator.seed = params->seed;
     return generator;
 }
@@ -195,7 +195,7 @@ enum orl_result orl_stress_make_synth(struct orl_gpu *gpu, const struct orl_stre
                                       struct stress_case *c)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    size_t photos = (size_t)params->photographs, views = params->quick ? 1 : params->views;
+    size_t photos = (size_t)params->photographs, views = params->quick ? 1 : (size_t)params->views;
     size_t all = photos + views;
     *c = (struct stress_case){.gpu = gpu};
     struct orl_view *cameras = orl_array(log, all, sizeof *cameras);
@@ -253,7 +253,7 @@ enum orl_result orl_stress_make_figure(struct orl_gpu *gpu, const struct orl_str
                                        struct stress_case *c)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    size_t photos = (size_t)params->photographs, views = params->quick ? 1 : params->views;
+    size_t photos = (size_t)params->photographs, views = params->quick ? 1 : (size_t)params->views;
     const struct orl_figures_params figures = {
         .cameras = (int)(photos + views), .frames = 1, .width = params->side,
         .height = params->side * 2 / 3};
@@ -358,7 +358,7 @@ enum orl_result orl_stress_make_scene(struct orl_gpu *gpu, const struct orl_stre
     size_t count = 0;
     int divide = divide_for(scene, params->side);
     *c = (struct stress_case){.gpu = gpu};
-    enum orl_result result = orl_heldout_load_some(log, scene, params->quick ? 1 : params->views,
+    enum orl_result result = orl_heldout_load_some(log, scene, params->quick ? 1 : (size_t)params->views,
                                                    divide, &heldout, &count);
     if (result == ORL_OK)
         result = make_room(c, scene->photo_count, count);

@@ -4,19 +4,14 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "core/process.h"
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 double orl_median(double *values, size_t count)
 {
     if (!count)
         return 0;
-    qsort(values, count, sizeof *values, compare_doubles);
+    qsort(values, count, sizeof *values, orl_order_doubles);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 

@@ -7,7 +7,8 @@
 #include "core/memory.h"
 #include "hdr/internal.h"
 
-const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1] = {"fused", "series"};
+const char *const orl_hdr_merge_names[ORL_HDR_MERGE_COUNT + 1] = {
+    ORL_HDR_MERGES(ORL_ENUM_NAME)};
 
 // What the photographs in use have.
 struct range {

@@ -4,6 +4,7 @@
 
 #include "oriel/image.h"
 #include "oriel/camera.h"
+#include "oriel/option_row.h"
 
 enum { ORL_EXR_CHANNELS_MAX = 32 };
 
@@ -28,7 +29,8 @@ struct orl_exr_view_attributes {
 };
 
 // Both are lossless. ZIP compresses renderings and layers well, PIZ grainy photographs.
-enum orl_exr_compression { ORL_EXR_ZIP, ORL_EXR_PIZ };
+#define ORL_EXR_COMPRESSIONS(NAME) NAME(ORL_EXR_ZIP, "zip") NAME(ORL_EXR_PIZ, "piz")
+enum orl_exr_compression { ORL_EXR_COMPRESSIONS(ORL_ENUMERATOR) };
 
 struct orl_exr_params {
     int width, height;

@@ -5,14 +5,9 @@
 #include <xxhash.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "render/frame.h"
 #include "render/method.h"
-
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
 
 enum orl_result orl_vertices_range(const struct orl_log *log, const float (*vertices)[3],
                                    size_t vertex_count, double share, double low[3],
@@ -26,7 +21,7 @@ enum orl_result orl_vertices_range(const struct orl_log *log, const float (*vert
     for (int k = 0; count && k < 3; k++) {
         for (size_t i = 0; i < count; i++)
             along[i] = vertices[i * step][k];
-        qsort(along, count, sizeof *along, compare_floats);
+        qsort(along, count, sizeof *along, orl_order_floats);
         low[k] = (double)along[out];
         high[k] = (double)along[count - 1 - out];
     }

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-const char *const orl_textures_names[ORL_TEXTURES_COUNT + 1] = {"auto", "full", "bc7", "ycc",
-                                                                "bc1"};
+const char *const orl_textures_names[ORL_TEXTURES_COUNT + 1] = {
+    ORL_TEXTURES(ORL_ENUM_NAME)};
 
 enum orl_result orl_textures_choose(const struct orl_log *log, const struct orl_scene *scene,
                                     const struct orl_renderer_params *params,

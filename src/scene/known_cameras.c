@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "scene/colmap_internal.h"
 #include "scene/known_internal.h"
 
@@ -244,11 +245,6 @@ static size_t common_folders(const struct orl_known_cameras *known)
     return length;
 }
 
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
 static enum orl_result any_alike(const struct orl_log *log, const struct orl_known_cameras *known,
                                  bool *alike)
 {
@@ -257,7 +253,7 @@ static enum orl_result any_alike(const struct orl_log *log, const struct orl_kno
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < known->picture_count; i++)
         names[i] = orl_path_name(known->pictures[i].path);
-    qsort(names, known->picture_count, sizeof *names, compare_names);
+    qsort(names, known->picture_count, sizeof *names, orl_order_texts);
     *alike = false;
     for (size_t i = 1; i < known->picture_count && !*alike; i++)
         *alike = strcmp(names[i], names[i - 1]) == 0;
@@ -287,15 +283,9 @@ enum orl_result orl_known_name_images(const struct orl_log *log, const char *fil
 
 // --- their place in the world ---
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values, size_t count)
 {
-    qsort(values, count, sizeof *values, compare_doubles);
+    qsort(values, count, sizeof *values, orl_order_doubles);
     return values[count / 2];
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 
 enum {
     BLOCK = ORL_BLOCK_POINTS,
@@ -24,12 +25,6 @@ struct key {
 
 // --- order ---
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return x < y ? -1 : x > y;
-}
-
 enum orl_result orl_point_cube_find(const struct orl_log *log, const struct orl_points *points,
                                     struct point_cube *cube)
 {
@@ -47,7 +42,7 @@ enum orl_result orl_point_cube_find(const struct orl_log *log, const struct orl_
         }
         if (finite == 0)
             values[finite++] = 0;
-        qsort(values, finite, sizeof *values, compare_floats);
+        qsort(values, finite, sizeof *values, orl_order_floats);
         double a = values[finite / 64], b = values[finite - 1 - finite / 64];
         cube->low[k] = 0.5 * (a + b);
         cube->side = fmax(cube->side, 2 * (b - a) + 1e-6 * fabs(a + b));
@@ -203,7 +198,7 @@ static float density(float (*const p)[3], const struct orl_points *points,
         }
         distances[s] = nearest[NEIGHBOUR - 1];
     }
-    qsort(distances, samples, sizeof *distances, compare_floats);
+    qsort(distances, samples, sizeof *distances, orl_order_floats);
     float d2 = distances[samples / 2];
     return d2 > 1e-30f ? NEIGHBOUR / (3.14159265f * d2) : 0;
 }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "scene/alike_points.h"
 
 enum { CHUNK = 1 << 15 }; // points between two reports of progress and checks for cancellation
@@ -160,12 +161,6 @@ static enum orl_result search_chunk(struct search *s, size_t first, size_t count
     return ORL_OK;
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static bool usable(float radius)
 {
     return radius > 0 && isfinite(radius);
@@ -182,7 +177,7 @@ static enum orl_result fill_radii(struct search *s, size_t count)
     for (size_t i = 0; i < count; i++)
         if (usable(points->radius[i]))
             sorted[known++] = points->radius[i];
-    qsort(sorted, known, sizeof *sorted, compare_floats);
+    qsort(sorted, known, sizeof *sorted, orl_order_floats);
     double distance = 1; // without any known radius: a hundredth of the distance to the viewer
     if (!known && s->viewer_count)
         nearest_viewer(s, points->position[0], &distance);

@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "scene/colmap.h"
 #include "scene/ground_plane.h"
 #include "scene/manifest.h"
@@ -133,18 +134,12 @@ static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *s
     return check_photo_files(log, scene);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Sorts the values. share: of them that are smaller, [0, 1); 0 without any.
 static double quantile(double *values, size_t count, double share)
 {
     if (!count)
         return 0;
-    qsort(values, count, sizeof *values, compare_doubles);
+    qsort(values, count, sizeof *values, orl_order_doubles);
     return values[(size_t)(share * (double)count)];
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "scene/point_code.h"
 #include "scene/point_lod.h"
 #include "walk/internal.h"
@@ -153,12 +154,6 @@ struct cell {
     struct cell_words words;
 };
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static void describe_cell(struct cell *cell, size_t count)
 {
     const struct orl_points *points = cell->points;
@@ -179,7 +174,7 @@ static void describe_cell(struct cell *cell, size_t count)
     }
     for (size_t i = 0; i < count; i++)
         radii[i] = points->radius[cell->index[i]] * cell->enlarged;
-    qsort(radii, count, sizeof *radii, compare_floats);
+    qsort(radii, count, sizeof *radii, orl_order_floats);
     float middle = radii[count / 2];
     w->radius_low = radii[0];
     w->radius_octaves = log2f(radii[count - 1] / radii[0]);
@@ -308,7 +303,7 @@ enum orl_result orl_site_points(struct site *site, json_t **out)
     struct orl_points level = {0}; // of a cloud that is larger than memory
     const struct orl_lod *lod = site->scene->lod;
     json_t *files = json_array(), *coarse = NULL;
-    enum orl_result result = lod ? orl_lod_sample(lod, site->params->max_points, &level) : ORL_OK;
+    enum orl_result result = lod ? orl_lod_sample(lod, (size_t)site->params->max_points, &level) : ORL_OK;
     if (result == ORL_OK)
         result = make_order(site->log, lod ? &level : &site->scene->points, &w.order);
     if (result == ORL_OK && w.order.count == 0)

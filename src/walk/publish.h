@@ -6,18 +6,24 @@
 #include "oriel/progress.h"
 #include "oriel/render.h"
 
+// A larger cloud is thinned evenly; of points.lod the finest level is taken that has no more points.
+#define ORL_PUBLISH_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("SITE"), "folder to write; an earlier site is replaced") \
+    ROW(title, "title", TEXT("TEXT"), \
+        "of the page; default: that of walk.json, else the scene's name") \
+    ROW(single_file, "single-file", FLAG, \
+        "everything in one HTML file SITE, which also opens from disk") \
+    ROW(photo_side, "max-size", INT(1024, 64, 8192, "PX"), \
+        "longer side of photographs at most") \
+    ROW(jpeg_quality, "quality", INT(88, 1, 100, "N"), "of JPEG") \
+    ROW(max_points, "max-points", INT(3000000, 1, 100000000, "N"), \
+        "the cloud is thinned to so many")
 struct orl_publish_params {
-    const char *out;   // the folder of the site; with single_file, its HTML file
-    const char *title; // of the page; NULL: the name of the scene's folder
-    bool single_file;  // everything in one HTML file, which a browser can also open from disk
-    bool radiance;     // photographs are published as merged radiance
-    int photo_side;    // greatest longer side of the site's photographs, pixels
-    int jpeg_quality;  // of photographs, [1, 100]
-    size_t max_points; // greatest number of points; a larger cloud is thinned evenly; of
-                       // points.lod the finest level that has no more
+    ORL_PUBLISH_OPTIONS(ORL_OPTION_MEMBER)
+    bool radiance; // photographs are published as merged radiance
     const struct orl_progress *progress; // may be NULL
 };
-#define ORL_PUBLISH_DEFAULTS .photo_side = 1024, .jpeg_quality = 88, .max_points = 3000000
+#define ORL_PUBLISH_DEFAULTS ORL_PUBLISH_OPTIONS(ORL_OPTION_PRESET) .progress = NULL
 
 struct orl_publish_report {
     size_t photos, points;

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "walk/internal.h"
 
 static const char list_name[] = "files.json";
@@ -39,15 +40,10 @@ struct keeping {
     bool knows;              // the old site says which files are its own
 };
 
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
 static bool is_listed(const struct keeping *k, const char *path)
 {
     return k->listed.count && bsearch(&path, k->listed.items, k->listed.count,
-                                      sizeof *k->listed.items, compare_names);
+                                      sizeof *k->listed.items, orl_order_texts);
 }
 
 static enum orl_result read_list(struct keeping *k)

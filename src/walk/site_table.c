@@ -67,8 +67,10 @@ enum orl_result orl_site_table_make(struct orl_gpu *gpu, const struct orl_scene 
     if (result != ORL_OK)
         return result;
     site = orl_path_join(log, dir, "site");
-    const struct orl_publish_params params = {ORL_PUBLISH_DEFAULTS, .out = site,
-                                              .radiance = radiance, .progress = progress};
+    struct orl_publish_params params = {ORL_PUBLISH_DEFAULTS};
+    params.out = site;
+    params.radiance = radiance;
+    params.progress = progress;
     result = site ? orl_publish(gpu, scene, &params, &report) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = read_site(log, site, table);

@@ -39,7 +39,7 @@ for size in "${sizes[@]}"; do
     [ "$count" -gt 1 ] || continue
     rm "$work/$size/scene.json" # so that the clusters are made once more, and stay
     for part in $(seq "$count"); do
-        "$oriel" fuse "$work/$size" --photographs "$size" --part "$part/$count" --quiet
+        "$oriel" job fuse "$work/$size" --photographs "$size" --part "$part/$count" --quiet
     done
     python3 "$here/cluster_seams.py" "$work/one/.oriel/fused.ply" "$work/one/points.ply" \
         "$work/$size"/stereo/fused/*/*.ply

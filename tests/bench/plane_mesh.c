@@ -4,14 +4,9 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "oriel/scene.h"
 #include "scene/mesh.h"
-
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 static double median_depth(const struct orl_scene *scene, const struct orl_view *view)
 {
@@ -26,7 +21,7 @@ static double median_depth(const struct orl_scene *scene, const struct orl_view 
             depths[count++] = depth;
     }
     if (count) {
-        qsort(depths, count, sizeof *depths, compare);
+        qsort(depths, count, sizeof *depths, orl_order_doubles);
         median = depths[count / 2];
     }
     free(depths);

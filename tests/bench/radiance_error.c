@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "datasets/synth.h"
 #include "eval/truth.h"
 #include "oriel/hdr.h"
@@ -77,12 +78,6 @@ static void find_edges(struct view *v)
         }
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static enum orl_result report(const struct job *job, const struct view *v, const char *what,
                               const struct orl_image *image)
 {
@@ -99,7 +94,7 @@ static enum orl_result report(const struct job *job, const struct view *v, const
         all[n++] = fabs(e);
     }
     if (n) {
-        qsort(all, n, sizeof *all, compare_doubles);
+        qsort(all, n, sizeof *all, orl_order_doubles);
         printf("%s %-26s %6.3f  median %.3f  90%% %.3f  99%% %.2f  away from edges %.3f  "
                "near %.3f (%.1f %%)\n", v->name, what,
                sqrt((squares[0] + squares[1]) / (double)n), all[n / 2], all[n * 9 / 10],

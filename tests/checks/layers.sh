@@ -32,7 +32,7 @@ find include $folders -name '*.[ch]' -o -name '*.cpp' | sort -u |
             public["oriel/" names[i] ".h"] = module
     }
     BEGIN {
-        add_public("core", "common result log progress image names camera")
+        add_public("core", "common result log progress image names camera option_row")
         add_public("gpu", "gpu")
         add_public("scene", "points scene path")
         add_public("render", "option_list render radiance")

@@ -39,3 +39,8 @@ PKG_CONFIG_PATH=$pc cc ${sanitize:-} user/user.c -o by-pkg-config \
     $(PKG_CONFIG_PATH=$pc pkg-config --cflags --libs --static oriel)
 ./by-pkg-config | grep -qx airieau
 "$work/prefix/bin/oriel" version
+
+for page in man/man1/oriel.1 bash-completion/completions/oriel zsh/site-functions/_oriel \
+    fish/vendor_completions.d/oriel.fish; do
+    [ -s "$work/prefix/share/$page" ] || { echo "share/$page is missing" >&2; exit 1; }
+done

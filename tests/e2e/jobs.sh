@@ -43,7 +43,7 @@ says "features of some part are missing"
 run 0 plan "$work/a" --photographs 3 --json
 cp "$work/out" "$work/first.json"
 grep -q '"name": "matches-000001"' "$work/first.json" || fail "no job matches pairs"
-timeout -s KILL 0.3 "$oriel" calibrate "$work/a" --step features --part 1/3 >/dev/null 2>&1
+timeout -s KILL 0.3 "$oriel" job calibrate "$work/a" --step features --part 1/3 >/dev/null 2>&1
 jobs_in_order "$work/first.json"
 says "using the features and matches of jobs"
 says "oriel plan says what is left"

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/color.h"
+#include "core/order.h"
 #include "gpu_test.h"
 #include "oriel/hdr.h"
 #include "io/exr.h"
@@ -539,12 +540,6 @@ static void setup_room(struct fixture *f)
     }
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static void panoramas_show_what_is_there(void **state)
 {
     (void)state;
@@ -592,7 +587,7 @@ static void panoramas_show_what_is_there(void **state)
         borders += near_border;
         inner += near_border ? 0 : (double)errors[i];
     }
-    qsort(errors, W * H, sizeof *errors, compare_floats);
+    qsort(errors, W * H, sizeof *errors, orl_order_floats);
     assert_true(errors[W * H / 2] < 0.03f);
     assert_true(errors[W * H * 95 / 100] < 0.15f);
     assert_true(border / borders < 1.5 * inner / (W * H - borders) + 0.01);
@@ -625,7 +620,7 @@ static void merges_agree(void **state)
             room_light(&view, i % W, i / W, truth);
             errors[i] = fabsf(log2f(orl_luminance(frame.color.f32 + 3 * i) / orl_luminance(truth)));
         }
-        qsort(errors, W * H, sizeof *errors, compare_floats);
+        qsort(errors, W * H, sizeof *errors, orl_order_floats);
         assert_true(errors[W * H / 2] < 0.03f);
         assert_true(errors[W * H * 95 / 100] < 0.12f);
         orl_frame_finish(&frame);

@@ -221,7 +221,7 @@ static void holds_out_by_name(void **state)
     save_photo(w.photos, "1.jpg", 1);
     save_photo(w.photos, "2.jpg", 2);
     save_photo(w.photos, "3.jpg", 3);
-    w.params.test_list = &list;
+    w.params.test_list = list;
     assert_int_equal(orl_stage_collect(&w.job), ORL_OK);
     for (size_t i = 0; i < 4; i++)
         assert_int_equal(w.job.sources[i].test, i % 2);
@@ -233,7 +233,7 @@ static void holds_out_by_name(void **state)
         save_photo(w.photos, "0.jpg", 0);
         save_photo(w.photos, "1.jpg", 1);
         save_photo(w.photos, "3.jpg", 3);
-        w.params.test_list = &list;
+        w.params.test_list = list;
         assert_int_equal(orl_stage_collect(&w.job), ORL_ERR_ARGUMENT);
         assert_non_null(strstr(w.said.text, which ? "at least two must remain" : "--test-list 7"));
         world_close(&w);

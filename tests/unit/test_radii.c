@@ -3,6 +3,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/order.h"
 #include "scene/nearest_points.h"
 #include "scene/radius_limits.h"
 #include "test.h"
@@ -21,12 +22,6 @@ static double distance(const float a[3], const float b[3])
     return sqrt(d2);
 }
 
-static int compare(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void agrees_with_brute_force(void **state)
 {
     (void)state;
@@ -43,7 +38,7 @@ static void agrees_with_brute_force(void **state)
         double all[COUNT];
         for (int j = 0; j < COUNT; j++)
             all[j] = distance(points.position[i], points.position[j]);
-        qsort(all, COUNT, sizeof *all, compare); // the point itself is all[0]
+        qsort(all, COUNT, sizeof *all, orl_order_doubles); // the point itself is all[0]
         assert_float_equal(points.radius[i], 1.5 * all[K], 1e-5);
     }
     orl_points_finish(&points);

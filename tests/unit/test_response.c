@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/color.h"
+#include "core/order.h"
 #include "oriel/image.h"
 #include "io/picture.h"
 #include "opencv_response.h"
@@ -319,12 +320,6 @@ static bool read_church(struct stack *stack)
     return true;
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // Median error of light's ratio between neighbouring exposures, in EV, of values within
 // [40, 215] in both.
 static double ratio_error(const struct stack *stack, float linear[3][256])
@@ -342,7 +337,7 @@ static double ratio_error(const struct stack *stack, float linear[3][256])
                                         (float)(stack->ev[i] - stack->ev[i + 1]));
             }
     assert_true(count > 1000);
-    qsort(errors, count, sizeof *errors, compare_floats);
+    qsort(errors, count, sizeof *errors, orl_order_floats);
     double median = (double)errors[count / 2];
     free(errors);
     return median;

@@ -26,7 +26,8 @@ static void start(struct setup *s, size_t side)
 {
     memset(s, 0, sizeof *s);
     s->dir = test_dir_make();
-    s->params = (struct orl_publish_params){ORL_PUBLISH_DEFAULTS, .title = "square"};
+    s->params = (struct orl_publish_params){ORL_PUBLISH_DEFAULTS};
+    s->params.title = "square";
     s->site = (struct site){.log = &s->log, .scene = &s->scene, .params = &s->params,
                             .dir = s->dir, .report = &s->report};
     assert_int_equal(orl_points_init(&s->log, &s->scene.points, side * side), ORL_OK);

@@ -1,0 +1,48 @@
+// Options by the rows of a table (oriel/option_row.h): parsing, texts and records of their values.
+#ifndef ORL_CORE_ARGUMENTS_H
+#define ORL_CORE_ARGUMENTS_H
+
+#include <jansson.h>
+
+#include "oriel/option_row.h"
+
+// Rows, and the struct that holds their values.
+struct orl_option_set {
+    const struct orl_option *rows; // NULL ends a list of sets
+    void *values;
+};
+
+// Parses the arguments of `command` into the values, which hold the defaults. Options may stand
+// before, between or after positionals, "--name=value" is accepted, and "--" ends the options. Texts
+// and positionals, of which there are `most` at most, point into argv. ORL_ERR_ARGUMENT, logged: an
+// argument is not allowed.
+enum orl_result orl_arguments_parse(const struct orl_log *log, const char *command,
+                                  const struct orl_option_set *sets, int argc,
+                                  const char *const *argv, size_t most, const char **positionals,
+                                  size_t *positional_count) ORL_CHECK_RESULT;
+// ORL_ERR_ARGUMENT, logged: an option that must be given is not.
+enum orl_result orl_arguments_check(const struct orl_log *log, const char *command,
+                                  const struct orl_option *rows,
+                                  const void *values) ORL_CHECK_RESULT;
+// Releases the lists among the values.
+void orl_arguments_finish(const struct orl_option *rows, void *values);
+
+enum { ORL_OPTION_TEXT = 32 }; // bytes of the name of a choice
+// The `index`-th name of a choice; false past the end.
+bool orl_option_name(const struct orl_option *row, size_t index, char name[ORL_OPTION_TEXT]);
+bool orl_option_has_preset(const struct orl_option *row);
+
+// Appends "--name", "value" to a list for every value that was given or has a default, of the rows
+// whose `of` has the word; NULL: all that are recorded. The same arguments, parsed, give the same
+// values in any folder.
+void orl_arguments_record(json_t *list, const struct orl_option *rows, const void *values,
+                        const char *of);
+// Adds to `settings` the values that are part of the stage's key.
+void orl_arguments_settings(json_t *settings, const struct orl_option *rows, const void *values,
+                          const char *stage);
+// Takes such values, where `settings` has them. ORL_ERR_ARGUMENT, logged: one is not allowed.
+enum orl_result orl_arguments_take(const struct orl_log *log, const json_t *settings,
+                                 const struct orl_option *rows, void *values,
+                                 const char *stage) ORL_CHECK_RESULT;
+
+#endif

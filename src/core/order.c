@@ -1,0 +1,21 @@
+#include "core/order.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define ORDER(function, type) \
+    int function(const void *a, const void *b) \
+    { \
+        type x = *(const type *)a, y = *(const type *)b; \
+        return (x > y) - (x < y); \
+    }
+
+ORDER(orl_order_floats, float)
+ORDER(orl_order_doubles, double)
+ORDER(orl_order_ints, int)
+ORDER(orl_order_sizes, size_t)
+
+int orl_order_texts(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}

@@ -1,0 +1,11 @@
+// Ascending orders for qsort and bsearch.
+#ifndef ORL_CORE_ORDER_H
+#define ORL_CORE_ORDER_H
+
+int orl_order_floats(const void *a, const void *b);
+int orl_order_doubles(const void *a, const void *b);
+int orl_order_ints(const void *a, const void *b);
+int orl_order_sizes(const void *a, const void *b); // size_t
+int orl_order_texts(const void *a, const void *b); // const char *, bytewise
+
+#endif

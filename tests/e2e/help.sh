@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# What the program says of itself, in all its forms, comes from the tables of its commands.
+set -u
+. "$2/tests/e2e/command_lib"
+
+runs 0 "$oriel" help
+for group in make look measure fit; do
+    grep -qx "$group" stdout.txt || fail "there is no group $group"
+done
+grep -q '^  fuse ' stdout.txt && fail "a command that only jobs call is among the others"
+commands=$(grep -oE '^  [a-z]+ ' stdout.txt | grep -v version)
+for command in $commands calibrate fuse; do
+    job=
+    [ "$command" != calibrate ] && [ "$command" != fuse ] || job=job
+    runs 0 "$oriel" ${job:+"$job"} "$command" --help
+    mv stdout.txt help.txt
+    runs 0 "$oriel" help "$command"
+    cmp -s stdout.txt help.txt || fail "help $command is not what $command --help says"
+    grep -q "^usage: oriel ${job:+job }$command" help.txt || fail "$command has no usage"
+done
+runs 2 "$oriel" help nonsense
+runs 2 "$oriel" nonsense
+runs 2 "$oriel" fuse scene
+runs 2 "$oriel" job
+runs 2 "$oriel" job render
+
+# Every option is in every form.
+options=$("$oriel" render --help | grep -oE '^  --[a-z-]+')
+for form in man bash zsh fish markdown; do
+    runs 0 "$oriel" help --as "$form"
+    sed 's/\\-/-/g' stdout.txt >"$form"
+    for option in $options; do
+        grep -qE -- "$option|-l ${option#--}( |\$)" "$form" || fail "$form has no $option"
+    done
+done
+# What shells complete.
+completes() { # WORD.. of the line : expected words
+    line=()
+    while [ "$1" != : ]; do line+=("$1"); shift; done
+    shift
+    got=$(bash -c '. ./bash; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _oriel
+                   echo "${COMPREPLY[*]}"' - "${line[@]}")
+    [ "$got" = "$*" ] || fail "${line[*]}: completes to \"$got\", not \"$*\""
+}
+completes oriel ren : render
+completes oriel job "" : calibrate fuse
+completes oriel render --textures b : bc7 bc1
+completes oriel eval --method orzan-v : orzan-view
+completes oriel job fuse --ph : --photographs
+completes oriel help tri : trim
+completes oriel render : render
+! command -v zsh >/dev/null || zsh -n zsh || fail "zsh refuses its completions"
+! command -v fish >/dev/null || fish -n fish || fail "fish refuses its completions"
+! command -v groff >/dev/null || [ -z "$("$oriel" help --as man | groff -man -ww -z 2>&1)" ] ||
+    fail "groff warns of the man page"
+exit $failed
