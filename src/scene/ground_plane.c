@@ -17,9 +17,8 @@ static const double HEIGHT_SPREAD = 0.2;
 static const double TOLERANCE = 0.01; // distance of inliers, as a fraction of photo_distance
 static const double BENEATH = 2;      // in tolerances: deeper points contradict the plane
 static const double EXTENT = 1;       // smallest RMS spread of inliers, in mean heights
-// Limits of the mean absolute cosines between the plane's normal and the photographs' axes: z, and
-// the larger of x and y.
-static const double FORWARD_MAX = 0.5, UPWARD_MIN = 0.85;
+// Least mean absolute cosine between the plane's normal and the photographs' axis x or y.
+static const double UPWARD_MIN = 0.85;
 // As fractions of all points.
 static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.02;
 // Smallest cosine of a point's normal with the plane's for the two to agree, and the weights of
@@ -120,7 +119,7 @@ static enum orl_result take_sample(const struct orl_log *log, const struct orl_s
 // the plane cannot be the ground that they were taken from.
 static double stood_height(const struct sample *s, double plane[4])
 {
-    double sum = 0, squares = 0, least = INFINITY, across[3] = {0};
+    double sum = 0, squares = 0, least = INFINITY, across[2] = {0};
     for (int i = 0; i < s->photo_count; i++)
         sum += orl_plane_height(plane, s->centres[i]);
     for (int k = 0; sum < 0 && k < 4; k++)
@@ -130,11 +129,11 @@ static double stood_height(const struct sample *s, double plane[4])
         double height = orl_plane_height(plane, s->centres[i]);
         squares += (height - mean) * (height - mean) / s->photo_count;
         least = fmin(least, height);
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 2; k++)
             across[k] += fabs(orl_dot3(s->poses[i]->r[k], plane)) / s->photo_count;
     }
     // A camera may be held upright or on its side, so x or y may be the vertical axis.
-    bool level = across[2] <= FORWARD_MAX && fmax(across[0], across[1]) >= UPWARD_MIN;
+    bool level = fmax(across[0], across[1]) >= UPWARD_MIN;
     return level && least > 0 && sqrt(squares) <= HEIGHT_SPREAD * mean ? mean : 0;
 }
 

@@ -235,6 +235,42 @@ static void hidden_voxels_are_painted_by_others(void **state)
     teardown(&f);
 }
 
+// Pixels of a ball that have the colour of a photograph straight before it, which ends `beyond` pixels
+// beyond the ball's middle.
+static int count_red(double beyond)
+{
+    static const char *const coarse[] = {"hull_side=8"};
+    static const double turns[3] = {0, 1.2, -1.2}, centre[3] = {0, 0, 0};
+    struct fixture f;
+    setup_empty(&f, 4);
+    for (int i = 0; i < 3; i++) {
+        struct orl_silhouette s = {.view = look_around(turns[i], 4, SIDE, 60)};
+        s.view.camera.cx = i ? 0.5 * SIDE : SIDE - beyond;
+        add_photo(&f, s.view, i ? green : red);
+        assert_int_equal(orl_image_init(NULL, &s.mask, SIDE, SIDE, 1, ORL_PIXEL_U8), ORL_OK);
+        add_ball(&s, centre, 0.5);
+        mask_photo(&f, &s.mask);
+    }
+    struct orl_render_params params = params_of(coarse, 1);
+    struct orl_frame frame = draw(gpu, &f, look_around(0, 4, SIDE, 60), &params, 0);
+    int count = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        count += frame.color.f32[3 * i] > 0.9f;
+    orl_frame_finish(&frame);
+    teardown(&f);
+    return count;
+}
+
+// Voxels across the photograph's border have the colour of one that shows them whole, those within it
+// have its own.
+static void voxels_seen_in_part_are_painted_by_others(void **state)
+{
+    (void)state;
+    int across = count_red(0), within = count_red(3);
+    print_message("%d pixels, and %d with the voxels' column whole\n", across, within);
+    assert_true(across > 0 && 3 * across < within);
+}
+
 // --- radiance and memory ---
 
 // Makes the last photograph grey: `ball` within `radius` pixels of its middle, else `wall`.
@@ -471,6 +507,7 @@ int main(void)
         cmocka_unit_test(the_nearest_two_weigh_by_their_arcs),
         cmocka_unit_test(colours_blend_by_the_weights),
         cmocka_unit_test(hidden_voxels_are_painted_by_others),
+        cmocka_unit_test(voxels_seen_in_part_are_painted_by_others),
         cmocka_unit_test(clipped_photographs_give_way),
         cmocka_unit_test(memory_stays_within_the_plan),
         cmocka_unit_test(photographs_come_back_at_their_axis),

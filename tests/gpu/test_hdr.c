@@ -322,11 +322,14 @@ static void noise_does_not_outvote_light(void **state)
     add_photo(&f, look(0, 0), -6, noisy_light);
     add_photo(&f, look(0.3, 0), 3, dim_light);
     add_photo(&f, look(-0.3, 0), 3, dim_light);
-    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
-    params.render.ghosts = 0; // trust alone
-    struct orl_frame frame = draw(&f, &params);
-    assert_color(&frame, MIDDLE, (float[]){0.002f, 0.002f, 0.002f}, 0.1);
-    orl_frame_finish(&frame);
+    static const enum orl_hdr_merge merges[] = {ORL_HDR_FUSED, ORL_HDR_SERIES};
+    for (size_t i = 0; i < ORL_COUNT(merges); i++) {
+        struct orl_hdr_params params = params_of(merges[i], "oriel");
+        params.render.ghosts = 0; // trust alone
+        struct orl_frame frame = draw(&f, &params);
+        assert_color(&frame, MIDDLE, (float[]){0.002f, 0.002f, 0.002f}, 0.1);
+        orl_frame_finish(&frame);
+    }
     teardown(&f);
 }
 

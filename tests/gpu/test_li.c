@@ -237,21 +237,22 @@ static void fat_outlines_stop_leaks(void **state)
 
 // --- section 5.1: the room ---
 
-// A white ball in a room, photographed from two sides, and with `count` 3 from a third; the pictures
-// of the empty room are red, green and blue.
+// A white ball in a room, photographed from two sides, and with `count` 3 from the other one, from
+// nearby; the pictures of the empty room are red, green and blue.
 static void setup_room(struct fixture *f, int count)
 {
     static const uint8_t *const colors[] = {red, green, blue};
-    static const double turns[] = {0.3, -0.3, 3.14159265};
+    static const double turns[] = {0.3, -0.3, 3.14159265}, distances[] = {4, 4, 2};
     setup_empty(f, 4);
     f->scene.room = (struct orl_room){{-6, -3, -6}, {6, 3, 6}, true};
-    double radius = 60 * tan(asin(0.5 / 4)), middle = 0.5 * SIDE;
+    double middle = 0.5 * SIDE;
     char *folder = orl_path_join(NULL, f->dir, "background");
     assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
     for (int i = 0; i < count; i++) {
         struct orl_image background;
-        add_disc_photo(f, look_around(turns[i], 4, SIDE, 60), (uint8_t[3]){255, 255, 255}, middle,
-                       middle, radius);
+        add_disc_photo(f, look_around(turns[i], distances[i], SIDE, 60),
+                       (uint8_t[3]){255, 255, 255}, middle, middle,
+                       60 * tan(asin(0.5 / distances[i])));
         assert_int_equal(orl_image_init(NULL, &background, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
         for (int p = 0; p < SIDE * SIDE; p++)
             memcpy(&background.u8[3 * p], colors[i], 3);
@@ -277,6 +278,8 @@ static void the_room_has_its_pictures(void **state)
     assert_float_equal(both[0], 0.5, 0.01);
     assert_float_equal(both[1], 0.5, 0.01);
     assert_float_equal(both[2], 0, 0.01); // the third looks the other way
+    // 4 behind the third camera, where its picture would show it mirrored.
+    assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2 - 5)[2], 0, 0.01);
     assert_float_equal(ball[0] + ball[1] + ball[2], 3, 0.03);
     // The wall at z = 6 from x = -6 to 6: the first camera sees its left.
     double x = -5, left = 30 * x / 10 + 32;

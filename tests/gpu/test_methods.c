@@ -24,10 +24,10 @@ static void add_noise_photo(struct fixture *f, struct orl_view view, uint32_t se
     repaint_photo(f, &image);
 }
 
-// Penalty of method ulr for the wall point that the middle pixel sees, of a photograph at x.
-static double ulr_penalty(double x)
+// Penalty of method ulr for the wall point that the middle pixel sees, of a photograph at (x, 0, z).
+static double ulr_penalty(double x, double z)
 {
-    double there = hypot(4, x), angle = atan2(fabs(x), 4);
+    double there = hypot(4 - z, x), angle = atan2(fabs(x), 4 - z);
     return angle + 0.1 * fmax(1e-4, (there - 4) / there);
 }
 
@@ -40,11 +40,11 @@ static void the_best_four_fade_by_the_fifth(void **state)
     setup(&f, false);
     // An odd size: the middle pixel looks straight ahead.
     struct orl_view view = look_from(0, 0, 0, SIDE + 1, 40);
-    double sum[3] = {0}, weights = 0, fifth = ulr_penalty(places[4]);
+    double sum[3] = {0}, weights = 0, fifth = ulr_penalty(places[4], 0);
     for (int i = 0; i < 6; i++) {
         const uint8_t *color = i == 0 ? red : i == 1 ? green : i < 4 ? blue : red;
         add_photo(&f, look_from(places[i], 0, 0, SIDE, 40), color);
-        double weight = fmax(0, 1 - ulr_penalty(places[i]) / fifth);
+        double weight = fmax(0, 1 - ulr_penalty(places[i], 0) / fifth);
         weights += weight;
         for (int c = 0; c < 3; c++)
             sum[c] += weight * (color[c] == 255);
@@ -53,6 +53,27 @@ static void the_best_four_fade_by_the_fifth(void **state)
     struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     for (int c = 0; c < 3; c++)
         assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[c], sum[c] / weights, 2e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// A photograph straight behind the viewer, twice as far from the wall, and one aside as far as the
+// viewer count nearly alike.
+static void farther_photographs_count_less(void **state)
+{
+    (void)state;
+    static const double x[5] = {0, 0.2, 0.3, -0.3, 0.4}, z[5] = {-4, 0, 0, 0, 0};
+    struct fixture f;
+    setup(&f, false);
+    double weight[2], fifth = ulr_penalty(x[4], z[4]);
+    for (int i = 0; i < 5; i++)
+        add_photo(&f, look_from(x[i], 0, z[i], SIDE, 40), i == 0 ? red : i == 1 ? green : blue);
+    for (int i = 0; i < 2; i++)
+        weight[i] = 1 - ulr_penalty(x[i], z[i]) / fifth;
+    struct orl_render_params params = orl_method_find(NULL, "ulr")->params;
+    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE + 1, 40), &params, 0);
+    const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
+    assert_float_equal(middle[0] / middle[1], weight[0] / weight[1], 0.02);
     orl_frame_finish(&frame);
     teardown(&f);
 }
@@ -292,6 +313,7 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_best_four_fade_by_the_fifth),
+        cmocka_unit_test(farther_photographs_count_less),
         cmocka_unit_test(few_photographs_paint_too),
         cmocka_unit_test(turns_change_nothing),
         cmocka_unit_test(both_sides_have_one_penalty),

@@ -165,6 +165,32 @@ static void shadow_maps_see_what_stands_between(void **state)
     teardown(&f);
 }
 
+// A photograph so fine that it sees the wall between the plate's points: what it shows there is not
+// the plate, which is whole in the view.
+static void shadow_maps_see_past_what_is_thin(void **state)
+{
+    (void)state;
+    enum { PLATE = 20, FINER = 20 };
+    static const char *const plain[] = {"weight=equal", "fill=none", "median=off"};
+    struct fixture f;
+    setup(&f, true);
+    struct orl_points *points = &f.scene.points;
+    for (size_t i = points->count - PLATE * PLATE; i < points->count; i++)
+        points->radius[i] = 0.001f;
+    add_photo(&f, look_from(0, 0, 0, FINER * SIDE, FINER * 40), green);
+    struct orl_frame frame = draw_with(&f, "orzan-shadow", plain, 3);
+    int plate = 0, painted = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        bool on = frame.depth.f32[i] > 0 && frame.depth.f32[i] < 3;
+        plate += on;
+        painted += on && frame.coverage.f32[i] > 0;
+    }
+    print_message("%d of %d pixels are painted\n", painted, plate);
+    assert_true(plate > 30 && 3 * painted < 2 * plate);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // Of six photographs, five paint.
 static void shadow_asks_the_best_five(void **state)
 {
@@ -296,6 +322,7 @@ int main(void)
         cmocka_unit_test(medians_fill_small_holes),
         cmocka_unit_test(medians_mix_no_colours),
         cmocka_unit_test(shadow_maps_see_what_stands_between),
+        cmocka_unit_test(shadow_maps_see_past_what_is_thin),
         cmocka_unit_test(shadow_asks_the_best_five),
         cmocka_unit_test(medians_keep_edges),
     };

@@ -240,6 +240,19 @@ static void holes_between_splats_are_pushed_shut(void **state)
     assert_float_equal(d.depth[at(2, 2)], 0, 0);
 }
 
+// Two discs that count as one surface: the pixels between them have the depth of a straight line
+// between the middles of the coarser pixels.
+static void depths_between_splats_are_interpolated(void **state)
+{
+    (void)state;
+    struct orl_view view = front_view();
+    const struct point p[] = {seen_at(18.5, 20.5, 2, 0.15), seen_at(21.5, 20.5, 2.1, 0.15)};
+    static struct drawn d;
+    draw(p, 2, &view, &d);
+    assert_float_equal(d.depth[at(19, 20)], 2.025, 5e-3);
+    assert_float_equal(d.depth[at(20, 20)], 2.075, 5e-3);
+}
+
 // A far wall of points shows through a near plane's gaps: the push must hide it there,
 // and keep it where the near plane is not.
 static void occluded_points_are_replaced(void **state)
@@ -324,6 +337,7 @@ int main(void)
         cmocka_unit_test(a_disc_fills_its_projection),
         cmocka_unit_test(a_slanted_disc_is_narrow_and_keeps_its_plane),
         cmocka_unit_test(holes_between_splats_are_pushed_shut),
+        cmocka_unit_test(depths_between_splats_are_interpolated),
         cmocka_unit_test(occluded_points_are_replaced),
         cmocka_unit_test(points_beside_the_eye_leave_no_mark),
         cmocka_unit_test(odd_sizes_lose_no_pixel),

@@ -36,6 +36,7 @@ static double normal(uint32_t *state)
 struct camera {
     double exposure[3]; // factor on linear light
     double vignette;    // light lost in the corners
+    double corner;      // light lost there that grows with r^4
     bool film;          // response with more contrast than sRGB
 };
 
@@ -67,7 +68,9 @@ static struct orl_samples make_samples(const struct camera *cameras, double outl
             bool good = true;
             for (int c = 0; c < 3; c++) {
                 double v = light[c] * camera->exposure[c] * other *
-                           (1 - camera->vignette * (double)item.r2) * exp(0.03 * normal(&state));
+                           (1 - camera->vignette * (double)item.r2 -
+                            camera->corner * (double)item.r2 * (double)item.r2) *
+                           exp(0.03 * normal(&state));
                 item.value[c] = (float)round(255 * encode(camera->film, v));
                 good = good && item.value[c] > 1 && item.value[c] < 254;
             }
@@ -183,6 +186,30 @@ static void vignetting_is_found(void **state)
     orl_samples_finish(&samples);
 }
 
+// Two photographs of one exposure. In the dark, where a step of the values is a third of the light,
+// they differ by one, and elsewhere not: their gains differ by less than a tenth of a stop.
+static void dark_samples_have_little_say(void **state)
+{
+    (void)state;
+    enum { EACH = 200 };
+    static struct orl_observation items[4 * EACH];
+    static uint32_t points[4 * EACH];
+    struct orl_samples samples;
+    struct orl_align_photo photos[2] = {0};
+    struct orl_alignment alignment;
+    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
+    for (uint32_t i = 0; i < 4 * EACH; i++) {
+        float value = i / 2 < EACH ? 200 : i % 2 ? 4 : 3;
+        points[i] = i / 2;
+        items[i] = (struct orl_observation){.photo = i % 2, .value = {value, value, value}};
+    }
+    assert_int_equal(orl_samples_collect(NULL, items, points, 4 * EACH, 2 * EACH, &samples), ORL_OK);
+    assert_int_equal(orl_align(NULL, &samples, &params, photos, 2, &alignment), ORL_OK);
+    assert_true(fabs(log2((double)photos[0].gain[1] / (double)photos[1].gain[1])) < 0.1);
+    orl_alignment_finish(&alignment);
+    orl_samples_finish(&samples);
+}
+
 static void implausible_gains_are_refused(void **state)
 {
     (void)state;
@@ -246,6 +273,54 @@ static void response_is_found(void **state)
             fail_msg("channel %d: RMS %g", c, sqrt(squares / 256));
         assert_float_equal(response.linear[c][255], 1, 0);
     }
+    orl_samples_finish(&samples);
+}
+
+// The residuals are those of the noise, 3 % of the light, whatever a photograph's corners lost.
+static void vignetting_of_every_order_is_undone(void **state)
+{
+    (void)state;
+    struct camera cameras[PHOTOS];
+    memcpy(cameras, bracket, sizeof cameras);
+    for (int i = 0; i < PHOTOS; i++)
+        cameras[i].corner = 0.6;
+    struct orl_samples samples = make_samples(cameras, 0, -9, 1);
+    struct orl_response_photo photos[PHOTOS];
+    struct orl_response response;
+    struct orl_response_fit fit;
+    tell_exposures(photos);
+    for (int i = 0; i < PHOTOS; i++)
+        photos[i].vignette[1] = -0.6f;
+    assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(fit.verdict, ORL_RESPONSE_FOUND);
+    print_message("spread %g EV\n", fit.spread_ev);
+    assert_true(fit.spread_ev < 0.08);
+    orl_samples_finish(&samples);
+}
+
+// The brighter half of the light has values that fall with it, as those of a solarised negative. A
+// curve always rises.
+static void curves_never_fall(void **state)
+{
+    (void)state;
+    struct camera cameras[PHOTOS];
+    memcpy(cameras, bracket, sizeof cameras);
+    for (int i = 0; i < PHOTOS; i++)
+        cameras[i].film = false;
+    struct orl_samples samples = make_samples(cameras, 0, -9, 1);
+    struct orl_response_photo photos[PHOTOS];
+    struct orl_response response;
+    struct orl_response_fit fit;
+    tell_exposures(photos);
+    for (size_t i = 0; i < samples.count; i++)
+        for (int c = 0; c < 3; c++)
+            if (samples.items[i].value[c] > 128)
+                samples.items[i].value[c] = 128 + 0.9f * (255 - samples.items[i].value[c]);
+    assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(fit.verdict, ORL_RESPONSE_FOUND);
+    for (int c = 0; c < 3; c++)
+        for (int v = 1; v < 256; v++)
+            assert_true(response.linear[c][v] > response.linear[c][v - 1]);
     orl_samples_finish(&samples);
 }
 
@@ -408,8 +483,11 @@ int main(void)
         cmocka_unit_test(gains_undo_exposure_and_colour),
         cmocka_unit_test(known_exposures_set_the_reference),
         cmocka_unit_test(vignetting_is_found),
+        cmocka_unit_test(dark_samples_have_little_say),
         cmocka_unit_test(implausible_gains_are_refused),
         cmocka_unit_test(response_is_found),
+        cmocka_unit_test(vignetting_of_every_order_is_undone),
+        cmocka_unit_test(curves_never_fall),
         cmocka_unit_test(response_stays_srgb_without_reason),
         cmocka_unit_test(guesses_follow_what_predicts),
         cmocka_unit_test(guesses_follow_automatic_exposure),

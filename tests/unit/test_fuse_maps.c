@@ -65,6 +65,22 @@ static void a_wall_needs_every_second_pixel(void **state)
         orl_image_finish(&maps[i].depth);
 }
 
+// The other picture begins 9.25 pixels to the right, so that it shows the middle of pixel 9, but not
+// its left half.
+static void pixels_are_asked_for_at_their_middles(void **state)
+{
+    struct orl_depth_map maps[] = {make_map(0, 1), make_map(9.25 / 8, 1)};
+    struct orl_fused_pixels found;
+    (void)state;
+    draw(&maps[0], WALL, false);
+    draw(&maps[1], WALL, false);
+    find(maps, 0, 2, &found);
+    assert_int_equal(found.count, (WIDTH - 8) / 2 * (HEIGHT / 2));
+    orl_fused_pixels_finish(&found);
+    for (int i = 0; i < 2; i++)
+        orl_image_finish(&maps[i].depth);
+}
+
 // Around the outline of the box all pixels become points.
 static void outlines_have_all_pixels(void **state)
 {
@@ -241,6 +257,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_wall_needs_every_second_pixel),
+        cmocka_unit_test(pixels_are_asked_for_at_their_middles),
         cmocka_unit_test(outlines_have_all_pixels),
         cmocka_unit_test(what_others_see_past_goes),
         cmocka_unit_test(depths_agree_within_a_hundredth),

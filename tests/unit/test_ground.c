@@ -136,12 +136,62 @@ static void there_may_be_none(void **state)
     assert_float_equal(ground.height, 0, 0);
 }
 
+// A facade whose points thin out towards its foot and its top: nothing is ground.
+static void build_facade(struct street *s)
+{
+    build(s, 0);
+    for (size_t i = 0; i < FACADE; i++) {
+        float *y = &s->scene.points.position[i][1];
+        float share = (1.6f - *y) / 5;
+        *y = 1.6f - 5 * (share < 0.5f ? sqrtf(share / 2) : 1 - sqrtf((1 - share) / 2));
+    }
+}
+
+static void few_points_are_no_ground(void **state)
+{
+    (void)state;
+    struct street s;
+    build_facade(&s);
+    assert_float_equal(find(&s).height, 0, 0);
+    orl_points_finish(&s.scene.points);
+}
+
+// As far before the photographs as ground is beneath them.
+static void walls_are_no_ground(void **state)
+{
+    (void)state;
+    struct street s;
+    build_facade(&s);
+    for (int i = 0; i < PHOTOS; i++) {
+        const double eye[3] = {0.7 * i - 3, 0, 8 + 0.01 * i}, target[3] = {0.7 * i - 3, -0.2, 10};
+        const double up[3] = {0, -1, 0};
+        s.photos[i].view.cam_from_world = orl_pose_look_at(eye, target, up);
+    }
+    assert_float_equal(find(&s).height, 0, 0);
+    orl_points_finish(&s.scene.points);
+}
+
+// A floor that much lies beneath, at every depth, is not what the photographer stood on.
+static void floors_above_the_ground_are_none(void **state)
+{
+    (void)state;
+    struct street s;
+    build(&s, 900);
+    for (size_t i = 0; i < 60; i++)
+        s.scene.points.position[900 + 40 * i][1] = 2.6f + 0.08f * (float)i;
+    assert_float_equal(find(&s).height, 0, 0);
+    orl_points_finish(&s.scene.points);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_the_street),
         cmocka_unit_test(held_out_photographs_have_no_say),
         cmocka_unit_test(there_may_be_none),
+        cmocka_unit_test(few_points_are_no_ground),
+        cmocka_unit_test(walls_are_no_ground),
+        cmocka_unit_test(floors_above_the_ground_are_none),
     };
     return cmocka_run_group_tests_name("ground", tests, NULL, NULL);
 }

@@ -135,6 +135,26 @@ static void tells_shadows_from_subjects(void **state)
     orl_background_finish(&background);
 }
 
+// Two pixels are a speck, five are not.
+static void specks_go(void **state)
+{
+    (void)state;
+    const struct orl_difference_params params = {ORL_DIFFERENCE_DEFAULTS};
+    struct orl_background background = {0};
+    struct orl_image empty = filled(100, 140, 120), picture = filled(100, 140, 120), mask;
+    assert_int_equal(orl_background_add(NULL, &background, &empty), ORL_OK);
+    box(&picture, 10, 10, 12, 11, 160, 60, 60);
+    box(&picture, 40, 30, 45, 31, 160, 60, 60);
+    assert_int_equal(orl_silhouette_difference(NULL, &background, &params, &picture, &mask),
+                     ORL_OK);
+    assert_int_equal(mask.u8[10 * W + 10], 0);
+    assert_int_equal(mask.u8[30 * W + 42], 255);
+    orl_image_finish(&mask);
+    orl_image_finish(&empty);
+    orl_image_finish(&picture);
+    orl_background_finish(&background);
+}
+
 // Where the background itself moves, the same difference says nothing.
 static void tolerates_unsteady_pixels(void **state)
 {
@@ -179,7 +199,7 @@ int main(void)
         cmocka_unit_test(the_border_is_no_edge),
         cmocka_unit_test(marks_edges), cmocka_unit_test(finds_what_is_bright),
         cmocka_unit_test(learns_backgrounds), cmocka_unit_test(tells_shadows_from_subjects),
-        cmocka_unit_test(tolerates_unsteady_pixels),
+        cmocka_unit_test(tolerates_unsteady_pixels), cmocka_unit_test(specks_go),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
