@@ -96,7 +96,7 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
     if (masked)
         printf("silhouettes  of %zu photographs\n", masked);
     if (scene->frame_count)
-        printf("moments      %zu\n", scene->frame_count);
+        printf("time steps   %zu\n", scene->frame_count);
     if (scene->backdrop_rests)
         printf("backdrop     rests in the photographs, as behind a turntable\n");
     print_choices(scene);

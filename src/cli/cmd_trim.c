@@ -18,7 +18,7 @@
         "instead: the best picture within so long a frame; with --max-bytes, both") \
     METHOD_OPTIONS(ROW) \
     ROW(keep_options, "keep-options", FLAG, "do not tune the method's options first") \
-    ROW(views, "views", INT(6, 2, 64, "N"), "photographs that judge each step") \
+    ROW(views, "views", INT(6, 2, 64, "N"), "photographs that decide on each step") \
     ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
     ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
         "try nothing new after so long, by the clock; default: no limit") \
@@ -140,7 +140,7 @@ const struct command command_trim = {
     .brief = "make the least scene that serves as well",
     .usage = "SCENE --out SCENE2 [--tolerance DB]",
     .summary = "Makes the least scene that serves as well: fewer points and photographs, smaller files,\n"
-               "and the method's cheaper options. Training photographs judge, each rendered from the\n"
+               "and the method's cheaper options. Training photographs decide, each rendered from the\n"
                "others; held-out ones confirm at the end.",
     COMMAND_TABLE(trim_options), .inputs_min = 1, .inputs_max = 1, .run = run_trim,
 };

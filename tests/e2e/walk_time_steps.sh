@@ -4,7 +4,7 @@
 runs 0 "$oriel" synth figures --out set --cameras 5 --frames 3 --size 96x72
 runs 0 "$oriel" import set --masks set/masks --background set/background --out moving --test-list cam03
 runs 0 "$oriel" info moving
-grep -q '^moments  *3$' stdout.txt || fail "does not say how many time steps there are"
+grep -q '^time steps  *3$' stdout.txt || fail "does not say how many time steps there are"
 grep -q '^silhouettes  *of 5 photographs$' stdout.txt || fail "does not say that there are silhouettes"
 [ $failed -eq 0 ] || exit 1
 needs_browser
