@@ -20,6 +20,14 @@ static const char *kind_name(size_t index)
     ROW(width, "width", INT(0, 16, 32768, "PX"), "of hdri; default 2048")
 COMMAND_OPTIONS(export_options, EXPORT_OPTIONS)
 
+static void say_origin(const struct orl_log *log, const struct orl_scene *scene)
+{
+    const double *o = scene->origin;
+    if (o[0] != 0 || o[1] != 0 || o[2] != 0)
+        orl_logf(log, ORL_LOG_WARNING, "this kind holds floats: add %.9g %.9g %.9g to its coordinates "
+                 "for those that were imported", o[0], o[1], o[2]);
+}
+
 // Refuses what the kind does not read.
 static enum orl_result check(const struct orl_log *log, const struct export_options *o,
                              const struct orl_export_kind *kind)
@@ -60,6 +68,8 @@ static enum orl_result run_export(struct terminal *terminal, const void *given,
     if (result == ORL_OK && scene->lod)
         orl_logf(log, ORL_LOG_WARNING, "%s has %zu points in levels of detail: a sample of %zu is "
                  "exported", inputs[0], orl_scene_point_count(scene), scene->points.count);
+    if (result == ORL_OK && !kind->placed)
+        say_origin(log, scene);
     if (result == ORL_OK && !kind->write)
         printf("%s is a COLMAP workspace: open its sparse/ with its images/\n", inputs[0]);
     else if (result == ORL_OK)

@@ -1,4 +1,5 @@
-// nerfstudio's folder and a Python script that opens it in Blender.
+// nerfstudio's folder and a Python script that opens it in Blender, whose coordinates are floats: those of the
+// scene, near 0.
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,8 @@ static enum orl_result add_script(const struct orl_log *log, const char *dir)
 
 ORL_EXPORT_WRITER(orl_export_blender)
 {
-    enum orl_result result = orl_export_nerfstudio(log, progress, scene, params);
+    struct orl_scene near = *scene;
+    memset(near.origin, 0, sizeof near.origin);
+    enum orl_result result = orl_export_nerfstudio(log, progress, &near, params);
     return result == ORL_OK ? add_script(log, params->out) : result;
 }

@@ -1,5 +1,5 @@
 // nerfstudio's folder: transforms.json with the cameras and the split, photographs, masks, points.
-// The world stays that of the scene; only a camera's own axes are OpenGL's.
+// The world is the one that was imported; only a camera's own axes are OpenGL's.
 #include <jansson.h>
 #include <stdlib.h>
 
@@ -10,14 +10,14 @@
 #include "exchange/kinds.h"
 
 // world_from_camera, with y up and z backward in the camera.
-static json_t *pack_matrix(const struct orl_pose *pose)
+static json_t *pack_matrix(const struct orl_pose *pose, const double origin[3])
 {
     double eye[3];
     orl_pose_centre(pose, eye);
     json_t *rows = json_array();
     for (int i = 0; i < 3; i++)
         json_array_append_new(rows, json_pack("[f, f, f, f]", pose->r[0][i], -pose->r[1][i],
-                                              -pose->r[2][i], eye[i]));
+                                              -pose->r[2][i], eye[i] + origin[i]));
     json_array_append_new(rows, json_pack("[i, i, i, i]", 0, 0, 0, 1));
     return rows;
 }
@@ -44,7 +44,7 @@ static enum orl_result add_frame(const struct orl_log *log, const struct orl_sce
         json_t *frame = json_pack(
             "{s:o, s:i, s:i, s:f, s:f, s:f, s:f, s:o}", "file_path", orl_json_string(image), "w",
             c->width, "h", c->height, "fl_x", c->fx, "fl_y", c->fy, "cx", c->cx, "cy", c->cy,
-            "transform_matrix", pack_matrix(&p->view.cam_from_world));
+            "transform_matrix", pack_matrix(&p->view.cam_from_world, scene->origin));
         if (mask)
             json_object_set_new(frame, "mask_path", orl_json_string(mask));
         json_array_append_new(json_object_get(root, "frames"), frame);
@@ -79,7 +79,7 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
                             scene->photos[i].name);
     }
     if (result == ORL_OK)
-        result = orl_points_write(log, points, &scene->points, false);
+        result = orl_points_write_from(log, points, &scene->points, scene->origin);
     if (result == ORL_OK)
         result = orl_json_write(log, file, root);
     json_decref(root);

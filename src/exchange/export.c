@@ -2,14 +2,14 @@
 
 const struct orl_export_kind orl_export_kinds[] = {
     {"splats", "PLY of 2D Gaussian splatting", ORL_EXPORT_DEGREE | ORL_EXPORT_THIN,
-     orl_export_splats},
+     false, orl_export_splats},
     {"glb", "glTF with KHR_gaussian_splatting, points elsewhere", ORL_EXPORT_DEGREE,
-     orl_export_glb},
-    {"ply", "points with normals, colours and radii", 0, orl_export_ply},
-    {"nerfstudio", "a folder: transforms.json, photographs, points", 0, orl_export_nerfstudio},
-    {"blender", "that folder, and a script that opens it in Blender", 0, orl_export_blender},
+     false, orl_export_glb},
+    {"ply", "points with normals, colours and radii", 0, true, orl_export_ply},
+    {"nerfstudio", "a folder: transforms.json, photographs, points", 0, true, orl_export_nerfstudio},
+    {"blender", "that folder, and a script that opens it in Blender", 0, false, orl_export_blender},
     {"hdri", "all directions from a photograph's place, radiance, EXR", ORL_EXPORT_PLACE,
-     orl_export_hdri},
-    {"colmap", "nothing to write: a scene is a COLMAP workspace", 0, NULL},
+     true, orl_export_hdri},
+    {"colmap", "nothing to write: a scene is a COLMAP workspace", 0, false, NULL},
     {0},
 };

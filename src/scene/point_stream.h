@@ -31,6 +31,7 @@ struct orl_point_writer {
     FILE *stream;
     uint64_t left; // points that are still to come
     bool small;
+    const double *origin; // added to positions, which become doubles; NULL: floats as they are
 };
 // count: of all points. `path` must outlive the writer.
 enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,

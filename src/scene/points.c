@@ -65,16 +65,21 @@ void orl_points_drop_unusable(const struct orl_log *log, struct orl_points *poin
     points->count = kept;
 }
 
-// Size of the larger record in the file, which is packed: six floats, a colour, a radius and a
-// count.
-enum { RECORD_SIZE_MAX = 6 * 4 + 3 + 4 + 1 };
+// Size of the largest record in the file, which is packed: three doubles and three floats, a colour,
+// a radius and a count.
+enum { RECORD_SIZE_MAX = 3 * 8 + 3 * 4 + 3 + 4 + 1 };
 
 // Returns the record's size.
 static size_t pack_point(const struct orl_points *points, size_t i, bool small,
-                         uint8_t record[RECORD_SIZE_MAX])
+                         const double *origin, uint8_t record[RECORD_SIZE_MAX])
 {
-    size_t at = 12;
-    memcpy(record, points->position[i], 12);
+    size_t at = 0;
+    for (int k = 0; k < 3; k++) {
+        const double far = origin ? origin[k] + (double)points->position[i][k] : 0;
+        size_t size = origin ? sizeof far : sizeof points->position[i][k];
+        memcpy(record + at, origin ? (const void *)&far : &points->position[i][k], size);
+        at += size;
+    }
     for (int k = 0; small && k < 3; k++)
         record[at++] = (uint8_t)(int8_t)lrintf(127 * points->normal[i][k]);
     if (!small) {
@@ -89,30 +94,37 @@ static size_t pack_point(const struct orl_points *points, size_t i, bool small,
     return at;
 }
 
-static bool write_header(FILE *stream, uint64_t count, bool small)
+static bool write_header(FILE *stream, uint64_t count, bool small, bool far)
 {
-    const char *normal = small ? "char" : "float";
+    const char *normal = small ? "char" : "float", *position = far ? "double" : "float";
     return fprintf(stream, "ply\nformat binary_little_endian 1.0\n"
                            "element vertex %llu\n"
-                           "property float x\nproperty float y\nproperty float z\n"
+                           "property %s x\nproperty %s y\nproperty %s z\n"
                            "property %s nx\nproperty %s ny\nproperty %s nz\n"
                            "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                            "property float radius\n%send_header\n",
-                   (unsigned long long)count, normal, normal, normal,
+                   (unsigned long long)count, position, position, position, normal, normal, normal,
                    small ? "" : "property uchar photographs\n") > 0;
+}
+
+static enum orl_result begin(const struct orl_log *log, const char *path, uint64_t count, bool small,
+                             const double *origin, struct orl_point_writer *writer)
+{
+    *writer = (struct orl_point_writer){.log = log, .path = path, .left = count, .small = small,
+                                        .origin = origin};
+    enum orl_result result = orl_atomic_begin(log, path, &writer->file);
+    if (result != ORL_OK)
+        return result;
+    writer->stream = orl_atomic_stream(&writer->file);
+    return writer->stream && write_header(writer->stream, count, small, origin)
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
 }
 
 enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
                                        bool small, struct orl_point_writer *writer)
 {
-    *writer = (struct orl_point_writer){.log = log, .path = path, .left = count, .small = small};
-    enum orl_result result = orl_atomic_begin(log, path, &writer->file);
-    if (result != ORL_OK)
-        return result;
-    writer->stream = orl_atomic_stream(&writer->file);
-    return writer->stream && write_header(writer->stream, count, small)
-               ? ORL_OK
-               : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    return begin(log, path, count, small, NULL, writer);
 }
 
 enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
@@ -122,7 +134,7 @@ enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
     writer->left -= points->count;
     for (size_t i = 0; i < points->count; i++) {
         uint8_t record[RECORD_SIZE_MAX];
-        size_t size = pack_point(points, i, writer->small, record);
+        size_t size = pack_point(points, i, writer->small, writer->origin, record);
         if (fwrite(record, size, 1, writer->stream) != 1)
             return orl_fail(writer->log, ORL_ERR_IO, "%s: %s", writer->path, strerror(errno));
     }
@@ -147,17 +159,31 @@ void orl_point_writer_finish(struct orl_point_writer *writer)
     orl_atomic_abort(&writer->file);
 }
 
-enum orl_result orl_points_write(const struct orl_log *log, const char *path,
-                                 const struct orl_points *points, bool small)
+static enum orl_result write_points(const struct orl_log *log, const char *path,
+                                    const struct orl_points *points, bool small,
+                                    const double *origin)
 {
     struct orl_point_writer writer;
-    enum orl_result result = orl_point_writer_begin(log, path, points->count, small, &writer);
+    enum orl_result result = begin(log, path, points->count, small, origin, &writer);
     if (result == ORL_OK)
         result = orl_point_writer_add(&writer, points);
     if (result == ORL_OK)
         result = orl_point_writer_end(&writer);
     orl_point_writer_finish(&writer);
     return result;
+}
+
+enum orl_result orl_points_write(const struct orl_log *log, const char *path,
+                                 const struct orl_points *points, bool small)
+{
+    return write_points(log, path, points, small, NULL);
+}
+
+enum orl_result orl_points_write_from(const struct orl_log *log, const char *path,
+                                      const struct orl_points *points, const double origin[3])
+{
+    bool far = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
+    return write_points(log, path, points, false, far ? origin : NULL);
 }
 
 size_t orl_points_drop_flat(struct orl_points *points)

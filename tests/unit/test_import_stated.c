@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/json.h"
+#include "exchange/export.h"
 #include "io/picture.h"
 #include "oriel/path.h"
 #include "oriel/scene.h"
@@ -271,6 +272,30 @@ static void keeps_a_far_origin(void **state)
     orl_pose_centre(&path.views[0].cam_from_world, centre);
     assert_float_equal(centre[0] + o[0], 512346, 1e-6);
     orl_path_finish(&path);
+    // The exported points and cameras are where they were.
+    for (const struct orl_export_kind *kind = orl_export_kinds; kind->name; kind++) {
+        bool folder = strcmp(kind->name, "nerfstudio") == 0;
+        if (!folder && strcmp(kind->name, "ply") != 0)
+            continue;
+        char *out = test_path(w->dir, kind->name);
+        char *cloud = folder ? test_path(out, "points.ply") : test_path(w->dir, kind->name);
+        struct orl_points points;
+        assert_int_equal(kind->write(NULL, NULL, w->scene, &(struct orl_export_params){.out = out}),
+                         ORL_OK);
+        assert_int_equal(orl_points_read_from(NULL, cloud, (double[3]){512345, 0, 5412345}, &points),
+                         ORL_OK);
+        assert_float_equal(points.position[0][0], 0.125, 1e-6);
+        assert_float_equal(points.position[0][2], -5, 1e-6);
+        orl_points_finish(&points);
+        free(cloud);
+        free(out);
+    }
+    char *transforms = test_path(w->dir, "nerfstudio/transforms.json");
+    json_t *root = json_load_file(transforms, 0, NULL);
+    json_t *matrix = json_object_get(json_array_get(json_object_get(root, "frames"), 1), "transform_matrix");
+    assert_float_equal(json_number_value(json_array_get(json_array_get(matrix, 0), 3)), 512347.5, 1e-6);
+    json_decref(root);
+    free(transforms);
     free(made);
     free(mesh_path);
     free(path_file);
