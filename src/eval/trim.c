@@ -1,6 +1,4 @@
-// The search: steps that make the model smaller are tried and, best first, taken. What a step costs
-// and saves is measured again only when it is the most promising one and others have been taken
-// since (lazy greedy, Minoux 1978): the time grows with the number of steps, not with its square.
+// oriel trim: the whole scene is measured, the search makes it smaller, and the result is written.
 #include "eval/trim.h"
 
 #include <math.h>
@@ -14,97 +12,11 @@
 #include "eval/trim_search.h"
 #include "eval/tune.h"
 
-const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
-    "points", "photograph", "textures", "depth", "resolution", "quality", "option"};
-
 enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
 // Least gain of a tuned option, as a share of the tolerance.
 static const double tuned_gain = 0.1;
 // Share of the time that tuning may take.
 static const double tuned_time = 0.2;
-// After this share of the time, a model whose frame takes too long is only made faster: otherwise
-// what made it slower would have to be taken back.
-static const double time_for_all = 0.8;
-
-// --- the search ---
-
-// Whether this share of the time that the search may take is gone.
-static bool is_spent(const struct trim_search *s, double share)
-{
-    return s->params->budget_s > 0 &&
-           orl_time_s() - s->start_s >= share * s->params->budget_s;
-}
-
-static bool within_budget(const struct trim_search *s)
-{
-    const struct orl_trim_params *p = s->params;
-    return orl_trim_has_budget(s) && (!p->max_bytes || s->bytes <= (double)p->max_bytes) &&
-           (!(p->max_frame_ms > 0) || s->first_ms * s->slower <= p->max_frame_ms);
-}
-
-// All training photographs confirm other steps before photographs are removed. What removals lose is
-// added to measured losses then, and other steps are not blamed for them.
-static bool is_due(const struct trim_search *s, const struct trim_move *next)
-{
-    return !orl_trim_has_budget(s) && next->part == ORL_TRIM_PHOTOGRAPH &&
-           s->state.removed_count == 0 && s->history_count > s->confirmed;
-}
-
-static enum orl_result search(struct trim_search *s)
-{
-    enum orl_result result = ORL_OK;
-    double done = 0;
-    s->trim->complete = true;
-    while (result == ORL_OK && !within_budget(s)) {
-        s->options_only = !orl_trim_has_budget(s) && is_spent(s, time_for_all) &&
-                          s->slower > orl_trim_slow_limit(s);
-        struct trim_move *move = orl_trim_best_move(s, NULL);
-        if (!move && !s->options_only)
-            break;
-        if (!move || is_spent(s, 1)) {
-            s->trim->complete = false;
-            break;
-        }
-        if (is_due(s, move)) {
-            result = orl_trim_confirm(s, TRIM_CONFIRM_LOSSES);
-            continue;
-        }
-        // Most moves are tried once, some a few times.
-        double total = fmax(2.0 * (double)s->move_count, done + 1);
-        orl_progress_report(s->params->progress, "trim", done++, total,
-                            orl_trim_part_names[move->part]);
-        bool group = move->part == ORL_TRIM_PHOTOGRAPH && orl_trim_has_group(s);
-        result = group ? orl_trim_try_group(s) : orl_trim_try(s, move);
-    }
-    if (result == ORL_OK && orl_trim_has_budget(s) && !within_budget(s) && s->trim->complete)
-        result = orl_fail(s->source.log, ORL_ERR_DATA,
-                          "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
-                          "than is allowed", s->source.scene->dir, s->bytes / (1 << 20),
-                          s->first_ms * s->slower);
-    return result;
-}
-
-// The validation photographs are few, so that steps may cost less than they said: the search goes
-// on with what is left of the tolerance, as long as it finds more to leave out. It also goes on without steps that
-// were taken back. Those that make a frame too slow are taken back only when the search finds
-// nothing any more that makes it faster.
-static enum orl_result search_and_confirm(struct trim_search *s)
-{
-    enum orl_result result = ORL_OK;
-    for (size_t ended = SIZE_MAX; result == ORL_OK;) {
-        result = search(s);
-        bool found = s->version != ended;
-        bool last = orl_trim_has_budget(s) || !s->trim->complete;
-        if (result != ORL_OK || !(found || s->slow))
-            break;
-        result = orl_trim_confirm(s, found && !last ? TRIM_CONFIRM_TIMED : TRIM_CONFIRM_LAST);
-        if (last)
-            break;
-        ended = s->version;
-    }
-    return result;
-}
-
 // --- the held-out photographs ---
 
 static enum orl_result compare_held(struct trim_search *s, struct orl_renderer *renderer,
@@ -170,13 +82,15 @@ static enum orl_result start(struct trim_search *s)
     enum orl_result result =
         orl_validation_load(source->log, source->scene, 0, p->size_divide, &s->targets);
     size_t n = s->targets.count;
-    s->first_db = orl_array(source->log, n, sizeof *s->first_db);
-    s->now = orl_array(source->log, n, sizeof *s->now);
-    s->lost_db = orl_array(source->log, n, sizeof *s->lost_db);
+    s->first = orl_array(source->log, n, sizeof *s->first);
+    s->score = orl_array(source->log, n, sizeof *s->score);
+    s->tolerance_db = orl_trim_has_budget(s) ? INFINITY : p->tolerance_db;
+    s->tolerance_ssim = orl_trim_has_budget(s) ? INFINITY : p->tolerance_ssim;
+    s->worst_db = orl_trim_has_budget(s) ? INFINITY : p->worst_db;
     s->first_state.render = p->start->params;
     s->first_state.removed = orl_array(source->log, photos, sizeof *s->first_state.removed);
     if (result == ORL_OK &&
-        !(s->first_db && s->now && s->lost_db && s->first_state.removed))
+        !(s->first && s->score && s->first_state.removed))
         result = ORL_ERR_MEMORY;
     if (result == ORL_OK && !p->settings_only)
         result = orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress,
@@ -184,9 +98,10 @@ static enum orl_result start(struct trim_search *s)
     if (result == ORL_OK)
         result = orl_trim_state_copy(source->log, &s->first_state, photos, &s->state);
     if (result == ORL_OK)
-        result = orl_trim_plan(s);
+        result = orl_trim_order_photos(s);
     if (result == ORL_OK)
         result = orl_trim_model_open(source, &s->state, &s->model);
+    orl_trim_plan(s);
     if (result == ORL_OK)
         result = orl_trim_measure_all(s, true, &s->trim->before);
     if (result == ORL_OK)
@@ -240,8 +155,14 @@ static enum orl_result run(struct trim_search *s)
     enum orl_result result = start(s);
     if (result == ORL_OK && s->params->tune)
         result = tune(s);
+    if (result == ORL_OK && s->params->explain)
+        result = orl_trim_explain(s);
     if (result == ORL_OK)
-        result = search_and_confirm(s);
+        result = orl_trim_climb(s);
+    if (result == ORL_OK)
+        result = orl_trim_make_faster(s);
+    if (result == ORL_OK)
+        result = orl_trim_confirm(s);
     if (result == ORL_OK && s->params->random)
         result = orl_trim_compare_random(s);
     if (result != ORL_OK)
@@ -260,14 +181,14 @@ static void finish(struct trim_search *s)
     orl_trim_model_close(&s->model);
     orl_point_ranking_finish(&s->source.ranking);
     orl_validation_finish(&s->targets);
-    for (size_t i = 0; i < s->history_count; i++)
+    for (size_t i = 0; i < s->history_count; i++) {
         free(s->history[i].state.removed);
+        free(s->history[i].score);
+    }
     free(s->history);
-    free(s->moves);
-    free(s->nearest);
-    free(s->first_db);
-    free(s->now);
-    free(s->lost_db);
+    free(s->order);
+    free(s->first);
+    free(s->score);
     free(s->first_state.removed);
     free(s->state.removed);
 }

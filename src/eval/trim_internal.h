@@ -18,6 +18,7 @@ struct trim_state {
     size_t points, scale, quality, depth; // levels
     enum orl_textures textures;           // AUTO: as in the scene
     struct orl_render_params render;
+    size_t photographs; // so many of the search's order were to go; few may have come back
     bool *removed; // owned, per photograph
     size_t removed_count;
 };

@@ -46,7 +46,7 @@ static enum orl_result measure(struct trim_search *s, double share, const uint32
     for (size_t i = 0; result == ORL_OK && i < s->validation_count; i++) {
         size_t view = orl_trim_validation_view(s, i, s->validation_count);
         result = orl_trim_measure_view(s, model->renderer, &state, view, true, &metrics);
-        sum += s->first_db[view] - metrics.psnr_db;
+        sum += s->first[view].db - metrics.psnr_db;
     }
     if (result == ORL_OK)
         *row = (struct orl_trim_random){orl_trim_model_bytes(s, model, &state),

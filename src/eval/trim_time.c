@@ -9,16 +9,19 @@
 #include "eval/trim_search.h"
 
 enum { FRAMES_FIRST = 5, ROUNDS_OF_TRIAL = 24, ROUNDS_OF_WHOLE = 64 };
-// In the end no frame may be slower than the whole scene's by more than this share, or so many
-// milliseconds, which no one sees. On the way it may, by as much as compressed textures take on a
-// software renderer.
-static const double slower_max = 0.02, slower_ms = 0.5, slower_software_ms = 8,
-                    slower_on_way = 0.3;
+// No frame may be slower than the whole scene's by more than this share, or so many milliseconds,
+// which no one sees.
+static const double slower_max = 0.02, slower_ms = 0.5, slower_software_ms = 8;
 // Standard error of a trial's ratio that is asked for, if as many rounds are enough for it: in the
 // end both models are timed more closely.
 static const double trial_error = 0.025;
 // A difference within so many standard errors counts as none.
 static const double same_errors = 2;
+
+struct trim_drawn {
+    struct orl_renderer *renderer;
+    const struct trim_state *state;
+};
 
 // Two models whose frames are timed in turns. Each round has another view.
 struct pair {
@@ -82,11 +85,6 @@ double orl_trim_slow_limit(const struct trim_search *s)
     return 1 + fmax(slower_max, least / s->first_ms);
 }
 
-double orl_trim_slow_limit_on_way(const struct trim_search *s)
-{
-    return fmax(fmax(orl_trim_slow_limit(s), 1 + slower_on_way), s->slower);
-}
-
 enum orl_result orl_trim_time_first(struct trim_search *s)
 {
     double ms[FRAMES_FIRST];
@@ -100,18 +98,17 @@ enum orl_result orl_trim_time_first(struct trim_search *s)
     return result;
 }
 
-enum orl_result orl_trim_time_trial(struct trim_search *s, const struct trim_drawn *trial,
-                                    struct trim_measured *m)
+enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_trial *t)
 {
     struct orl_pair_timing timing;
-    struct pair pair = {s, {{s->model->renderer, &s->state}, *trial}, 0};
-    double limit = orl_trim_slow_limit_on_way(s) / s->slower;
+    struct pair pair = {s, {{s->model->renderer, &s->state},
+                            {t->own ? t->own->renderer : s->model->renderer, &t->state}}, 0};
+    double limit = orl_trim_slow_limit(s) / s->slower;
     enum orl_result result = compare(&pair, limit, trial_error, ROUNDS_OF_TRIAL, &timing);
     if (result != ORL_OK)
         return result;
     bool same = fabs(log(timing.ratio)) <= same_errors * timing.error;
-    m->slower = same ? 1 : timing.ratio;
-    m->slow = !orl_trim_has_budget(s) && orl_pair_timing_above(&timing, limit);
+    t->slower = same ? 1 : timing.ratio;
     return ORL_OK;
 }
 
@@ -131,6 +128,7 @@ enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow)
         return result;
     s->trim->before.frame_ms = timing.ms;
     s->trim->after.frame_ms = timing.ratio * timing.ms;
+    s->slower = timing.ratio;
     *slow = !orl_trim_has_budget(s) && orl_pair_timing_above(&timing, limit);
     return ORL_OK;
 }

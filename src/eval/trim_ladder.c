@@ -1,0 +1,477 @@
+// The search: a ladder. Its rungs are parts of the model, in the order of what they save for what they
+// lose on the scenes that were measured. Each is taken as far as the tolerances allow: parts with few
+// levels one after the other, points and photographs by bisection.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/process.h"
+#include "eval/trim_search.h"
+
+const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
+    "points", "photograph", "textures", "depth", "resolution", "quality", "option"};
+
+// A view is rendered from two photographs at least when it is left out itself.
+enum { TRAIN_MIN = 3 };
+enum {
+    JUDGES_MAX = 48,     // targets that judge a step; all confirm the whole
+    MENDS_MAX = 4,       // of photographs that go together
+    BISECTIONS = 5,      // of points or photographs
+    BUDGET_DIVIDE = 12,  // towards a budget they go in so many steps
+};
+// The last part of the time is for a frame that has become too slow.
+static const double time_for_ladder = 0.8;
+// Towards a budget the tolerances grow from the first of these by the second, up to the third.
+static const double budget_first_db = 0.025, budget_growth = 2, budget_last_db = 100;
+// SSIM of the same size, as the default tolerances have it.
+static const double ssim_per_db = 0.1;
+
+// Options whose cheaper values save time.
+static const char *const cheaper[] = {
+    "sampling=bilinear", "antialias=off", "median=off", "guess_blur=0",
+    "outliers=0", "min_support=0", "photos_per_pixel=3", "photos_per_pixel=2", "candidates=4",
+    "candidates=3", "points_per_pixel=1"};
+
+// `max`: the last level; of options: none. `share`: of what is left of the tolerances.
+struct rung {
+    enum orl_trim_part part;
+    size_t max;
+    double share;
+};
+static const struct rung ladder[] = {
+    {ORL_TRIM_DEPTH, 1, 1}, // half floats, which lose nothing
+    {ORL_TRIM_TEXTURES, ORL_TEXTURES_YCC, 1},
+    {ORL_TRIM_DEPTH, TRIM_DEPTH_LEVELS - 1, 1},
+    {ORL_TRIM_TEXTURES, ORL_TEXTURES_BC1, 1},
+    {ORL_TRIM_PHOTOGRAPH, SIZE_MAX, 0.5},
+    {ORL_TRIM_POINTS, TRIM_POINT_LEVELS - 1, 1},
+    {ORL_TRIM_RESOLUTION, TRIM_SCALE_LEVELS - 1, 1},
+    {ORL_TRIM_OPTION, 0, 1},
+    {ORL_TRIM_QUALITY, TRIM_QUALITY_LEVELS - 1, 1},
+};
+
+// --- options ---
+
+static double number_of(const struct orl_render_option *option,
+                        const struct orl_render_params *render)
+{
+    float value;
+    memcpy(&value, (const char *)render + option->offset, sizeof value);
+    return (double)value;
+}
+
+static const struct orl_render_option *option_of(const char *assignment)
+{
+    char key[64];
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(assignment, "="), assignment);
+    return orl_render_option_find(key);
+}
+
+// Sets `next` to the options with this assignment. False when it changes nothing or the method does
+// not read it.
+static bool assign(const struct orl_render_params *render, const char *assignment,
+                   struct orl_render_params *next)
+{
+    const struct orl_render_option *option = option_of(assignment);
+    *next = *render;
+    if (!option || orl_render_params_set(NULL, next, assignment) != ORL_OK)
+        return false;
+    if (option->kind == ORL_OPTION_NUMBER)
+        return number_of(option, next) < number_of(option, render);
+    return memcmp(next, render, sizeof *next) != 0;
+}
+
+// --- levels ---
+
+size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t count)
+{
+    return (2 * i + 1) * s->targets.count / (2 * count);
+}
+
+// Photographs can be written anew unless other files have their pixels.
+static bool is_rewritable(const struct orl_log *log, const struct orl_scene *scene)
+{
+    char *mesh = orl_scene_mesh_path(log, scene);
+    bool rewritable = mesh && !orl_path_is_file(mesh) && scene->frame_count == 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        rewritable = rewritable && !scene->photos[i].linear && !scene->photos[i].masked;
+    free(mesh);
+    return rewritable;
+}
+
+void orl_trim_plan(struct trim_search *s)
+{
+    size_t n = s->targets.count, views = s->params->views;
+    s->judge_count = n < JUDGES_MAX ? n : JUDGES_MAX;
+    s->validation_count = views && views < s->judge_count ? views : s->judge_count;
+    s->source.rewritable =
+        !s->params->settings_only && is_rewritable(s->source.log, s->source.scene);
+}
+
+static size_t level_of(const struct trim_state *state, enum orl_trim_part part)
+{
+    switch (part) {
+    case ORL_TRIM_POINTS: return state->points;
+    case ORL_TRIM_PHOTOGRAPH: return state->photographs;
+    case ORL_TRIM_TEXTURES: return state->textures;
+    case ORL_TRIM_DEPTH: return state->depth;
+    case ORL_TRIM_RESOLUTION: return state->scale;
+    case ORL_TRIM_QUALITY: return state->quality;
+    default: return 0;
+    }
+}
+
+// The last level that the scene and the parameters allow. Software renderers decode BC7 several times
+// as slowly.
+static size_t max_level(const struct trim_search *s, const struct rung *rung)
+{
+    bool all = !s->params->settings_only;
+    size_t n = s->targets.count;
+    switch (rung->part) {
+    case ORL_TRIM_POINTS: return all && s->source.scene->points.count ? rung->max : 0;
+    case ORL_TRIM_PHOTOGRAPH: return all && n > TRAIN_MIN ? n - TRAIN_MIN : 0;
+    case ORL_TRIM_RESOLUTION:
+    case ORL_TRIM_QUALITY: return s->source.rewritable ? rung->max : 0;
+    default: return rung->max;
+    }
+}
+
+static bool has_level(const struct trim_search *s, const struct rung *rung, size_t level)
+{
+    if (rung->part != ORL_TRIM_TEXTURES)
+        return true;
+    bool software = orl_gpu_caps(s->source.gpu)->software;
+    return level >= ORL_TEXTURES_BC7 && !(software && level == ORL_TEXTURES_BC7) &&
+           orl_textures_available(s->source.gpu, (enum orl_textures)level);
+}
+
+static void remove_photographs(const struct trim_search *s, size_t count, struct trim_state *state)
+{
+    const struct orl_scene *scene = s->source.scene;
+    memcpy(state->removed, s->first_state.removed, scene->photo_count * sizeof *state->removed);
+    state->photographs = state->removed_count = count;
+    for (size_t k = 0; k < count; k++)
+        state->removed[s->targets.views[s->order[k]].photo] = true;
+}
+
+static void set_level(const struct trim_search *s, enum orl_trim_part part, size_t level,
+                      struct trim_trial *t)
+{
+    struct trim_state *state = &t->state;
+    struct orl_scene_defaults defaults;
+    enum { SIZE = sizeof t->what };
+    switch (part) {
+    case ORL_TRIM_POINTS:
+        state->points = level;
+        snprintf(t->what, SIZE, "points %.3g %%", 100 * orl_trim_point_shares[level]);
+        break;
+    case ORL_TRIM_PHOTOGRAPH:
+        remove_photographs(s, level, state);
+        break;
+    case ORL_TRIM_TEXTURES:
+        state->textures = (enum orl_textures)level;
+        snprintf(t->what, SIZE, "textures %s", orl_textures_names[level]);
+        break;
+    case ORL_TRIM_DEPTH:
+        state->depth = level;
+        defaults = orl_trim_defaults(&s->source, state);
+        snprintf(t->what, SIZE, "depth 1/%d, %d bits", defaults.depth_divide,
+                 defaults.depth_half ? 16 : 32);
+        break;
+    case ORL_TRIM_RESOLUTION:
+        state->scale = level;
+        snprintf(t->what, SIZE, "photographs at %.3g", orl_trim_scales[level]);
+        break;
+    default:
+        state->quality = level;
+        snprintf(t->what, SIZE, "JPEG quality %d", orl_trim_qualities[level]);
+    }
+}
+
+// --- budgets ---
+
+bool orl_trim_has_budget(const struct trim_search *s)
+{
+    return s->params->max_bytes || s->params->max_frame_ms > 0;
+}
+
+static bool has_bytes(const struct trim_search *s)
+{
+    return !s->params->max_bytes || s->bytes <= (double)s->params->max_bytes;
+}
+
+static bool has_time(const struct trim_search *s)
+{
+    return !(s->params->max_frame_ms > 0) || s->first_ms * s->slower <= s->params->max_frame_ms;
+}
+
+bool orl_trim_within_budget(const struct trim_search *s)
+{
+    return orl_trim_has_budget(s) && has_bytes(s) && has_time(s);
+}
+
+static bool is_spent(const struct trim_search *s, double share)
+{
+    return s->params->budget_s > 0 && orl_time_s() - s->start_s >= share * s->params->budget_s;
+}
+
+// Whether the step saves what is wanted: bytes or files, time by options; towards a budget, what is
+// above it.
+static bool is_wanted(const struct trim_search *s, const struct trim_trial *t)
+{
+    if (orl_trim_has_budget(s))
+        return (!has_bytes(s) && t->bytes < s->bytes) || (!has_time(s) && t->slower < 1);
+    return t->part == ORL_TRIM_OPTION ? t->slower < 1
+                                      : t->bytes < s->bytes || t->file_bytes < s->file_bytes;
+}
+
+// --- steps ---
+
+// Fewer points, smaller maps and smaller photographs make no frame slower, and files are not drawn.
+// What loses too much to be taken is not timed.
+static bool is_timed(const struct trim_search *s, const struct trim_trial *t, bool fits)
+{
+    bool changes = t->part == ORL_TRIM_TEXTURES || t->part == ORL_TRIM_OPTION;
+    return s->params->explain || (fits && (changes || s->params->max_frame_ms > 0));
+}
+
+// Measures the trial and takes it if it fits and is wanted. `share` 0: it is only measured.
+static enum orl_result decide(struct trim_search *s, struct trim_trial *t, bool shares,
+                              double share, bool *taken)
+{
+    enum orl_result result = orl_trim_trial_measure(s, t, shares);
+    bool fits = result == ORL_OK && share > 0 && orl_trim_trial_fits(s, t, share);
+    *taken = false;
+    if (result == ORL_OK && is_timed(s, t, fits))
+        result = orl_trim_time_trial(s, t);
+    if (result != ORL_OK)
+        return result;
+    *taken = fits && is_wanted(s, t);
+    return *taken ? orl_trim_trial_take(s, t) : orl_trim_trial_note(s, t, false);
+}
+
+// Photographs come back that views beside them, or views that lose too much, need.
+static enum orl_result mend(struct trim_search *s, struct trim_trial *t)
+{
+    enum orl_result result = orl_trim_put_back(s, &t->state);
+    for (int i = 0; result == ORL_OK && i < MENDS_MAX; i++) {
+        result = orl_trim_trial_measure(s, t, true);
+        if (result == ORL_OK && !orl_trim_mend(s, t))
+            break;
+    }
+    snprintf(t->what, sizeof t->what, "photographs %zu of %zu",
+             s->targets.count - t->state.removed_count, s->targets.count);
+    return result;
+}
+
+static enum orl_result try_level(struct trim_search *s, const struct rung *rung, size_t level,
+                                 bool *taken)
+{
+    struct trim_trial t;
+    bool photographs = rung->part == ORL_TRIM_PHOTOGRAPH;
+    enum orl_result result = orl_trim_trial_begin(s, rung->part, &t);
+    *taken = false;
+    if (result == ORL_OK)
+        set_level(s, rung->part, level, &t);
+    if (result == ORL_OK && photographs)
+        result = mend(s, &t);
+    if (result == ORL_OK)
+        result = decide(s, &t, photographs, rung->share, taken);
+    orl_trim_trial_end(&t);
+    return result;
+}
+
+// Not possible: it is not taken.
+static enum orl_result try_option(struct trim_search *s, const char *assignment, double share,
+                                  bool *taken)
+{
+    struct trim_trial t;
+    struct orl_render_params next;
+    const struct orl_render_option *option = option_of(assignment);
+    *taken = false;
+    if (!assign(&s->state.render, assignment, &next))
+        return ORL_OK;
+    enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
+    t.state.render = next;
+    snprintf(t.what, sizeof t.what, "%s", assignment);
+    // Where the splats change, the photographs' depth maps are drawn anew.
+    if (result == ORL_OK)
+        result = decide(s, &t, !strstr(option->readers, "proxy="), share, taken);
+    orl_trim_trial_end(&t);
+    return result;
+}
+
+// Whether the search ends here; the time that ran out is noted.
+static bool ends(struct trim_search *s)
+{
+    if (is_spent(s, time_for_ladder))
+        s->trim->complete = false;
+    return !s->trim->complete || orl_trim_within_budget(s);
+}
+
+// --- rungs ---
+
+static enum orl_result bisect(struct trim_search *s, const struct rung *rung)
+{
+    enum orl_result result = ORL_OK;
+    size_t low = level_of(&s->state, rung->part), high = max_level(s, rung);
+    for (int i = 0; result == ORL_OK && low < high && i < BISECTIONS && !ends(s); i++) {
+        size_t level = (low + high + 1) / 2;
+        bool taken;
+        result = try_level(s, rung, level, &taken);
+        if (taken)
+            low = level;
+        else
+            high = level - 1;
+    }
+    return result;
+}
+
+static enum orl_result climb_levels(struct trim_search *s, const struct rung *rung, size_t by)
+{
+    enum orl_result result = ORL_OK;
+    bool taken = true;
+    for (size_t level = level_of(&s->state, rung->part) + by;
+         result == ORL_OK && taken && level <= max_level(s, rung) && !ends(s); level += by)
+        if (has_level(s, rung, level))
+            result = try_level(s, rung, level, &taken);
+    return result;
+}
+
+// Ends early when a frame is as fast as it should be, if that is what is wanted.
+static enum orl_result climb_options(struct trim_search *s, bool until_fast)
+{
+    enum orl_result result = ORL_OK;
+    bool taken;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(cheaper); i++) {
+        if (until_fast ? s->slower <= orl_trim_slow_limit(s) || is_spent(s, 1) : ends(s))
+            break;
+        result = try_option(s, cheaper[i], 1, &taken);
+    }
+    return result;
+}
+
+static enum orl_result climb_rung(struct trim_search *s, const struct rung *rung)
+{
+    bool many = rung->part == ORL_TRIM_POINTS || rung->part == ORL_TRIM_PHOTOGRAPH;
+    if (rung->part == ORL_TRIM_OPTION)
+        return climb_options(s, false);
+    if (many && !orl_trim_has_budget(s))
+        return bisect(s, rung);
+    enum orl_result result =
+        climb_levels(s, rung, many ? max_level(s, rung) / BUDGET_DIVIDE + 1 : 1);
+    bool textures = rung->part == ORL_TRIM_TEXTURES && !orl_trim_has_budget(s);
+    return result == ORL_OK && textures ? climb_options(s, true) : result;
+}
+
+static enum orl_result climb_ladder(struct trim_search *s)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(ladder) && !ends(s); i++) {
+        orl_progress_report(s->params->progress, "trim", (double)i, (double)ORL_COUNT(ladder),
+                            orl_trim_part_names[ladder[i].part]);
+        result = climb_rung(s, &ladder[i]);
+    }
+    return result;
+}
+
+enum orl_result orl_trim_climb(struct trim_search *s)
+{
+    enum orl_result result = ORL_OK;
+    s->trim->complete = true;
+    if (!orl_trim_has_budget(s))
+        return climb_ladder(s);
+    s->worst_db = INFINITY;
+    for (double db = budget_first_db; result == ORL_OK && !ends(s) && db < budget_last_db;
+         db *= budget_growth) {
+        s->tolerance_db = db;
+        s->tolerance_ssim = ssim_per_db * db;
+        result = climb_ladder(s);
+    }
+    s->tolerance_db = s->tolerance_ssim = INFINITY; // nothing is taken back
+    if (result == ORL_OK && s->trim->complete && !orl_trim_within_budget(s))
+        result = orl_fail(s->source.log, ORL_ERR_DATA,
+                          "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
+                          "than is allowed", s->source.scene->dir, s->bytes / (1 << 20),
+                          s->first_ms * s->slower);
+    return result;
+}
+
+// --- the time of a frame ---
+
+// Compressed textures are what makes a frame slower.
+static enum orl_result drop_textures(struct trim_search *s)
+{
+    struct trim_trial t;
+    enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_TEXTURES, &t);
+    t.state.textures = ORL_TEXTURES_AUTO;
+    snprintf(t.what, sizeof t.what, "textures as they were");
+    if (result == ORL_OK)
+        result = orl_trim_trial_measure(s, &t, false);
+    if (result == ORL_OK)
+        result = orl_trim_trial_take(s, &t);
+    orl_trim_trial_end(&t);
+    return result;
+}
+
+enum orl_result orl_trim_make_faster(struct trim_search *s)
+{
+    bool slow;
+    enum orl_result result = orl_trim_time_whole(s, &slow);
+    if (result == ORL_OK && slow)
+        result = climb_options(s, true);
+    if (result == ORL_OK && slow)
+        result = orl_trim_time_whole(s, &slow);
+    if (result == ORL_OK && slow && s->state.textures != ORL_TEXTURES_AUTO) {
+        result = drop_textures(s);
+        if (result == ORL_OK)
+            result = orl_trim_time_whole(s, &slow);
+    }
+    return result;
+}
+
+// --- others ---
+
+enum orl_result orl_trim_explain(struct trim_search *s)
+{
+    enum orl_result result = ORL_OK;
+    bool taken;
+    for (int part = 0; result == ORL_OK && part < ORL_TRIM_OPTION; part++) {
+        struct rung rung = {(enum orl_trim_part)part, SIZE_MAX, 0};
+        size_t first = part == ORL_TRIM_TEXTURES ? ORL_TEXTURES_BC7 : 1;
+        while (part == ORL_TRIM_TEXTURES && first < ORL_TEXTURES_COUNT &&
+               !has_level(s, &rung, first))
+            first++;
+        bool has = part != ORL_TRIM_TEXTURES || first < ORL_TEXTURES_COUNT;
+        if (has && max_level(s, &rung) >= first)
+            result = try_level(s, &rung, first, &taken);
+    }
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(cheaper); i++) {
+        s->tried[ORL_TRIM_OPTION] = false; // each of them is a part
+        result = try_option(s, cheaper[i], 0, &taken);
+    }
+    return result;
+}
+
+enum orl_result orl_trim_take_options(struct trim_search *s,
+                                      const struct orl_render_params *render)
+{
+    struct trim_trial t;
+    bool tried = s->tried[ORL_TRIM_OPTION];
+    enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
+    t.state.render = *render;
+    snprintf(t.what, sizeof t.what, "tuned options");
+    if (result == ORL_OK)
+        result = orl_trim_trial_measure(s, &t, false);
+    bool better = result == ORL_OK && t.step_db < 0 && orl_trim_trial_fits(s, &t, 1);
+    if (better)
+        result = orl_trim_time_trial(s, &t);
+    s->tried[ORL_TRIM_OPTION] = true; // nothing that makes a frame cheaper
+    if (better && result == ORL_OK && t.slower <= orl_trim_slow_limit(s))
+        result = orl_trim_trial_take(s, &t);
+    s->tried[ORL_TRIM_OPTION] = tried;
+    orl_trim_trial_end(&t);
+    return result;
+}
