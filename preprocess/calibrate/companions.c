@@ -22,6 +22,27 @@ static enum orl_result undistort(struct orl_job *job, const struct orl_colmap_mo
                          &orl_colmap_camera_by_id(model, image->camera_id)->pinhole, picture, out);
 }
 
+static enum orl_result write_photo(struct orl_job *job, const struct orl_colmap_model *model,
+                                   const struct orl_colmap_image *image, const char *out)
+{
+    enum { QUALITY = 97 };
+    struct orl_image given = {0}, undistorted = {0};
+    char *path = orl_job_path(job, "%s/%s", out, image->name);
+    enum orl_result result =
+        path ? orl_picture_read(job->log, orl_job_find(job, image->name)->path, 3, &given)
+             : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = undistort(job, model, image, &given, &undistorted);
+    if (result == ORL_OK)
+        result = orl_picture_is_png(image->name)
+                     ? orl_png_write(job->log, path, &undistorted)
+                     : orl_jpeg_write(job->log, path, &undistorted, QUALITY, NULL);
+    orl_image_finish(&given);
+    orl_image_finish(&undistorted);
+    free(path);
+    return result;
+}
+
 static enum orl_result write_linear(struct orl_job *job, const struct orl_colmap_model *model,
                                     const struct orl_colmap_image *image, const char *out)
 {
@@ -95,6 +116,11 @@ static enum orl_result write_all(struct orl_job *job, const struct companion *co
     return result;
 }
 
+static bool is_any(const struct orl_source *source)
+{
+    return source != NULL;
+}
+
 static bool is_deep(const struct orl_source *source)
 {
     return source->deep;
@@ -103,6 +129,14 @@ static bool is_deep(const struct orl_source *source)
 static bool is_masked(const struct orl_source *source)
 {
     return source->mask != NULL;
+}
+
+enum orl_result orl_undistort_photos(struct orl_job *job,
+                                     const struct orl_colmap_model *undistorted, const char *out)
+{
+    static const struct companion photos = {"photographs", is_any, write_photo};
+    size_t written;
+    return write_all(job, &photos, undistorted, out, &written);
 }
 
 enum orl_result orl_undistort_linear(struct orl_job *job,

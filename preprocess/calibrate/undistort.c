@@ -96,6 +96,7 @@ enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
         (result = run_undistorter(job)) != ORL_OK ||
         (result = orl_job_set_sparse(job, WORK "/sparse", &model)) != ORL_OK ||
         (result = check_output(job, model, record)) != ORL_OK ||
+        (result = orl_undistort_photos(job, model, WORK "/images")) != ORL_OK ||
         (result = orl_undistort_linear(job, model, WORK "/linear", &linear)) != ORL_OK ||
         (result = orl_undistort_masks(job, model, WORK "/masks", &masks)) != ORL_OK ||
         (result = orl_job_replace(job, WORK "/sparse", "sparse")) != ORL_OK ||

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <climits>
 #include <vector>
 
@@ -128,6 +129,26 @@ enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_im
     return run(log, image, resized, [&](const cv::Mat &source, cv::Mat &target) {
         cv::resize(source, target, target.size(), 0, 0,
                    shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+    });
+}
+
+enum orl_result orl_bridge_reduce(const struct orl_log *log, const struct orl_image *image,
+                                  int width, int height, struct orl_image *reduced)
+{
+    *reduced = orl_image();
+    ORL_REQUIRE(log, image->data && width <= image->width && height <= image->height);
+    enum orl_result result =
+        orl_image_init(log, reduced, width, height, image->channels, image->type);
+    if (result != ORL_OK)
+        return result;
+    return run(log, image, reduced, [&](const cv::Mat &source, cv::Mat &target) {
+        // The variance of a box of width w is w * w / 12; that of a triangle of this height is twice it.
+        cv::Mat blurred;
+        cv::GaussianBlur(source, blurred, cv::Size(0, 0),
+                         static_cast<double>(source.cols) / target.cols / std::sqrt(12.),
+                         static_cast<double>(source.rows) / target.rows / std::sqrt(12.),
+                         cv::BORDER_REPLICATE);
+        cv::resize(blurred, target, target.size(), 0, 0, cv::INTER_AREA);
     });
 }
 

@@ -21,6 +21,11 @@ enum orl_result orl_bridge_median(const struct orl_log *log, const struct orl_im
 enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_image *image,
                                   int width, int height,
                                   struct orl_image *resized) ORL_CHECK_RESULT;
+// Reduces a photograph to at most its size, without aliasing: as wide a filter as the triangle of
+// two new pixels that COLMAP's image_undistorter reduces with.
+enum orl_result orl_bridge_reduce(const struct orl_log *log, const struct orl_image *image,
+                                  int width, int height,
+                                  struct orl_image *reduced) ORL_CHECK_RESULT;
 
 // Tone mapping operators that depend on the whole picture, with OpenCV's defaults. The brightest
 // hundredth of Mantiuk's result is clipped.

@@ -38,7 +38,7 @@ enum orl_result orl_undistort(const struct orl_log *log, const struct orl_colmap
     if (result == ORL_OK)
         result = orl_bridge_remap(log, image, &map, &warped);
     if (result == ORL_OK && (to->width != full.width || to->height != full.height))
-        result = orl_bridge_resize(log, &warped, to->width, to->height, undistorted);
+        result = orl_bridge_reduce(log, &warped, to->width, to->height, undistorted);
     else if (result == ORL_OK) {
         *undistorted = warped;
         memset(&warped, 0, sizeof warped);

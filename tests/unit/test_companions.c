@@ -73,8 +73,46 @@ static void undistorts_masks(void **state)
     test_dir_remove(dir);
 }
 
+// The colours of a JPEG stay those of the photograph, at full resolution.
+static void undistorts_photographs(void **state)
+{
+    (void)state;
+    const uint8_t red[3] = {200, 30, 30}, blue[3] = {30, 30, 200};
+    char *dir = test_dir_make(), photo[4096], path[4096];
+    struct orl_image image;
+    snprintf(photo, sizeof photo, "%s/given.png", dir);
+    assert_int_equal(orl_image_init(NULL, &image, W, H, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < W * H; i++) // lines of one pixel
+        memcpy(image.u8 + 3 * i, i / W % 2 ? red : blue, 3);
+    assert_int_equal(orl_png_write(NULL, photo, &image), ORL_OK);
+    orl_image_finish(&image);
+    struct orl_source sources[] = {{.name = "a.jpg", .path = photo}, {.name = "b.jpg", .path = photo}};
+    struct orl_job job = {.dir = dir, .lock_fd = -1, .sources = sources, .source_count = 2};
+    static const char *const models[] = {".oriel/calibrate/model", "sparse"};
+    for (int i = 0; i < 2; i++) {
+        write_model(dir, models[i], "1 PINHOLE 96 80 100 100 48 40\n");
+        snprintf(path, sizeof path, "%s/%s", dir, models[i]);
+        write_text(path, "images.txt", "1 1 0 0 0 0 0 0 1 a.jpg\n\n2 1 0 0 0 1 0 0 1 b.jpg\n\n");
+    }
+    const struct orl_colmap_model *model;
+    assert_int_equal(orl_job_sparse(&job, &model), ORL_OK);
+    assert_int_equal(orl_undistort_photos(&job, model, "images"), ORL_OK);
+    for (int i = 0; i < 2; i++) {
+        snprintf(path, sizeof path, "%s/images/%c.jpg", dir, "ab"[i]);
+        assert_int_equal(orl_picture_read(NULL, path, 3, &image), ORL_OK);
+        for (int k = 0; k < W * H; k++)
+            for (int c = 0; c < 3; c++)
+                assert_float_equal(image.u8[3 * k + c], (k / W % 2 ? red : blue)[c], 8);
+        orl_image_finish(&image);
+    }
+    orl_colmap_finish(&job.calibrated.model);
+    orl_colmap_finish(&job.sparse.model);
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(undistorts_masks)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(undistorts_masks),
+                                       cmocka_unit_test(undistorts_photographs)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -205,6 +205,31 @@ static void as_colmap_does(void **state)
     compare_with_colmap(&some[0], "150", 4);
 }
 
+// Stripes of one and a half new pixels, which these cannot hold, become grey: plain averages of 8 pixels would
+// leave an amplitude of 41 of 100, as coarser stripes that nobody photographed. The mean light stays.
+static void reduces_without_aliasing(void **state)
+{
+    (void)state;
+    enum { SCALE = 8, WIDTH = 40 * SCALE, HEIGHT = 6 * SCALE };
+    const struct orl_camera whole = {WIDTH, HEIGHT, 200, 200, WIDTH / 2, HEIGHT / 2};
+    const struct orl_camera to = orl_camera_resized(&whole, WIDTH / SCALE, HEIGHT / SCALE);
+    const struct orl_colmap_camera from = {.model = 1, .pinhole = whole, .param_count = 4,
+                                           .params = {200, 200, WIDTH / 2, HEIGHT / 2}};
+    struct orl_image stripes, reduced;
+    double sum = 0;
+    assert_int_equal(orl_image_init(NULL, &stripes, WIDTH, HEIGHT, 1, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        stripes.u8[i] = (uint8_t)lrint(128 + 100 * sin(2 * M_PI / 12 * (i % WIDTH)));
+    assert_int_equal(orl_undistort(NULL, &from, &to, &stripes, &reduced), ORL_OK);
+    for (int x = 2; x < to.width - 2; x++) {
+        assert_float_equal(reduced.u8[3 * to.width + x], 128, 25);
+        sum += reduced.u8[3 * to.width + x];
+    }
+    assert_float_equal(sum / (to.width - 4), 128, 0.5);
+    orl_image_finish(&stripes);
+    orl_image_finish(&reduced);
+}
+
 static void floats_as_bytes(void **state)
 {
     (void)state;
@@ -236,6 +261,7 @@ int main(void)
         cmocka_unit_test(each_model_by_hand),
         cmocka_unit_test(bent_cameras_do_not_reach_corners),
         cmocka_unit_test(as_colmap_does),
+        cmocka_unit_test(reduces_without_aliasing),
         cmocka_unit_test(floats_as_bytes),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
