@@ -212,9 +212,17 @@ enum orl_result orl_known_read_own(const struct orl_known_source *source,
 enum orl_result orl_known_read_inria(const struct orl_known_source *source,
                                      struct orl_known_cameras *known)
 {
+    static const char *const used[] = {"id", "img_name", "width", "height", "position", "rotation", "fx",
+                                       "fy", NULL};
+    struct orl_known_unused unused = {.used = used};
     struct entry e;
     enum orl_result result = begin(source, 0.5, &e);
-    return result == ORL_OK ? read_list(&e, source->root, "img_name", read_inria, known) : result;
+    if (result == ORL_OK)
+        result = read_list(&e, source->root, "img_name", read_inria, known);
+    for (size_t i = 0; i < json_array_size(source->root); i++)
+        orl_known_look_for_unused(&unused, json_array_get(source->root, i));
+    orl_known_say_unused(source, &unused);
+    return result;
 }
 
 // --- transforms.json ---

@@ -23,7 +23,8 @@ static double shift_of(const struct orl_known_source *source)
 // --- Polycam: cameras/TIME.json beside images/TIME.jpg ---
 
 static enum orl_result read_keyframe(const struct orl_known_source *source, const char *file,
-                                     const char *picture, struct orl_known_cameras *known)
+                                     const char *picture, struct orl_known_unused *unused,
+                                     struct orl_known_cameras *known)
 {
     static const char *const lens[] = {"fx", "fy", "cx", "cy"};
     struct orl_known_camera camera = {.path = picture};
@@ -49,6 +50,7 @@ static enum orl_result read_keyframe(const struct orl_known_source *source, cons
         orl_known_set_opencv(&camera, f_c, NULL, 0);
         result = orl_known_add(source->log, source->path, orl_path_name(file), &camera, known);
     }
+    orl_known_look_for_unused(unused, root);
     json_decref(root);
     return result;
 }
@@ -64,6 +66,10 @@ static const char *const polycam[][2] = {
 enum orl_result orl_known_read_polycam(const struct orl_known_source *source,
                                        struct orl_known_cameras *known)
 {
+    static const char *const used[] = {"fx", "fy", "cx", "cy", "width", "height", "t_00", "t_01", "t_02",
+                                       "t_03", "t_10", "t_11", "t_12", "t_13", "t_20", "t_21", "t_22",
+                                       "t_23", NULL};
+    struct orl_known_unused unused = {.used = used};
     struct orl_names names = {0};
     enum orl_result result = ORL_OK;
     char *dir = NULL;
@@ -85,10 +91,11 @@ enum orl_result orl_known_read_polycam(const struct orl_known_source *source,
             continue;
         char *file = orl_path_join(source->log, dir, name);
         char *picture = orl_format(source->log, "%s/%.*s", polycam[which][1], (int)(dot - name), name);
-        result = file && picture ? read_keyframe(source, file, picture, known) : ORL_ERR_MEMORY;
+        result = file && picture ? read_keyframe(source, file, picture, &unused, known) : ORL_ERR_MEMORY;
         free(file);
         free(picture);
     }
+    orl_known_say_unused(source, &unused);
     orl_names_finish(&names);
     free(dir);
     return result;

@@ -113,6 +113,22 @@ static enum orl_result read_opensfm_points(const struct orl_known_source *source
     return result;
 }
 
+static void say_unused_of_opensfm(const struct orl_known_source *source, const json_t *reconstruction)
+{
+    static const char *const used[] = {
+        "cameras", "shots", "points", "projection_type", "width", "height", "focal", "focal_x", "focal_y",
+        "c_x", "c_y", "k1", "k2", "k3", "k4", "p1", "p2", "camera", "rotation", "translation", NULL};
+    struct orl_known_unused unused = {.used = used};
+    orl_known_look_for_unused(&unused, reconstruction);
+    for (int i = 0; i < 2; i++) {
+        const char *key;
+        json_t *entry;
+        json_object_foreach(json_object_get(reconstruction, i ? "shots" : "cameras"), key, entry)
+            orl_known_look_for_unused(&unused, entry);
+    }
+    orl_known_say_unused(source, &unused);
+}
+
 enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
                                        struct orl_known_cameras *known)
 {
@@ -135,6 +151,7 @@ enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
         if (result != ORL_OK)
             return result;
     }
+    say_unused_of_opensfm(source, best);
     return read_opensfm_points(source, json_object_get(best, "points"), known);
 }
 

@@ -87,10 +87,13 @@ static void reads_inria(void **state)
     save(dir, "cameras.json",
          "[{\"id\": 0, \"img_name\": \"a\", \"width\": 640, \"height\": 480, "
          "\"position\": [1,2,3], \"rotation\": [[0,1,0],[-1,0,0],[0,0,1]], "
-         "\"fx\": 500, \"fy\": 510}]");
-    assert_int_equal(read(NULL, dir, "cameras.json", -1, &known), ORL_OK);
+         "\"fx\": 500, \"fy\": 510, \"zfar\": 100}]");
+    struct said said = {0};
+    const struct orl_log log = log_to(&said);
+    assert_int_equal(read(&log, dir, "cameras.json", -1, &known), ORL_OK);
     check_pose(&known, 0);
     check_params(&known.model.cameras[0], 1, (double[]){500, 510, 320, 240}, 4);
+    assert_non_null(strstr(said.text, "not used: zfar\n"));
     orl_known_cameras_finish(&known);
     test_dir_remove(dir);
 }

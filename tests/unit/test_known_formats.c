@@ -265,7 +265,8 @@ static void refuses_utf16(void **state)
 // --- programs that calibrate ---
 
 // A rotation by 90 degrees about z: cam_from_world is (x, y) -> (-y, x), so t is (2, -1, -3).
-#define SHOT "{\"rotation\": [0, 0, 1.5707963267948966], \"translation\": [2, -1, -3], \"camera\": \"v2\"}"
+#define SHOT "{\"rotation\": [0, 0, 1.5707963267948966], \"translation\": [2, -1, -3], \"camera\": \"v2\", " \
+    "\"gps_dop\": 5}"
 #define OPENSFM(camera) "[{\"cameras\": {\"v2\": {" camera ", \"width\": 640, \"height\": 480}}, " \
     "\"shots\": {\"a.jpg\": " SHOT "}, \"points\": {\"7\": {\"coordinates\": [1, 2, 9], " \
     "\"color\": [255, 128, 0]}}}]"
@@ -282,6 +283,7 @@ static void reads_opensfm(void **state)
     assert_int_equal(w->known.model.point_count, 1);
     assert_float_equal(w->known.model.points[0].position[2], 9, 0);
     assert_int_equal(w->known.model.points[0].rgb[1], 128);
+    says(w, "not used: gps_dop\n");
     save(w, "reconstruction.json", OPENSFM("\"projection_type\": \"fisheye\", \"focal\": 0.5, \"k1\": 0.1"));
     assert_int_equal(read(w, ""), ORL_OK);
     check_params(w, 5, (double[]){320, 320, 320, 240, 0.1, 0, 0, 0}, 8);
@@ -451,7 +453,8 @@ static void reads_llff(void **state)
 
 #define PHONE "{\"fx\": 500, \"fy\": 510, \"cx\": 330, \"cy\": 240, \"width\": 640, \"height\": 480, " \
     "\"t_00\": 0, \"t_01\": -1, \"t_02\": 0, \"t_03\": 1, \"t_10\": -1, \"t_11\": 0, \"t_12\": 0, " \
-    "\"t_13\": 2, \"t_20\": 0, \"t_21\": 0, \"t_22\": -1, \"t_23\": 3}"
+    "\"t_13\": 2, \"t_20\": 0, \"t_21\": 0, \"t_22\": -1, \"t_23\": 3, " \
+    "\"blur_score\": 90}"
 
 static void reads_telephones(void **state)
 {
@@ -459,6 +462,7 @@ static void reads_telephones(void **state)
     save(w, "keyframes/cameras/123.json", PHONE);
     assert_int_equal(read(w, ""), ORL_OK);
     says(w, "Polycam: 1 cameras");
+    says(w, "not used: blur_score\n");
     assert_string_equal(w->known.pictures[0].path, "keyframes/images/123");
     check_pose(w, 0);
     check_params(w, 1, (double[]){500, 510, 330, 240}, 4);
