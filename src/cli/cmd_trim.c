@@ -89,8 +89,8 @@ static void print_summary(const struct trim_options *o, const struct orl_trim *t
            a->psnr_db - b->psnr_db, b->worst_loss_db,
            trim->complete ? "" : "; the budget ended the search");
     if (trim->undone)
-        printf("%zu steps were taken back, because all photographs together lost too much or a "
-               "frame was slower than the whole scene's\n", trim->undone);
+        printf("%zu steps were taken back, because all photographs together lost too much\n",
+               trim->undone);
 }
 
 // --- the job ---

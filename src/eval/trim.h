@@ -9,7 +9,7 @@
 // What a step makes smaller.
 enum orl_trim_part {
     ORL_TRIM_POINTS,     // fewer points
-    ORL_TRIM_PHOTOGRAPH, // one photograph less
+    ORL_TRIM_PHOTOGRAPH, // fewer photographs
     ORL_TRIM_TEXTURES,   // compressed photographs on the device
     ORL_TRIM_DEPTH,      // smaller depth maps of photographs on the device
     ORL_TRIM_RESOLUTION, // smaller photographs
@@ -62,7 +62,7 @@ struct orl_trim_params {
     size_t max_bytes;     // instead of a tolerance: least loss within these bytes of the model on
                           // the device; 0: none
     double max_frame_ms;  // the same for the time of a frame; 0: none
-    size_t views;         // photographs that judge what changes all views, evenly chosen
+    size_t views;         // photographs that look at each step first, evenly chosen
     int size_divide;      // pictures are compared at 1/n of the photographs' size
     double budget_s;      // no new trial starts after this time; 0: no limit
     bool explain;         // also times steps that make no frame slower: what they buy
