@@ -138,7 +138,7 @@ static void set_filters(const struct tags *tags, bool square, struct orl_video *
     char light[192] = "";
     if (is_hdr(tags))
         snprintf(light, sizeof light, "format=gbrp16le,zscale=min=gbr:rin=full:tin=%s:pin=%s:"
-                 "t=linear:npl=203:p=bt709,format=gbrpf32le,zscale=t=iec61966-2-1,",
+                 "t=linear:npl=203:agamma=0:p=bt709,format=gbrpf32le,zscale=t=iec61966-2-1,",
                  tags->transfer, is_told(tags->primaries) ? tags->primaries : "bt2020");
     else if (is_wide(tags))
         snprintf(light, sizeof light, "format=gbrp16le,zscale=min=gbr:rin=full:tin=iec61966-2-1:"

@@ -51,8 +51,8 @@ static void expect_pixel(const struct orl_image *image, int x, const uint8_t wan
         assert_between(got[c] + 255 - want[c], 255 - TOLERANCE, 255 + TOLERANCE);
 }
 
-// The first frame of dir/NAME has the patches.
-static void expect_patches(const char *name)
+// The first frame of dir/NAME has the two colours.
+static void expect_colours(const char *name, const uint8_t left[3], const uint8_t right[3])
 {
     const struct orl_frame_range range = {0, 1, 1};
     char *clip = test_path(dir, name), *frame = test_path(dir, "frames/00000.ppm");
@@ -61,12 +61,17 @@ static void expect_patches(const char *name)
     assert_int_equal(orl_dir_make(NULL, frames), ORL_OK);
     assert_int_equal(orl_video_decode(NULL, NULL, clip, &range, frames), ORL_OK);
     assert_int_equal(orl_picture_read(NULL, frame, 3, &image), ORL_OK);
-    expect_pixel(&image, image.width / 4, red);
-    expect_pixel(&image, image.width * 3 / 4, green);
+    expect_pixel(&image, image.width / 4, left);
+    expect_pixel(&image, image.width * 3 / 4, right);
     orl_image_finish(&image);
     free(clip);
     free(frame);
     free(frames);
+}
+
+static void expect_patches(const char *name)
+{
+    expect_colours(name, red, green);
 }
 
 static void follows_matrix_and_range(void **state)
@@ -104,7 +109,7 @@ static void brings_hdr_and_wide_colours_to_srgb(void **state)
 {
     (void)state;
     static const char from[] = "format=gbrp16le,zscale=min=gbr:rin=full:pin=bt709:tin=iec61966-2-1:"
-                               "t=linear:npl=203:p=bt709,format=gbrpf32le,zscale=p=%s:t=%s:npl=203,"
+                               "t=linear:npl=203:p=bt709,format=gbrpf32le,zscale=p=%s:t=%s:npl=203:agamma=0,"
                                "format=gbrp16le,scale=out_color_matrix=%s:out_range=tv,"
                                "format=yuv444p10le";
     static const struct {
@@ -123,6 +128,19 @@ static void brings_hdr_and_wide_colours_to_srgb(void **state)
             skip(); // without zscale
         expect_patches("clip.mp4");
     }
+}
+
+// HLG by hand: the inverse of BT.2100's OETF, its system gamma of 1.2 by luminance on a display of
+// 1000 cd/m2, BT.2020 to BT.709, and 203 cd/m2 as white.
+static void shows_hlg_as_its_standard(void **state)
+{
+    (void)state;
+    const uint8_t want[3] = {217, 97, 94};
+    if (!make("clip.mp4", "format=gbrp16le,lutrgb=r=42598:g=26214:b=22937,"
+              "scale=out_color_matrix=bt2020:out_range=tv,format=yuv444p10le",
+              "-colorspace bt2020nc -color_primaries bt2020 -color_trc arib-std-b67 -color_range tv"))
+        skip();
+    expect_colours("clip.mp4", want, want);
 }
 
 static void refuses_unknown_curves(void **state)
@@ -195,6 +213,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(follows_matrix_and_range, set_up, tear_down),
         cmocka_unit_test_setup_teardown(guesses_untagged_matrices, set_up, tear_down),
         cmocka_unit_test_setup_teardown(brings_hdr_and_wide_colours_to_srgb, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(shows_hlg_as_its_standard, set_up, tear_down),
         cmocka_unit_test_setup_teardown(refuses_unknown_curves, set_up, tear_down),
         cmocka_unit_test_setup_teardown(squares_pixels_and_deinterlaces, set_up, tear_down),
         cmocka_unit_test_setup_teardown(tags_what_it_writes, set_up, tear_down),
