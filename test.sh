@@ -68,7 +68,7 @@ finish() {
 }
 
 step dependencies "checking dependencies"
-extra=(libcmocka-dev openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
+extra=(libcmocka-dev jq openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
     python3-flask python3-numpy python3-pil
     glslang-tools spirv-tools cppcheck)
 [ "$quick" ] || extra+=(clang llvm libclang-rt-dev mesa-vulkan-drivers)

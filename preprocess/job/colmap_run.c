@@ -60,6 +60,7 @@ static const char *current_name(const struct orl_job *job, const char *name)
     static const char *const renamed[][2] = {
         {"--SiftExtraction.use_gpu", "--FeatureExtraction.use_gpu"},
         {"--SiftExtraction.max_image_size", "--FeatureExtraction.max_image_size"},
+        {"--SiftExtraction.num_threads", "--FeatureExtraction.num_threads"},
         {"--SiftMatching.use_gpu", "--FeatureMatching.use_gpu"},
         {"--SiftMatching.guided_matching", "--FeatureMatching.guided_matching"},
     };
