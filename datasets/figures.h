@@ -75,5 +75,9 @@ void orl_figures_picture_finish(struct orl_figures_picture *picture);
 enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_progress *progress,
                                 const struct orl_figures_params *params,
                                 const char *out) ORL_CHECK_RESULT;
+// Plays the pictures of such a folder into DIR/camNN/NNNNN.png, 25 a second, as live cameras would.
+enum orl_result orl_figures_play(const struct orl_log *log, const struct orl_progress *progress,
+                                 const struct orl_figures_params *params, const char *out,
+                                 const char *dir) ORL_CHECK_RESULT;
 
 #endif

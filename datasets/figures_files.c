@@ -1,12 +1,14 @@
 // The figures as files.
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <jansson.h>
 
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/new_dir.h"
+#include "core/process.h"
 #include "datasets/figures.h"
 #include "io/exr.h"
 #include "io/picture.h"
@@ -198,5 +200,36 @@ enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_prog
 end:
     orl_new_dir_abort(log, &dir);
     free(views);
+    return result;
+}
+
+static void wait_until(double time_s)
+{
+    double left = time_s - orl_time_s();
+    if (left > 0)
+        nanosleep(&(struct timespec){(time_t)left, (long)(1e9 * (left - (double)(time_t)left))}, NULL);
+}
+
+enum orl_result orl_figures_play(const struct orl_log *log, const struct orl_progress *progress,
+                                 const struct orl_figures_params *params, const char *out,
+                                 const char *dir)
+{
+    static const double rate = 25;
+    const struct job from = {.log = log, .params = params, .dir = out};
+    enum orl_result result = ORL_OK;
+    double start = orl_time_s();
+    for (int f = 0; result == ORL_OK && f < params->frames; f++) {
+        wait_until(start + f / rate);
+        orl_progress_report(progress, "live", f, params->frames, NULL);
+        for (int c = 0; result == ORL_OK && c < params->cameras; c++) {
+            char *there = orl_format(log, "%s/cam%02d/%05d.png", dir, c, f);
+            char *here = view_path(&from, "images", c, f, ".png");
+            result = there && here ? orl_file_copy(log, here, there) : ORL_ERR_MEMORY;
+            free(there);
+            free(here);
+        }
+        if (orl_progress_cancelled(progress))
+            result = ORL_ERR_CANCELLED;
+    }
     return result;
 }

@@ -82,6 +82,7 @@ struct orl_scene {
     struct orl_scene_defaults defaults;
     size_t frame_count;    // frames of a sequence; 0: a still scene
     int frame;             // the frame that the photographs show; -1: SCENE/images
+    const char *time_steps_dir; // holds frames/ in place of SCENE, not owned; NULL: SCENE does
     double photo_distance; // median distance from training photographs to the points they see
     double near_distance;  // a quarter of the least distance from which a photograph shows surfaces;
                            // large splats nearer to a viewer are outliers; 0: not known

@@ -18,7 +18,8 @@
     ORL_SYNTH_OPTIONS(ROW) \
     ROW(exposures, "exposures", LIST("EV,.."), \
         "exposures, taken in turn, each photograph one; default: 0") \
-    ORL_FIGURES_OPTIONS(ROW)
+    ORL_FIGURES_OPTIONS(ROW) \
+    ROW(live, "live", TEXT("DIR"), "figures: plays their pictures into DIR/camNN/ too, 25 a second")
 COMMAND_OPTIONS(synth_options, SYNTH_OPTIONS)
 
 static enum orl_result parse_exposures(const struct orl_log *log, const struct orl_names *names,
@@ -90,18 +91,21 @@ static enum orl_result check_options(const struct orl_log *log, const struct syn
     if (is_figures && (has_given(o, "monument") || o->exposures.count))
         return orl_fail(log, ORL_ERR_ARGUMENT, "synth figures: takes --cameras, --frames and "
                         "--size; the other options are the monument's");
-    if (!is_figures && has_given(o, "figures"))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "synth %s: --cameras and --frames are those of "
-                        "figures", name);
+    if (!is_figures && (has_given(o, "figures") || o->live))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "synth %s: --cameras, --frames and --live are those "
+                        "of figures", name);
     return ORL_OK;
 }
 
 static enum orl_result make_figures(struct terminal *terminal,
-                                   const struct orl_figures_params *params, const char *out)
+                                   const struct orl_figures_params *params, const char *out,
+                                    const char *live)
 {
     char *dir = sibling(&terminal->log, out, "");
     enum orl_result result = dir ? orl_figures_run(&terminal->log, &terminal->progress, params, dir)
                                  : ORL_ERR_MEMORY;
+    if (result == ORL_OK && live)
+        result = orl_figures_play(&terminal->log, &terminal->progress, params, dir, live);
     terminal_finish(terminal);
     if (result == ORL_OK)
         printf("%d cameras, %d time steps in %s\n", params->cameras, params->frames, dir);
@@ -127,7 +131,7 @@ static enum orl_result run_synth(struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = check_options(log, o, inputs[0], is_figures);
     if (result == ORL_OK)
-        result = is_figures ? make_figures(terminal, &figures, o->out)
+        result = is_figures ? make_figures(terminal, &figures, o->out, o->live)
                             : make_monument(terminal, common, &monument, o->out, o->truth);
     return result;
 }

@@ -13,6 +13,7 @@
         "the printed address") \
     ROW(title, "title", TEXT("TEXT"), "of the page; default: that of walk.json, else the scene's name") \
     ROW(embed_in, "embed-in", TEXT("ORIGINS"), "sites whose pages may frame the walk; default: none") \
+    ROW(live, "live", TEXT("DIR"), "show the pictures that cameras write into DIR/NAME/, as they come") \
     ROW(edits, "edit", FLAG, "other machines may change annotations, title and start view, too") \
     METHOD_OPTIONS(ROW) \
     LIGHT_OPTION(ROW) \
@@ -55,7 +56,7 @@ static enum orl_result run_walk(struct terminal *terminal, const void *options,
     const struct orl_walk_params params = {
         .host = o->host ? o->host : "127.0.0.1", .port = o->port, .title = o->title, .edits = o->edits,
         .radiance = radiance,
-        .embed_in = o->embed_in,
+        .embed_in = o->embed_in, .live = o->live,
         .choice = &choice, .progress = &terminal->progress, .ready = print_address};
     if (result == ORL_OK)
         result = orl_walk_serve(gpu, renderer, scene, &params);

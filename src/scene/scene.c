@@ -42,7 +42,8 @@ static enum orl_result set_photo(const struct orl_log *log, const char *dir,
 static enum orl_result check_inside(const struct orl_log *log, const struct orl_scene *scene,
                                     const char *path)
 {
-    return orl_path_is_inside(scene->dir, path)
+    return orl_path_is_inside(scene->dir, path) ||
+                   (scene->time_steps_dir && orl_path_is_inside(scene->time_steps_dir, path))
                ? ORL_OK
                : orl_fail(log, ORL_ERR_DATA,
                           "%s: leads out of the scene through a symbolic link; put the file itself "
@@ -502,6 +503,11 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name)
     return -1;
 }
 
+static const char *time_steps_of(const struct orl_scene *scene)
+{
+    return scene->time_steps_dir ? scene->time_steps_dir : scene->dir;
+}
+
 // The path "SCENE/" or "SCENE/frames/<number>/", followed by folder, name and ending.
 static char *time_step_path(const struct orl_log *log, const struct orl_scene *scene,
                             const char *folder, size_t photo, const char *ending)
@@ -509,8 +515,8 @@ static char *time_step_path(const struct orl_log *log, const struct orl_scene *s
     char frame[32] = "";
     if (shows_time_step(scene))
         snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
-    return orl_format(log, "%s/%s%s/%s%s", scene->dir, frame, folder, scene->photos[photo].name,
-                      ending);
+    return orl_format(log, "%s/%s%s/%s%s", *frame ? time_steps_of(scene) : scene->dir, frame, folder,
+                      scene->photos[photo].name, ending);
 }
 
 char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
@@ -538,7 +544,7 @@ char *orl_scene_background_path(const struct orl_log *log, const struct orl_scen
 char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene)
 {
     if (shows_time_step(scene)) {
-        char *path = orl_format(log, "%s/frames/%05d/mesh.ply", scene->dir, scene->frame);
+        char *path = orl_format(log, "%s/frames/%05d/mesh.ply", time_steps_of(scene), scene->frame);
         if (!path || orl_path_is_file(path))
             return path;
         free(path);

@@ -53,6 +53,7 @@ static enum orl_result make_texts(struct content *content)
         json_array_append_new(photos, photo_json(&content->scene->photos[content->photos[i]], i));
     json_object_set_new(root, "photos", photos);
     json_object_set_new(root, "live", json_true());
+    json_object_set_new(root, "follows", json_boolean(content->scene->time_steps_dir != NULL));
     json_object_set_new(root, "edits", json_boolean(content->edits));
     json_object_set_new(root, "tones", tones_json());
     if (content->edits)

@@ -18,6 +18,7 @@
 #include "walk/choices.h"
 #include "walk/content_internal.h"
 #include "walk/internal.h"
+#include "walk/live.h"
 #include "walk/rendering.h"
 
 enum {
@@ -54,6 +55,7 @@ struct server {
     const struct orl_log *log;
     const struct orl_walk_params *params;
     struct walk_renderer walk;
+    struct live *live;         // NULL: time steps are the scene's
     struct content content;
     struct lws_context *context;
     char policy[1024];         // where the page and what it shows may come from
@@ -418,8 +420,13 @@ static enum orl_result give_up_choice(const struct server *server, struct sessio
 static enum orl_result answer(struct server *server, struct session *session)
 {
     struct walk_frame frame;
+    int live = server->live ? orl_live_take(server->live) : -1;
+    if (live >= 0)
+        session->request.time_step = session->request.expected = live;
     enum orl_result result = orl_walk_frame(&server->walk, &session->request,
                                             &session->choice.params, LWS_PRE, &frame);
+    if (result == ORL_OK && server->live)
+        orl_live_drawn(server->live);
     if (result != ORL_OK)
         return give_up_choice(server, session, result); // drawn once more, as first chosen
     session->frame = frame.data;
@@ -656,8 +663,10 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
         .log = log, .gpu = gpu, .renderer = renderer, .scene = scene,
         .typical = scene->photo_distance > 0 ? (float)scene->photo_distance : 1};
     bool edits = is_local(params->host) || params->edits;
-    enum orl_result result = orl_content_init(log, scene, params->title, edits, params->choice,
-                                              &server.content);
+    enum orl_result result =
+        params->live ? orl_live_start(log, scene, params->live, &server.live) : ORL_OK;
+    if (result == ORL_OK)
+        result = orl_content_init(log, scene, params->title, edits, params->choice, &server.content);
     if (result == ORL_OK)
         result = check_address(log, params->host);
     if (result == ORL_OK)
@@ -672,6 +681,7 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
         result = serve(&server);
     if (server.context)
         lws_context_destroy(server.context);
+    orl_live_stop(&server.live);
     orl_content_finish(&server.content);
     json_decref(server.to_render);
     return result;

@@ -12,6 +12,7 @@ struct orl_walk_params {
     bool edits;        // clients may change the settings; on 127.0.0.1 they always may
     bool radiance;     // the renderer's
     const char *embed_in; // origins whose pages may frame the walk, with spaces between; NULL: none
+    const char *live;     // where pictures come from (live.h); NULL: the scene is what it is
     const struct orl_choice *choice; // method and options of a client that has chosen none
     const struct orl_progress *progress; // the server stops when this is cancelled
     // Called with the address of the page once the server listens.

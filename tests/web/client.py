@@ -11,9 +11,9 @@ import subprocess
 class Walk:
     """The program, serving."""
 
-    def __init__(self, oriel, scene, *options, env=None):
+    def __init__(self, oriel, scene, *options, env=None, stderr=None):
         self.process = subprocess.Popen([oriel, "walk", scene, "--port", "0", *options],
-                                        stdout=subprocess.PIPE, text=True, env=env)
+                                        stdout=subprocess.PIPE, stderr=stderr, text=True, env=env)
         self.address = self.process.stdout.readline().strip()
         self.host, self.port = self.address.split("/")[2].split(":")
 

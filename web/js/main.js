@@ -56,9 +56,10 @@ class Walk {
         this.picture = picture;
         this.server = picture.remote ? picture : null;
         this.own = picture.remote ? null : picture; // drawn by this browser
-        this.timeSteps = picture.remote && this.manifest.time_steps > 1
+        this.timeSteps = picture.remote && this.manifest.time_steps > 1 && !this.manifest.follows
             ? new TimeSteps(this.manifest.time_steps, byId("time-steps"), () => this.change(() => {})) : null;
         picture.timeSteps = this.timeSteps;
+        this.follows = Boolean(this.manifest.follows); // what there is to see changes by itself
         this.buildTools();
         this.readAddress();
         this.resized();
@@ -449,7 +450,7 @@ class Walk {
         const plays = this.timeSteps !== null && this.timeSteps.playing;
         if (plays)
             this.timeSteps.advance();
-        const changed = nav.changed || plays;
+        const changed = nav.changed || plays || this.follows;
         nav.changed = false;
         if (changed || moves)
             this.restSince = time;

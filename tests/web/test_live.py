@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""Live cameras in the walk. Made by tests/e2e/walk_live.sh: test_live.py ORIEL SCENE WORK, in which folders are
+made."""
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+from client import Client, Walk
+
+ORIEL, SCENE, WORK = sys.argv[1:4]
+FRAMES = 75
+
+
+def camera_of(manifest):
+    photo = manifest["photos"][0]
+    rows = photo["cam_from_world"]
+    return {"size": [photo["width"], photo["height"]], "focal": [photo[key] for key in ("fx", "fy", "cx", "cy")],
+            "r": [value for row in rows for value in row[:3]],
+            "eye": [-sum(row[k] * row[3] for row in rows) for k in range(3)]}
+
+
+def picture(client, camera):
+    client.send({"number": 1, "layer": "color", "quality": 90, "rest": True, **camera})
+    data = client.receive()[1]
+    return data[24 + 4 * struct.unpack("<6I", data[:24])[5]:]
+
+
+class Live(unittest.TestCase):
+    def test_pictures_follow_the_cameras(self):
+        live, played, said = (os.path.join(WORK, name) for name in ("live", "played", "said.txt"))
+        os.mkdir(live)
+        with open(said, "w") as log:
+            walk = Walk(ORIEL, SCENE, "--live", live, stderr=log)
+        manifest = json.loads(walk.get("/manifest.json")[1])
+        self.assertTrue(manifest["follows"])
+        client, camera = Client(walk), camera_of(manifest)
+        still = picture(client, camera) # before the first time step: the scene's own
+        feeder = subprocess.Popen([ORIEL, "synth", "figures", "--out", played, "--cameras", "5", "--frames",
+                                   str(FRAMES), "--size", "96x72", "--live", live, "--quiet"],
+                                  stdout=subprocess.DEVNULL)
+        seen = []
+        while feeder.poll() is None:
+            seen.append(picture(client, camera))
+        self.assertEqual(feeder.returncode, 0)
+        self.assertNotIn(seen[-1], (still, seen[0]))
+        self.assertGreater(len(set(seen)), 10)
+        time.sleep(1)
+        last = picture(client, camera)
+        # A time step that lacks a camera is left out and said; the next one shows.
+        def copy(time_step, cameras, source=0):
+            for c in cameras:
+                name = os.path.join(live, f"cam{c:02d}", f"{time_step:05d}.png")
+                shutil.copy(os.path.join(played, f"images/cam{c:02d}/{source:05d}.png"), name + ".part")
+                os.rename(name + ".part", name)
+        copy(FRAMES, (0, 1, 3, 4))
+        time.sleep(0.5)
+        self.assertEqual(picture(client, camera), last)
+        copy(FRAMES + 1, (0, 1, 2, 3, 4))
+        time.sleep(1)
+        after = picture(client, camera)
+        self.assertNotEqual(after, last)
+        # The first time step of the figure is the still scene's picture.
+        self.assertEqual(after, still)
+        client.close()
+        self.assertEqual(walk.close(), 0)
+        with open(said) as log:
+            text = log.read()
+        self.assertIn(f"cam02: no picture {FRAMES}", text)
+        steps, rate, drawn, latency = re.search(
+            r"live: (\d+) time steps, ([\d.]+) a second; (\d+) drawn, a median of (\d+) ms", text).groups()
+        print(f"{steps} of {FRAMES + 1} time steps, {drawn} drawn, {latency} ms after their last picture")
+        self.assertGreater(int(drawn), 10)
+        self.assertLessEqual(int(steps), FRAMES + 1)
+        self.assertGreater(int(latency), 0)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
