@@ -93,11 +93,11 @@ static enum orl_result triangulate(struct orl_job *job, const struct paths *path
     orl_colmap_arg(&args, "--image_path", "%s", paths->images);
     orl_colmap_arg(&args, "--input_path", "%s", paths->in);
     orl_colmap_arg(&args, "--output_path", "%s", paths->out);
-    // COLMAP stops with this message when it triangulates no point; take_points reports that
-    // clearly.
+    // COLMAP 3.8 stops with the first message when it triangulates no point, and 3.10 with the other
+    // when no photographs match; take_points reports that clearly.
     return orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "point_triangulator", .step = "triangulate", .share = 1, .total = 1,
-        .tolerated = "bundle_adjuster.Solve"}, &args);
+        .tolerated = {"bundle_adjuster.Solve", "LoadDatabase"}}, &args);
 }
 
 static enum orl_result write_train_list(const struct orl_job *job, const char *path)

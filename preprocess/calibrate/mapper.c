@@ -78,7 +78,7 @@ enum orl_result orl_mapper_run(struct orl_job *job, const struct orl_mapper_run 
     return orl_job_colmap(job, &(struct orl_colmap_run){
         .command = commands[mapper], .step = "mapping", .share = (double)job->source_count,
         .total = (double)job->source_count,
-        .tolerated = mapper == ORL_MAPPER_INCREMENTAL ? "failed to create sparse model" : ""},
+        .tolerated = {mapper == ORL_MAPPER_INCREMENTAL ? "failed to create sparse model" : ""}},
         &args);
 }
 

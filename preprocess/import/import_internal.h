@@ -96,14 +96,15 @@ enum orl_result orl_import_pictures(struct import_job *job) ORL_CHECK_RESULT;
 
 // --- import_scene.c ---
 
-// Writes the model of the undistorted photographs to the folder `name`: all photographs, or those
-// that are not held out. Points and their tracks come from `points`, whose photographs have the
-// known cameras' names, or with `renamed` the scene's.
+// Writes the model of the undistorted photographs to the folder `name`. for_database: those that are
+// not held out, each with a camera of its own, as COLMAP's database has them: from 4.0 on it asks that
+// photographs have the same cameras in both. Points and their tracks come from `points`, whose
+// photographs have the known cameras' names, or with `renamed` the scene's.
 struct import_points {
     const struct orl_colmap_model *model;
     bool renamed;
 };
-enum orl_result orl_import_write_model(const struct import_job *job, const char *name, bool train_only,
+enum orl_result orl_import_write_model(const struct import_job *job, const char *name, bool for_database,
                                        const struct import_points *points) ORL_CHECK_RESULT;
 // Writes points.ply from a cloud, or without points.
 enum orl_result orl_import_write_points(const struct import_job *job, size_t *count) ORL_CHECK_RESULT;

@@ -51,30 +51,35 @@ static void set_points(const struct import_points *points, const char *known_nam
     }
 }
 
-enum orl_result orl_import_write_model(const struct import_job *job, const char *name, bool train_only,
+enum orl_result orl_import_write_model(const struct import_job *job, const char *name, bool for_database,
                                        const struct import_points *points)
 {
     const struct orl_colmap_model *known = &job->known.model;
     struct orl_colmap_model model = {.points = points->model->points,
                                      .point_count = points->model->point_count};
-    model.cameras = orl_array(job->log, known->camera_count, sizeof *model.cameras);
+    model.cameras = orl_array(job->log, known->camera_count + job->view_count, sizeof *model.cameras);
     model.images = orl_array(job->log, job->view_count, sizeof *model.images);
     char *dir = orl_import_path(job, "%s", name);
     enum orl_result result = model.cameras && model.images && dir ? orl_dir_make(job->log, dir)
                                                                   : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < known->camera_count; i++)
+    for (size_t i = 0; result == ORL_OK && !for_database && i < known->camera_count; i++)
         if (job->targets[i].width) // true when the camera has a picture
             model.cameras[model.camera_count++] =
                 pinhole_camera(known->cameras[i].id, &job->targets[i]);
     for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
         const struct import_view *view = &job->views[i];
-        if (train_only && view->test)
+        if (for_database && view->test)
             continue;
         struct orl_colmap_image *image = &model.images[model.image_count];
         *image = *view->image;
         image->name = view->name;
         image->id = (uint32_t)++model.image_count; // in order of name, as COLMAP's database numbers
                                                    // them
+        if (for_database) {
+            image->camera_id = image->id;
+            model.cameras[model.camera_count++] =
+                pinhole_camera(image->id, &job->targets[view->camera]);
+        }
         set_points(points, view->image->name, image);
     }
     if (result == ORL_OK)

@@ -88,8 +88,9 @@ static void watch_line(void *priv, const char *line)
 {
     struct watch *watch = priv;
     const struct orl_colmap_run *run = watch->run;
-    if (run->tolerated && strstr(line, run->tolerated))
-        watch->tolerated = true;
+    for (size_t i = 0; i < sizeof run->tolerated / sizeof *run->tolerated; i++)
+        if (run->tolerated[i] && strstr(line, run->tolerated[i]))
+            watch->tolerated = true;
     double part = orl_colmap_line_progress(line, run->share);
     if (part < 0)
         return;

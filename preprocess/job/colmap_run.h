@@ -21,7 +21,7 @@ enum orl_result orl_job_find_colmap(struct orl_job *job) ORL_CHECK_RESULT;
 struct orl_colmap_run {
     const char *command, *step;
     double done, share, total;
-    const char *tolerated; // the command may fail when it prints this; NULL: it must not fail
+    const char *tolerated[2]; // the command may fail when it prints one of these; NULL: none
 };
 enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run *run,
                                struct orl_colmap_args *args) ORL_CHECK_RESULT;
