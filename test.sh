@@ -68,9 +68,11 @@ finish() {
 }
 
 step dependencies "checking dependencies"
-extra=(libcmocka-dev jq openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
+extra=(libcmocka-dev jq curl openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
     python3-flask python3-numpy python3-pil
     glslang-tools spirv-tools cppcheck)
+# HEIC and AVIF files are written by plugins, where libheif has such.
+apt-cache show libheif-plugin-x265 >/dev/null 2>&1 && extra+=(libheif-plugin-x265 libheif-plugin-aomenc)
 [ "$quick" ] || extra+=(clang llvm libclang-rt-dev mesa-vulkan-drivers)
 install_dependencies "${extra[@]}" || { failed+=("installing dependencies"); finish; }
 

@@ -10,8 +10,6 @@ python3 "$source/tests/e2e/write_cameras.py" photos-truth/cameras.json photos se
 
 # view SCENE PHOTOGRAPH OUT
 view() { runs 0 "$oriel" render "$1" --at "$2" --method ulr --set proxy=mesh --out "$3"; }
-# psnr A B: 1000 for equal pictures
-psnr() { compare -metric PSNR "$1" "$2" null: 2>&1 | sed 's/inf/1000/; s/^0$/1000/; s/ .*//'; }
 above() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a + 0 > b) }'; }
 
 runs 0 "$oriel" import photos-truth/cameras.json --images photos --mesh plane.obj --out truth
