@@ -35,10 +35,10 @@ jobs() {
 # Calibration: features in three parts, one of which is killed and goes on; pairs; matches.
 run 2 plan "$work"
 says "nothing to plan yet"
-run 2 calibrate "$work" --step features --part 1/3
+run 2 job calibrate "$work" --step features --part 1/3
 prepare 0 a --until collect
 says "collected; oriel plan says what is left"
-run 2 calibrate "$work/a" --step pairs
+run 2 job calibrate "$work/a" --step pairs
 says "features of some part are missing"
 run 0 plan "$work/a" --photographs 3 --json
 cp "$work/out" "$work/first.json"
@@ -53,7 +53,7 @@ if command -v sqlite3 >/dev/null; then
     [ "$(sqlite3 "$database" "SELECT COUNT(*), COUNT(DISTINCT camera_id) FROM images")" = "7|1" ] ||
         fail "the photographs of the parts do not share their camera"
 fi
-run 0 calibrate "$work/a" --step pairs
+run 0 job calibrate "$work/a" --step pairs
 says "nothing left to do"
 [ -e "$work/a/scene.json" ] && fail "a scene that is not whole has a manifest"
 run 2 info "$work/a"
@@ -76,7 +76,7 @@ run 2 densify "$work/b" --part 1/3 --photos "$work/b/stereo/fusion.cfg" --source
 says "not begun with these settings"
 run 2 densify "$work/b" --part 4/3
 says "not K/N"
-run 2 fuse "$work/b" --part 1/3 --photographs 3
+run 2 job fuse "$work/b" --part 1/3 --photographs 3
 says "6 photographs are fused in 2 clusters, not in 3"
 [ -z "$(ls "$work/b/stereo/depth_maps")" ] || fail "a part that was refused has made maps"
 
@@ -110,7 +110,7 @@ diff "$work/a.json" "$work/b.json" >"$work/diff" || fail "another manifest: $(he
 # Everything again changes nothing, and there is nothing left to plan.
 run 0 densify "$work/b" --part 1/3 --pass 0
 says "nothing left to do"
-run 0 fuse "$work/b" --part 1/2 --photographs 3
+run 0 job fuse "$work/b" --part 1/2 --photographs 3
 says "nothing left to do"
 run 0 plan "$work/b"
 prints "is whole"
