@@ -3,7 +3,8 @@
 #ifndef ORIEL_OPTION_LIST_H
 #define ORIEL_OPTION_LIST_H
 
-// SLOT(field, default, readers, help): a part of the method that is chosen by name.
+// SLOT(field, type, default, readers, help): a part of the method that is chosen by name; a pointer.
+// FILE(field, default, readers, help): one that is a shader file of shaders/gather/FIELD.
 // CHOICE(field, type, names, default, readers, help): one of a few names, of an enum.
 // NUMBER(field, default, least, most, unit, readers, tries, help): a float in [least, most].
 //
@@ -14,25 +15,26 @@
 #define ORL_NO_TRIES {0}
 
 // clang-format off
-#define ORL_RENDER_OPTIONS(SLOT, CHOICE, NUMBER) \
-    SLOT(proxy, "splats", "", \
-        "What stands for the scene's surfaces: its points, or its triangle mesh.") \
-    SLOT(paint, "gather", "", \
+#define ORL_RENDER_OPTIONS(SLOT, FILE, CHOICE, NUMBER) \
+    SLOT(proxy, orl_proxy_kind, &orl_proxy_splats, "", \
+        "What stands for the scene's surfaces: its points (`splats`), its triangle `mesh`, or the " \
+        "visual hull of its silhouettes as a mesh (`hull`) or as `voxels`.") \
+    SLOT(paint, orl_painter, &orl_paint_gather, "", \
         "Who paints the picture: `gather` asks the photographs pixel by pixel, `tiled` asks " \
-        "the best few photographs of each tile of the screen, and `points` takes the colours " \
-        "of the splats, or of the mesh's vertices.") \
-    SLOT(select, "all", "paint=gather paint=tiled", \
+        "the best few photographs of each tile of the screen, `points` takes the colours of the " \
+        "splats, or of the mesh's vertices, and `billboards` draws one for each voxel.") \
+    SLOT(select, orl_selection, &orl_select_all, "paint=gather paint=tiled", \
         "The photographs that a frame may use: all of them, the `nearest` by their direction " \
         "from the scene's centre, the 48 that can paint the view best (`preselect`), or the " \
         "nearest and some more for what they see too obliquely (`princ`).") \
-    SLOT(visibility, "hard", "paint=gather paint=tiled", \
+    FILE(visibility, "hard", "paint=gather paint=tiled", \
         "Which photographs see a surface point: all (`none`), those whose own depth map agrees, " \
         "with a `hard` or a `soft` limit, those and the ones without depth there (`lenient`), " \
         "those that the surface faces (`facing`), that it faces and whose depth map agrees " \
         "(`shadow`), or that it faces with nothing before it (`opaque`).") \
-    SLOT(weight, "airieau", "paint=gather paint=tiled", \
+    FILE(weight, "airieau", "paint=gather paint=tiled", \
         "How much a photograph counts that sees a surface point.") \
-    SLOT(combine, "mean", "paint=gather paint=tiled", \
+    SLOT(combine, orl_combine, &orl_combine_mean, "paint=gather paint=tiled", \
         "How the samples of a pixel become one colour: their weighted mean, the mean of the " \
         "four of greatest weight (`top`), the mean by a recurrence in 8 bits (`recurrence`), the one of greatest weight (`best`), the mean of those that pass a test of their standard " \
         "deviation (`sigma`), or a mean that is robust against outliers.") \
@@ -137,11 +139,11 @@
 // clang-format on
 
 // The choices and numbers as shaders see them, in this order.
-#define ORL_NO_MEMBER(field, preset, readers, help)
+#define ORL_NO_MEMBER(...)
 #define ORL_INT_MEMBER(field, type, names, preset, readers, help) int field;
 #define ORL_FLOAT_MEMBER(field, preset, least, most, unit, readers, tries, help) float field;
 struct render_options {
-    ORL_RENDER_OPTIONS(ORL_NO_MEMBER, ORL_INT_MEMBER, ORL_FLOAT_MEMBER)
+    ORL_RENDER_OPTIONS(ORL_NO_MEMBER, ORL_NO_MEMBER, ORL_INT_MEMBER, ORL_FLOAT_MEMBER)
 };
 #undef ORL_NO_MEMBER
 #undef ORL_INT_MEMBER

@@ -43,16 +43,23 @@ enum { ORL_OPTION_NAME_BYTES = 32 };
 struct orl_render_params {
     unsigned leave_out;     // layers that are not read back, whose images stay empty
     enum orl_sample sample; // decides which options are read; set by the renderer
-#define ORL_SLOT_FIELD(field, preset, readers, help) char field[ORL_OPTION_NAME_BYTES];
+#define ORL_SLOT_FIELD(field, type, preset, readers, help) const struct type *field;
+#define ORL_FILE_FIELD(field, preset, readers, help) char field[ORL_OPTION_NAME_BYTES];
 #define ORL_CHOICE_FIELD(field, type, names, preset, readers, help) enum type field;
 #define ORL_NUMBER_FIELD(field, preset, least, most, unit, readers, tries, help) float field;
-    ORL_RENDER_OPTIONS(ORL_SLOT_FIELD, ORL_CHOICE_FIELD, ORL_NUMBER_FIELD)
+    ORL_RENDER_OPTIONS(ORL_SLOT_FIELD, ORL_FILE_FIELD, ORL_CHOICE_FIELD, ORL_NUMBER_FIELD)
 #undef ORL_SLOT_FIELD
+#undef ORL_FILE_FIELD
 #undef ORL_CHOICE_FIELD
 #undef ORL_NUMBER_FIELD
 };
 
-enum orl_option_kind { ORL_OPTION_SLOT, ORL_OPTION_CHOICE, ORL_OPTION_NUMBER };
+enum orl_option_kind {
+    ORL_OPTION_SLOT,
+    ORL_OPTION_FILE,
+    ORL_OPTION_CHOICE,
+    ORL_OPTION_NUMBER,
+};
 enum { ORL_TRIES_MAX = 6 };
 
 // One row of the option table.

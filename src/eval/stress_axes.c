@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "eval/stress_internal.h"
+#include "render/method.h"
 
 // Distance of the bars from the photographs, metres, which turns their width into pixels.
 static const double bars_distance_m = 9.8;
@@ -91,8 +92,8 @@ static void set(struct orl_render_params *render, const char *assignment)
 void orl_stress_axis_options(const struct stress_axis *axis, struct orl_render_params *render)
 {
     // The hull has no colours for a method that shows the proxy's own.
-    if (axis->flags & STRESS_ON_HULL && strcmp(render->proxy, "splats") == 0 &&
-        strcmp(render->paint, "points") != 0)
+    if (axis->flags & STRESS_ON_HULL && orl_render_params_equal(render, "proxy=splats") &&
+        !orl_render_params_equal(render, "paint=points"))
         set(render, "proxy=mesh");
     for (size_t i = 0; axis->settings[i]; i++)
         set(render, axis->settings[i]);

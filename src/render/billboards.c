@@ -243,5 +243,5 @@ end:
     return result;
 }
 
-const struct painter orl_paint_billboards = {
+const struct orl_painter orl_paint_billboards = {
     .name = "billboards", .needs = "proxy=voxels", .layers = true, .paint = paint};

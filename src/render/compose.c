@@ -35,9 +35,9 @@ static void compose(const struct frame *frame)
     const char *defines = frame->finishes ? "FINISHED" : frame->radiance ? "RADIANCE" : NULL;
     struct image_block block = {
         .image_size = {frame->surface.width, frame->surface.height},
-        .points_show = orl_painter_of(frame->params) == &orl_paint_points,
+        .points_show = frame->params->paint == &orl_paint_points,
         .fills = fills(frame),
-        .layers = orl_painter_of(frame->params)->layers,
+        .layers = frame->params->paint->layers,
         .blur_max = orl_soften_max(frame->surface.width, frame->surface.height),
     };
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),

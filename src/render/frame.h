@@ -22,7 +22,7 @@ struct frame {
     bool radiance;             // photographs are sampled as radiance
     bool reads_chroma;         // colours of photographs are luma, and chroma in a second texture
     bool packs;                // the painter reads colours of photographs from photos->packing
-    bool finishes;             // the painter leaves finished pixels (struct painter)
+    bool finishes;             // the painter leaves finished pixels (struct orl_painter)
     struct orl_progressive *progressive; // NULL: the frame waits for its photographs
     bool normals;              // the surface has normals
     const bool *skip;          // per photograph: leave it out; NULL: use all

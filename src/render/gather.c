@@ -20,7 +20,7 @@ static char *declare_options(const struct orl_log *log)
 {
     char *text = orl_strdup(log, "RENDER_OPTIONS");
     for (const struct orl_render_option *o = orl_render_options; text && o->key; o++) {
-        if (o->kind == ORL_OPTION_SLOT)
+        if (o->kind == ORL_OPTION_SLOT || o->kind == ORL_OPTION_FILE)
             continue;
         char *longer = orl_format(log, "%s %s %s;", text,
                                   o->kind == ORL_OPTION_NUMBER ? "float" : "int", o->key);
@@ -114,11 +114,11 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
 
 static void copy_options(const struct orl_render_params *params, struct render_options *opt)
 {
-#define NO_COPY(field, preset, readers, help)
+#define NO_COPY(...)
 #define COPY_CHOICE(field, type, names, preset, readers, help) opt->field = (int)params->field;
 #define COPY_NUMBER(field, preset, least, most, unit, readers, tries, help) \
     opt->field = params->field;
-    ORL_RENDER_OPTIONS(NO_COPY, COPY_CHOICE, COPY_NUMBER)
+    ORL_RENDER_OPTIONS(NO_COPY, NO_COPY, COPY_CHOICE, COPY_NUMBER)
 #undef NO_COPY
 #undef COPY_CHOICE
 #undef COPY_NUMBER
@@ -189,7 +189,7 @@ void orl_gather_slots(const struct frame *frame, struct gather_slots *out)
         {"sample", frame->radiance ? "radiance" : "srgb", NULL},
         {"visibility", p->visibility, visibility},
         {"weight", p->weight, NULL},
-        {"combine", p->combine, combine},
+        {"combine", p->combine->name, combine},
     };
     _Static_assert(ORL_COUNT(rows) < GATHER_SLOTS, "the last slot is the end");
     memset(out, 0, sizeof *out);
@@ -247,7 +247,7 @@ static struct orl_prog *generic_program(const struct frame *frame,
                                         const struct gather_slots *slots, int sweep)
 {
     char defines[64];
-    bool limited = frame->radiance && orl_painter_of(frame->params)->finishes;
+    bool limited = frame->radiance && frame->params->paint->finishes;
     snprintf(defines, sizeof defines, "SWEEP %d\n%s%s", sweep,
              frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
              limited ? "LIMITED 1\n" : "");
@@ -335,10 +335,10 @@ void orl_gather_clear(const struct frame *frame)
 
 static enum orl_result paint_gather(struct frame *frame)
 {
-    int sweeps = frame->radiance ? 1 : orl_combine_of(frame->params)->sweeps;
+    int sweeps = frame->radiance ? 1 : frame->params->combine->sweeps;
     orl_gather_clear(frame);
     enum orl_result result =
-        orl_selection_of(frame->params)->choose(frame, (size_t)frame->photos->slot_count);
+        frame->params->select->choose(frame, (size_t)frame->photos->slot_count);
     if (result == ORL_OK && frame->progressive)
         result = orl_progressive_admit(frame, reads_depth(frame));
     for (int sweep = 0; result == ORL_OK && sweep < sweeps; sweep++)
@@ -346,7 +346,7 @@ static enum orl_result paint_gather(struct frame *frame)
     return result == ORL_OK ? orl_progressive_underpaint(frame) : result;
 }
 
-const struct painter orl_paint_gather = {
+const struct orl_painter orl_paint_gather = {
     .name = "gather", .needs = "", .reads_normals = reads_normals, .paint = paint_gather};
 
 // --- a painter without photographs ---
@@ -368,5 +368,5 @@ static bool always(const struct frame *frame)
     return true;
 }
 
-const struct painter orl_paint_points = {
+const struct orl_painter orl_paint_points = {
     .name = "points", .needs = "", .reads_normals = always, .paint = paint_points};

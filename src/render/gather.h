@@ -46,6 +46,6 @@ enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes
 
 // gather: runs shaders/gather/gather.comp with the method's slots, in batches of as many
 // photographs as are resident together. points: shows the proxy's own colours, of splats or of a mesh's vertices.
-extern const struct painter orl_paint_gather, orl_paint_points;
+extern const struct orl_painter orl_paint_gather, orl_paint_points;
 
 #endif

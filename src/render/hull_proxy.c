@@ -77,7 +77,7 @@ static enum orl_result update(const struct frame *frame, void *handle, bool *cha
     return result;
 }
 
-const struct proxy_kind orl_proxy_hull = {
+const struct orl_proxy_kind orl_proxy_hull = {
     .name = "hull", .create = create, .update = update, .vertices = orl_mesh_vertices,
     .destroy = destroy, .resize = orl_raster_target_resize,
     .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,

@@ -190,7 +190,7 @@ static void color(struct orl_gpu *gpu, const void *handle, const struct orl_view
     orl_gpu_raster(gpu, &raster);
 }
 
-const struct proxy_kind orl_proxy_mesh = {
+const struct orl_proxy_kind orl_proxy_mesh = {
     .name = "mesh", .create = create, .update = update, .vertices = orl_mesh_vertices,
     .destroy = destroy, .resize = orl_raster_target_resize,
     .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,

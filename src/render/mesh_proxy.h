@@ -21,7 +21,7 @@ void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state);
 // 5.2.3: a tight range makes depth precise).
 void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view, float *near,
                     float *far);
-// As struct proxy_kind asks for them; targets are those of raster_target.h.
+// As struct orl_proxy_kind asks for them; targets are those of raster_target.h.
 void orl_mesh_vertices(const void *state, const struct orl_scene *scene,
                        const float (**vertices)[3], size_t *count);
 void orl_mesh_draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,

@@ -7,7 +7,7 @@
 struct frame;
 
 // A rule that selects the photographs that a frame asks.
-struct selection {
+struct orl_selection {
     const char *name;
     // Writes their indices in ascending order to frame->chosen, at most `most` of them. `all`
     // ignores `most`.
@@ -17,14 +17,14 @@ struct selection {
 // How the samples of a pixel become one colour (shaders/gather/combine), and how this streams when
 // the photographs do not all fit on the device. A combination of sums adds to them batch by batch;
 // one that must know all samples before it can weigh one asks all photographs twice.
-struct combine {
+struct orl_combine {
     const char *name;
     int sweeps; // 1 or 2; 0: implemented by one painter only
     int states; // state images that are kept between sweeps, [0, 2]
 };
 
 // A painter turns a surface into colours.
-struct painter {
+struct orl_painter {
     const char *name;
     const char *needs; // required choices, as readers of option_list.h; all must hold
     bool finishes;     // finishes all pixels that it does not list (shaders/shared/pixel.glsl),
@@ -34,14 +34,12 @@ struct painter {
     enum orl_result (*paint)(struct frame *frame);
 };
 
-// Look up the names in `params`, which must have passed orl_render_params_check.
-const struct selection *orl_selection_of(const struct orl_render_params *params);
-const struct combine *orl_combine_of(const struct orl_render_params *params);
-const struct painter *orl_painter_of(const struct orl_render_params *params);
-const struct proxy_kind *orl_proxy_kind_of(const struct orl_render_params *params);
+extern const struct orl_combine orl_combine_mean, orl_combine_recurrence;
 
-// The `index`-th valid name of the slot `key`; false past the end.
-bool orl_slot_name(const char *key, size_t index, char name[ORL_OPTION_NAME_BYTES]);
+// The `index`-th implementation of the slot `key`; NULL past the last, or if it is not a slot.
+const void *orl_slot_at(const char *key, size_t index);
+// The name of such an implementation, its first member.
+const char *orl_slot_name(const void *slot);
 // True if "key=name" holds for `sample` or for an option that is read.
 bool orl_render_params_equal(const struct orl_render_params *params, const char *condition);
 

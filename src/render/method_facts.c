@@ -5,13 +5,15 @@
 #include "render/billboards.h"
 #include "render/gather.h"
 #include "render/method.h"
+#include "render/princ.h"
+#include "render/select.h"
 #include "render/proxy.h"
 #include "render/tiled.h"
 
 const char *orl_method_asks(const struct orl_method *method)
 {
-    const struct proxy_kind *kind = orl_proxy_kind_of(&method->params);
-    if (orl_painter_of(&method->params) == &orl_paint_points)
+    const struct orl_proxy_kind *kind = method->params.proxy;
+    if (method->params.paint == &orl_paint_points)
         return "points";
     return kind == &orl_proxy_hull     ? "silhouettes, or a mesh, or points"
            : kind == &orl_proxy_voxels ? "silhouettes, or points"
@@ -22,12 +24,12 @@ const char *orl_method_asks(const struct orl_method *method)
 static void name_photographs(const struct orl_render_params *p, char text[64])
 {
     int nearest = (int)p->nearest, extras = (int)p->extras;
-    if (orl_painter_of(p) == &orl_paint_tiled)
+    if (p->paint == &orl_paint_tiled)
         snprintf(text, 64, "%d photographs, of %d of its tile", (int)p->photos_per_pixel,
                  (int)p->candidates);
-    else if (strcmp(p->select, "nearest") == 0)
+    else if (p->select == &orl_select_nearest)
         snprintf(text, 64, "%d photographs", nearest);
-    else if (strcmp(p->select, "princ") == 0)
+    else if (p->select == &orl_select_princ)
         snprintf(text, 64, "%d photographs", nearest + extras);
     else
         snprintf(text, 64, "all photographs");
@@ -36,7 +38,7 @@ static void name_photographs(const struct orl_render_params *p, char text[64])
 void orl_method_cost(const struct orl_method *method, char *text, size_t size)
 {
     const struct orl_render_params *p = &method->params;
-    const struct painter *painter = orl_painter_of(p);
+    const struct orl_painter *painter = p->paint;
     bool maps = strcmp(p->visibility, "none") != 0 && strcmp(p->visibility, "facing") != 0;
     char photographs[64], times[32] = "";
     if (p->reconstructions > 1)
@@ -48,7 +50,7 @@ void orl_method_cost(const struct orl_method *method, char *text, size_t size)
     } else {
         name_photographs(p, photographs);
         snprintf(text, size, "for each pixel %s%s%s%s", photographs, times,
-                 orl_combine_of(p)->sweeps == 2 ? ", read twice" : "",
+                 p->combine->sweeps == 2 ? ", read twice" : "",
                  maps ? "; a depth map of each" : "");
     }
 }

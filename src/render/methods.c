@@ -13,22 +13,30 @@
 #include "render/select.h"
 #include "render/tiled.h"
 
-#define SLOT_DEFAULT(field, preset, readers, help) .field = preset,
+#define SLOT_DEFAULT(field, type, preset, readers, help) .field = preset,
+#define FILE_DEFAULT(field, preset, readers, help) .field = preset,
 #define CHOICE_DEFAULT(field, type, names, preset, readers, help) .field = preset,
 #define NUMBER_DEFAULT(field, preset, least, most, unit, readers, tries, help) .field = preset,
 // A row says what differs from these.
-#define DEFAULTS ORL_RENDER_OPTIONS(SLOT_DEFAULT, CHOICE_DEFAULT, NUMBER_DEFAULT)
+#define DEFAULTS ORL_RENDER_OPTIONS(SLOT_DEFAULT, FILE_DEFAULT, CHOICE_DEFAULT, NUMBER_DEFAULT)
 
 // Photographs of the tiles that see a surface best, and what nothing covers from guessed depth.
 #define TILED \
-    .paint = "tiled", .select = "preselect", .visibility = "soft", .weight = "lumigraph", \
-    .combine = "robust", .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON, \
+    .paint = &orl_paint_tiled, .select = &orl_select_preselect, .visibility = "soft", .weight = "lumigraph", \
+    .combine = &combine_robust, .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON, \
     .occluders = ORL_OCCLUDERS_DROP
 
 // What makes depth and edges better, and frames slower.
 #define REFINED \
     , .front_layer = 0.01f, .min_support = 8, .guess_depths = 16, \
     .antialias = ORL_ANTIALIAS_ON
+
+const struct orl_combine orl_combine_mean = {"mean", .sweeps = 1};
+const struct orl_combine orl_combine_recurrence = {"recurrence", .sweeps = 1, .states = 1};
+static const struct orl_combine combine_top = {"top", .sweeps = 2, .states = 2};
+static const struct orl_combine combine_sigma = {"sigma", .sweeps = 2, .states = 2};
+static const struct orl_combine combine_best = {"best", .sweeps = 1};
+static const struct orl_combine combine_robust = {"robust", .sweeps = 0};
 
 const struct orl_method orl_methods[] = {
     {"oriel", "the best photographs per pixel, soft visibility, continuous weights",
@@ -42,114 +50,58 @@ const struct orl_method orl_methods[] = {
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
      {DEFAULTS .distance_floor = 1e-6f, .border_px = 0, .points_per_pixel = 0}},
     {"ulr", "the best four photographs by angle and resolution",
-     "Buehler 2001, 4.2, as SIBR's ulrv2", {DEFAULTS .weight = "ulr", .combine = "top", .border_px = 0}},
+     "Buehler 2001, 4.2, as SIBR's ulrv2", {DEFAULTS .weight = "ulr", .combine = &combine_top, .border_px = 0}},
     {"orzan-view", "the four photographs nearest by direction, outliers left out",
      "Orzan 2005, 4.3",
-     {DEFAULTS .select = "nearest", .visibility = "none", .weight = "selected",
-      .combine = "sigma", .border_px = 0}},
+     {DEFAULTS .select = &orl_select_nearest, .visibility = "none", .weight = "selected",
+      .combine = &combine_sigma, .border_px = 0}},
     {"orzan-surface", "all photographs that the surface faces, outliers left out",
      "Orzan 2005, 4.4",
-     {DEFAULTS .visibility = "facing", .weight = "normal", .combine = "sigma", .border_px = 0}},
+     {DEFAULTS .visibility = "facing", .weight = "normal", .combine = &combine_sigma, .border_px = 0}},
     {"orzan-shadow", "the best five photographs by shadow maps, outliers left out, holes by medians",
      "Orzan 2005, 4.5",
-     {DEFAULTS .select = "nearest", .nearest = 5, .visibility = "shadow", .weight = "normal",
-      .combine = "sigma", .median = ORL_MEDIAN_HOLES, .border_px = 0}},
+     {DEFAULTS .select = &orl_select_nearest, .nearest = 5, .visibility = "shadow", .weight = "normal",
+      .combine = &combine_sigma, .median = ORL_MEDIAN_HOLES, .border_px = 0}},
     {"princ", "one photograph a pixel, of the nearest six and some more, without shadow maps",
      "Princ 2014, 2.3",
-     {DEFAULTS .select = "princ", .nearest = 6, .visibility = "none", .weight = "princ",
-      .combine = "best", .border_px = 0}},
+     {DEFAULTS .select = &orl_select_princ, .nearest = 6, .visibility = "none", .weight = "princ",
+      .combine = &combine_best, .border_px = 0}},
     {"li", "a hull of the silhouettes, all photographs that see it alike, before the room's walls",
      "Li 2003, sections 4 and 5",
-     {DEFAULTS .proxy = "hull", .visibility = "opaque", .weight = "equal", .fill = ORL_FILL_ROOM,
+     {DEFAULTS .proxy = &orl_proxy_hull, .visibility = "opaque", .weight = "equal", .fill = ORL_FILL_ROOM,
       .border_px = 0, .hull_side = 128, .packing = ORL_PACKING_ON}},
     {"goldluecke", "voxels of silhouettes as billboards, each from the two photographs nearest by axis",
      "Goldluecke 2003, section 3",
-     {DEFAULTS .proxy = "voxels", .paint = "billboards", .fill = ORL_FILL_NONE}},
+     {DEFAULTS .proxy = &orl_proxy_voxels, .paint = &orl_paint_billboards, .fill = ORL_FILL_NONE}},
     {"points", "the splats' own colour: the baseline", "-",
-     {DEFAULTS .paint = "points", .front_layer = 0.01f, .min_support = 8}},
+     {DEFAULTS .paint = &orl_paint_points, .front_layer = 0.01f, .min_support = 8}},
     {0},
 };
 
-// --- what the names stand for ---
+// --- what the names of slots stand for ---
 
-static const struct selection *const selections[] = {&orl_select_all, &orl_select_nearest,
-                                                    &orl_select_preselect, &orl_select_princ};
-static const struct painter *const painters[] = {&orl_paint_gather, &orl_paint_tiled,
-                                                 &orl_paint_points, &orl_paint_billboards};
-static const struct proxy_kind *const proxies[] = {&orl_proxy_splats, &orl_proxy_mesh,
-                                                   &orl_proxy_hull, &orl_proxy_voxels};
-static const struct combine combines[] = {
-    {"mean", .sweeps = 1},
-    {"top", .sweeps = 2, .states = 2},
-    {"sigma", .sweeps = 2, .states = 2},
-    {"best", .sweeps = 1},
-    {"recurrence", .sweeps = 1, .states = 1},
-    {"robust", .sweeps = 0},
-};
-
-const struct selection *orl_selection_of(const struct orl_render_params *params)
+const void *orl_slot_at(const char *key, size_t index)
 {
-    size_t i = 0;
-    while (i + 1 < ORL_COUNT(selections) && strcmp(selections[i]->name, params->select) != 0)
-        i++;
-    return selections[i];
+    static const struct {
+        const char *key;
+        const void *all[8]; // ended by NULL
+    } slots[] = {
+        {"proxy", {&orl_proxy_splats, &orl_proxy_mesh, &orl_proxy_hull, &orl_proxy_voxels}},
+        {"paint", {&orl_paint_gather, &orl_paint_tiled, &orl_paint_points, &orl_paint_billboards}},
+        {"select", {&orl_select_all, &orl_select_nearest, &orl_select_preselect,
+                    &orl_select_princ}},
+        {"combine", {&orl_combine_mean, &combine_top, &combine_sigma, &combine_best,
+                     &orl_combine_recurrence, &combine_robust}},
+    };
+    for (size_t i = 0; i < ORL_COUNT(slots); i++)
+        if (strcmp(slots[i].key, key) == 0)
+            return index < ORL_COUNT(slots[i].all) ? slots[i].all[index] : NULL;
+    return NULL;
 }
 
-const struct combine *orl_combine_of(const struct orl_render_params *params)
+const char *orl_slot_name(const void *slot)
 {
-    size_t i = 0;
-    while (i + 1 < ORL_COUNT(combines) && strcmp(combines[i].name, params->combine) != 0)
-        i++;
-    return &combines[i];
-}
-
-const struct painter *orl_painter_of(const struct orl_render_params *params)
-{
-    size_t i = 0;
-    while (i + 1 < ORL_COUNT(painters) && strcmp(painters[i]->name, params->paint) != 0)
-        i++;
-    return painters[i];
-}
-
-const struct proxy_kind *orl_proxy_kind_of(const struct orl_render_params *params)
-{
-    size_t i = 0;
-    while (i + 1 < ORL_COUNT(proxies) && strcmp(proxies[i]->name, params->proxy) != 0)
-        i++;
-    return proxies[i];
-}
-
-// Name of the `index`-th shader file of a slot; NULL: there are no more. `length`: without folder
-// and extension.
-static const char *file_name(const char *key, size_t index, int *length)
-{
-    char folder[64];
-    snprintf(folder, sizeof folder, "gather/%s", key);
-    const char *file = orl_shader_file(folder, index);
-    if (!file)
-        return NULL;
-    file += strlen(folder) + 1;
-    *length = (int)strcspn(file, ".");
-    return file;
-}
-
-bool orl_slot_name(const char *key, size_t index, char name[ORL_OPTION_NAME_BYTES])
-{
-    const char *found = NULL;
-    int length = ORL_OPTION_NAME_BYTES;
-    if (strcmp(key, "select") == 0)
-        found = index < ORL_COUNT(selections) ? selections[index]->name : NULL;
-    else if (strcmp(key, "paint") == 0)
-        found = index < ORL_COUNT(painters) ? painters[index]->name : NULL;
-    else if (strcmp(key, "proxy") == 0)
-        found = index < ORL_COUNT(proxies) ? proxies[index]->name : NULL;
-    else if (strcmp(key, "combine") == 0)
-        found = index < ORL_COUNT(combines) ? combines[index].name : NULL;
-    else
-        found = file_name(key, index, &length);
-    memset(name, 0, ORL_OPTION_NAME_BYTES);
-    snprintf(name, ORL_OPTION_NAME_BYTES, "%.*s", length, found ? found : "");
-    return found;
+    return *(const char *const *)slot;
 }
 
 // --- methods by name ---
@@ -180,7 +132,7 @@ static bool guesses(const struct orl_render_params *params)
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params)
 {
-    const struct painter *painter = orl_painter_of(params);
+    const struct orl_painter *painter = params->paint;
     char needed[2 * ORL_OPTION_NAME_BYTES];
     for (const char *list = painter->needs; *list; list += *list == ' ') {
         size_t length = strcspn(list, " ");
@@ -190,16 +142,16 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
                             needed);
         list += length;
     }
-    if (painter == &orl_paint_points && !orl_proxy_kind_of(params)->color)
+    if (painter == &orl_paint_points && !params->proxy->color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "paint=points: proxy=%s has no colours",
-                        params->proxy);
+                        params->proxy->name);
     if (guesses(params) &&
         (strcmp(params->weight, "normal") == 0 || strcmp(params->weight, "princ") == 0))
         return orl_fail(log, ORL_ERR_ARGUMENT, "fill=depth and fill=ground do not go with weight=%s, "
                         "which needs a normal: guessed depth has none", params->weight);
-    if (painter == &orl_paint_gather && orl_combine_of(params)->sweeps == 0)
+    if (painter == &orl_paint_gather && params->combine->sweeps == 0)
         return orl_fail(log, ORL_ERR_ARGUMENT, "combine=%s goes with paint=tiled alone",
-                        params->combine);
+                        params->combine->name);
     return ORL_OK;
 }
 
@@ -222,16 +174,14 @@ static bool has_mesh(const struct orl_scene *scene)
 // Takes another proxy where the scene lacks what the method's own is made of.
 static void suit_scene(const struct orl_scene *scene, struct orl_render_params *params)
 {
-    const struct proxy_kind *kind = orl_proxy_kind_of(params);
+    const struct orl_proxy_kind *kind = params->proxy;
     // Silhouettes leave no points, but a mesh of their hull or the hull itself.
-    if (kind == &orl_proxy_splats && !scene->points.count && strcmp(params->paint, "points") != 0)
-        snprintf(params->proxy, sizeof params->proxy, "%s",
-                 !has_mesh(scene) && has_silhouettes(scene) ? orl_proxy_hull.name
-                                                            : orl_proxy_mesh.name);
+    if (kind == &orl_proxy_splats && !scene->points.count && params->paint != &orl_paint_points)
+        params->proxy =
+            !has_mesh(scene) && has_silhouettes(scene) ? &orl_proxy_hull : &orl_proxy_mesh;
     if (kind == &orl_proxy_hull && !has_silhouettes(scene))
-        snprintf(params->proxy, sizeof params->proxy, "%s",
-                 has_mesh(scene) || !scene->points.count ? orl_proxy_mesh.name
-                                                         : orl_proxy_splats.name);
+        params->proxy =
+            has_mesh(scene) || !scene->points.count ? &orl_proxy_mesh : &orl_proxy_splats;
     // Voxels of points have holes where a hull has none.
     if (kind == &orl_proxy_voxels && !has_silhouettes(scene))
         params->fill = ORL_FILL_COLOR;
@@ -240,7 +190,8 @@ static void suit_scene(const struct orl_scene *scene, struct orl_render_params *
 static void copy_option(const struct orl_render_option *option, const struct orl_render_params *from,
                         struct orl_render_params *to)
 {
-    size_t size = option->kind == ORL_OPTION_SLOT     ? ORL_OPTION_NAME_BYTES
+    size_t size = option->kind == ORL_OPTION_FILE     ? (size_t)ORL_OPTION_NAME_BYTES
+                  : option->kind == ORL_OPTION_SLOT   ? sizeof(void *)
                   : option->kind == ORL_OPTION_NUMBER ? sizeof(float)
                                                       : sizeof(int);
     memcpy((char *)to + option->offset, (const char *)from + option->offset, size);
@@ -249,8 +200,8 @@ static void copy_option(const struct orl_render_option *option, const struct orl
 bool orl_render_params_take_proxy(const struct orl_render_params *from,
                                   struct orl_render_params *params)
 {
-    const struct proxy_kind *kind = orl_proxy_kind_of(from);
-    if (orl_painter_of(params) != &orl_paint_gather)
+    const struct orl_proxy_kind *kind = from->proxy;
+    if (params->paint != &orl_paint_gather)
         return false;
     for (const struct orl_render_option *o = orl_render_options; o->key; o++)
         if (strcmp(o->key, "proxy") == 0 || orl_proxy_reads(o, kind))

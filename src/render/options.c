@@ -10,8 +10,11 @@
 #define FIELD(name) offsetof(struct orl_render_params, name)
 #define TRIES_OF(...) __VA_ARGS__
 #define COUNT_TRIES(...) (sizeof (double[])__VA_ARGS__ / sizeof(double))
-#define SLOT_ROW(field, preset, read_by, text) \
+#define SLOT_ROW(field, type, preset, read_by, text) \
     {.key = #field, .kind = ORL_OPTION_SLOT, .offset = FIELD(field), .readers = read_by, \
+     .unit = "", .help = text},
+#define FILE_ROW(field, preset, read_by, text) \
+    {.key = #field, .kind = ORL_OPTION_FILE, .offset = FIELD(field), .readers = read_by, \
      .unit = "", .help = text},
 #define CHOICE_ROW(field, type, list, preset, read_by, text) \
     {.key = #field, .kind = ORL_OPTION_CHOICE, .offset = FIELD(field), .names = list, \
@@ -23,7 +26,7 @@
      .try_count = COUNT_TRIES(list) > 1 ? (int)COUNT_TRIES(list) : 0},
 
 const struct orl_render_option orl_render_options[] = {
-    ORL_RENDER_OPTIONS(SLOT_ROW, CHOICE_ROW, NUMBER_ROW)
+    ORL_RENDER_OPTIONS(SLOT_ROW, FILE_ROW, CHOICE_ROW, NUMBER_ROW)
     {0},
 };
 
@@ -51,14 +54,33 @@ static bool word_at(const char *list, size_t index, char word[ORL_OPTION_NAME_BY
     return false;
 }
 
+// Name of the `index`-th shader file of a slot, without folder and extension; false past the last.
+static bool file_at(const char *key, size_t index, char name[ORL_OPTION_NAME_BYTES])
+{
+    char folder[64];
+    snprintf(folder, sizeof folder, "gather/%s", key);
+    const char *file = orl_shader_file(folder, index);
+    if (!file)
+        return false;
+    file += strlen(folder) + 1;
+    memset(name, 0, ORL_OPTION_NAME_BYTES);
+    snprintf(name, ORL_OPTION_NAME_BYTES, "%.*s", (int)strcspn(file, "."), file);
+    return true;
+}
+
 bool orl_render_option_name(const struct orl_render_option *option, size_t index,
                             char name[ORL_OPTION_NAME_BYTES])
 {
+    const void *found;
     switch (option->kind) {
     case ORL_OPTION_CHOICE:
         return word_at(option->names, index, name);
     case ORL_OPTION_SLOT:
-        return orl_slot_name(option->key, index, name);
+        found = orl_slot_at(option->key, index);
+        snprintf(name, ORL_OPTION_NAME_BYTES, "%s", found ? orl_slot_name(found) : "");
+        return found;
+    case ORL_OPTION_FILE:
+        return file_at(option->key, index, name);
     default:
         return false;
     }
@@ -78,10 +100,15 @@ void orl_render_option_print(const struct orl_render_option *option,
         snprintf(text, size, "%.9g", (double)*(const float *)field_of(option, params));
         return;
     }
-    if (option->kind == ORL_OPTION_SLOT)
+    const void *slot;
+    if (option->kind == ORL_OPTION_FILE) {
         snprintf(name, sizeof name, "%s", (const char *)field_of(option, params));
-    else
+    } else if (option->kind == ORL_OPTION_SLOT) {
+        memcpy(&slot, field_of(option, params), sizeof slot);
+        snprintf(name, sizeof name, "%s", orl_slot_name(slot));
+    } else {
         orl_render_option_name(option, (size_t)*(const int *)field_of(option, params), name);
+    }
     snprintf(text, size, "%s", name);
 }
 
@@ -126,8 +153,11 @@ static enum orl_result set_name(const struct orl_log *log, const struct orl_rend
         append(list, sizeof list, name);
         if (strcmp(name, text) != 0)
             continue;
-        if (option->kind == ORL_OPTION_SLOT)
+        const void *slot = orl_slot_at(option->key, (size_t)i);
+        if (option->kind == ORL_OPTION_FILE)
             memcpy(field, name, sizeof name);
+        else if (option->kind == ORL_OPTION_SLOT)
+            memcpy(field, &slot, sizeof slot);
         else
             memcpy(field, &i, sizeof i); // enums of this struct are ints
         return ORL_OK;

@@ -183,7 +183,7 @@ static bool may_pack(const struct frame *frame)
     for (size_t i = 0; i < frame->scene->photo_count; i++)
         usable += photos->states[i].usable;
     return frame->params->packing == ORL_PACKING_ON && frame->proxy->kind == &orl_proxy_hull &&
-           orl_painter_of(frame->params) == &orl_paint_gather && !frame->radiance &&
+           frame->params->paint == &orl_paint_gather && !frame->radiance &&
            !frame->progressive && !orl_frame_guesses(frame) &&
            (frame->params->fill != ORL_FILL_ROOM || photos->places) &&
            photos->format == GL_SRGB8_ALPHA8 && photos->divide == 1 &&

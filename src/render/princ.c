@@ -317,4 +317,4 @@ end:
     return result;
 }
 
-const struct selection orl_select_princ = {"princ", choose};
+const struct orl_selection orl_select_princ = {"princ", choose};

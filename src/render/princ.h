@@ -4,6 +4,6 @@
 
 #include "render/method.h"
 
-extern const struct selection orl_select_princ;
+extern const struct orl_selection orl_select_princ;
 
 #endif

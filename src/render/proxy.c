@@ -60,7 +60,7 @@ static enum orl_result find_vertices(const struct orl_log *log, struct proxy *pr
 }
 
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                 const struct proxy_kind *kind, size_t max_bytes,
+                                 const struct orl_proxy_kind *kind, size_t max_bytes,
                                  struct proxy *proxy)
 {
     *proxy = (struct proxy){.kind = kind};
@@ -118,7 +118,7 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
 enum orl_result orl_proxy_color(const struct frame *frame, const struct paint_into *into)
 {
     const struct proxy *proxy = frame->proxy;
-    const struct proxy_kind *kind = proxy->kind;
+    const struct orl_proxy_kind *kind = proxy->kind;
     enum orl_result result =
         kind->bring_colors ? kind->bring_colors(frame->gpu, proxy->state) : ORL_OK;
     if (result == ORL_OK)
@@ -126,7 +126,7 @@ enum orl_result orl_proxy_color(const struct frame *frame, const struct paint_in
     return result;
 }
 
-bool orl_proxy_reads(const struct orl_render_option *option, const struct proxy_kind *kind)
+bool orl_proxy_reads(const struct orl_render_option *option, const struct orl_proxy_kind *kind)
 {
     size_t length = strlen(kind->name);
     for (const char *at = option->readers; (at = strstr(at, "proxy=")); at++)

@@ -23,7 +23,7 @@ struct paint_into {
 };
 
 // One kind of proxy. `state`: its data on the device; `target`: its textures for one picture size.
-struct proxy_kind {
+struct orl_proxy_kind {
     const char *name;
     // max_bytes: of device memory that a proxy keeps to which can; 0: as it needs.
     enum orl_result (*create)(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -56,10 +56,10 @@ struct proxy_kind {
     void (*color)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
                   const void *target, const struct paint_into *into);
 };
-extern const struct proxy_kind orl_proxy_splats; // splats.c
-extern const struct proxy_kind orl_proxy_mesh;   // mesh_proxy.c
-extern const struct proxy_kind orl_proxy_hull;   // hull_proxy.c
-extern const struct proxy_kind orl_proxy_voxels; // voxel_proxy.c
+extern const struct orl_proxy_kind orl_proxy_splats; // splats.c
+extern const struct orl_proxy_kind orl_proxy_mesh;   // mesh_proxy.c
+extern const struct orl_proxy_kind orl_proxy_hull;   // hull_proxy.c
+extern const struct orl_proxy_kind orl_proxy_voxels; // voxel_proxy.c
 
 // Extent of the proxy's vertices, world. A cloud has single points hundreds of times as far away as its
 // subject, and the box of all of them has its centre anywhere.
@@ -82,7 +82,7 @@ struct photo_aspect {
 
 // A proxy of the scene, with one target for views and one for photographs.
 struct proxy {
-    const struct proxy_kind *kind;
+    const struct orl_proxy_kind *kind;
     const float (*vertices)[3]; // world; owned by the state or the scene
     size_t vertex_count;
     struct proxy_extent extent;
@@ -93,9 +93,9 @@ struct proxy {
 };
 
 // True if this option belongs to proxies of the kind.
-bool orl_proxy_reads(const struct orl_render_option *option, const struct proxy_kind *kind);
+bool orl_proxy_reads(const struct orl_render_option *option, const struct orl_proxy_kind *kind);
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                 const struct proxy_kind *kind, size_t max_bytes,
+                                 const struct orl_proxy_kind *kind, size_t max_bytes,
                                  struct proxy *proxy);
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
 // Frees what photographs' depth maps are drawn into, until the next one is drawn.

@@ -66,7 +66,7 @@ static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
 }
 
 // The proxy of this kind, made when it is first asked for.
-static enum orl_result find_proxy(struct orl_renderer *r, const struct proxy_kind *kind,
+static enum orl_result find_proxy(struct orl_renderer *r, const struct orl_proxy_kind *kind,
                                   struct proxy **proxy)
 {
     for (size_t i = 0; i < r->proxy_count; i++) {
@@ -170,7 +170,7 @@ static enum orl_result retarget(struct orl_gpu *gpu, const char *tag, bool wante
 static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
 {
     int width = frame->view->camera.width, height = frame->view->camera.height;
-    int states = frame->radiance || frame->finishes ? 0 : orl_combine_of(frame->params)->states;
+    int states = frame->radiance || frame->finishes ? 0 : frame->params->combine->states;
     if (frame->params->median != ORL_MEDIAN_OFF)
         states = states > 1 ? states : 1;
     const struct {
@@ -208,7 +208,7 @@ static enum orl_result draw_surface(struct frame *frame, const struct orl_render
 
 static enum orl_result draw_picture(struct frame *frame, const struct orl_render_params *params)
 {
-    const struct painter *painter = orl_painter_of(frame->params);
+    const struct orl_painter *painter = frame->params->paint;
     enum orl_result result = draw_surface(frame, params);
     if (result != ORL_OK)
         return result;
@@ -232,7 +232,7 @@ static enum orl_result draw_picture(struct frame *frame, const struct orl_render
 
 static enum orl_result draw(struct frame *frame, bool normals)
 {
-    const struct painter *painter = orl_painter_of(frame->params);
+    const struct orl_painter *painter = frame->params->paint;
     int count = orl_reconstruction_count(frame), done = 0;
     enum orl_result result = ORL_OK;
     const struct orl_view *whole = frame->view;
@@ -263,7 +263,7 @@ static struct frame start_frame(struct orl_renderer *r, struct proxy *proxy,
     return (struct frame){
         .gpu = r->gpu, .scene = r->scene, .view = view, .params = params, .skip = skip,
         .radiance = r->photos.radiance, .reads_chroma = r->photos.chroma != NULL,
-        .finishes = orl_painter_of(params)->finishes && !r->photos.radiance,
+        .finishes = params->paint->finishes && !r->photos.radiance,
         .proxy = proxy, .photos = &r->photos,
         .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges, .guess = &r->guess,
         .chosen = r->chosen, .selected = r->selected};
@@ -338,7 +338,7 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
         return result;
     struct proxy *proxy;
     struct prefetch *next = NULL;
-    result = find_proxy(r, orl_proxy_kind_of(params), &proxy);
+    result = find_proxy(r, params->proxy, &proxy);
     if (result != ORL_OK)
         return result;
     struct frame frame = start_frame(r, proxy, view, params, skip);

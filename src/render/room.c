@@ -63,7 +63,7 @@ static void project(const struct frame *frame, bool backgrounds, size_t first, s
         orl_gather_set_slot(&slots, "combine", "gather/radiance/mean.glsl");
     // Behind layers the room shows through.
     snprintf(defines, sizeof defines, "SWEEP 0\nROOM %d\n%s%s",
-             orl_painter_of(frame->params)->layers ? 2 : 1,
+             frame->params->paint->layers ? 2 : 1,
              frame->scene->room.known ? "" : "SHELL 1\n",
              frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "");
     struct orl_dispatch d = {
@@ -128,7 +128,7 @@ enum orl_result orl_room_paint(struct frame *frame)
     room.packs = false; // backgrounds are not packed
     params.border_px = 0;
     snprintf(params.weight, sizeof params.weight, "equal");
-    snprintf(params.combine, sizeof params.combine, recurrence ? "recurrence" : "mean");
+    params.combine = recurrence ? &orl_combine_recurrence : &orl_combine_mean;
     if (backgrounds)
         snprintf(params.visibility, sizeof params.visibility, "none");
     orl_tex_clear(frame->room, 0);
@@ -155,7 +155,7 @@ enum orl_result orl_room_paint(struct frame *frame)
 void orl_room_show(const struct frame *frame)
 {
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
-                                .layers = orl_painter_of(frame->params)->layers};
+                                .layers = frame->params->paint->layers};
     struct orl_dispatch d = {
         .prog = orl_prog_get(frame->gpu, "fill/room.comp", NULL,
                              frame->finishes ? "FINISHED" : NULL),

@@ -28,7 +28,7 @@ static enum orl_result choose_all(struct frame *frame, size_t most)
     return ORL_OK;
 }
 
-const struct selection orl_select_all = {"all", choose_all};
+const struct orl_selection orl_select_all = {"all", choose_all};
 
 // --- nearest: the photographs of least angle at the scene's centre (Orzan 2005, 4.3.2) ---
 
@@ -96,7 +96,7 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
     return ORL_OK;
 }
 
-const struct selection orl_select_nearest = {"nearest", choose_nearest};
+const struct orl_selection orl_select_nearest = {"nearest", choose_nearest};
 
 // --- preselect: the photographs that can paint the view best, so that its cost is bounded ---
 
@@ -240,4 +240,4 @@ end:
     return result;
 }
 
-const struct selection orl_select_preselect = {"preselect", choose_best};
+const struct orl_selection orl_select_preselect = {"preselect", choose_best};

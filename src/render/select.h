@@ -5,7 +5,7 @@
 #include "render/method.h"
 #include "render/photos.h"
 
-extern const struct selection orl_select_all, orl_select_nearest, orl_select_preselect;
+extern const struct orl_selection orl_select_all, orl_select_nearest, orl_select_preselect;
 
 // The penalty of shaders/shared/penalty.h for a photograph and a world point; negative if the point
 // is outside the photograph. eye: the view's camera centre; view_focal: its fx, pixels.

@@ -368,7 +368,7 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
     }
 }
 
-const struct proxy_kind orl_proxy_splats = {
+const struct orl_proxy_kind orl_proxy_splats = {
     .name = "splats", .create = create, .vertices = vertices, .destroy = destroy, .resize = resize,
     .free_target = free_target, .target_bytes = target_bytes, .bring = bring, .draw = draw,
     .bring_colors = bring_colors, .color = color,

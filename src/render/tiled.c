@@ -97,7 +97,7 @@ static enum orl_result paint(struct frame *frame)
         return orl_paint_gather.paint(frame);
     // Depth is always needed: the selection per tile tests occlusion even if the pixels do not.
     enum orl_result result =
-        orl_selection_of(frame->params)->choose(frame, (size_t)frame->photos->slot_count);
+        frame->params->select->choose(frame, (size_t)frame->photos->slot_count);
     if (result == ORL_OK && frame->progressive)
         result = orl_progressive_admit(frame, true);
     for (size_t i = 0; !frame->progressive && result == ORL_OK && i < frame->chosen_count; i++)
@@ -107,7 +107,7 @@ static enum orl_result paint(struct frame *frame)
     return result == ORL_OK ? orl_progressive_underpaint(frame) : result;
 }
 
-const struct painter orl_paint_tiled = {
+const struct orl_painter orl_paint_tiled = {
     .name = "tiled", .needs = "select=preselect weight=lumigraph combine=robust",
     .finishes = true, .paint = paint,
 };

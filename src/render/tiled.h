@@ -5,6 +5,6 @@
 
 #include "render/method.h"
 
-extern const struct painter orl_paint_tiled;
+extern const struct orl_painter orl_paint_tiled;
 
 #endif

@@ -108,7 +108,7 @@ static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view 
                                 .depth = target->depth, .normal = target->normal};
 }
 
-const struct proxy_kind orl_proxy_voxels = {
+const struct orl_proxy_kind orl_proxy_voxels = {
     .name = "voxels", .create = create, .update = update, .vertices = vertices,
     .destroy = destroy, .resize = orl_raster_target_resize,
     .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes, .draw = draw,

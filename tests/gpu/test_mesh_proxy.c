@@ -112,7 +112,7 @@ static void every_method_paints_a_mesh(void **state)
     add_photo(&f, look_from(-0.3, 0, 0, W, 20), green);
     for (const struct orl_method *m = orl_methods; m->name; m++) {
         struct orl_render_params params = m->params;
-        if (orl_painter_of(&params)->needs[0] && strcmp(params.paint, "tiled") != 0)
+        if (params.paint->needs[0] && strcmp(params.paint->name, "tiled") != 0)
             continue; // goes with a proxy of its own
         assert_int_equal(orl_render_params_set(NULL, &params, "proxy=mesh"), ORL_OK);
         struct orl_frame frame = draw(gpu, &f, view_of(), &params, 0);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "oriel/render.h"
+#include "render/method.h"
 #include "test.h"
 
 static void tries_can_be_set(void **state)
@@ -33,7 +34,9 @@ static void presets_survive_their_text(void **state)
             orl_render_option_print(o, &m->params, value, sizeof value);
             if (!orl_render_option_read(o, &m->params)) { // a default, which text may not set
                 memcpy((char *)&params + o->offset, (const char *)&m->params + o->offset,
-                       o->kind == ORL_OPTION_SLOT ? ORL_OPTION_NAME_BYTES : sizeof(float));
+                       o->kind == ORL_OPTION_FILE   ? (size_t)ORL_OPTION_NAME_BYTES
+                       : o->kind == ORL_OPTION_SLOT ? sizeof(void *)
+                                                    : sizeof(float));
                 continue;
             }
             snprintf(text[count], sizeof text[count], "%s=%s", o->key, value);
@@ -111,19 +114,19 @@ static void scenes_without_points_use_mesh_or_hull(void **state)
     struct orl_render_params params;
     const struct orl_method *method = orl_method_find(NULL, "orzan-view");
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
-    assert_string_equal(params.proxy, "mesh");
+    assert_string_equal(orl_slot_name(params.proxy), "mesh");
     struct orl_photo photo = {.masked = true};
     scene.photos = &photo;
     scene.photo_count = 1;
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
-    assert_string_equal(params.proxy, "hull"); // there is no mesh
+    assert_string_equal(orl_slot_name(params.proxy), "hull"); // there is no mesh
     scene.points.count = 1;
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
-    assert_string_equal(params.proxy, "splats");
+    assert_string_equal(orl_slot_name(params.proxy), "splats");
     scene.points.count = 0;
     method = orl_method_find(NULL, "points");
     assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
-    assert_string_equal(params.proxy, "splats");
+    assert_string_equal(orl_slot_name(params.proxy), "splats");
 }
 
 // A variant takes what was found for its base, but not in what makes it a variant, and not if
