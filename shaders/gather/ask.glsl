@@ -10,10 +10,9 @@ struct Answer {
     float weight; // 0: the photograph does not show the point
 };
 
-// Asks photograph i, the source, about a point. soft_border: the weight falls over a wider
-// border where depth is estimated. The code selects rather than branches, since software renderers
-// run both sides of a condition.
-Answer ask(photo source, int i, Point at, bool soft_border)
+// Asks photograph i, the source, about a point. The code selects rather than branches, since software
+// renderers run both sides of a condition.
+Answer ask(photo source, int i, Point at)
 {
     Answer a;
     a.source = i;
@@ -23,8 +22,7 @@ Answer ask(photo source, int i, Point at, bool soft_border)
     a.mip = photo_mip(source, z, at.p.z);
     vec4 seen = photo_depths(source, a.pixel);
     float visible = at.guessed ? visible_guess(source, at, seen, z) : visible_surface(source, at, seen, z);
-    float weight = weight_of(source, at) *
-                   photo_border(source, a.pixel, at.guessed && soft_border) * visible;
+    float weight = weight_of(source, at) * photo_border(source, a.pixel) * visible;
     a.weight = inside ? weight : 0.0;
     return a;
 }

@@ -37,7 +37,7 @@ void main()
     int i = photo_first();
     do { // the condition comes last: see tiled.comp
         photo source = photo_at(i);
-        combine_add(source, ask(source, i, point, SOFT_BORDER));
+        combine_add(source, ask(source, i, point));
         i = photo_next(i);
     } while (i >= 0);
     combine_end(at, point);

@@ -25,19 +25,15 @@ bool photo_project(photo source, vec3 p, out vec2 pixel, out float z)
     return photo_shows(source, q, pixel, z);
 }
 
-// Factor on the border width for estimated depth, where a sky of another day or a displaced object
-// would otherwise end in a visible line.
-const float GUESS_BORDERS = 16.0;
-
 // What is left of a photograph's weight at its border: enough to paint what no other photograph shows.
 const float BORDER_MIN = 1e-3;
 
 // Weight that falls from 1 to BORDER_MIN towards the photograph's border; 1 throughout if border_px
 // is 0.
-float photo_border(photo source, vec2 pixel, bool guessed)
+float photo_border(photo source, vec2 pixel)
 {
     vec2 border = min(pixel, source.size.xy - pixel) - 0.5;
-    float width = max(guessed ? GUESS_BORDERS * border_px : border_px, 0.5);
+    float width = max(border_px, 0.5);
     return border_px > 0.0 ? clamp(min(border.x, border.y) / width, BORDER_MIN, 1.0) : 1.0;
 }
 

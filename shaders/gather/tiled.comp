@@ -84,7 +84,7 @@ void consider(int i, photo source, spot s, inout ranking r)
     sees = backdrop ? 1.0 : sees;
     penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
 #endif
-    float sure = sees * photo_border(source, pixel, is_guess(s));
+    float sure = sees * photo_border(source, pixel);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_MIN : 1e-4);
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z)), r);
 }

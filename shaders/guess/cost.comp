@@ -64,7 +64,7 @@ void ask(photo source, bool listed, vec3 p, inout opinion o)
     vec4 seen = photo_depths(source, pixel);
     vec4 behind = clamp((seen - z) * (1.0 / (z * opt.depth_tolerance)) - 1.0, 0.0, 1.0);
     float past = dot(behind, vec4(0.25)), penalty = photo_penalty(source, p);
-    float weight = photo_border(source, pixel, false) * photo_beside(penalty) / (penalty + 0.05);
+    float weight = photo_border(source, pixel) * photo_beside(penalty) / (penalty + 0.05);
     weight = inside ? weight : 0.0;
     float open = weight * photo_unhidden_share(source, seen, z), counts = open * (1.0 - past);
     // A texel of this level is as large as half a cell.

@@ -275,27 +275,6 @@ static void photographs_that_tie_paint(void **state)
     teardown(&f);
 }
 
-// Two photographs from one place, alike but for the green one's border 12 pixels from the spot. It
-// would count as much as the red one over a surface.
-static void guesses_fade_out_from_afar(void **state)
-{
-    (void)state;
-    struct fixture f;
-    setup(&f, false);
-    add_photo(&f, look_from(3, 0, 0, 128, 12), red);
-    add_photo(&f, look_from(3, 0, 0, 48, 12), green);
-    struct orl_render_params params = best();
-    params.border_px = 2;
-    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, 48, 12), &params, 0);
-    const float *c = color_at(&frame, 44, 24); // of (6.8, 0, 4), the green one's pixel 35.5
-    double weight = pow(12.0 / 32, (double)params.guess_sharpness);
-    assert_float_equal(c[1], weight / (1 + weight), 5e-3);
-    const float *wall = color_at(&frame, 30, 24);
-    assert_float_equal(wall[1], 0.5, 5e-3);
-    orl_frame_finish(&frame);
-    teardown(&f);
-}
-
 // The share of green where the ground, at depth 8.47, has only an estimated depth. The red
 // photograph, a little nearer by angle, sees past it at a patch of depth `z`, which the view shows
 // elsewhere.
@@ -346,7 +325,6 @@ int main(void)
         cmocka_unit_test(guesses_end_at_the_ground),
         cmocka_unit_test(guesses_are_not_seen_from_the_side),
         cmocka_unit_test(photographs_that_tie_paint),
-        cmocka_unit_test(guesses_fade_out_from_afar),
         cmocka_unit_test(guesses_are_no_part_of_objects),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);

@@ -36,7 +36,7 @@ sight consider(int i, vec3 p, bool guessed)
                              photo_past_share(source, seen, z) * photo_beside(penalty)
                        : photo_seen_share(seen, z);
     penalty = guessed ? penalty : photo_surface_penalty(penalty);
-    float sure = sees * photo_border(source, pixel, guessed);
+    float sure = sees * photo_border(source, pixel);
     bool paints = sees > (guessed ? GUESS_SURE_MIN : 1e-4);
     return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, p.z));
 }

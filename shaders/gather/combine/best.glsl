@@ -2,8 +2,6 @@
 // weight of the batches before it. Of samples that tie, the first photograph's is taken.
 #include "gather/each.glsl"
 
-const bool SOFT_BORDER = false;
-
 vec4 best; // shared/pixel.glsl, blended
 
 void combine_begin(ivec2 at)

@@ -2,9 +2,6 @@
 // adds to the sums of the one before.
 #include "gather/each.glsl"
 
-// A wide soft border is unnecessary: among all photographs the border of one does not show.
-const bool SOFT_BORDER = false;
-
 vec4 sum;
 
 void combine_begin(ivec2 at)

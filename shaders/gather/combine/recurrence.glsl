@@ -4,7 +4,6 @@
 #include "gather/each.glsl"
 #include "shared/srgb.glsl"
 
-const bool SOFT_BORDER = false;
 // Source alpha is 128 of 255, and times 0.12 gives the paper's 0.06.
 const float HALF = 128.0 / 255.0, CONSTANT = 0.12;
 

@@ -5,7 +5,6 @@
 #include "gather/each.glsl"
 #include "shared/srgb.glsl"
 
-const bool SOFT_BORDER = false;
 const float LEAST_SAMPLES = 3.0;
 // Tolerance for rounding where all samples are alike; much less than a step of 8 bits.
 const float ROUNDING = 1e-4;

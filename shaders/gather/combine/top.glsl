@@ -3,7 +3,6 @@
 // Two sweeps: the first finds the five greatest weights of a pixel, the second adds the samples.
 #include "gather/each.glsl"
 
-const bool SOFT_BORDER = false;
 const int KEPT = 5;
 // Minimum weight relative to full weight, so that samples that tie for the fifth place still paint
 // when there are no others.

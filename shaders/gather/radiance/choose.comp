@@ -33,7 +33,7 @@ float score(int i, ivec2 tile)
             continue;
         Point point = Point(surface_point(at, abs(depth)), imageLoad(view_normal, at).xyz,
                             depth < 0.0);
-        Answer a = ask(source, i, point, true);
+        Answer a = ask(source, i, point);
         Sample s = sample_of(source, a, point.guessed);
         // A clipped sample still reveals samples that are too dark (radiance/merge.glsl).
         most = max(most, max(weight_alone(source, s), CLIPPED_SHARE * s.weight));

@@ -3,8 +3,6 @@
 #include "gather/each.glsl"
 #include "gather/radiance/alone.glsl"
 
-const bool SOFT_BORDER = false;
-
 vec4 sum;
 
 void combine_begin(ivec2 at)

@@ -15,7 +15,6 @@ layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[]; // written by radiance/choose.comp
 };
 
-const bool SOFT_BORDER = true;
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 const float LEAST_SHARE_FOUND = 0.02; // of the tile's best weight; below it a pixel asks all others
 const float DOUBT_FROM = 0.1; // excess up to which a sample loses at most 1 % of its weight
