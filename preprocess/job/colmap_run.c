@@ -153,7 +153,8 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
     if (result == ORL_ERR_NOT_FOUND) {
         result = advise_missing(job);
     } else if (result == ORL_ERR_EXTERNAL) {
-        orl_logf(job->log, ORL_LOG_ERROR, "all of COLMAP's output is in %s", log_path);
+        if (job->lock_fd >= 0) // else it is an import's, which is removed when it fails
+            orl_logf(job->log, ORL_LOG_ERROR, "all of COLMAP's output is in %s", log_path);
         orl_job_hint_disk(job);
     }
 end:

@@ -343,6 +343,23 @@ static enum orl_result read_structure(const struct meshroom *m, struct orl_colma
     return result;
 }
 
+static void say_unused_of_meshroom(const struct orl_known_source *source)
+{
+    static const char *const lists[] = {"views", "intrinsics", "poses"};
+    static const char *const used[] = {
+        "version", "views", "intrinsics", "poses", "structure", "viewId", "poseId", "intrinsicId",
+        "subPoseId", "path", "width", "height", "pose", "type", "distortionType", "distortionParams",
+        "pxFocalLength", "focalLength", "sensorWidth", "pixelRatio", "principalPoint", NULL};
+    struct orl_known_unused unused = {.used = used};
+    orl_known_look_for_unused(&unused, source->root);
+    for (size_t i = 0; i < ORL_COUNT(lists); i++) {
+        const json_t *list = json_object_get(source->root, lists[i]);
+        for (size_t k = 0; k < json_array_size(list); k++)
+            orl_known_look_for_unused(&unused, json_array_get(list, k));
+    }
+    orl_known_say_unused(source, &unused);
+}
+
 enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
                                         struct orl_known_cameras *known)
 {
@@ -356,6 +373,8 @@ enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
     if (result == ORL_OK && m.without)
         orl_logf(source->log, ORL_LOG_WARNING, "%s: %zu of %zu photographs have no pose: left out",
                  source->path, m.without, json_array_size(views));
+    if (result == ORL_OK)
+        say_unused_of_meshroom(source);
     if (result == ORL_OK)
         result = read_structure(&m, &known->model);
     json_decref(m.lenses);

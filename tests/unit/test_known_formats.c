@@ -304,7 +304,7 @@ static void reads_opensfm(void **state)
     "\"intrinsicId\": \"7\", \"path\": \"C:/photos/b.jpg\"}], \"intrinsics\": [{\"intrinsicId\": \"7\", " \
     "\"width\": \"640\", \"height\": \"480\", " lens "}], \"poses\": [{\"poseId\": \"6\", \"pose\": " \
     "{\"transform\": {\"rotation\": [\"0\", \"1\", \"0\", \"-1\", \"0\", \"0\", \"0\", \"0\", \"1\"], " \
-    "\"center\": [\"1\", \"2\", \"3\"]}}}], \"structure\": [{\"landmarkId\": \"1\", \"color\": [\"1\", " \
+    "\"center\": [\"1\", \"2\", \"3\"]}}, \"locked\": \"0\"}], \"structure\": [{\"landmarkId\": \"1\", \"color\": [\"1\", " \
     "\"2\", \"3\"], \"X\": [\"1\", \"2\", \"9\"], \"observations\": [{\"observationId\": \"5\"}]}]}"
 
 static void reads_meshroom(void **state)
@@ -316,6 +316,7 @@ static void reads_meshroom(void **state)
     assert_int_equal(read(w, ""), ORL_OK);
     assert_int_equal(w->known.model.image_count, 1);
     says(w, "1 of 2 photographs have no pose: left out");
+    says(w, "not used: locked\n");
     check_pose(w, 0);
     check_params(w, 4, (double[]){500, 500, 330, 240, 0.1, 0.2, 0, 0}, 8);
     assert_int_equal(w->known.model.point_count, 1);
