@@ -44,15 +44,21 @@ static void find(const struct orl_depth_map *maps, size_t which, size_t count,
     assert_int_equal(orl_fuse_pixels_find(NULL, maps, which, others, other_count, found), ORL_OK);
 }
 
+// What the first of two maps of the wall gives.
+static void find_on_wall(struct orl_depth_map maps[2], struct orl_fused_pixels *found)
+{
+    draw(&maps[0], WALL, false);
+    draw(&maps[1], WALL, false);
+    find(maps, 0, 2, found);
+}
+
 // Of a smooth wall every second pixel each way, where the other camera sees it.
 static void a_wall_needs_every_second_pixel(void **state)
 {
     struct orl_depth_map maps[] = {make_map(0, 1), make_map(1, 1)};
     struct orl_fused_pixels found;
     (void)state;
-    draw(&maps[0], WALL, false);
-    draw(&maps[1], WALL, false);
-    find(maps, 0, 2, &found);
+    find_on_wall(maps, &found);
     // One unit to the side is 8 pixels at this depth: x from 8 on is common to both.
     assert_int_equal(found.count, (WIDTH - 8) / 2 * (HEIGHT / 2));
     for (size_t i = 0; i < found.count; i++) {
@@ -72,9 +78,7 @@ static void pixels_are_asked_for_at_their_middles(void **state)
     struct orl_depth_map maps[] = {make_map(0, 1), make_map(9.25 / 8, 1)};
     struct orl_fused_pixels found;
     (void)state;
-    draw(&maps[0], WALL, false);
-    draw(&maps[1], WALL, false);
-    find(maps, 0, 2, &found);
+    find_on_wall(maps, &found);
     assert_int_equal(found.count, (WIDTH - 8) / 2 * (HEIGHT / 2));
     orl_fused_pixels_finish(&found);
     for (int i = 0; i < 2; i++)
