@@ -123,11 +123,10 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params) ORL_CHECK_RESULT;
 
 // The method's parameters as they suit the scene: with the values that scene.json has for it or for
-// the method that it is a variant of, and on a proxy that the scene has.
-// ORL_ERR_FORMAT if the scene has settings that are unknown to this program.
-enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
-                                        const struct orl_scene *scene,
-                                        struct orl_render_params *params) ORL_CHECK_RESULT;
+// the method that it is a variant of, and on a proxy that the scene has. Values that this program does not
+// take, as of options that another version had, are ignored, with a warning.
+void orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
+                             const struct orl_scene *scene, struct orl_render_params *params);
 
 // Takes the proxy, its options and the fill of `from`, so that two methods' weights can be compared on the
 // same depth and background. The fill stays where the weights cannot use the other one. False: this painter

@@ -66,10 +66,9 @@ static enum orl_result add_method(struct job *job, const struct orl_method *meth
     struct orl_adapt *adapt = job->adapt;
     struct orl_render_params render;
     struct orl_score score = {0};
-    enum orl_result result = orl_render_params_tuned(job->log, method, job->scene, &render);
-    if (result == ORL_OK)
-        result = orl_score_measure(job->log, job->renderer, &job->validation, &render,
-                                   job->params->progress, &score);
+    orl_render_params_tuned(job->log, method, job->scene, &render);
+    enum orl_result result = orl_score_measure(job->log, job->renderer, &job->validation, &render,
+                                               job->params->progress, &score);
     if (result == ORL_OK)
         adapt->rows[adapt->row_count++] =
             (struct orl_adapt_row){method, score.psnr_db, score.ssim};
@@ -102,13 +101,11 @@ static enum orl_result compare_methods(struct job *job)
                           job->scene->dir);
     adapt->chosen = orl_adapt_choose(adapt->rows, adapt->row_count);
     job->choice.method = adapt->rows[adapt->chosen].method;
-    if (result == ORL_OK)
-        result = orl_render_params_tuned(job->log, job->choice.method, job->scene,
-                                         &job->choice.params);
-    if (result == ORL_OK)
-        result = orl_score_measure(job->log, job->renderer, &job->validation, &job->choice.params,
-                                   job->params->progress, &job->score);
-    return result;
+    if (result != ORL_OK)
+        return result;
+    orl_render_params_tuned(job->log, job->choice.method, job->scene, &job->choice.params);
+    return orl_score_measure(job->log, job->renderer, &job->validation, &job->choice.params,
+                             job->params->progress, &job->score);
 }
 
 // --- what other methods do ---
@@ -275,9 +272,9 @@ static enum orl_result set_step(const struct job *job, const struct step *step,
     *choice = job->choice;
     if (step->method) {
         choice->method = orl_method_find(job->log, step->method);
-        result = choice->method ? orl_render_params_tuned(job->log, choice->method, job->scene,
-                                                          &choice->params)
-                                : ORL_ERR_ARGUMENT;
+        if (!choice->method)
+            return ORL_ERR_ARGUMENT;
+        orl_render_params_tuned(job->log, choice->method, job->scene, &choice->params);
     }
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(step->settings); i++)
         if (step->settings[i])

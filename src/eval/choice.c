@@ -26,16 +26,12 @@ struct wish {
 static enum orl_result make(const struct wish *wish, const struct orl_method *method,
                             struct orl_choice *choice)
 {
-    enum orl_result result = ORL_OK;
     *choice = (struct orl_choice){.method = method, .params = method->params};
     if (wish->scene)
-        result = orl_render_params_tuned(wish->log, method, wish->scene, &choice->params);
+        orl_render_params_tuned(wish->log, method, wish->scene, &choice->params);
     choice->params.sample = wish->sample;
-    if (result == ORL_OK)
-        result = orl_render_params_assign(wish->log, &choice->params,
-                                          (const char *const *)wish->settings->items,
-                                          wish->settings->count);
-    return result;
+    return orl_render_params_assign(wish->log, &choice->params, (const char *const *)wish->settings->items,
+                                    wish->settings->count);
 }
 
 enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scene *scene,

@@ -102,14 +102,12 @@ static enum orl_result measure(struct job *job, struct severity *s,
     struct stress_result result_of = {0};
     struct orl_render_params render = choice->params;
     char method[ORL_CHOICE_LABEL_MAX];
-    enum orl_result result = ORL_OK;
     orl_choice_label(choice, method);
     // The figure has silhouettes, so a method may stand on another proxy than before the monument.
     if (job->base.synth && s->axis->flags & STRESS_NEEDS_MASKS)
-        result = orl_render_params_tuned(job->log, choice->method, &s->changed.scene, &render);
+        orl_render_params_tuned(job->log, choice->method, &s->changed.scene, &render);
     orl_stress_axis_options(s->axis, &render);
-    if (result == ORL_OK)
-        result = orl_stress_measure(&s->changed, &render, &result_of);
+    enum orl_result result = orl_stress_measure(&s->changed, &render, &result_of);
     json_t *mean = json_object();
     for (int k = 0; k < STRESS_FIGURES; k++)
         json_object_set_new(mean, orl_stress_figures[k], orl_number_json(result_of.figures[k]));

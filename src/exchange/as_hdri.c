@@ -45,11 +45,9 @@ static enum orl_result draw(struct orl_gpu *gpu, const struct orl_scene *scene,
     struct orl_hdr *hdr = NULL;
     if (!method)
         return ORL_ERR_ARGUMENT;
-    params.render = method->params;
-    enum orl_result result = orl_render_params_tuned(log, method, scene, &params.render);
+    orl_render_params_tuned(log, method, scene, &params.render);
     params.render.sample = ORL_SAMPLE_RADIANCE;
-    if (result == ORL_OK)
-        result = orl_hdr_create(gpu, scene, &params, &hdr);
+    enum orl_result result = orl_hdr_create(gpu, scene, &params, &hdr);
     if (result == ORL_OK)
         result = orl_hdr_draw_panorama(hdr, panorama, NULL, frame);
     orl_hdr_destroy(&hdr);

@@ -242,15 +242,14 @@ static bool differs(const char *key, const struct orl_method *a, const struct or
     return strcmp(own, other) != 0;
 }
 
-enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
-                                        const struct orl_scene *scene,
-                                        struct orl_render_params *params)
+void orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
+                             const struct orl_scene *scene, struct orl_render_params *params)
 {
-    enum orl_result result = ORL_OK;
     const struct orl_method *source = tuned_method(scene, method);
+    char ignored[256] = "";
     *params = method->params;
     suit_scene(scene, params);
-    for (size_t i = 0; result == ORL_OK && i < scene->tuned_count; i++) {
+    for (size_t i = 0; i < scene->tuned_count; i++) {
         const struct orl_tuned *tuned = &scene->tuned[i];
         char assignment[160];
         if (strcmp(tuned->method, source->name) != 0 || differs(tuned->key, method, source))
@@ -259,11 +258,11 @@ enum orl_result orl_render_params_tuned(const struct orl_log *log, const struct 
             snprintf(assignment, sizeof assignment, "%s=%s", tuned->key, tuned->name);
         else
             snprintf(assignment, sizeof assignment, "%s=%.9g", tuned->key, tuned->value);
-        result = orl_render_params_set(log, params, assignment);
-        if (result != ORL_OK)
-            result = orl_fail(log, ORL_ERR_FORMAT,
-                              "%s/scene.json: \"tuned\" of %s does not fit this program; run "
-                              "oriel tune again", scene->dir, source->name);
+        size_t used = strlen(ignored);
+        if (orl_render_params_set(NULL, params, assignment) != ORL_OK)
+            snprintf(ignored + used, sizeof ignored - used, " %s", assignment);
     }
-    return result;
+    if (*ignored)
+        orl_logf(log, ORL_LOG_WARNING, "%s/scene.json: \"tuned\" of %s: ignored, since this program does not take "
+                 "it:%s", scene->dir, source->name, ignored);
 }

@@ -128,16 +128,13 @@ static enum orl_result write_site(struct site *site)
 // poster must look like the page.
 static enum orl_result make_renderer(struct site *site)
 {
-    enum orl_result result = orl_render_params_tuned(site->log, &orl_methods[0], site->scene,
-                                                     &site->render);
+    orl_render_params_tuned(site->log, &orl_methods[0], site->scene, &site->render);
     const struct orl_renderer_params limits = {.radiance = site->params->radiance};
     if (limits.radiance) {
         site->render.sample = ORL_SAMPLE_RADIANCE;
         site->range = orl_site_range(site->scene);
     }
-    return result == ORL_OK
-               ? orl_renderer_create(site->gpu, site->scene, &limits, &site->renderer)
-               : result;
+    return orl_renderer_create(site->gpu, site->scene, &limits, &site->renderer);
 }
 
 static enum orl_result replace_site(const struct site *site, struct orl_new_dir *dir)

@@ -70,9 +70,8 @@ static enum orl_result draw(struct soak *soak, struct orl_renderer *renderer,
     const struct orl_method *method = &orl_methods[soak->method];
     soak->method = orl_methods[soak->method + 1].name ? soak->method + 1 : 0;
     struct orl_render_params params; // as they suit the scene
-    enum orl_result result = orl_render_params_tuned(&soak->log, method, scene, &params);
-    if (result == ORL_OK)
-        result = orl_renderer_draw(renderer, &view, &params, NULL, &frame);
+    orl_render_params_tuned(&soak->log, method, scene, &params);
+    enum orl_result result = orl_renderer_draw(renderer, &view, &params, NULL, &frame);
     if (result != ORL_OK)
         return result;
     for (size_t i = 0; i < 3 * (size_t)WIDTH * HEIGHT; i++)

@@ -113,19 +113,19 @@ static void scenes_without_points_use_mesh_or_hull(void **state)
     struct orl_scene scene = {.dir = (char *)"a scene"};
     struct orl_render_params params;
     const struct orl_method *method = orl_method_find(NULL, "orzan-view");
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, method, &scene, &params);
     assert_string_equal(orl_slot_name(params.proxy), "mesh");
     struct orl_photo photo = {.masked = true};
     scene.photos = &photo;
     scene.photo_count = 1;
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, method, &scene, &params);
     assert_string_equal(orl_slot_name(params.proxy), "hull"); // there is no mesh
     scene.points.count = 1;
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, method, &scene, &params);
     assert_string_equal(orl_slot_name(params.proxy), "splats");
     scene.points.count = 0;
     method = orl_method_find(NULL, "points");
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, method, &scene, &params);
     assert_string_equal(orl_slot_name(params.proxy), "splats");
 }
 
@@ -141,11 +141,11 @@ static void variants_take_the_settings_of_their_base(void **state)
     struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
                               .tuned_count = 2};
     struct orl_render_params params;
-    assert_int_equal(orl_render_params_tuned(NULL, high, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, high, &scene, &params);
     assert_float_equal(params.sharpness, 16, 0);
     assert_float_equal(params.candidates, high->params.candidates, 0);
     scene.tuned_count = 3;
-    assert_int_equal(orl_render_params_tuned(NULL, high, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, high, &scene, &params);
     assert_float_equal(params.sharpness, high->params.sharpness, 0);
     assert_float_equal(params.border_px, 2, 0);
 }
@@ -160,21 +160,41 @@ static void scenes_settings_are_used(void **state)
     struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
                               .tuned_count = 3};
     struct orl_render_params params;
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, method, &scene, &params);
     assert_float_equal(params.min_support, 5, 0);
     assert_float_equal(params.front_layer, 0.05, 1e-6);
     assert_float_equal(params.splat_scale, method->params.splat_scale, 0);
     tuned[0] = (struct orl_tuned){(char *)method->name, (char *)"antialias", 0, (char *)"off"};
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+    orl_render_params_tuned(NULL, method, &scene, &params);
     assert_int_equal(params.antialias, ORL_ANTIALIAS_OFF);
     assert_int_equal(method->params.antialias, ORL_ANTIALIAS_ON);
-    tuned[1].value = 1e6; // out of range
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_ERR_FORMAT);
-    tuned[1].value = 5;
-    tuned[1].key = (char *)"of_tomorrow";
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_ERR_FORMAT);
-    tuned[1].method = (char *)"other";
-    assert_int_equal(orl_render_params_tuned(NULL, method, &scene, &params), ORL_OK);
+}
+
+static void count_warnings(void *count, enum orl_log_level level, const char *message)
+{
+    *(int *)count += level == ORL_LOG_WARNING && strstr(message, "of_tomorrow=1 min_support=1000000 weight=heavy");
+}
+
+// A scene that another version tuned opens: what this one does not take is named once, and the rest holds.
+static void settings_that_do_not_fit_are_ignored(void **state)
+{
+    (void)state;
+    const struct orl_method *method = &orl_methods[0];
+    char *name = (char *)method->name;
+    struct orl_tuned tuned[] = {{name, (char *)"of_tomorrow", 1, NULL},
+                                {name, (char *)"min_support", 1e6, NULL},
+                                {name, (char *)"weight", 0, (char *)"heavy"},
+                                {name, (char *)"splat_scale", 2, NULL}};
+    struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
+                              .tuned_count = ORL_COUNT(tuned)};
+    struct orl_render_params params;
+    int warnings = 0;
+    const struct orl_log log = {.level = ORL_LOG_WARNING, .print = count_warnings, .priv = &warnings};
+    orl_render_params_tuned(&log, method, &scene, &params);
+    assert_int_equal(warnings, 1);
+    assert_float_equal(params.splat_scale, 2, 0);
+    assert_float_equal(params.min_support, method->params.min_support, 0);
+    assert_string_equal(params.weight, method->params.weight);
 }
 
 int main(void)
@@ -187,6 +207,7 @@ int main(void)
         cmocka_unit_test(choices_must_go_together),
         cmocka_unit_test(scenes_without_points_use_mesh_or_hull),
         cmocka_unit_test(scenes_settings_are_used),
+        cmocka_unit_test(settings_that_do_not_fit_are_ignored),
         cmocka_unit_test(variants_take_the_settings_of_their_base),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
