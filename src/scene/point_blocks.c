@@ -96,27 +96,52 @@ static void sort_keys(struct key **keys, struct key **spare, size_t count)
     }
 }
 
-// Puts the points of a block into bit-reversed order, so that any first part is spread evenly.
-static void shuffle_block(const struct key *sorted, size_t count, uint32_t *order)
+enum orl_result orl_point_curve(const struct orl_log *log, const struct orl_points *points,
+                                const struct point_cube *cube, uint32_t **curve, size_t *count)
+{
+    struct key *keys = orl_array(log, points->count, sizeof *keys);
+    struct key *spare = orl_array(log, points->count, sizeof *spare);
+    *curve = orl_array(log, points->count, sizeof **curve);
+    *count = 0;
+    enum orl_result result = keys && spare && *curve ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        for (size_t i = 0; i < points->count; i++) {
+            const float *p = points->position[i];
+            if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
+                keys[(*count)++] = (struct key){orl_point_cube_morton(cube, p), (uint32_t)i};
+        }
+        sort_keys(&keys, &spare, *count);
+        for (size_t i = 0; i < *count; i++)
+            (*curve)[i] = keys[i].point;
+    } else {
+        free(*curve);
+        *curve = NULL;
+    }
+    free(keys);
+    free(spare);
+    return result;
+}
+
+void orl_point_shuffle(const uint32_t *sorted, size_t count, unsigned size, uint32_t *shuffled)
 {
     size_t next = 0;
-    for (unsigned i = 0; i < BLOCK; i++) {
+    for (unsigned i = 0; i < size; i++) {
         unsigned from = 0;
-        for (unsigned bit = 1; bit < BLOCK; bit *= 2)
+        for (unsigned bit = 1; bit < size; bit *= 2)
             from = 2 * from + (i & bit ? 1 : 0);
         if (from < count)
-            order[next++] = sorted[from].point;
+            shuffled[next++] = sorted[from];
     }
 }
 
-// How many of the points at `keys` make the next block: as many as fit, unless storage in one block
+// How many of the points at `sorted` make the next block: as many as fit, unless storage in one block
 // would be imprecise because distances or radii within it are very different.
-static size_t block_size(const struct orl_points *points, const struct key *keys, size_t count)
+static size_t block_size(const struct orl_points *points, const uint32_t *sorted, size_t count)
 {
     struct point_range range = orl_point_range_none();
     size_t most = count < BLOCK ? count : BLOCK;
     for (size_t i = 0; i < most; i++) {
-        uint32_t point = keys[i].point;
+        uint32_t point = sorted[i];
         orl_point_range_add(&range, points->position[point], points->radius[point]);
         if (i > 0 && !orl_point_range_is_precise(&range))
             return i;
@@ -125,7 +150,7 @@ static size_t block_size(const struct orl_points *points, const struct key *keys
 }
 
 // Divides sorted points into blocks, each filled up to BLOCK entries without a point.
-static size_t make_blocks(const struct orl_points *points, const struct key *sorted, size_t count,
+static size_t make_blocks(const struct orl_points *points, const uint32_t *sorted, size_t count,
                           uint32_t *order, size_t capacity)
 {
     size_t to = 0, first = 0;
@@ -134,7 +159,7 @@ static size_t make_blocks(const struct orl_points *points, const struct key *sor
         size_t here = left < BLOCK ? left : BLOCK;
         if (to + needed + BLOCK <= capacity) // there is room for one more block
             here = block_size(points, sorted + first, left);
-        shuffle_block(sorted + first, here, order + to);
+        orl_point_shuffle(sorted + first, here, BLOCK, order + to);
         for (size_t i = here; i < BLOCK; i++)
             order[to + i] = UINT32_MAX;
         to += BLOCK;
@@ -148,25 +173,17 @@ enum orl_result orl_point_order(const struct orl_log *log, const struct orl_poin
 {
     size_t blocks = points->count / BLOCK + 1, used = 0;
     size_t capacity = (blocks + blocks / SPLITS + SPLITS) * BLOCK;
-    struct key *keys = orl_array(log, points->count, sizeof *keys);
-    struct key *spare = orl_array(log, points->count, sizeof *spare);
-    *order = orl_array(log, capacity, sizeof **order);
+    uint32_t *curve = NULL;
     *count = 0;
-    enum orl_result result = keys && spare && *order ? ORL_OK : ORL_ERR_MEMORY;
+    *order = NULL;
+    enum orl_result result = orl_point_curve(log, points, cube, &curve, &used);
     if (result == ORL_OK) {
-        for (size_t i = 0; i < points->count; i++) {
-            const float *p = points->position[i];
-            if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
-                keys[used++] = (struct key){orl_point_cube_morton(cube, p), (uint32_t)i};
-        }
-        sort_keys(&keys, &spare, used);
-        *count = make_blocks(points, keys, used, *order, capacity);
-    } else {
-        free(*order);
-        *order = NULL;
+        *order = orl_array(log, capacity, sizeof **order);
+        result = *order ? ORL_OK : ORL_ERR_MEMORY;
     }
-    free(keys);
-    free(spare);
+    if (result == ORL_OK)
+        *count = make_blocks(points, curve, used, *order, capacity);
+    free(curve);
     return result;
 }
 

@@ -8,7 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/order.h"
-#include "scene/point_code.h"
+#include "scene/point_blocks.h"
 #include "scene/point_lod.h"
 #include "walk/internal.h"
 
@@ -44,105 +44,41 @@ struct order {
 
 // --- order ---
 
-static float coordinate(const struct order *order, size_t i, int axis)
+// Leaves out points without a radius, which show nothing.
+static size_t drop_flat(const struct orl_points *points, uint32_t *index, size_t count)
 {
-    return order->points->position[order->index[i]][axis];
-}
-
-static int widest_axis(const struct order *order, size_t first, size_t count)
-{
-    float widest = -1;
-    int axis = 0;
-    for (int k = 0; k < 3; k++) {
-        float low = INFINITY, high = -INFINITY;
-        for (size_t i = first; i < first + count; i++) {
-            low = fminf(low, coordinate(order, i, k));
-            high = fmaxf(high, coordinate(order, i, k));
-        }
-        if (high - low > widest) {
-            widest = high - low;
-            axis = k;
-        }
-    }
-    return axis;
-}
-
-// Wirth's quickselect: afterwards no coordinate before `middle` exceeds any coordinate after it.
-static void split(struct order *order, size_t first, size_t count, size_t middle, int axis)
-{
-    ptrdiff_t low = (ptrdiff_t)first, high = (ptrdiff_t)(first + count) - 1;
-    ptrdiff_t target = (ptrdiff_t)middle;
-    while (low < high) {
-        float pivot = coordinate(order, middle, axis);
-        ptrdiff_t i = low, j = high;
-        while (i <= j) {
-            while (coordinate(order, (size_t)i, axis) < pivot)
-                i++;
-            while (coordinate(order, (size_t)j, axis) > pivot)
-                j--;
-            if (i > j)
-                break;
-            uint32_t swap = order->index[i];
-            order->index[i++] = order->index[j];
-            order->index[j--] = swap;
-        }
-        low = j < target ? i : low;
-        high = target < i ? j : high;
-    }
-}
-
-// The order of a k-d tree: halves of halves are neighbours, down to single points.
-static void sort_points(struct order *order, size_t first, size_t count)
-{
-    if (count < 2)
-        return;
-    size_t cells = (count + CELL_POINTS - 1) / CELL_POINTS;
-    size_t half = cells > 1 ? cells / 2 * CELL_POINTS : count / 2;
-    split(order, first, count, first + half, widest_axis(order, first, count));
-    sort_points(order, first, half);
-    sort_points(order, first + half, count - half);
-}
-
-// Orders a cell by bit-reversed index, so that any first part covers the cell evenly.
-static void shuffle_cell(uint32_t *index, size_t count)
-{
-    uint32_t sorted[CELL_POINTS];
-    size_t next = 0;
-    memcpy(sorted, index, count * sizeof *index);
-    for (unsigned i = 0; i < CELL_POINTS; i++) {
-        unsigned from = 0;
-        for (unsigned bit = 1; bit < CELL_POINTS; bit *= 2)
-            from = 2 * from + (i & bit ? 1 : 0);
-        if (from < count)
-            index[next++] = sorted[from];
-    }
-}
-
-static bool usable(const struct orl_points *points, size_t i)
-{
-    const float *p = points->position[i];
-    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]) && points->radius[i] > 0;
+    size_t left = 0;
+    for (size_t i = 0; i < count; i++)
+        if (points->radius[index[i]] > 0)
+            index[left++] = index[i];
+    return left;
 }
 
 static enum orl_result make_order(const struct orl_log *log, const struct orl_points *points,
                                   struct order *order)
 {
+    struct point_cube cube;
+    uint32_t *curve = NULL;
     *order = (struct order){.points = points};
     if (points->count > UINT32_MAX)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
-    order->index = orl_array(log, points->count, sizeof *order->index);
-    if (!order->index)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < points->count; i++)
-        if (usable(points, i))
-            order->index[order->count++] = (uint32_t)i;
-    order->cells = (order->count + CELL_POINTS - 1) / CELL_POINTS;
-    sort_points(order, 0, order->count);
-    for (size_t c = 0; c < order->cells; c++) {
-        size_t first = c * CELL_POINTS, left = order->count - first;
-        shuffle_cell(order->index + first, left < CELL_POINTS ? left : CELL_POINTS);
+    enum orl_result result = orl_point_cube_find(log, points, &cube);
+    if (result == ORL_OK)
+        result = orl_point_curve(log, points, &cube, &curve, &order->count);
+    order->index = result == ORL_OK ? orl_array(log, order->count, sizeof *order->index) : NULL;
+    if (order->index) {
+        order->count = drop_flat(points, curve, order->count);
+        order->cells = (order->count + CELL_POINTS - 1) / CELL_POINTS;
+        for (size_t first = 0; first < order->count; first += CELL_POINTS) {
+            size_t left = order->count - first;
+            orl_point_shuffle(curve + first, left < CELL_POINTS ? left : CELL_POINTS, CELL_POINTS,
+                              order->index + first);
+        }
+    } else if (result == ORL_OK) {
+        result = ORL_ERR_MEMORY;
     }
-    return ORL_OK;
+    free(curve);
+    return result;
 }
 
 // --- a cell ---
