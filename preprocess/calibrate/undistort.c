@@ -90,15 +90,18 @@ static enum orl_result replace_some(const struct orl_job *job, size_t count, con
 enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
 {
     const struct orl_colmap_model *model;
-    size_t linear = 0, masks = 0;
+    size_t photos, linear = 0, masks = 0;
     enum orl_result result;
     if ((result = orl_job_find_colmap(job)) != ORL_OK ||
         (result = run_undistorter(job)) != ORL_OK ||
         (result = orl_job_set_sparse(job, WORK "/sparse", &model)) != ORL_OK ||
         (result = check_output(job, model, record)) != ORL_OK ||
-        (result = orl_undistort_photos(job, model, WORK "/images")) != ORL_OK ||
-        (result = orl_undistort_linear(job, model, WORK "/linear", &linear)) != ORL_OK ||
-        (result = orl_undistort_masks(job, model, WORK "/masks", &masks)) != ORL_OK ||
+        (result = orl_undistort_companions(job, ORL_COMPANION_PHOTO, model, WORK "/images",
+                                           &photos)) != ORL_OK ||
+        (result = orl_undistort_companions(job, ORL_COMPANION_LINEAR, model, WORK "/linear",
+                                           &linear)) != ORL_OK ||
+        (result = orl_undistort_companions(job, ORL_COMPANION_MASK, model, WORK "/masks",
+                                           &masks)) != ORL_OK ||
         (result = orl_job_replace(job, WORK "/sparse", "sparse")) != ORL_OK ||
         (result = replace_some(job, linear, WORK "/linear", "images_linear")) != ORL_OK ||
         (result = replace_some(job, masks, WORK "/masks", "masks")) != ORL_OK ||

@@ -50,7 +50,7 @@ static void undistorts_masks(void **state)
     const struct orl_colmap_model *model;
     size_t written;
     assert_int_equal(orl_job_sparse(&job, &model), ORL_OK);
-    assert_int_equal(orl_undistort_masks(&job, model, "masks", &written), ORL_OK);
+    assert_int_equal(orl_undistort_companions(&job, ORL_COMPANION_MASK, model, "masks", &written), ORL_OK);
     assert_int_equal(written, 1);
     struct orl_image image;
     snprintf(path, sizeof path, "%s/masks/a.png.png", dir);
@@ -95,8 +95,9 @@ static void undistorts_photographs(void **state)
         write_text(path, "images.txt", "1 1 0 0 0 0 0 0 1 a.jpg\n\n2 1 0 0 0 1 0 0 1 b.jpg\n\n");
     }
     const struct orl_colmap_model *model;
+    size_t written;
     assert_int_equal(orl_job_sparse(&job, &model), ORL_OK);
-    assert_int_equal(orl_undistort_photos(&job, model, "images"), ORL_OK);
+    assert_int_equal(orl_undistort_companions(&job, ORL_COMPANION_PHOTO, model, "images", &written), ORL_OK);
     for (int i = 0; i < 2; i++) {
         snprintf(path, sizeof path, "%s/images/%c.jpg", dir, "ab"[i]);
         assert_int_equal(orl_picture_read(NULL, path, 3, &image), ORL_OK);
