@@ -22,6 +22,7 @@ struct import_view {
     char *name;                           // name of the photograph in the scene; owned
     struct import_found picture, mask, background;
     bool composed; // its picture had alpha, and lies on white
+    bool gain_map; // its picture is HDR by a gain map
     bool masked;   // has a silhouette in the scene
     int orientation; // by EXIF; 0: not known
     bool test;

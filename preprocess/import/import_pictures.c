@@ -316,6 +316,7 @@ static enum orl_result settle_camera(struct import_job *job, struct import_view 
     enum orl_result result = orl_picture_inspect(job->log, path, &info);
     if (result == ORL_OK && info.panorama)
         result = orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: " ORL_PANORAMA_ADVICE, path);
+    view->gain_map = info.gain_map;
     if (result != ORL_OK || target->width) // known from an earlier picture of the same camera
         return result;
     result = orl_known_camera_settle(job->log, &job->known, view->camera, path, info.width,
@@ -429,11 +430,15 @@ static enum orl_result drop_surplus(const struct import_job *job)
     return result;
 }
 
-static void say_composed(const struct import_job *job)
+static void say_unusual(const struct import_job *job)
 {
-    size_t count = 0;
-    for (size_t i = 0; i < job->view_count; i++)
+    size_t count = 0, gain_maps = 0;
+    for (size_t i = 0; i < job->view_count; i++) {
         count += job->views[i].composed;
+        gain_maps += job->views[i].gain_map;
+    }
+    if (gain_maps)
+        orl_logf(job->log, ORL_LOG_INFO, ORL_GAIN_MAP_NEWS, gain_maps, job->view_count);
     if (count)
         orl_logf(job->log, ORL_LOG_INFO, "%zu of %zu photographs have alpha: they are laid on white, and alpha "
                  "is their silhouette", count, job->view_count);
@@ -456,7 +461,7 @@ enum orl_result orl_import_pictures(struct import_job *job)
         result = drop_surplus(job);
     if (result == ORL_OK)
         result = judge_masks(job);
-    say_composed(job);
+    say_unusual(job);
     if (result == ORL_OK)
         orl_progress_report(job->progress, "import", 1, 1, NULL);
     return result;

@@ -44,6 +44,7 @@ struct orl_source {
     bool test;
     bool deep;      // more than 8 bits a sample
     bool profiled;  // JPEG and PNG: colours of another profile than sRGB
+    bool gain_map;  // HDR by a gain map, which is not used
     bool unbounded; // floating point without a fixed white
 };
 

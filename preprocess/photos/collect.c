@@ -159,6 +159,7 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
     source->deep = info.bits > 8;
     source->profiled = info.profiled;
     source->unbounded = info.unbounded;
+    source->gain_map = info.gain_map;
     if (info.panorama) {
         snprintf(reason->text, sizeof reason->text, "%s", ORL_PANORAMA_ADVICE);
         return false;
@@ -179,7 +180,7 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
 
 static enum orl_result inspect_all(struct orl_job *job)
 {
-    size_t kept = 0;
+    size_t kept = 0, gain_maps = 0;
     for (size_t i = 0; i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
         if (orl_progress_cancelled(job->progress))
@@ -191,9 +192,12 @@ static enum orl_result inspect_all(struct orl_job *job)
             skip_for(job, source, &reason);
             continue;
         }
+        gain_maps += source->gain_map;
         keep_source(job, source, &kept);
     }
     job->source_count = kept;
+    if (gain_maps)
+        orl_logf(job->log, ORL_LOG_INFO, ORL_GAIN_MAP_NEWS, gain_maps, kept);
     orl_progress_report(job->progress, "collect", 1, 1, NULL);
     return ORL_OK;
 }

@@ -109,6 +109,26 @@ static enum orl_result read_exif(const struct heif_file *file, struct orl_exif *
     return result;
 }
 
+// Apple's, or that of ISO 21496-1.
+static bool has_gain_map(const struct heif_file *file)
+{
+    enum { MOST = 16 };
+    heif_item_id ids[MOST];
+    bool found = false;
+    int count = heif_image_handle_get_list_of_auxiliary_image_IDs(file->picture, 0, ids, MOST);
+    for (int i = 0; i < count && !found; i++) {
+        struct heif_image_handle *other = NULL;
+        const char *type = NULL;
+        if (heif_image_handle_get_auxiliary_image_handle(file->picture, ids[i], &other).code ==
+                heif_error_Ok &&
+            heif_image_handle_get_auxiliary_type(other, &type).code == heif_error_Ok)
+            found = strstr(type, "gainmap") || strstr(type, "21496");
+        heif_image_handle_free_auxiliary_types(other, &type);
+        heif_image_handle_release(other);
+    }
+    return found;
+}
+
 enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
                                  struct orl_picture_info *info, struct orl_exif *exif)
 {
@@ -116,7 +136,8 @@ enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
     enum orl_result result = open_heif(log, path, &file);
     if (result == ORL_OK) {
         *info = (struct orl_picture_info){.width = (int)file.width, .height = (int)file.height,
-                                          .bits = file.bits};
+                                          .bits = file.bits,
+                                          .gain_map = has_gain_map(&file)};
         result = read_exif(&file, exif);
     }
     close_heif(&file);

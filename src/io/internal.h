@@ -29,7 +29,7 @@ struct orl_picture_header {
     uint8_t *exif, *icc;
     size_t exif_size, icc_size;
     int bits; // of a sample
-    bool panorama;
+    bool panorama, gain_map;
 };
 enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                      struct orl_picture_header *header);

@@ -95,16 +95,30 @@ static bool is_exif(const struct jpeg_marker_struct *marker)
            memcmp(marker->data, "Exif\0", 6) == 0;
 }
 
-// XMP with Google's Photo Sphere schema.
-static bool is_panorama(const struct jpeg_marker_struct *marker)
+// True for XMP that has both words.
+static bool is_xmp_with(const struct jpeg_marker_struct *marker, const char *word, const char *other)
 {
-    static const char head[] = "http://ns.adobe.com/xap/1.0/", key[] = "ProjectionType";
-    static const char kind[] = "equirectangular";
+    static const char head[] = "http://ns.adobe.com/xap/1.0/";
     const void *data = marker->data;
     return marker->marker == JPEG_APP0 + 1 && marker->data_length > sizeof head &&
            memcmp(data, head, sizeof head) == 0 &&
-           memmem(data, marker->data_length, key, sizeof key - 1) &&
-           memmem(data, marker->data_length, kind, sizeof kind - 1);
+           memmem(data, marker->data_length, word, strlen(word)) &&
+           memmem(data, marker->data_length, other, strlen(other));
+}
+
+// Google's Photo Sphere schema.
+static bool is_panorama(const struct jpeg_marker_struct *marker)
+{
+    return is_xmp_with(marker, "ProjectionType", "equirectangular");
+}
+
+// Adobe's schema (Ultra HDR), or the segment of ISO 21496-1.
+static bool is_gain_map(const struct jpeg_marker_struct *marker)
+{
+    static const char iso[] = "urn:iso:std:iso:ts:21496:-1";
+    return is_xmp_with(marker, "http://ns.adobe.com/hdr-gain-map/1.0/", "hdrgm:Version") ||
+           (marker->marker == JPEG_APP0 + 2 && marker->data_length >= sizeof iso &&
+            memcmp(marker->data, iso, sizeof iso) == 0);
 }
 
 static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, FILE *stream,
@@ -126,6 +140,7 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
     header->bits = info->data_precision;
     for (jpeg_saved_marker_ptr marker = info->marker_list; marker; marker = marker->next) {
         header->panorama |= is_panorama(marker);
+        header->gain_map |= is_gain_map(marker);
         if (!is_exif(marker) || header->exif)
             continue;
         header->exif = orl_array(job->log, marker->data_length, 1);

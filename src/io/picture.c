@@ -143,6 +143,7 @@ static enum orl_result read_stream_header(const struct orl_log *log, const char 
                                           .bits = header.bits};
     struct orl_profile *profile = result == ORL_OK ? make_profile(NULL, path, &header) : NULL;
     info->panorama = header.panorama;
+    info->gain_map = header.gain_map;
     info->profiled = profile != NULL;
     orl_profile_destroy(&profile);
     if (result == ORL_OK && exif && has_exif_head(&header))

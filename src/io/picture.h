@@ -12,10 +12,14 @@ struct orl_picture_info {
     int bits;       // per sample, uncompressed; more than 8: a deep picture
     bool unbounded; // float samples, which may exceed white
     bool panorama;  // JPEG: its XMP says that it is a spherical panorama (GPano)
+    bool gain_map;  // JPEG and HEIF: HDR by a gain map, which is not used
     bool profiled;  // JPEG and PNG: the colours are not those of sRGB
 };
 #define ORL_PANORAMA_ADVICE                                                                        \
     "a spherical panorama; Oriel needs pictures of ordinary lenses: cut flat views out of it"
+// After the number of such photographs and of all.
+#define ORL_GAIN_MAP_NEWS                                                                          \
+    "%zu of %zu photographs are HDR by a gain map, which is not used: their ordinary (SDR) colours are"
 enum orl_result orl_picture_inspect(const struct orl_log *log, const char *path,
                                     struct orl_picture_info *info) ORL_CHECK_RESULT;
 // Reads the size alone.

@@ -232,6 +232,29 @@ static cmsUInt32Number save_profile(cmsHPROFILE profile)
     return size;
 }
 
+// ProPhoto RGB (ROMM RGB): white point D50, a power of 1.8.
+static cmsUInt32Number make_prophoto(void)
+{
+    const cmsCIExyYTRIPLE primaries = {{0.7347, 0.2653, 1}, {0.1596, 0.8404, 1}, {0.0366, 0.0001, 1}};
+    cmsToneCurve *curve = cmsBuildGamma(NULL, 1.8);
+    cmsToneCurve *const curves[3] = {curve, curve, curve};
+    cmsHPROFILE prophoto = cmsCreateRGBProfile(cmsD50_xyY(), &primaries, curves);
+    cmsFreeToneCurve(curve);
+    return save_profile(prophoto);
+}
+
+// Its matrix to Rec. 709, adapted from D50 to D65 by Bradford (brucelindbloom.com).
+static void want_prophoto(const double stored[3], double want[3])
+{
+    static const double m[3][3] = {{2.0343, -0.7277, -0.3067}, {-0.2288, 1.2317, -0.0029},
+                                   {-0.0085, -0.1533, 1.1618}};
+    for (int c = 0; c < 3; c++) {
+        want[c] = 0;
+        for (int k = 0; k < 3; k++)
+            want[c] += m[c][k] * pow(stored[k], 1.8);
+    }
+}
+
 // Adobe RGB (1998), whose matrix to Rec. 709 is well known: both have D65 and the same red
 // and blue.
 static cmsUInt32Number make_adobe(void)
@@ -286,7 +309,7 @@ static void tiff_profiles_are_applied(void **state)
 
 // A JPEG of one colour, with a profile of `size` bytes where there is one.
 static void write_jpeg(const char *path, const uint8_t *pixel, int channels,
-                       cmsUInt32Number size, const uint8_t *exif, unsigned exif_size)
+                       cmsUInt32Number size, int segment, const void *data, unsigned data_size)
 {
     struct jpeg_compress_struct info;
     struct jpeg_error_mgr error;
@@ -302,8 +325,8 @@ static void write_jpeg(const char *path, const uint8_t *pixel, int channels,
     jpeg_set_defaults(&info);
     jpeg_set_quality(&info, 100, TRUE);
     jpeg_start_compress(&info, TRUE);
-    if (exif)
-        jpeg_write_marker(&info, JPEG_APP0 + 1, exif, exif_size);
+    if (data)
+        jpeg_write_marker(&info, JPEG_APP0 + segment, data, data_size);
     if (size)
         jpeg_write_icc_profile(&info, icc, size);
     uint8_t row[W * 3];
@@ -351,7 +374,7 @@ static void expect_light(const char *path, const double want[3], bool profiled)
     assert_int_equal(orl_picture_read_linear(NULL, path, &light), ORL_OK);
     assert_int_equal(orl_picture_read(NULL, path, 3, &eight), ORL_OK);
     for (int c = 0; c < 3; c++) {
-        assert_float_equal(light.f32[3 * 1000 + c], want[c], 6e-3);
+        assert_float_equal(light.f32[3 * 1000 + c], want[c], 1e-2); // a step of 8 bits
         assert_float_equal(eight.u8[3 * 1000 + c], 255 * orl_srgb_encode((float)want[c]), 3);
     }
     orl_image_finish(&light);
@@ -369,21 +392,27 @@ static void jpeg_and_png_profiles_are_applied(void **state)
     }
     want_adobe(stored, want);
     cmsUInt32Number size = make_adobe();
-    write_jpeg(in_dir("p.jpg"), pixel, 3, size, NULL, 0);
+    write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), want, true);
     write_png(in_dir("p.png"), pixel, 8, size);
     expect_light(in_dir("p.png"), want, true);
     write_png(in_dir("p.png"), pixel, 16, size);
     expect_light(in_dir("p.png"), want, true);
+    want_prophoto(stored, want);
+    size = make_prophoto();
+    write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
+    expect_light(in_dir("p.jpg"), want, true);
+    write_png(in_dir("p.png"), pixel, 16, size);
+    expect_light(in_dir("p.png"), want, true);
     // sRGB itself, under whatever name, changes nothing.
     size = save_profile(cmsCreate_sRGBProfile());
-    write_jpeg(in_dir("p.jpg"), pixel, 3, size, NULL, 0);
+    write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), plain, false);
     // Grey of another gamma.
     cmsToneCurve *curve = cmsBuildGamma(NULL, 1.8);
     size = save_profile(cmsCreateGrayProfile(cmsD50_xyY(), curve));
     cmsFreeToneCurve(curve);
-    write_jpeg(in_dir("p.jpg"), grey, 1, size, NULL, 0);
+    write_jpeg(in_dir("p.jpg"), grey, 1, size, 0, NULL, 0);
     for (int c = 0; c < 3; c++)
         want[c] = pow(128 / 255.0, 1.8);
     expect_light(in_dir("p.jpg"), want, true);
@@ -402,7 +431,7 @@ static void adobe_rgb_by_exif_is_applied(void **state)
     const double stored[3] = {128 / 255.0, 153 / 255.0, 77 / 255.0};
     double want[3];
     want_adobe(stored, want);
-    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, exif, sizeof exif);
+    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, 1, exif, sizeof exif);
     expect_light(in_dir("p.jpg"), want, true);
 }
 
@@ -413,12 +442,36 @@ static void panoramas_are_known_by_xmp(void **state)
                                  "GPano:ProjectionType=\"equirectangular\"/></x:xmpmeta>";
     const uint8_t pixel[3] = {128, 153, 77};
     struct orl_picture_info info;
-    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, xmp, sizeof xmp);
+    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, 1, xmp, sizeof xmp);
     assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
-    assert_true(info.panorama);
-    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, xmp, 40);
+    assert_true(info.panorama && !info.gain_map);
+    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, 1, xmp, 40);
     assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
     assert_false(info.panorama);
+}
+
+// Ultra HDR says so in XMP, ISO 21496-1 in a segment of its own.
+static void gain_maps_are_known(void **state)
+{
+    (void)state;
+    static const char xmp[] = "http://ns.adobe.com/xap/1.0/\0<x:xmpmeta><rdf:Description "
+                              "xmlns:hdrgm=\"http://ns.adobe.com/hdr-gain-map/1.0/\" "
+                              "hdrgm:Version=\"1.0\"/></x:xmpmeta>";
+    static const char iso[] = "urn:iso:std:iso:ts:21496:-1\0\0\0\0";
+    static const struct {
+        int segment;
+        const char *data;
+        unsigned size;
+        bool found;
+    } cases[] = {{1, xmp, sizeof xmp, true}, {2, iso, sizeof iso, true}, {1, xmp, 60, false},
+                 {2, iso, 12, false}, {0, NULL, 0, false}};
+    const uint8_t pixel[3] = {128, 153, 77};
+    struct orl_picture_info info;
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        write_jpeg(in_dir("p.jpg"), pixel, 3, 0, cases[i].segment, cases[i].data, cases[i].size);
+        assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
+        assert_int_equal(info.gain_map, cases[i].found);
+    }
 }
 
 static void damaged_tiff_is_an_error(void **state)
@@ -570,6 +623,7 @@ int main(void)
         cmocka_unit_test(jpeg_and_png_profiles_are_applied),
         cmocka_unit_test(adobe_rgb_by_exif_is_applied),
         cmocka_unit_test(panoramas_are_known_by_xmp),
+        cmocka_unit_test(gain_maps_are_known),
         cmocka_unit_test(damaged_tiff_is_an_error),
         cmocka_unit_test(unusual_tiff_is_refused_with_advice),
         cmocka_unit_test(raw_is_linear_with_the_cameras_white_balance),

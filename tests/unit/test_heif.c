@@ -172,6 +172,31 @@ static void colour_profiles_are_applied(void **state)
     orl_image_finish(&image);
 }
 
+// libheif writes no gain map: the alpha of a picture is renamed to one.
+static void gain_maps_are_known(void **state)
+{
+    (void)state;
+    static const char alpha[] = "auxid:1", map[] = "gainmap";
+    struct orl_picture_info info;
+    struct heif_image *picture;
+    uint8_t *data, *at;
+    size_t size;
+    fine(heif_image_create(W, H, heif_colorspace_RGB, heif_chroma_interleaved_RGBA, &picture));
+    fine(heif_image_add_plane(picture, heif_channel_interleaved, W, H, 8));
+    assert_true(get_encoder(heif_compression_HEVC));
+    save(picture, heif_orientation_normal, NULL);
+    assert_int_equal(orl_picture_inspect(NULL, file, &info), ORL_OK);
+    assert_false(info.gain_map);
+    assert_int_equal(orl_file_read(NULL, file, 1 << 20, &data, &size), ORL_OK);
+    at = memmem(data, size, alpha, sizeof alpha);
+    assert_non_null(at);
+    memcpy(at, map, sizeof map);
+    assert_int_equal(orl_file_write(NULL, file, data, size), ORL_OK);
+    assert_int_equal(orl_picture_inspect(NULL, file, &info), ORL_OK);
+    assert_true(info.gain_map);
+    free(data);
+}
+
 static void damage_is_an_error(void **state)
 {
     (void)state;
@@ -195,6 +220,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(pixels_and_exif_come_back, set_up, tear_down),
         cmocka_unit_test_setup_teardown(ten_bits_are_deep, set_up, tear_down),
         cmocka_unit_test_setup_teardown(colour_profiles_are_applied, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(gain_maps_are_known, set_up, tear_down),
         cmocka_unit_test_setup_teardown(damage_is_an_error, set_up, tear_down),
     };
     if (!heif_have_encoder_for_format(heif_compression_HEVC) ||
