@@ -41,16 +41,23 @@ static size_t stem_length(const char *name)
 
 static bool same_text(const char *a, size_t a_length, const char *b, size_t b_length)
 {
-    return a_length == b_length && strncmp(a, b, a_length) == 0;
+    return a_length == b_length && strncasecmp(a, b, a_length) == 0;
 }
 
 // True for names such as "0001.png" and "0001.jpg.png", which belong to a camera "0001.jpg" or
-// "0001".
+// "0001". Capitals do not count: other systems change them.
 static bool belongs(const char *file, const char *name)
 {
     size_t stem = stem_length(file);
     return same_text(file, stem, name, strlen(name)) ||
            same_text(file, stem, name, stem_length(name));
+}
+
+// True when the name of one is the beginning of the other's, capitals too.
+static bool belongs_exactly(const char *file, const char *name)
+{
+    size_t stem = stem_length(file);
+    return belongs(file, name) && strncmp(file, name, stem) == 0;
 }
 
 // True when the file's name contains the camera's name between separators.
@@ -158,9 +165,9 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
     if (there)
         return set(log, dir, name, IMPORT_PICTURE, found);
     enum orl_result result = orl_dir_list(log, dir, &names);
-    for (size_t i = 0; result == ORL_OK && found->kind == IMPORT_NOTHING && i < names.count; i++) {
-        const char *file = names.items[i];
-        if (!belongs(file, name))
+    for (size_t i = 0; result == ORL_OK && found->kind == IMPORT_NOTHING && i < 2 * names.count; i++) {
+        const char *file = names.items[i % names.count];
+        if (i < names.count ? !belongs_exactly(file, name) : !belongs(file, name))
             continue;
         char *path = orl_path_join(log, dir, file);
         if (!path)
@@ -181,8 +188,49 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
 
 // --- all cameras ---
 
+// Looks for the last part of a path in the folder that leads to it. A folder that is not there has
+// nothing.
+static enum orl_result find_below(const struct import_job *job, const char *dir, const char *path,
+                                  struct import_found *found)
+{
+    const char *base = orl_path_name(path);
+    char *folder = *path == '/' ? orl_format(job->log, "%.*s", (int)(base - path), path)
+                                : orl_format(job->log, "%s/%.*s", dir, (int)(base - path), path);
+    enum orl_result result = folder ? ORL_OK : ORL_ERR_MEMORY;
+    if (folder && orl_path_is_dir(folder))
+        result = orl_import_find(job->log, folder, base, "video", false, found);
+    free(folder);
+    return result;
+}
+
+// Sets *dir to the first folder beside the cameras that has the first camera's picture, or leaves it.
+static enum orl_result look_for_folder(const struct import_job *job, char **dir)
+{
+    const struct orl_log *log = job->log;
+    const char *folder = job->known.folder, *name = job->known.model.images[0].name;
+    struct orl_names names = {0};
+    struct import_found found = {0};
+    enum orl_result result = find_below(job, folder, name, &found);
+    bool here = found.kind != IMPORT_NOTHING;
+    if (result == ORL_OK && !here)
+        result = orl_dir_list(log, folder, &names);
+    for (size_t i = 0; result == ORL_OK && !here && !*dir && i < names.count; i++) {
+        char *sub = orl_path_join(log, folder, names.items[i]);
+        result = sub ? ORL_OK : ORL_ERR_MEMORY;
+        if (sub && orl_path_is_dir(sub))
+            result = find_below(job, sub, name, &found);
+        if (result == ORL_OK && found.kind != IMPORT_NOTHING)
+            *dir = sub;
+        else
+            free(sub);
+    }
+    orl_import_found_finish(&found);
+    orl_names_finish(&names);
+    return result;
+}
+
 // Chooses the folder of pictures: the given one, else images/ beside the cameras, or beside sparse/ where
-// a model in it was named, else the cameras' folder.
+// a model in it was named, else another one beside the cameras, else the cameras' folder.
 static enum orl_result choose_folder(const struct import_job *job, char **dir)
 {
     static const char *const places[] = {"images", "../images", "../../images"};
@@ -198,10 +246,11 @@ static enum orl_result choose_folder(const struct import_job *job, char **dir)
             *dir = NULL;
         }
     }
-    if (!*dir)
+    enum orl_result result = *dir ? ORL_OK : look_for_folder(job, dir);
+    if (result == ORL_OK && !*dir)
         *dir = orl_strdup(job->log, job->known.folder);
-    if (!*dir)
-        return ORL_ERR_MEMORY;
+    if (result != ORL_OK || !*dir)
+        return result == ORL_OK ? ORL_ERR_MEMORY : result;
     return orl_path_is_dir(*dir) ? ORL_OK
                                  : orl_fail(job->log, ORL_ERR_NOT_FOUND,
                                             "--images %s: no such folder", *dir);
@@ -215,21 +264,6 @@ static bool is_only_name(const struct import_job *job, const char *base)
     for (size_t i = 0; i < model->image_count && count < 2; i++)
         count += strcmp(orl_path_name(model->images[i].name), base) == 0;
     return count == 1;
-}
-
-// Looks for the last part of a path in the folder that leads to it. A folder that is not there has
-// nothing.
-static enum orl_result find_below(const struct import_job *job, const char *dir, const char *path,
-                                  struct import_found *found)
-{
-    const char *base = orl_path_name(path);
-    char *folder = *path == '/' ? orl_format(job->log, "%.*s", (int)(base - path), path)
-                                : orl_format(job->log, "%s/%.*s", dir, (int)(base - path), path);
-    enum orl_result result = folder ? ORL_OK : ORL_ERR_MEMORY;
-    if (folder && orl_path_is_dir(folder))
-        result = orl_import_find(job->log, folder, base, "video", false, found);
-    free(folder);
-    return result;
 }
 
 // Finds a camera's picture by the camera's name, else by the path in the file of cameras, unless the
@@ -455,13 +489,10 @@ static enum orl_result find_stated_masks(struct import_job *job)
         const char *told = known->pictures[view->image->id - 1].mask;
         if (!told)
             continue;
-        char *path = *told == '/' ? orl_strdup(job->log, told)
-                                  : orl_path_join(job->log, known->folder, told);
-        if (path && orl_path_is_file(path))
-            view->mask = (struct import_found){IMPORT_PICTURE, path};
-        else
-            free(path), missing++;
-        result = path ? ORL_OK : ORL_ERR_MEMORY;
+        result = orl_known_find(job->log, known->folder, told, &view->mask.path);
+        if (view->mask.path)
+            view->mask.kind = IMPORT_PICTURE;
+        missing += !view->mask.path;
     }
     if (result == ORL_OK && missing)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: masks of %zu of %zu cameras, which their file names, are not "

@@ -119,6 +119,27 @@ static char *plain_path(const struct orl_log *log, const char *stated)
     return path;
 }
 
+enum orl_result orl_known_find(const struct orl_log *log, const char *folder, const char *stated,
+                               char **path)
+{
+    char *plain = plain_path(log, stated), *at = plain;
+    bool there = plain && *plain == '/' && orl_path_is_file(plain);
+    *path = there ? orl_strdup(log, plain) : NULL;
+    enum orl_result result = plain && (!there || *path) ? ORL_OK : ORL_ERR_MEMORY;
+    while (result == ORL_OK && !*path && at) {
+        at += strspn(at, "/");
+        *path = orl_path_join(log, folder, at);
+        result = *path ? ORL_OK : ORL_ERR_MEMORY;
+        if (*path && !orl_path_is_file(*path)) {
+            free(*path);
+            *path = NULL;
+        }
+        at = strchr(at, '/');
+    }
+    free(plain);
+    return result;
+}
+
 enum orl_result orl_known_add(const struct orl_log *log, const char *file, const char *place,
                               const struct orl_known_camera *given,
                               struct orl_known_cameras *known)

@@ -36,7 +36,7 @@ struct orl_known_cameras {
     size_t picture_count;
     bool splits;       // the file states which photographs are held out
     bool alpha;        // where pictures have alpha, it is the subject's silhouette
-    char *points_file; // a cloud in the cameras' world; NULL: none is stated; owned
+    char *points_file; // a cloud in the cameras' world, if it is there; NULL: none is stated; owned
     // The file's coordinates minus `origin` are those of the model and the room.
     double origin[3];
     struct orl_room room; // that the file states
@@ -54,6 +54,10 @@ enum orl_result orl_known_cameras_read(const struct orl_log *log, const char *pa
                                        double pixel_centre,
                                        struct orl_known_cameras *known) ORL_CHECK_RESULT;
 void orl_known_cameras_finish(struct orl_known_cameras *known);
+// Finds a file that a file of cameras states, maybe with a path of another machine: at `stated`, else at
+// the longest end of it that is there below `folder`. *path: released with free(); NULL: not here.
+enum orl_result orl_known_find(const struct orl_log *log, const char *folder, const char *stated,
+                               char **path) ORL_CHECK_RESULT;
 // A table of the formats for a command's help, released with free().
 char *orl_known_formats_text(const struct orl_log *log);
 

@@ -260,14 +260,12 @@ static enum orl_result try_model(struct models *models, const char *dir)
     return models->best ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-// Looks into the numbered folders, then into the folder itself.
+// Looks into the folders in a folder, then into the folder itself.
 static enum orl_result try_models(struct models *models, const char *dir)
 {
     struct orl_names names = {0};
     enum orl_result result = orl_dir_list(models->log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        if (names.items[i][strspn(names.items[i], "0123456789")])
-            continue;
         char *sub = orl_path_join(models->log, dir, names.items[i]);
         result = sub ? ORL_OK : ORL_ERR_MEMORY;
         if (sub && orl_path_is_dir(sub))
@@ -282,8 +280,8 @@ static enum orl_result try_models(struct models *models, const char *dir)
 // several when not all photographs could be placed together.
 static enum orl_result find_model(const struct orl_log *log, const char *dir, char **file)
 {
-    static const char *const bases[] = {"sparse", "colmap/sparse", "distorted/sparse",
-                                        "dense/sparse", "."};
+    static const char *const bases[] = {"sparse", "colmap/sparse", "distorted/sparse", "dense", "dense/0",
+                                        "."};
     struct models models = {.log = log};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && !models.best && i < ORL_COUNT(bases); i++) {
@@ -353,6 +351,23 @@ static enum orl_result find_file(const struct orl_log *log, const char *dir, cha
     return result;
 }
 
+// The folder that pictures are relative to: the nearest one around the file of cameras with images/ in it,
+// else the one that the user named.
+static char *base_of(const struct orl_log *log, const char *dir, const char *file)
+{
+    char *base = orl_strdup(log, file), *end;
+    while (base && (end = strrchr(base, '/')) && (size_t)(end - base) > strlen(dir)) {
+        *end = '\0';
+        char *images = orl_path_join(log, base, "images");
+        bool there = images && orl_path_is_dir(images);
+        free(images);
+        if (there)
+            return base;
+    }
+    free(base);
+    return orl_strdup(log, dir);
+}
+
 static enum orl_result read_folder(const struct orl_known_source *source,
                                    struct orl_known_cameras *known)
 {
@@ -365,13 +380,12 @@ static enum orl_result read_folder(const struct orl_known_source *source,
                           "files that are searched for", source->path);
     struct orl_known_source found = *source;
     found.path = file;
-    // Pictures are relative to the folder that the user named, not to sparse/.
     if (result == ORL_OK && format->of_folder)
         result = read_with(format, source, known);
     else if (result == ORL_OK)
         result = read_file(&found, known);
     free(known->folder);
-    known->folder = orl_strdup(log, source->path);
+    known->folder = base_of(log, source->path, file ? file : source->path);
     free(file);
     return result == ORL_OK && !known->folder ? ORL_ERR_MEMORY : result;
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -93,19 +94,25 @@ static const char *camera_model(const json_t *root, const json_t *frame)
     return of_frame ? of_frame : of_all ? of_all : "OPENCV";
 }
 
+static bool is_true(const json_t *value)
+{
+    const char *text = json_string_value(value);
+    return json_is_true(value) || json_number_value(value) != 0 || (text && strcasecmp(text, "true") == 0);
+}
+
 // instant-ngp's scripts write "is_fisheye" instead of a model. False: the model is unknown.
 static bool find_lens(const json_t *root, const json_t *frame, bool *is_fisheye)
 {
     static const char *const brown[] = {"OPENCV", "SIMPLE_RADIAL", "RADIAL", "PINHOLE",
-                                        "SIMPLE_PINHOLE", "perspective"};
+                                        "SIMPLE_PINHOLE", "PERSPECTIVE"};
     const char *model = camera_model(root, frame);
     const json_t *told = json_object_get(frame, "is_fisheye");
     told = told ? told : json_object_get(root, "is_fisheye");
-    *is_fisheye = strcmp(model, "OPENCV_FISHEYE") == 0 ||
-                  (strcmp(model, "OPENCV") == 0 && json_is_true(told));
+    *is_fisheye = strcasecmp(model, "OPENCV_FISHEYE") == 0 ||
+                  (strcasecmp(model, "OPENCV") == 0 && is_true(told));
     bool known = *is_fisheye;
     for (size_t i = 0; i < ORL_COUNT(brown); i++)
-        known = known || strcmp(model, brown[i]) == 0;
+        known = known || strcasecmp(model, brown[i]) == 0;
     return known;
 }
 
@@ -227,6 +234,32 @@ enum orl_result orl_known_read_inria(const struct orl_known_source *source,
 
 // --- transforms.json ---
 
+static bool is_separator(char c)
+{
+    return c == '/' || c == '\\';
+}
+
+// Length without the extension.
+static size_t stem_length(const char *path)
+{
+    size_t length = strlen(path), at = length;
+    while (at > 0 && path[at - 1] != '.' && !is_separator(path[at - 1]))
+        at--;
+    return at > 0 && path[at - 1] == '.' ? at - 1 : length;
+}
+
+// True when one of two paths ends with the other, whatever separates their parts and whether or not
+// either has an extension.
+static bool same_picture(const char *a, const char *b)
+{
+    bool extensions = a[stem_length(a)] && b[stem_length(b)];
+    size_t i = extensions ? strlen(a) : stem_length(a), k = extensions ? strlen(b) : stem_length(b);
+    while (i > 0 && k > 0 && (a[i - 1] == b[k - 1] || (is_separator(a[i - 1]) && is_separator(b[k - 1]))))
+        i--, k--;
+    return (i == 0 || k == 0) && (i == 0 || is_separator(a[i - 1]) || is_separator(a[i])) &&
+           (k == 0 || is_separator(b[k - 1]) || is_separator(b[k]));
+}
+
 // True when a list of file names, as "train_filenames", has a frame's path.
 static bool is_listed(const json_t *root, const char *key, const char *path)
 {
@@ -234,7 +267,7 @@ static bool is_listed(const json_t *root, const char *key, const char *path)
     for (size_t i = 0; i < json_array_size(list); i++) {
         const char *name = json_string_value(json_array_get(list, i));
         name = name && strncmp(name, "./", 2) == 0 ? name + 2 : name;
-        if (name && strcmp(name, strncmp(path, "./", 2) == 0 ? path + 2 : path) == 0)
+        if (name && *name && same_picture(name, strncmp(path, "./", 2) == 0 ? path + 2 : path))
             return true;
     }
     return false;
@@ -271,6 +304,7 @@ static enum orl_result read_frames(const struct orl_known_source *source,
 {
     const json_t *root = source->root, *frames = json_object_get(root, "frames");
     struct entry e;
+    bool any = split == ORL_KNOWN_UNUSED || !json_array_size(frames);
     enum orl_result result = begin(source, 0.5, &e);
     for (size_t i = 0; result == ORL_OK && i < json_array_size(frames); i++) {
         const json_t *frame = json_array_get(frames, i);
@@ -283,14 +317,18 @@ static enum orl_result read_frames(const struct orl_known_source *source,
         if (split == ORL_KNOWN_TRAIN)
             camera.split = split_of(root, camera.path);
         known->splits = known->splits || camera.split != ORL_KNOWN_TRAIN;
+        any = any || camera.split != ORL_KNOWN_UNUSED;
         result = read_nerfstudio(&e, root, frame, &camera);
         if (result == ORL_OK)
             result = orl_known_add(e.log, e.file, e.place, &camera, known);
     }
-    if (result == ORL_OK)
-        say_unused_of_frames(source, frames);
     known->alpha = true;
-    return result;
+    if (result != ORL_OK)
+        return result;
+    say_unused_of_frames(source, frames);
+    return any ? ORL_OK
+               : orl_fail(source->log, ORL_ERR_DATA, "%s: train_filenames has none of the frames",
+                          source->path);
 }
 
 enum orl_result orl_known_read_transforms(const struct orl_known_source *source,
@@ -300,10 +338,10 @@ enum orl_result orl_known_read_transforms(const struct orl_known_source *source,
     enum orl_result result = read_frames(source, ORL_KNOWN_TRAIN, known);
     if (result != ORL_OK || !points)
         return result;
-    // The path is relative to the file.
-    known->points_file = *points == '/' ? orl_strdup(source->log, points)
-                                        : orl_path_join(source->log, known->folder, points);
-    return known->points_file ? ORL_OK : ORL_ERR_MEMORY;
+    result = orl_known_find(source->log, known->folder, points, &known->points_file);
+    if (result == ORL_OK && !known->points_file && !(known->points_file = orl_strdup(source->log, points)))
+        result = ORL_ERR_MEMORY;
+    return result;
 }
 
 // --- Blender's sets: a folder with a transforms.json for each split ---

@@ -129,10 +129,11 @@ static void takes_masks(void **state)
     save_mask(w, "masks/a.png");
     save(w, "transforms.json", "{" LENS ", \"frames\": ["
          FRAME("images/a.png", "0", "\"mask_path\": \"masks/a.png\", ") ","
-         FRAME("images/b.png", "1", "\"mask_path\": \"masks/gone.png\", ") "," FRAME("images/c.png", "2", "") "]}");
+         FRAME("images/b.png", "1", "\"mask_path\": \"masks/gone.png\", ") ","
+         FRAME("images/c.png", "2", "\"mask_path\": \"C:\\\\set\\\\masks\\\\a.png\", ") "]}");
     assert_int_equal(import(w, NULL), ORL_OK);
     assert_true(w->scene->photos[0].masked);
-    assert_true(!w->scene->photos[1].masked && !w->scene->photos[2].masked);
+    assert_true(!w->scene->photos[1].masked && w->scene->photos[2].masked);
     says(w, "masks of 1 of 3 cameras, which their file names, are not here");
     char *mask = orl_scene_mask_path(NULL, w->scene, 0);
     check_pixel(mask, 1, 10, (uint8_t[]){0});
@@ -236,6 +237,20 @@ static void finds_the_pictures_of_a_model(void **state)
     free(model);
 }
 
+// The folder of pictures is named otherwise, and another system has changed capitals.
+static void finds_pictures_by_other_names(void **state)
+{
+    struct work *w = *state;
+    save_picture(w, "extra/notes/a.png", false);
+    save_picture(w, "input/IMG_a.PNG", false);
+    save_picture(w, "input/img_b.png", false);
+    save(w, "sparse/0/cameras.txt", "7 PINHOLE 64 48 60 60 32 24\n");
+    save(w, "sparse/0/images.txt", "1 1 0 0 0 0 0 4 7 img_A.jpg\n2 1 0 0 0 1 0 4 7 img_b.JPG\n");
+    assert_int_equal(import(w, NULL), ORL_OK);
+    assert_int_equal(w->scene->photo_count, 2);
+    assert_string_equal(w->scene->photos[0].name, "IMG_a.PNG");
+}
+
 // Cameras, cloud, mesh and room of a survey lose nothing, and a path in its coordinates fits.
 static void keeps_a_far_origin(void **state)
 {
@@ -307,6 +322,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(takes_masks), TEST(lays_alpha_on_white), TEST(takes_the_stated_split_and_cloud),
         TEST(leaves_out_what_is_no_picture), TEST(finds_pictures_in_folders), TEST(keeps_a_far_origin), TEST(finds_the_pictures_of_a_model),
+        TEST(finds_pictures_by_other_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

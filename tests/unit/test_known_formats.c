@@ -108,6 +108,27 @@ static void takes_the_largest_model(void **state)
     assert_int_equal(w->known.model.image_count, 1);
 }
 
+// Pictures are looked for beside the nearest images/.
+static void finds_models_in_other_folders(void **state)
+{
+    static const char *const folders[] = {"sparse/aligned", "model", "dense/0/sparse", "colmap/sparse/0"};
+    struct work *w = *state;
+    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
+        char set[64], name[128];
+        snprintf(set, sizeof set, "set %zu", i);
+        snprintf(name, sizeof name, "%s/%s/cameras.txt", set, folders[i]);
+        save(w, name, "7 PINHOLE 640 480 500 510 320 240\n");
+        snprintf(name, sizeof name, "%s/%s/images.txt", set, folders[i]);
+        save(w, name, "1 " IMAGE "a.jpg\n\n");
+        snprintf(name, sizeof name, "%s/%simages/a.jpg", set, i == 2 ? "dense/0/" : "");
+        save(w, name, "");
+        assert_int_equal(read(w, set), ORL_OK);
+        char *images = test_path(w->known.folder, "images");
+        assert_true(orl_path_is_dir(images));
+        free(images);
+    }
+}
+
 static void reads_models_without_points(void **state)
 {
     struct work *w = *state;
@@ -179,7 +200,7 @@ static void takes_what_transforms_state(void **state)
     assert_int_equal(pictures[3].split, ORL_KNOWN_TRAIN);
     assert_string_equal(pictures[0].mask, "masks/a.png");
     assert_null(pictures[1].mask);
-    assert_non_null(strstr(w->known.points_file, "/c.ply"));
+    assert_string_equal(w->known.points_file, "c.ply"); // it is not there
     says(w, "not used: aabb_scale, sharpness\n");
     // Where nothing is for testing, what is for validation is held out.
     save(w, "transforms.json", "{" LENS ", \"val_filenames\": [\"b.jpg\"], \"train_filenames\": [\"a.jpg\"], "
@@ -191,6 +212,41 @@ static void takes_what_transforms_state(void **state)
          "[[0,-1,0,1],[-1,0,0,2],[0,0,-1,3]]}]}");
     assert_int_equal(read(w, ""), ORL_OK);
     check_pose(w, 0);
+}
+
+// Lists of other machines: without extensions, with folders that are not here, with other separators.
+static void takes_lists_as_others_write_them(void **state)
+{
+    struct work *w = *state;
+    save(w, "clouds/c.ply", "");
+    save(w, "transforms.json", "{" LENS ", \"ply_file_path\": \"D:\\\\set\\\\clouds\\\\c.ply\", "
+         "\"train_filenames\": [\"a\", \"images\\\\d.jpg\"], "
+         "\"test_filenames\": [\"/home/me/images/b.jpg\"], \"frames\": ["
+         FRAME("images/a.jpg") "," FRAME("images/b.jpg") "," FRAME("images/ba.jpg") "," FRAME("./images/d.jpg") "]}");
+    assert_int_equal(read(w, ""), ORL_OK);
+    static const enum orl_known_split want[] = {ORL_KNOWN_TRAIN, ORL_KNOWN_TEST, ORL_KNOWN_UNUSED,
+                                                ORL_KNOWN_TRAIN};
+    for (size_t i = 0; i < ORL_COUNT(want); i++)
+        assert_int_equal(w->known.pictures[i].split, want[i]);
+    assert_non_null(strstr(w->known.points_file, "/clouds/c.ply"));
+    save(w, "transforms.json", "{" LENS ", \"train_filenames\": [\"x.jpg\"], \"frames\": ["
+         FRAME("images/a.jpg") "]}");
+    assert_int_equal(read(w, ""), ORL_ERR_DATA);
+    says(w, "train_filenames has none of the frames");
+}
+
+static void knows_fisheye_lenses_by_all_spellings(void **state)
+{
+    struct work *w = *state;
+    static const char *const spellings[] = {"\"is_fisheye\": true", "\"is_fisheye\": 1", "\"is_fisheye\": \"True\"",
+                                            "\"camera_model\": \"opencv_fisheye\""};
+    for (size_t i = 0; i < ORL_COUNT(spellings); i++) {
+        char text[1024];
+        snprintf(text, sizeof text, "{" LENS ", %s, \"k1\": 0.1, \"frames\": [" FRAME("a.jpg") "]}", spellings[i]);
+        save(w, "transforms.json", text);
+        assert_int_equal(read(w, ""), ORL_OK);
+        check_params(w, 5, (double[]){500, 510, 320, 240, 0.1, 0, 0, 0}, 8);
+    }
 }
 
 static void names_pictures_by_what_tells_them_apart(void **state)
@@ -558,7 +614,8 @@ int main(void)
 {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
     const struct CMUnitTest tests[] = {
-        TEST(takes_the_largest_model), TEST(reads_models_without_points), TEST(reads_images_of_one_line),
+        TEST(takes_the_largest_model), TEST(finds_models_in_other_folders), TEST(takes_lists_as_others_write_them),
+        TEST(knows_fisheye_lenses_by_all_spellings), TEST(reads_models_without_points), TEST(reads_images_of_one_line),
         TEST(reads_names_of_other_systems), TEST(takes_what_transforms_state),
         TEST(names_pictures_by_what_tells_them_apart), TEST(reads_blender_sets),
         TEST(reads_lists_with_spaces), TEST(refuses_utf16), TEST(reads_opensfm), TEST(reads_meshroom), TEST(reads_metashape), TEST(reads_realityscan), TEST(reads_nvm),
