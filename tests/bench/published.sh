@@ -4,11 +4,11 @@
 # calibration, beside published rows (tests/bench/published.tsv).
 #     tests/bench/published.sh BUILD llff|blender|mipnerf360 DIR OUT [given|own|both] [QUALITY]
 # DIR: the set of one scene, whose name chooses the published rows. llff: every 8th photograph by name,
-# images_4 where it is there; cameras.json, else poses_bounds.npy. mipnerf360: every 8th, the first of
-# images_4, images_2, images_8 and images; sparse/0. blender: transforms_train.json and
-# transforms_test.json, over white, alpha as silhouette, always with the set's cameras. OUT keeps the
-# prepared scenes, so that an interrupted run goes on. QUALITY: draft, standard (default), high. Prints
-# a table in Markdown. Needs ImageMagick and jq.
+# images_4 where it is there; cameras.json, else poses_bounds.npy. mipnerf360: every 8th, images_2 of
+# the scenes that are indoors and images_4 of the others, else the first of images_8 and images; sparse/0.
+# blender: transforms_train.json and transforms_test.json, over white, alpha as silhouette, always with
+# the set's cameras. OUT keeps the prepared scenes, so that an interrupted run goes on. QUALITY: draft,
+# standard (default), high. Prints a table in Markdown. Needs ImageMagick and jq.
 set -euo pipefail
 [ $# -ge 4 ] || { sed -n '2,12s/^# \{0,1\}//p' "$0"; exit 2; }
 build=$(realpath "$1") kind=$2 dir=$(realpath "$3") out=$(realpath -m "$4")
@@ -42,7 +42,10 @@ set_llff() {
     every_8th
 }
 set_mipnerf360() {
-    take images_4 images_2 images_8 images
+    case $name in
+    bonsai | counter | kitchen | room) take images_2 images_4 images_8 images ;;
+    *) take images_4 images_2 images_8 images ;;
+    esac
     cp -r "$dir/sparse/0" "$set/sparse"
     every_8th
 }
