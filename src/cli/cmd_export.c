@@ -3,6 +3,7 @@
 
 #include "cli/command.h"
 #include "exchange/export.h"
+#include "scene/point_lod.h"
 
 static const char *kind_name(size_t index)
 {
@@ -26,6 +27,19 @@ static void say_origin(const struct orl_log *log, const struct orl_scene *scene)
     if (o[0] != 0 || o[1] != 0 || o[2] != 0)
         orl_logf(log, ORL_LOG_WARNING, "this kind holds floats: add %.9g %.9g %.9g to its coordinates "
                  "for those that were imported", o[0], o[1], o[2]);
+}
+
+// Of levels of detail, the finest that memory holds.
+static enum orl_result take_points(const struct orl_log *log, struct orl_scene *scene)
+{
+    orl_points_finish(&scene->points);
+    enum orl_result result =
+        orl_lod_sample(scene->lod, (size_t)orl_lod_most_in_memory(0), &scene->points);
+    if (result == ORL_OK && scene->points.count < orl_scene_point_count(scene))
+        orl_logf(log, ORL_LOG_WARNING, "%s has %zu points, which memory does not hold: a level of "
+                 "detail of %zu is exported", scene->dir, orl_scene_point_count(scene),
+                 scene->points.count);
+    return result;
 }
 
 // Refuses what the kind does not read.
@@ -65,9 +79,8 @@ static enum orl_result run_export(struct terminal *terminal, const void *given,
     enum orl_result result = check(log, o, kind);
     if (result == ORL_OK)
         result = orl_scene_open(log, inputs[0], &scene);
-    if (result == ORL_OK && scene->lod)
-        orl_logf(log, ORL_LOG_WARNING, "%s has %zu points in levels of detail: a sample of %zu is "
-                 "exported", inputs[0], orl_scene_point_count(scene), scene->points.count);
+    if (result == ORL_OK && scene->lod && kind->points)
+        result = take_points(log, scene);
     if (result == ORL_OK && !kind->placed)
         say_origin(log, scene);
     if (result == ORL_OK && !kind->write)

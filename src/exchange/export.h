@@ -21,6 +21,7 @@ enum { ORL_EXPORT_DEGREE = 1, ORL_EXPORT_THIN = 2, ORL_EXPORT_PLACE = 4 };
 struct orl_export_kind {
     const char *name, *what;
     int reads; // of ORL_EXPORT_*
+    bool points; // writes the points
     bool placed; // in the coordinates that were imported, as doubles; others in those of the scene
     // NULL: a scene is of this kind already.
     enum orl_result (*write)(const struct orl_log *log, const struct orl_progress *progress,

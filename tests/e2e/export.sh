@@ -29,6 +29,24 @@ runs 2 "$oriel" export made --as colmap --out other
 runs 2 "$oriel" export nowhere --as ply --out other.ply
 ls other* >/dev/null 2>&1 && fail "something was written"
 
+# All points of levels of detail, also where a scene that is opened holds a sample of them.
+cp -r made paged
+rm paged/points.ply
+python3 - >cloud.ply <<'PY'
+import struct, sys
+n = 1500
+names = b'x', b'y', b'z', b'nx', b'ny', b'nz', b'radius'
+sys.stdout.buffer.write(b'ply\nformat binary_little_endian 1.0\nelement vertex %d\n' % n ** 2 +
+                        b''.join(b'property float %s\n' % name for name in names) + b'end_header\n')
+for i in range(n):
+    sys.stdout.buffer.write(b''.join(struct.pack('<7f', i / 100, k / 100, 0, 0, 0, 1, 0.01)
+                                     for k in range(n)))
+PY
+runs 0 "$oriel" lod paged --points cloud.ply
+runs 0 "$oriel" export paged --as ply --out all.ply
+head -c 100 all.ply | grep -aq '^element vertex 2250000$' || fail "not all points of levels of detail"
+rm -r cloud.ply all.ply paged
+
 # The scene as it is: COLMAP reads it.
 runs 0 "$oriel" export made --as colmap
 grep -q 'made is a COLMAP workspace' stdout.txt || fail "colmap does not say what a scene is"
