@@ -23,6 +23,9 @@ static const double RIDGE_CONSTANT = 0.1, RIDGE_DIRECTION = 1.0;
 static const double OUTLIER = 0.3;
 // A surface is all but opaque: no program divides by the transparency of a Gaussian.
 static const float OPAQUE = 0.99f;
+// What is left of the doubt in a point for each photograph that agrees on it: found on held-out
+// photographs (docs/measured/exchange.md).
+static const float DOUBT = 0.5f;
 // Standard deviation of a Gaussian that draws a disc, in radii of the disc: found on held-out
 // photographs (docs/measured/exchange.md).
 static const float SIGMA = 0.6f;
@@ -276,5 +279,6 @@ void orl_gaussian_shape(const struct orl_gaussians *gaussians, size_t point,
         shape->rotation_wxyz[k] = q[k] / length;
     shape->scale[0] = shape->scale[1] = sigma;
     shape->scale[2] = flat ? THIN * sigma : sigma;
-    shape->opacity = OPAQUE;
+    uint8_t agree = gaussians->points->photographs[point];
+    shape->opacity = agree ? fminf(OPAQUE, 1 - powf(DOUBT, agree)) : OPAQUE;
 }

@@ -46,6 +46,25 @@ static void turns_the_third_axis_to_the_normal(void **state)
     orl_points_finish(&points);
 }
 
+static void is_as_opaque_as_photographs_agree(void **state)
+{
+    (void)state;
+    struct orl_points points;
+    struct orl_gaussian shape;
+    static const struct {
+        uint8_t photographs;
+        double opacity;
+    } known[] = {{0, 0.99}, {2, 0.75}, {3, 0.875}, {255, 0.99}}; // 0: unknown
+    assert_int_equal(orl_points_init(NULL, &points, ORL_COUNT(known)), ORL_OK);
+    const struct orl_gaussians g = {.points = &points};
+    for (size_t i = 0; i < ORL_COUNT(known); i++) {
+        points.photographs[i] = known[i].photographs;
+        orl_gaussian_shape(&g, i, &shape);
+        assert_float_equal(shape.opacity, known[i].opacity, 1e-6);
+    }
+    orl_points_finish(&points);
+}
+
 // --- colours ---
 
 // Photographs on an arc before a point at the origin, each of one colour.
@@ -161,6 +180,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(turns_the_third_axis_to_the_normal),
+        cmocka_unit_test(is_as_opaque_as_photographs_agree),
         cmocka_unit_test(follows_the_direction),
         cmocka_unit_test(asks_only_those_that_see),
     };
