@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/vec3.h"
+#include "scene/upright.h"
 
 enum {
     POINTS_MAX = 4096,
@@ -19,6 +20,8 @@ static const double BENEATH = 2;      // in tolerances: deeper points contradict
 static const double EXTENT = 1;       // smallest RMS spread of inliers, in mean heights
 // Least mean absolute cosine between the plane's normal and the photographs' axis x or y.
 static const double UPWARD_MIN = 0.85;
+// Least cosine between the plane's normal and what the photographs have above: a ceiling is no ground.
+static const double UP_MIN = -0.5;
 // As fractions of all points.
 static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.02;
 // Smallest cosine of a point's normal with the plane's for the two to agree, and the weights of
@@ -34,6 +37,7 @@ struct sample {
     int photo_count;
     double tolerance; // scene units
     double along[3]; // unit vector along the largest spread of the camera centres
+    double up[3];    // mean of the photographs, of those on their side no more than a guess
 };
 
 // Principal eigenvector of the centres' covariance, by power iteration.
@@ -99,6 +103,7 @@ static enum orl_result take_sample(const struct orl_log *log, const struct orl_s
     s->tolerance = TOLERANCE * scene->photo_distance;
     take_photos(scene, s);
     find_along(s);
+    orl_scene_mean_up(scene, s->up);
     double total = 0, passed = 0;
     for (size_t i = 0; i < points->count; i++)
         total += seen_size(s, points, i);
@@ -133,7 +138,7 @@ static double stood_height(const struct sample *s, double plane[4])
             across[k] += fabs(orl_dot3(s->poses[i]->r[k], plane)) / s->photo_count;
     }
     // A camera may be held upright or on its side, so x or y may be the vertical axis.
-    bool level = fmax(across[0], across[1]) >= UPWARD_MIN;
+    bool level = fmax(across[0], across[1]) >= UPWARD_MIN && orl_dot3(plane, s->up) > UP_MIN;
     return level && least > 0 && sqrt(squares) <= HEIGHT_SPREAD * mean ? mean : 0;
 }
 

@@ -183,6 +183,34 @@ static void floors_above_the_ground_are_none(void **state)
     orl_points_finish(&s.scene.points);
 }
 
+// Photographs turned by half a turn about their own axes, so that the street is above all of them; the
+// facade's points thin out towards its other end, which is the lower one then.
+static void a_ceiling_is_none(void **state)
+{
+    (void)state;
+    struct street s;
+    build(&s, GROUND);
+    for (size_t i = GROUND; i < s.scene.points.count; i++) {
+        float *y = &s.scene.points.position[i][1];
+        *y = 1.6f - 5 * (1 - sqrtf(1 - (1.6f - *y) / 5));
+    }
+    for (int i = 0; i < PHOTOS; i++) {
+        struct orl_pose *pose = &s.photos[i].view.cam_from_world;
+        for (int axis = 0; axis < 2; axis++) {
+            for (int k = 0; k < 3; k++)
+                pose->r[axis][k] = -pose->r[axis][k];
+            pose->t[axis] = -pose->t[axis];
+        }
+    }
+    assert_float_equal(find(&s).height, 0, 0);
+    // Unless the files say that the pictures lie upside down.
+    for (int i = 0; i < PHOTOS; i++)
+        s.photos[i].orientation = 3;
+    struct orl_ground ground = find(&s);
+    assert_found(&ground);
+    orl_points_finish(&s.scene.points);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -192,6 +220,7 @@ int main(void)
         cmocka_unit_test(few_points_are_no_ground),
         cmocka_unit_test(walls_are_no_ground),
         cmocka_unit_test(floors_above_the_ground_are_none),
+        cmocka_unit_test(a_ceiling_is_none),
     };
     return cmocka_run_group_tests_name("ground", tests, NULL, NULL);
 }
