@@ -31,11 +31,13 @@ int orl_voxels_side(const struct frame *frame)
 
 uint64_t orl_voxels_key(const struct frame *frame)
 {
-    const int numbers[2] = {orl_voxels_side(frame), frame->scene->frame};
-    uint64_t key = XXH3_64bits(numbers, sizeof numbers);
-    for (size_t i = 0; i < frame->scene->photo_count; i++)
+    const int side = orl_voxels_side(frame);
+    uint64_t key = XXH3_64bits(&side, sizeof side);
+    for (size_t i = 0; i < frame->scene->photo_count; i++) {
+        const int64_t silhouette[2] = {(int64_t)i, frame->scene->frame};
         if (orl_voxels_has_silhouette(frame, i))
-            key = XXH3_64bits_withSeed(&i, sizeof i, key);
+            key = XXH3_64bits_withSeed(silhouette, sizeof silhouette, key);
+    }
     return key;
 }
 
