@@ -151,6 +151,8 @@ static void print_tables(const struct orl_bench *bench)
            "device       %s%s, OpenGL %s\n", bench->scene->dir, orl_scene_point_count(bench->scene),
            bench->photographs, bench->photo_width, bench->photo_height, bench->device,
            bench->software ? " (software)" : "", bench->driver);
+    if (bench->scene->frame_count)
+        printf("time steps   %zu, another one in each frame\n", bench->scene->frame_count);
     print_memory(bench);
     for (int kind = 0; kind < ORL_BENCH_KIND_COUNT; kind++)
         print_runs(bench, (enum orl_bench_kind)kind);

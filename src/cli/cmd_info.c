@@ -82,19 +82,17 @@ static enum orl_result print_text(const struct orl_log *log, const struct orl_sc
     free(path);
     double low[3], high[3];
     orl_points_bounds(&scene->points, low, high);
-    printf("bounds       %.4g %.4g %.4g to %.4g %.4g %.4g\n", low[0], low[1], low[2], high[0],
-           high[1], high[2]);
+    if (scene->points.count)
+        printf("bounds       %.4g %.4g %.4g to %.4g %.4g %.4g\n", low[0], low[1], low[2], high[0],
+               high[1], high[2]);
     printf("distance     %.4g from photographs to what they see (median)\n",
            scene->photo_distance);
     if (scene->ground.height > 0)
         printf("ground       %.4g below the photographs, up is %.3f %.3f %.3f\n",
                scene->ground.height, scene->ground.plane[0], scene->ground.plane[1],
                scene->ground.plane[2]);
-    size_t masked = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        masked += scene->photos[i].masked;
-    if (masked)
-        printf("silhouettes  of %zu photographs\n", masked);
+    if (orl_scene_silhouettes(scene))
+        printf("silhouettes  of %zu photographs\n", orl_scene_silhouettes(scene));
     if (scene->frame_count)
         printf("time steps   %zu\n", scene->frame_count);
     if (scene->backdrop_rests)

@@ -13,6 +13,7 @@
 #include "eval/bench_internal.h"
 #include "eval/metrics.h"
 #include "io/picture.h"
+#include "scene/info.h"
 
 // --- one configuration ---
 
@@ -87,7 +88,8 @@ static enum orl_result measure_photographs(struct bench_job *job)
     size_t all = job->bench->photographs;
     bool *use = orl_array(job->log, job->scene->photo_count, sizeof *use);
     enum orl_result result = use ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t count = 1; result == ORL_OK; count = 2 * count < all ? 2 * count : all) {
+    size_t least = all > 1 && orl_scene_silhouettes(job->scene) ? 2 : 1; // a hull needs two
+    for (size_t count = least; result == ORL_OK; count = 2 * count < all ? 2 * count : all) {
         struct orl_renderer *renderer = NULL;
         char what[48];
         snprintf(what, sizeof what, "%zu photographs", count);
@@ -138,7 +140,7 @@ static double splat_ms(const struct orl_bench_run *run)
 
 static enum orl_result measure_point_count(struct bench_job *job, size_t count)
 {
-    struct orl_scene scene = *job->scene;
+    struct orl_scene scene = *job->scene, *whole = job->scene;
     scene.lod = NULL; // its points take the place of all points
     struct orl_renderer *renderer = NULL;
     char what[48];
@@ -151,10 +153,12 @@ static enum orl_result measure_point_count(struct bench_job *job, size_t count)
                                          .textures = job->params->textures};
     struct orl_bench_run like = new_run(job, ORL_BENCH_POINTS, 0, job->params->sizes[0]);
     like.points = count;
+    job->scene = &scene;
     result = orl_renderer_create(job->gpu, &scene, &params, &renderer);
     if (result == ORL_OK)
         result = measure_methods(job, renderer, &like, what);
     orl_renderer_destroy(&renderer);
+    job->scene = whole;
     if (result == ORL_OK) {
         // Uses the first method's time: all methods have the same splatting passes.
         const struct orl_bench *bench = job->bench;
@@ -275,7 +279,7 @@ static double count_steps(const struct bench_job *job)
     return steps + methods * (photographs + 4) + (methods + 1) * (double)points;
 }
 
-enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
+enum orl_result orl_bench_run(struct orl_gpu *gpu, struct orl_scene *scene,
                               const struct orl_bench_params *params, struct orl_bench *bench)
 {
     struct bench_job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .scene = scene,
@@ -296,7 +300,7 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
         result = measure_sizes(&job);
     if (result == ORL_OK && params->growth)
         result = measure_photographs(&job);
-    if (result == ORL_OK && params->growth)
+    if (result == ORL_OK && params->growth && scene->points.count)
         result = measure_points(&job);
     if (result == ORL_OK && params->growth)
         result = measure_resolutions(&job);

@@ -71,9 +71,9 @@ struct orl_bench {
     size_t memory_count;
 };
 
-// Renders fixed views between neighbouring photographs, without using held-out photographs. Creates
-// its own renderers, one after another.
-enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
+// Renders fixed views between neighbouring photographs, without using held-out photographs, of a
+// sequence a time step a frame. Creates its own renderers, one after another.
+enum orl_result orl_bench_run(struct orl_gpu *gpu, struct orl_scene *scene,
                               const struct orl_bench_params *params,
                               struct orl_bench *bench) ORL_CHECK_RESULT;
 void orl_bench_finish(struct orl_bench *bench);

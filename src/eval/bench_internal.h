@@ -9,7 +9,7 @@ enum { BENCH_VIEWS_MAX = 3 };
 struct bench_job {
     const struct orl_log *log;
     struct orl_gpu *gpu;
-    const struct orl_scene *scene;
+    struct orl_scene *scene;
     const struct orl_bench_params *params;
     struct orl_bench *bench;
     struct orl_view views[BENCH_VIEWS_MAX]; // of the photographs' size; resized for each run

@@ -66,10 +66,10 @@ static json_t *memory_json(const struct orl_bench *bench)
 char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench)
 {
     json_t *root = json_pack(
-        "{s:o, s:s, s:s, s:b, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+        "{s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
         orl_json_string(bench->scene->dir), "device", bench->device, "driver", bench->driver, "software",
         bench->software, "points", (json_int_t)orl_scene_point_count(bench->scene),
-        "photographs", (json_int_t)bench->photographs, "photo_size", bench->photo_width, bench->photo_height,
+        "time_steps", (json_int_t)bench->scene->frame_count, "photographs", (json_int_t)bench->photographs, "photo_size", bench->photo_width, bench->photo_height,
         "host_peak_bytes", (json_int_t)bench->host_peak_bytes, "memory", memory_json(bench),
         "sizes", runs_json(bench, ORL_BENCH_SIZES), "by_photographs",
         runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),

@@ -21,7 +21,8 @@ static enum orl_result draw(void *priv, size_t number)
     const struct run_frames *f = priv;
     struct orl_view view = orl_bench_resize_view(&f->job->views[number % f->job->view_count],
                                                  f->width, f->height);
-    return orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
+    enum orl_result result = orl_timing_show_time_step(f->job->gpu, f->job->scene, f->renderer, number);
+    return result != ORL_OK ? result : orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
 }
 
 // Timing without warm-up and passes, as the benchmark's parameters say.
@@ -43,6 +44,8 @@ enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *re
     params.warm_up = WARM_UP;
     params.pass_frames = params.frames_max;
     enum orl_result result = orl_timing_take(job->gpu, &params, &run->timing);
+    if (result == ORL_OK && job->scene->frame_count)
+        result = orl_scene_set_frame(job->log, job->scene, -1);
     run->device_bytes = orl_gpu_bytes(job->gpu);
     run->uploaded_bytes = orl_renderer_uploaded(renderer);
     return result;

@@ -186,7 +186,9 @@ static enum orl_result draw_frame(void *priv, size_t number)
 {
     const struct job *job = priv;
     const struct orl_view view = view_of(job, number);
-    return orl_renderer_draw(job->renderer, &view, &job->config->render, NULL, NULL);
+    enum orl_result result = orl_timing_show_time_step(job->scene->gpu, job->scene->scene, job->renderer, number);
+    return result != ORL_OK ? result
+                            : orl_renderer_draw(job->renderer, &view, &job->config->render, NULL, NULL);
 }
 
 static enum orl_result enlarge(const struct orl_log *log, const struct orl_camera *camera,
@@ -239,6 +241,8 @@ static enum orl_result time_frames(struct job *job, json_t *row)
         .progress = scene->params->progress};
     struct orl_timing timing;
     enum orl_result result = orl_timing_take(scene->gpu, &params, &timing);
+    if (result == ORL_OK && scene->scene->frame_count) // the held-out photographs are of the scene itself
+        result = orl_scene_set_frame(orl_gpu_log(scene->gpu), scene->scene, -1);
     if (result != ORL_OK)
         return result;
     const struct orl_view view = view_of(job, 0);

@@ -22,6 +22,15 @@ bool orl_timing_enough(const struct orl_timing_params *params, size_t frames, do
             orl_time_s() - start_s >= params->seconds);
 }
 
+enum orl_result orl_timing_show_time_step(struct orl_gpu *gpu, struct orl_scene *scene,
+                                          struct orl_renderer *renderer, size_t number)
+{
+    if (!scene->frame_count)
+        return ORL_OK;
+    orl_renderer_expect(renderer, (int)((number + 1) % scene->frame_count));
+    return orl_scene_set_frame(orl_gpu_log(gpu), scene, (int)(number % scene->frame_count));
+}
+
 static enum orl_result draw(const struct orl_timing_params *params, size_t number, double *ms,
                             double *cpu_ms)
 {

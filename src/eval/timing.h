@@ -5,7 +5,7 @@
 #define ORL_EVAL_TIMING_H
 
 #include "oriel/progress.h"
-#include "oriel/gpu.h"
+#include "oriel/render.h"
 
 enum { ORL_TIMING_PASSES_MAX = 32, ORL_TIMING_FRAMES_MIN = 3 };
 
@@ -39,6 +39,12 @@ struct orl_timing {
 
 enum orl_result orl_timing_take(struct orl_gpu *gpu, const struct orl_timing_params *params,
                                 struct orl_timing *timing) ORL_CHECK_RESULT;
+
+// Of a sequence: frame `number` shows the time step after that of the frame before, so that its time
+// includes the hull and the upload of its photographs. A still scene stays as it is.
+enum orl_result orl_timing_show_time_step(struct orl_gpu *gpu, struct orl_scene *scene,
+                                          struct orl_renderer *renderer,
+                                          size_t number) ORL_CHECK_RESULT;
 
 // True when `frames` frames, the first begun at start_s, are enough.
 bool orl_timing_enough(const struct orl_timing_params *params, size_t frames, double start_s);

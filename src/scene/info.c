@@ -9,7 +9,7 @@
 void orl_points_bounds(const struct orl_points *points, double low[3], double high[3])
 {
     for (int k = 0; k < 3; k++)
-        low[k] = high[k] = (double)points->position[0][k];
+        low[k] = high[k] = points->count ? (double)points->position[0][k] : 0;
     for (size_t i = 1; i < points->count; i++)
         for (int k = 0; k < 3; k++) {
             double v = (double)points->position[i][k];
@@ -35,6 +35,14 @@ size_t orl_scene_camera_users(const struct orl_scene *scene, size_t photo)
         users += same;
     }
     return users;
+}
+
+size_t orl_scene_silhouettes(const struct orl_scene *scene)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < scene->photo_count; i++)
+        count += scene->photos[i].masked;
+    return count;
 }
 
 static json_t *photo_json(const struct orl_photo *photo)
@@ -66,11 +74,12 @@ json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene)
         result = orl_json_read(log, path, &manifest);
     free(path);
     json_t *root = result != ORL_OK ? NULL : json_pack(
-        "{s:o, s:{s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, "
+        "{s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, "
         "s:O*, s:O*, s:o, s:o}",
         "scene", orl_json_string(scene->dir), "counts", "photographs", (json_int_t)scene->photo_count, "train",
         (json_int_t)(scene->photo_count - test), "test", (json_int_t)test, "points",
-        (json_int_t)orl_scene_point_count(scene), "photo_distance", scene->photo_distance, "bounds",
+        (json_int_t)orl_scene_point_count(scene), "silhouettes",
+        (json_int_t)orl_scene_silhouettes(scene), "time_steps", (json_int_t)scene->frame_count, "photo_distance", scene->photo_distance, "bounds",
         low[0], low[1], low[2], high[0], high[1], high[2], "photographs", photos, "stages",
         json_object_get(manifest, "stages"), "settings", json_object_get(manifest, "settings"),
         "left_out", json_object_get(manifest, "left_out"), "tuned",

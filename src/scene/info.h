@@ -6,8 +6,10 @@
 
 #include "oriel/scene.h"
 
-// Bounds of the points; there must be at least one.
+// Bounds of the points; 0 where there are none.
 void orl_points_bounds(const struct orl_points *points, double low[3], double high[3]);
+// Number of photographs that have one.
+size_t orl_scene_silhouettes(const struct orl_scene *scene);
 // Number of photographs that share this photograph's camera; 0 when an earlier photograph has the
 // same camera, so that each camera is counted once.
 size_t orl_scene_camera_users(const struct orl_scene *scene, size_t photo);

@@ -59,6 +59,21 @@ runs 0 "${bench[@]}" --size 32x32 --json - --quick
 head -c1 stdout.txt | grep -q '{' || fail "--json - writes something else, too"
 grep -q '"by_points": \[\]' stdout.txt || fail "--quick is not quick"
 
+# Of a sequence every frame shows another time step, so that its time has the hull's.
+runs 0 "$oriel" synth figures --out set --cameras 5 --frames 3 --size 64x48
+runs 0 "$oriel" import set --masks set/masks --background set/background --out moving
+moving=("$oriel" bench moving --quiet --seconds 0 --frames 4 --size 32x32 --method li --quick)
+runs 0 "${moving[@]}" --json -
+grep -q '"time_steps": 3,' stdout.txt || fail "does not say how many time steps there are"
+grep -q '"hull"' stdout.txt || fail "the hull takes no time"
+runs 0 "${moving[@]}"
+grep -q '^time steps  *3, ' stdout.txt || fail "the tables do not say how many time steps there are"
+mv moving/frames not-now
+runs 0 "${moving[@]}" --json -
+grep -q '"hull"' stdout.txt && fail "a hull that stays takes time in each frame"
+runs 0 "$oriel" bench moving --quiet --seconds 0 --frames 3 --size 32x32 --method li --json -
+grep -q '"photographs": 2,' stdout.txt || fail "no growth with photographs that carve a hull"
+
 runs 2 "${bench[@]}" --method nonsense
 grep -q airieau stderr.txt || fail "does not list the methods"
 runs 2 "${bench[@]}" --size 12
