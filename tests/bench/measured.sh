@@ -271,7 +271,8 @@ method_rows() {
                 >"$work/two.json" 2>>"$work/methods.log" || { echo "| \`$method\` | - | - | - | - | - |"; continue; }
         [ -n "$unit" ] || unit=$(jq '.sizes[0].cpu_ms' "$work/two.json")
         jq -rs --arg m "$method" --argjson u "$unit" "$tables"'
-            ["`\($m)`", (.[0].mean.psnr_db | fixed(2)), (.[0].mean.psnr_covered_db | fixed(2)), (.[0].mean.ssim | fixed(3)),
+            ["`\($m)`", (.[0].mean.psnr_db | fixed(2)),
+             (.[0].mean | if .coverage > 0 then .psnr_covered_db | fixed(2) else "-" end), (.[0].mean.ssim | fixed(3)),
              (.[1].sizes[0].cpu_ms / $u | fixed(2)), (.[1].sizes[0].device_bytes / 1048576 | fixed(0))]
             | row' "$work/one.json" "$work/two.json"
     done
@@ -302,11 +303,11 @@ page_methods() {
         run "$command" >&2
     done
     run "oriel eval SCENES/NAME --method points --quiet --json -" "$scene" >"$work/methods.json"
-    head_of "All methods on five scenes" "fountain and four that the commands below make" "$work/methods.json"
+    head_of "All methods on five scenes" "$(list "$scene") and four that the commands below make" "$work/methods.json"
     cat <<'END'
 
-Accuracy is that of held-out photographs, over whole pictures. Time is processor time of a frame of 512x512 relative
-to the first row; memory is that of the device with everything that the method asked for. A dash: the method asks
+Accuracy is that of held-out photographs, over whole pictures; *covered* is that of pixels that geometry and a
+photograph cover. Time is processor time of a frame of 512x512 relative to the first row; memory is that of the device with everything that the method asked for. A dash: the method asks
 for something that the scene lacks. The figure has silhouettes, a hull as a mesh and no points, so that `points` shows
 the background alone; there all methods paint the room behind it, as `li` does. The last three scenes, too, have known
 cameras, silhouettes and their hull, and no points; behind temple and dino nothing is painted, though the photographs

@@ -171,10 +171,17 @@ def changed_files(commit):
 
 
 def write_table(path, found):
+    """How many there are of each folder, and below the survivors with their reasons."""
+    folders = sorted({os.path.dirname(f[0]["file"]) for f in found})
+    survivors = [f for f in found if f[1] != "killed"]
     with open(path, "w") as file:
-        file.write("| file | change | what became of it |\n|---|---|---|\n")
-        for entry, what, why, _ in sorted(found, key=lambda f: (f[0]["file"], f[0]["name"])):
-            file.write("| `%s` | %s | %s: %s |\n" % (entry["file"], entry["name"], what, why))
+        file.write("| folder | changes | noticed |\n|---|---|---|\n")
+        for folder in folders:
+            of = [f for f in found if os.path.dirname(f[0]["file"]) == folder]
+            file.write("| `%s` | %d | %d |\n" % (folder, len(of), sum(f[1] == "killed" for f in of)))
+        file.write("| all | %d | %d |\n" % (len(found), len(found) - len(survivors)))
+        for entry, what, why, _ in survivors:
+            file.write("\n`%s` in `%s` is %s: %s\n" % (entry["name"], entry["file"], what, why))
 
 
 def main():
