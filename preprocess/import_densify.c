@@ -69,6 +69,9 @@ static enum orl_result find_features(struct orl_job *job, const struct paths *pa
     orl_colmap_arg(&args, "--image_path", "%s", paths->images);
     orl_colmap_arg(&args, "--image_list_path", "%s", paths->list);
     orl_colmap_arg(&args, "--ImageReader.camera_model", "PINHOLE");
+    // As the model that is triangulated has them; otherwise photographs whose EXIF names one camera
+    // share it.
+    orl_colmap_arg(&args, "--ImageReader.single_camera_per_image", "1");
     orl_colmap_arg(&args, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda);
     // COLMAP's database numbers photographs as they are finished, and triangulation requires that
     // the known cameras have the same numbers. With one thread, both are in order of name.
