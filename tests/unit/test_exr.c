@@ -328,7 +328,7 @@ static void exrheader_sees_channels_and_attributes(void **state)
         skip();
     }
     static const char *const lines[] = {
-        "depth.Z, 32-bit floating-point", "R, 16-bit floating-point", "zip, multi-scanline",
+        "depth.Z, 32-bit floating-point", "R, 16-bit floating-point", "(type compression): zip",
         "expTime (type float): 0.25", "isoSpeed (type float): 400", "aperture (type float): 8",
         "whiteLuminance (type float): 100", "red   (0.64 0.33)", "seen by others",
         "software (type string): \"Oriel",
