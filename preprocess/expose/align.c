@@ -22,6 +22,8 @@ static const double LN2 = 0.69314718055994531;
 static const double SAMPLE_SIGMA = 0.1;
 // Least standard deviation of a photograph's gain, however many samples it shares.
 static const double GAIN_SIGMA = 0.02;
+// A camera that processes each photograph by its content stays within this of what EXIF tells.
+static const double UNLIKE_EV = 1;
 
 // --- the problem: log colour + log gain - log vignetting is equal for all observations of a point
 // ---
@@ -368,11 +370,17 @@ static void count_samples(struct problem *p)
         p->photos[p->samples->items[i].photo].samples += isfinite(p->sigma[i]);
 }
 
-static bool is_plausible(const struct problem *p, const struct orl_align_photo *photo)
+static double mean_gain_ev(const struct orl_align_photo *photo)
 {
     double mean = 0;
     for (int c = 0; c < 3; c++)
         mean += log2((double)photo->gain[c]) / 3;
+    return mean;
+}
+
+static bool is_plausible(const struct problem *p, const struct orl_align_photo *photo)
+{
+    double mean = mean_gain_ev(photo);
     for (int c = 0; c < 3; c++)
         if (!(fabs(log2((double)photo->gain[c]) - mean) <= p->params->colour_limit_ev))
             return false;
@@ -388,7 +396,10 @@ static bool refuse(struct problem *p)
     bool again = false;
     for (size_t i = 0; i < p->photo_count; i++) {
         struct orl_align_photo *photo = &p->photos[i];
-        if (!photo->refused && photo->samples >= SAMPLES_MIN && !is_plausible(p, photo))
+        if (photo->refused || photo->samples < SAMPLES_MIN)
+            continue;
+        photo->off_ev = photo->known ? fabs(mean_gain_ev(photo) + photo->ev) : 0;
+        if (!is_plausible(p, photo))
             again = photo->refused = true;
     }
     return again;
@@ -470,6 +481,7 @@ enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *s
         p.prior && p.precision && p.lens && p.lens_photos && alignment->vignette) {
         for (size_t i = 0; i < photo_count; i++) {
             photos[i].refused = false;
+            photos[i].off_ev = 0;
             p.lens_photos[photos[i].lens]++;
         }
         result = solve_all(&p, alignment);
@@ -488,6 +500,16 @@ enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *s
     if (result != ORL_OK)
         orl_alignment_finish(alignment);
     return result;
+}
+
+bool orl_align_contradicts(const struct orl_align_photo *photos, size_t count)
+{
+    size_t known = 0, unlike = 0;
+    for (size_t i = 0; i < count; i++) {
+        known += photos[i].known;
+        unlike += photos[i].known && photos[i].off_ev > UNLIKE_EV;
+    }
+    return unlike > 0 && 4 * unlike >= known;
 }
 
 void orl_alignment_finish(struct orl_alignment *alignment)

@@ -12,6 +12,7 @@ struct orl_align_photo {
     const float (*linear)[256]; // response of its camera, three channels; NULL: sRGB
     // Results:
     float gain[3];
+    double off_ev;  // of its gain from its exposure, also where the gain was refused; 0: unknown
     size_t samples; // observations that its gain was fitted to
     bool refused;   // its gain was not plausible, so that of its exposure is used
 };
@@ -39,6 +40,8 @@ struct orl_alignment {
 enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
                           const struct orl_align_params *params, struct orl_align_photo *photos,
                           size_t photo_count, struct orl_alignment *alignment) ORL_CHECK_RESULT;
+// True if a quarter or more of the photographs whose exposure is known look unlike it.
+bool orl_align_contradicts(const struct orl_align_photo *photos, size_t count);
 void orl_alignment_finish(struct orl_alignment *alignment);
 
 #endif

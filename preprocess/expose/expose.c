@@ -82,6 +82,7 @@ struct exposing {
     json_t *response_list;
     int series_count;
     bool last; // the last fit
+    bool contradicted; // exposures that are known, by the pictures
 };
 
 static bool same_camera(const struct orl_source *a, const struct orl_source *b)
@@ -341,6 +342,7 @@ static enum orl_result align(struct exposing *e)
     }
     if (result == ORL_OK)
         result = orl_align(e->job->log, &e->samples, &params, photos, e->train, &alignment);
+    e->contradicted = result == ORL_OK && orl_align_contradicts(photos, e->train);
     for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
         size_t lens = (size_t)lens_of(e, i);
         if (i < e->train)
@@ -361,6 +363,28 @@ static enum orl_result align(struct exposing *e)
     return result;
 }
 
+// EXIF of copies and of edited photographs may be anything, the same time everywhere for example.
+// A list that the user wrote is kept.
+static enum orl_result heed_pictures(struct exposing *e, bool *again)
+{
+    size_t told = 0, listed = 0;
+    for (size_t i = 0; i < e->count; i++) {
+        told += e->photos[i].from == ORL_EXPOSURE_EXIF;
+        listed += e->photos[i].from == ORL_EXPOSURE_LIST;
+    }
+    *again = told > listed;
+    orl_logf(e->job->log, ORL_LOG_WARNING, "expose: the exposures that %s do not fit the pictures, "
+             "which differ from them by more than a stop%s",
+             *again ? "EXIF tells" : "the list of --exposures tells",
+             *again ? "; they are estimated from the pictures. --exposures FILE takes a list" : "");
+    for (size_t i = 0; *again && i < e->count; i++) {
+        e->exposures[i].known = false;
+        e->photos[i].from = ORL_EXPOSURE_UNKNOWN;
+    }
+    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV,
+                               &e->series_count);
+}
+
 // Responses and vignetting depend on each other. Two rounds are enough, as vignetting is slight.
 static enum orl_result fit_all(struct exposing *e)
 {
@@ -372,6 +396,10 @@ static enum orl_result fit_all(struct exposing *e)
         result = fit_responses(e);
         if (result == ORL_OK)
             result = align(e);
+        bool again = false;
+        if (result == ORL_OK && round == 0 && e->contradicted)
+            result = heed_pictures(e, &again);
+        round -= again;
     }
     return result;
 }

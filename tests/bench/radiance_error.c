@@ -3,7 +3,7 @@
 // from them. With --bound also the error that the truth itself has against the truth, over the
 // same pixels, once it is shifted by part of a pixel, or photographed half a pixel off and
 // resampled. An edge is a step of more than a stop between neighbouring pixels; near it is within
-// EDGE_PX pixels. --divide: views at 1/N of the photographs' size.
+// EDGE_PX pixels. Dark: below 1/64 of white, away from edges. --divide: views at 1/N of the photographs' size.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,6 +19,7 @@
 #include "io/picture.h"
 
 enum { EDGE_PX = 2 };
+static const double DARK = 1.0 / 64; // of white at the scene's middle exposure
 
 struct job {
     struct orl_log log;
@@ -82,7 +83,8 @@ static enum orl_result report(const struct job *job, const struct view *v, const
                               const struct orl_image *image)
 {
     double squares[2] = {0}, *all = orl_array(&job->log, v->pixels, 3 * sizeof *all);
-    size_t count[2] = {0}, n = 0;
+    double dark_squares = 0, dark_sum = 0;
+    size_t count[2] = {0}, n = 0, dark = 0;
     if (!all)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < 3 * v->pixels; i++) {
@@ -91,16 +93,22 @@ static enum orl_result report(const struct job *job, const struct view *v, const
         double e = stops((double)image->f32[i]) - stops((double)v->truth.f32[i]);
         squares[v->edge[i / 3]] += e * e;
         count[v->edge[i / 3]]++;
+        if ((double)v->truth.f32[i] < DARK && !v->edge[i / 3]) {
+            dark_squares += e * e;
+            dark_sum += e;
+            dark++;
+        }
         all[n++] = fabs(e);
     }
     if (n) {
         qsort(all, n, sizeof *all, orl_order_doubles);
         printf("%s %-26s %6.3f  median %.3f  90%% %.3f  99%% %.2f  away from edges %.3f  "
-               "near %.3f (%.1f %%)\n", v->name, what,
+               "near %.3f (%.1f %%)  dark %.3f, bias %+.3f (%.1f %%)\n", v->name, what,
                sqrt((squares[0] + squares[1]) / (double)n), all[n / 2], all[n * 9 / 10],
                all[n * 99 / 100], sqrt(squares[0] / fmax((double)count[0], 1)),
                sqrt(squares[1] / fmax((double)count[1], 1)),
-               100 * (double)count[1] / (double)n);
+               100 * (double)count[1] / (double)n, sqrt(dark_squares / fmax((double)dark, 1)),
+               dark_sum / fmax((double)dark, 1), 100 * (double)dark / (double)n);
     }
     free(all);
     return fflush(stdout) == 0 ? ORL_OK : orl_fail(&job->log, ORL_ERR_IO, "cannot write figures");

@@ -237,6 +237,29 @@ static const struct camera bracket[PHOTOS] = {
     {.exposure = {8, 8, 8}, .film = true},             {.exposure = {0.14, 0.14, 0.14}, .film = true},
     {.exposure = {0.9, 0.9, 0.9}, .film = true},       {.exposure = {8, 8, 8}, .film = true}};
 
+// Pictures of three exposures, of which EXIF says that they are the same.
+static void wrong_exposures_are_noticed(void **state)
+{
+    (void)state;
+    struct camera cameras[PHOTOS];
+    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
+    for (int i = 0; i < PHOTOS; i++) {
+        double factor = exp2(1.5 * (i % 3 - 1));
+        cameras[i] = (struct camera){.exposure = {factor, factor, factor}};
+    }
+    struct orl_samples samples = make_samples(cameras, 0.05, -4, -2);
+    for (int told = 0; told < 2; told++) {
+        struct orl_alignment alignment;
+        for (int i = 0; i < PHOTOS; i++)
+            photos[i] = (struct orl_align_photo){.known = true, .ev = told ? 1.5 * (i % 3 - 1) : 0};
+        assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+        assert_int_equal(orl_align_contradicts(photos, PHOTOS), !told);
+        orl_alignment_finish(&alignment);
+    }
+    orl_samples_finish(&samples);
+}
+
 static void tell_exposures(struct orl_response_photo photos[PHOTOS])
 {
     // As a camera tells them: what differs slightly from series to series stays untold.
@@ -485,6 +508,7 @@ int main(void)
         cmocka_unit_test(vignetting_is_found),
         cmocka_unit_test(dark_samples_have_little_say),
         cmocka_unit_test(implausible_gains_are_refused),
+        cmocka_unit_test(wrong_exposures_are_noticed),
         cmocka_unit_test(response_is_found),
         cmocka_unit_test(vignetting_of_every_order_is_undone),
         cmocka_unit_test(curves_never_fall),
