@@ -130,6 +130,19 @@ static void finish_values(struct value values[VALUES])
         free(values[i].text.data);
 }
 
+// Modules are found to be needed one after the other, unless the page names all of them.
+static void add_scripts(struct text *text)
+{
+    for (const struct orl_web_file *f = orl_web_table; f->name; f++) {
+        if (strncmp(f->name, "js/", 3) != 0)
+            continue;
+        add(text, "<link rel=\"modulepreload\" href=\"");
+        add(text, f->name);
+        add(text, "\">\n");
+    }
+    add(text, "<script type=\"module\" src=\"js/main.js\"></script>");
+}
+
 char *orl_walk_index(const struct orl_log *log, const char *title, const char *poster)
 {
     struct value values[VALUES];
@@ -138,7 +151,7 @@ char *orl_walk_index(const struct orl_log *log, const char *title, const char *p
     add(&values[POSTER].text, poster);
     add(&values[STYLE].text, "<link rel=\"stylesheet\" href=\"style.css\">");
     add(&values[ICON].text, "icon.svg");
-    add(&values[MODULES].text, "<script type=\"module\" src=\"js/main.js\"></script>");
+    add_scripts(&values[MODULES].text);
     fill_template(values, VALUES, &page);
     finish_values(values);
     if (page.result == ORL_OK)

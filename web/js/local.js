@@ -51,7 +51,7 @@ export class LocalPicture {
         this.renderer = new Renderer(this.device, sources, manifest, photos, this.cloud, photoBudget());
         this.allBytes = totalBytes(manifest);
         this.lookedAt = 0;
-        this.rank = [];
+        this.rank = [photos[manifest.start]]; // until a view is drawn
         this.points = [];      // in the world, whose visibility frames tell
         this.seen = new Map(); // of those: false where a surface is before the point
         this.eye = photos[manifest.start].eye;
@@ -105,7 +105,7 @@ export class LocalPicture {
     rankFor(camera, rests)
     {
         const store = this.renderer.photos, now = performance.now();
-        if (!rests && this.rank.length && now - this.rankedAt < RANK_EVERY)
+        if (!rests && now - this.rankedAt < RANK_EVERY)
             return;
         this.rankedAt = now;
         this.eye = camera.eye;
@@ -127,8 +127,8 @@ export class LocalPicture {
                this.rank.slice(0, this.renderer.photos.slots).every(p => p.slot >= 0);
     }
 
-    // Good enough to take the poster's place.
-    get presentable() { return this.rank.length > 0 && this.rank.slice(0, 3).every(p => p.slot >= 0); }
+    // Good enough to take the poster's place: the photograph that shows most of the view is there.
+    get presentable() { return this.renderer.used > 0 && this.rank[0].slot >= 0; }
     get loadedShare() { return this.complete ? 1 : Math.min(this.files.bytes / this.allBytes, 0.99); }
 
     // --- frames ---
@@ -143,6 +143,15 @@ export class LocalPicture {
         this.renderer.show(layer);
         if (camera === full || performance.now() - this.lookedAt > LOOK_EVERY)
             this.look(camera);
+    }
+
+    // Milliseconds of a frame, which is waited for.
+    timeOf(camera)
+    {
+        const start = performance.now();
+        this.renderer.draw(camera, 0);
+        this.renderer.depthAt(0, 0);
+        return performance.now() - start;
     }
 
     // Reading depth waits for the graphics chip, so not every frame does.

@@ -19,7 +19,7 @@ import {buildHelp, byId, Compare, make, Panel, save, showHint, showProblem, show
 import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "./view.js";
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
-const FRAME_LONG = 38, FRAME_SHORT = 14;  // milliseconds: fewer pixels, more pixels
+const FRAME_LONG = 38, FRAME_SHORT = 20;  // milliseconds: fewer pixels, more pixels. Screens show 60 frames a second.
 const LIVE_LONG = 75, LIVE_SHORT = 40;    // the same of frames that come over the network
 const REFINE_AFTER = 140;                 // milliseconds of rest
 const RIGHT = ["path", "maker", "method"]; // panels that share a place
@@ -37,6 +37,7 @@ class Walk {
         this.layer = 0;
         this.scale = 0;          // index into SCALES
         this.frames = [];        // milliseconds of the last frames while moving
+        this.finest = 0;         // of SCALES that this movement may have
         this.dirty = true;
         this.restSince = 0;
         this.refined = false;
@@ -64,6 +65,7 @@ class Walk {
         this.readAddress();
         this.resized();
         byId("over").classList.toggle("bare", this.asked.ui === "none");
+        this.scale = this.firstScale();
         window.addEventListener("hashchange", () => this.readAddress());
         window.addEventListener("resize", () => this.resized());
         this.watchPixels();
@@ -112,6 +114,7 @@ class Walk {
         } else {
             this.refined = false;
         }
+            this.restSince = performance.now(); // more may be coming
         this.wake();
     }
 
@@ -325,7 +328,7 @@ class Walk {
             byId("method").hidden ||= !picture.remote;
         }
         this.frames = [];
-        this.scale = 0;
+        this.scale = this.firstScale();
         this.change(() => picture.setExposure(this.ev));
     }
 
@@ -456,9 +459,9 @@ class Walk {
             this.restSince = time;
         const rests = time - this.restSince > REFINE_AFTER && !this.input.dragging;
         if (changed || (this.dirty && !rests))
-            this.drawFrame(rests || !this.refined && this.frames.length === 0 ? 0 : this.scale, passed);
+            this.drawFrame(rests ? 0 : this.scale, passed);
         else if (rests && !this.refined)
-            this.drawFrame(0, 0);
+            this.refine();
         else if (this.dirty)
             this.showState();
         this.dirty = false;
@@ -487,6 +490,23 @@ class Walk {
     // A frame has been drawn, or has come.
     showFrame()
     {
+    // Of the first frames, so that a slow device shows something soon. The first draw of all makes programs.
+    firstScale()
+    {
+        if (this.picture.remote)
+            return 0;
+        const coarsest = SCALES.length - 1, camera = this.windowCamera(SCALES[coarsest]);
+        const [, ms] = [0, 1].map(() => this.picture.timeOf(camera));
+        const fits = SCALES.findIndex(scale => ms * (scale / SCALES[coarsest]) ** 2 < FRAME_LONG);
+        return fits < 0 ? coarsest : fits;
+    }
+
+    refine()
+    {
+        this.finest = 0;
+        this.drawFrame(0, 0);
+    }
+
         if (this.onFrame)
             this.onFrame();
     }
@@ -504,7 +524,7 @@ class Walk {
         this.frameMs = mean;
         const [long, short] = this.picture.remote ? [LIVE_LONG, LIVE_SHORT] : [FRAME_LONG, FRAME_SHORT];
         const step = mean > long ? 1 : mean < short ? -1 : 0;
-        const next = clamp(this.scale + step, 0, SCALES.length - 1);
+        const next = clamp(this.scale + step, Math.min(this.finest, this.scale), SCALES.length - 1);
         if (next !== this.scale)
             this.frames = [];
         this.scale = next;
@@ -524,6 +544,8 @@ class Walk {
         this.thumbs.mark(nav.at);
         this.compare.update(nav.at, nav.view);
         byId("place").textContent = nav.at ? text.atPhoto(nav.at.number + 1, this.photos.length, nav.at.name) : "";
+        if (next > this.scale)
+            this.finest = next; // else it would go back and forth
         showHint(this.picture.problem || (this.compare.on && !nav.at && !nav.flying ? text.standAtPhoto
                                           : nav.farOut ? text.farOut : ""));
         showProgress(this.picture.loadedShare);
