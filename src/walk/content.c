@@ -23,6 +23,7 @@ static json_t *photo_json(const struct orl_photo *photo, size_t number)
     snprintf(picture, sizeof picture, "photos/%05zu.jpg", number);
     snprintf(thumb, sizeof thumb, "thumbs/%05zu.jpg", number);
     json_t *json = orl_walk_photo(photo, &photo->view.camera);
+    json_object_set_new(json, "held_out", json_boolean(photo->test));
     json_object_set_new(json, "picture", json_pack("{s:s}", "file", picture));
     json_object_set_new(json, "thumb", json_pack("{s:s}", "file", thumb));
     return json;
@@ -81,9 +82,11 @@ enum orl_result orl_content_init(const struct orl_log *log, const struct orl_sce
                                 .choice = choice};
     content->photos = orl_array(log, scene->photo_count, sizeof *content->photos);
     enum orl_result result = content->photos ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
-        if (!scene->photos[i].test)
-            content->photos[content->photo_count++] = i;
+    // Held-out photographs come last, so that the others have the numbers of the published site.
+    for (int test = 0; test < 2; test++)
+        for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
+            if (scene->photos[i].test == (test == 1))
+                content->photos[content->photo_count++] = i;
     if (result == ORL_OK)
         result = orl_walk_settings_read(log, scene, &content->settings);
     if (result == ORL_OK)

@@ -8,7 +8,8 @@
 #include "core/json.h"
 #include "scene/json_views.h"
 
-enum { TITLE_MAX = 500, TEXT_MAX = 4000, NOTES_MAX = 200 };
+enum { TITLE_MAX = 500, TEXT_MAX = 4000, NOTES_MAX = 200, TOUR_VIEWS_MAX = 2000,
+       TOUR_SECONDS_MAX = 3601 };
 static const char file_name[] = "walk.json";
 static const double pi = 3.14159265358979323846;
 
@@ -107,6 +108,26 @@ static bool are_notes(const json_t *notes)
     return json_is_array(notes) && json_array_size(notes) <= NOTES_MAX;
 }
 
+// A path, as src/scene/path.c reads it, of views alone.
+static bool is_tour(const json_t *tour)
+{
+    const json_t *keys = json_object_get(tour, "keyframes");
+    size_t i;
+    json_t *key;
+    json_array_foreach(keys, i, key) {
+        double seconds;
+        if (!is_view(key) || (json_object_get(key, "seconds") &&
+                              !read_between(key, "seconds", 0, TOUR_SECONDS_MAX, &seconds)))
+            return false;
+    }
+    return json_array_size(keys) >= 2 && json_array_size(keys) <= TOUR_VIEWS_MAX;
+}
+
+static bool is_length(const json_t *value)
+{
+    return json_is_number(value) && json_number_value(value) > 0;
+}
+
 static bool is_line(const json_t *value)
 {
     return is_text(value, TITLE_MAX);
@@ -125,6 +146,8 @@ enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *w
         {"modes", "a list of \"walk\", \"fly\" and \"orbit\"", are_modes},
         {"notes", "a list of at most 200 annotations, each with \"title\" and \"position\"",
          are_notes},
+        {"tour", "a path of 2 to 2000 views, each with at most 3600 \"seconds\"", is_tour},
+        {"unit_m", "a length above 0", is_length},
     };
     const struct orl_json_place place = {log, where, NULL};
     const char *key;

@@ -16,6 +16,7 @@ static enum orl_result check(const char *text)
 }
 
 #define FRAME(frame) "{\"start\": {" POSE ", \"fov_y_deg\": 90, \"frame\": " frame "}}"
+#define KEY(seconds) "{" POSE ", \"fov_y_deg\": 60, \"seconds\": " seconds "}"
 #define POSE "\"cam_from_world\": [[1,0,0,1],[0,1,0,2],[0,0,1,3]]"
 
 static void test_what_is_allowed(void **state)
@@ -24,6 +25,8 @@ static void test_what_is_allowed(void **state)
     assert_int_equal(check("{}"), ORL_OK);
     assert_int_equal(check("{\"title\": \"T\", \"attribution\": \"\", \"modes\": [\"walk\"]}"), ORL_OK);
     assert_int_equal(check("{\"start\": {" POSE ", \"fov_y_deg\": 60}}"), ORL_OK);
+    assert_int_equal(check("{\"tour\": {\"frames\": 9, \"keyframes\": [" KEY("2") ", " KEY("3600") "]},"
+                           "\"unit_m\": 0.5}"), ORL_OK);
     assert_int_equal(check("{\"notes\": [{\"title\": \"a\", \"text\": \"b\", \"position\": [1,2,3],"
                            "\"view\": {" POSE ", \"fov_y_deg\": 60}}]}"), ORL_OK);
 }
@@ -38,6 +41,9 @@ static void test_what_is_refused(void **state)
         "{\"start\": {\"cam_from_world\": [[2,0,0,1],[0,1,0,2],[0,0,1,3]], \"fov_y_deg\": 60}}",
         FRAME("1"), FRAME("{\"aspect\": 1.5, \"fx\": 1, \"x\": 0}"),
         FRAME("{\"aspect\": 1e9, \"fx\": 1, \"x\": 0, \"y\": 0}"),
+        "{\"unit_m\": 0}", "{\"unit_m\": \"1\"}", "{\"tour\": []}", "{\"tour\": {\"keyframes\": [" KEY("1") "]}}",
+        "{\"tour\": {\"keyframes\": [" KEY("1") ", " KEY("-1") "]}}",
+        "{\"tour\": {\"keyframes\": [" KEY("1") ", {}]}}",
         "{\"notes\": {}}", "{\"notes\": [{\"title\": \"a\"}]}",
         "{\"notes\": [{\"title\": \"a\", \"position\": [1,2]}]}",
         "{\"notes\": [{\"position\": [1,2,3]}]}",

@@ -3,6 +3,7 @@
 tests/e2e/visitors.sh: test_visitors.py ORIEL TOOL SCENE SITE RADIANCE RADIANCE-SITE."""
 import json
 import math
+import os
 import re
 import signal
 import socket
@@ -15,6 +16,7 @@ from browser import Browser, QuietHandler, Server
 from client import Walk as Program
 
 ORIEL, TOOL, SCENE, SITE, RADIANCE, RADIANCE_SITE = sys.argv[1:7]
+AXE = os.environ.get("ORIEL_AXE", "node_modules/axe-core/axe.min.js")
 WIDTH, HEIGHT = 360, 240
 SIZES = ((320, 568), (390, 844), (640, 360), (760, 900), (844, 390), (1024, 768), (1440, 900), (2560, 1440))
 
@@ -42,6 +44,7 @@ class Visitors(unittest.TestCase):
 
     def open(self, query="", address=None):
         self.browser.driver.get("about:blank")
+        self.browser.errors() # of a server that has ended meanwhile
         self.browser.open((address or self.server.address) + "/" + query)
         self.browser.js("oriel.navigator.calm = true")
 
@@ -138,7 +141,7 @@ class Page(Visitors):
             # What a language lacks is English, and nothing that English lacks is translated.
             self.assertEqual(self.js("""
                 return import("./js/strings.js").then(m => [typeof m.text.benchmark, m.text.help.length]);"""),
-                ["string", 21])
+                ["string", 23])
 
     def test_tour_of_the_annotations(self):
         self.open()
@@ -176,6 +179,22 @@ class Page(Visitors):
                 return [...rows.values()].map(row => row.length);""")
             self.assertLess(max(columns) - min(columns), len(columns) + 1, size) # no single one in a row
             self.assertGreaterEqual(self.js("return document.querySelector('#tools button').offsetWidth"), 24)
+
+    def test_screen_readers(self):
+        """By axe-core, of npm, where it is there."""
+        if not os.path.exists(AXE):
+            self.skipTest(f"{AXE} is missing")
+        self.open()
+        with open(AXE) as file:
+            self.js(file.read())
+        self.js("oriel.toggle('thumbs'); oriel.toggle('map'); document.querySelector('.mark').click()")
+        for id_ in ("panel", "path", "help"):
+            if id_ == "help":
+                self.browser.keys("Slash", "?")
+            else:
+                self.js(f"oriel.toggle('{id_}')")
+            found = self.js("return axe.run().then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))")
+            self.assertEqual(found, [], id_)
 
     def test_wheel_within_another_page(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -316,6 +335,50 @@ class Live(Visitors):
         self.browser.wait("return document.getElementById('hint').textContent === ''")
         self.browser.settle()
         self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
+
+    def test_tour_and_lengths_of_the_maker(self):
+        before = self.settings()
+        self.addCleanup(self.restore, before)
+        self.open(address=self.walk().address[:-1])
+        for i in range(2):
+            self.js("""
+                const nav = oriel.navigator;
+                nav.setView({...nav.view, eye: nav.view.eye.map((x, k) => x + (k ? 0 : arguments[0] * nav.distance))});
+                oriel.path.add();""", 0.3 * i)
+        self.js("""
+            oriel.path.setDuration(600);
+            const [key] = oriel.path.keys, {viewToSaved} = await import("./js/view.js");
+            await oriel.notes.change({notes: [{title: "Here", position: [0, 0, 0], view: viewToSaved(key)}]});
+            [...document.querySelectorAll("#path button")].find(b => b.textContent.includes("visitors")).click();
+            oriel.ruler.ends = [[0, 0, 0], [0, 0, 2]];
+            oriel.ruler.teach(5);""")
+        self.browser.wait("return document.querySelector('#maker [role=status]').textContent === 'Saved.'")
+        with open(f"{SCENE}/walk.json") as file:
+            saved = json.load(file)
+        self.assertEqual((saved["unit_m"], len(saved["tour"]["keyframes"])), (2.5, 2))
+        # What a visitor meets.
+        self.browser.open(self.browser.address().split("#")[0])
+        self.browser.keys("KeyG", "g")
+        self.browser.wait("return !document.getElementById('note').hidden")
+        self.assertEqual(self.js("return [oriel.path.plays, document.querySelector('#note h2').textContent]"), [True, "Here"])
+        self.browser.keys("KeyG", "g")
+        self.assertFalse(self.js("return oriel.path.plays"))
+        self.browser.keys("KeyU", "u")
+        for x in (150, 210):
+            self.browser.click(x, 130)
+            self.browser.wait(f"return oriel.ruler.ends.length === {1 + (x > 200)}")
+        metres = self.js("""
+            const {distance} = await import("./js/math.js");
+            return 2.5 * distance(...oriel.ruler.ends);""")
+        said = self.js("return document.getElementById('length').textContent")
+        self.assertAlmostEqual(float(said.split()[0]) / (100 if said.endswith("cm") else 1), metres, delta=0.02 * metres)
+        self.assertEqual(self.js("return document.getElementById('line').points.numberOfItems"), 2)
+
+    def test_held_out_photographs_are_compared(self):
+        self.open(address=self.walk().address[:-1])
+        self.js("oriel.navigator.goTo(oriel.photos.find(p => p.held_out)); oriel.toggleCompare()")
+        self.browser.wait("return document.getElementById('right-side').textContent === 'Photograph, held out'")
+        self.assertEqual(self.js("return document.getElementById('left-side').textContent"), "Drawn")
 
     def settings(self):
         with open(f"{SCENE}/walk.json") as file:

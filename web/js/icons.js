@@ -15,6 +15,8 @@ export const icons = {
     screenshot: "M4 7h4l2-2h4l2 2h4v12H4zM12 10a3 3 0 100 6 3 3 0 000-6",
     full: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
     path: "M4 18c0-8 8-2 8-8s8-2 8-6M4 18v.1M20 4v.1",
+    tour: "M8 5v14l11-7z",
+    ruler: "M4 16L16 4l4 4L8 20zM8 12l2 2M11 9l2 2M14 6l2 2",
     record: "M12 5v14M5 12h14",
     maker: "M12 21s-6-6-6-11a6 6 0 0112 0c0 5-6 11-6 11zM12 8v4M10 10h4",
     method: "M4 20l9-9M13 11a4 4 0 106-4l-2 2-2-2 2-2a4 4 0 00-5 5",

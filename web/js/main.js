@@ -12,6 +12,7 @@ import {MethodPanel} from "./methods.js";
 import {TimeSteps} from "./time_steps.js";
 import {Navigator} from "./navigation.js";
 import {Notes} from "./notes.js";
+import {Ruler} from "./ruler.js";
 import {PathEditor} from "./path.js";
 import {makePhotos} from "./photos.js";
 import {language, text} from "./strings.js";
@@ -22,7 +23,7 @@ const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
 const FRAME_LONG = 38, FRAME_SHORT = 20;  // milliseconds: fewer pixels, more pixels. Screens show 60 frames a second.
 const LIVE_LONG = 75, LIVE_SHORT = 40;    // the same of frames that come over the network
 const REFINE_AFTER = 140;                 // milliseconds of rest
-const RIGHT = ["path", "maker", "method"]; // panels that share a place
+const RIGHT = ["path", "maker", "method", "ruler"]; // panels that share a place
 const SHEETS = ["panel", ...RIGHT, "map", "note"]; // of which a narrow window shows one
 const NARROW = matchMedia("(max-width: 1099px)"); // as style.css has it
 const POSTER_SHARE = 0.625;               // height to width: POSTER_* of site_photos.c
@@ -36,8 +37,8 @@ class Walk {
         this.photos = photos;
         this.layer = 0;
         this.scale = 0;          // index into SCALES
-        this.frames = [];        // milliseconds of the last frames while moving
         this.finest = 0;         // of SCALES that this movement may have
+        this.frames = [];        // milliseconds of the last frames while moving
         this.dirty = true;
         this.restSince = 0;
         this.refined = false;
@@ -64,8 +65,8 @@ class Walk {
         this.buildTools();
         this.readAddress();
         this.resized();
-        byId("over").classList.toggle("bare", this.asked.ui === "none");
         this.scale = this.firstScale();
+        byId("over").classList.toggle("bare", this.asked.ui === "none");
         window.addEventListener("hashchange", () => this.readAddress());
         window.addEventListener("resize", () => this.resized());
         this.watchPixels();
@@ -113,8 +114,8 @@ class Walk {
             this.showFrame();
         } else {
             this.refined = false;
-        }
             this.restSince = performance.now(); // more may be coming
+        }
         this.wake();
     }
 
@@ -153,6 +154,9 @@ class Walk {
                 this.path.add();
                 this.reveal("path");
             })},
+            ...(this.hasTour ? {tour: {key: "g", run: () => this.act(() => this.notes.toggleTour()),
+                                       pressed: () => this.notes.touring}} : {}),
+            ...(this.manifest.walk.unit_m || edits ? {ruler: {key: "u", run: toggle("ruler"), pressed: shown("ruler")}} : {}),
             ...(edits ? {maker: {key: "n", run: toggle("maker"), pressed: shown("maker")}} : {}),
             ...(this.manifest.methods ? {method: {key: "o", pressed: shown("method"), run: () => {
                 if (this.picture.remote)
@@ -176,8 +180,12 @@ class Walk {
         this.makePath(edits);
         this.notes = new Notes(nav, this.manifest.walk, {
             canvas: this.canvas, wake: () => this.wake(), seen: point => this.picture.seen.get(point),
-            reveal: () => this.reveal("note"),
+            reveal: () => this.reveal("note"), route: this.manifest.walk.tour ? this.path : null,
             pick: (x, y) => this.pick(x, y), save: edits ? settings => this.server.save(settings) : null,
+        });
+        this.ruler = new Ruler(this.manifest.walk.unit_m || 0, {
+            wake: () => this.wake(), pick: (x, y) => this.pick(x, y),
+            save: edits ? unit => this.notes.change({unit_m: unit}) : null,
         });
         byId("attribution").textContent = this.manifest.walk.attribution || "";
         this.map = new Map2d(nav, this.picture, photo => this.act(() => nav.goTo(photo)));
@@ -186,9 +194,16 @@ class Walk {
             actions: new Map([["escape", () => this.closeTop()],
                               ...Object.values(actions).flatMap(a => [a.key, a.also].map(key => [key, a.run]))]),
             holdsWheel: () => this.holdsWheel(), onWheelLeft: () => showHint(text.clickFirst),
-            onTap: (x, y) => this.notes.tap(x, y), onTwice: (x, y) => this.goThere(x, y),
+            onTap: (x, y) => (this.ruler.on ? this.ruler : this.notes).tap(x, y), onTwice: (x, y) => this.goThere(x, y),
         });
         document.addEventListener("fullscreenchange", () => this.wake());
+    }
+
+    // The maker's path, or annotations to go through.
+    get hasTour()
+    {
+        const {tour, notes = []} = this.manifest.walk;
+        return Boolean(tour) || notes.length > 1;
     }
 
     // --- panels ---
@@ -252,6 +267,8 @@ class Walk {
     {
         this.path = new PathEditor(this.navigator, {
             wake: () => this.wake(), name: () => this.manifest.title,
+            tour: this.manifest.walk.tour, onTour: view => this.notes.pass(view),
+            keep: edits ? tour => this.notes.change({tour}) : null,
             render: edits ? (path, format) => this.server.render(path, format) : null,
         });
         if (edits)
@@ -473,23 +490,6 @@ class Walk {
         requestAnimationFrame(next => this.tick(next));
     }
 
-    drawFrame(scale, passed)
-    {
-        const full = this.windowCamera(1), started = performance.now();
-        const camera = scale ? this.windowCamera(SCALES[scale]) : full;
-        this.picture.points = this.notes.points;
-        this.picture.draw(full, camera, this.layer);
-        this.refined = scale === 0;
-        if (!this.picture.remote) { // else frames tell when they come
-            this.adapt(passed, performance.now() - started);
-            this.showFrame();
-        }
-        this.showState();
-    }
-
-    // A frame has been drawn, or has come.
-    showFrame()
-    {
     // Of the first frames, so that a slow device shows something soon. The first draw of all makes programs.
     firstScale()
     {
@@ -507,6 +507,23 @@ class Walk {
         this.drawFrame(0, 0);
     }
 
+    drawFrame(scale, passed)
+    {
+        const full = this.windowCamera(1), started = performance.now();
+        const camera = scale ? this.windowCamera(SCALES[scale]) : full;
+        this.picture.points = this.notes.points;
+        this.picture.draw(full, camera, this.layer);
+        this.refined = scale === 0;
+        if (!this.picture.remote) { // else frames tell when they come
+            this.adapt(passed, performance.now() - started);
+            this.showFrame();
+        }
+        this.showState();
+    }
+
+    // A frame has been drawn, or has come.
+    showFrame()
+    {
         if (this.onFrame)
             this.onFrame();
     }
@@ -527,6 +544,8 @@ class Walk {
         const next = clamp(this.scale + step, Math.min(this.finest, this.scale), SCALES.length - 1);
         if (next !== this.scale)
             this.frames = [];
+        if (next > this.scale)
+            this.finest = next; // else it would go back and forth
         this.scale = next;
     }
 
@@ -540,12 +559,12 @@ class Walk {
         const nav = this.navigator;
         this.tools.update();
         this.map.draw();
-        this.notes.update(cameraOf(nav.view, window.innerWidth, window.innerHeight));
+        const camera = cameraOf(nav.view, window.innerWidth, window.innerHeight);
+        this.notes.update(camera);
+        this.ruler.update(camera);
         this.thumbs.mark(nav.at);
         this.compare.update(nav.at, nav.view);
         byId("place").textContent = nav.at ? text.atPhoto(nav.at.number + 1, this.photos.length, nav.at.name) : "";
-        if (next > this.scale)
-            this.finest = next; // else it would go back and forth
         showHint(this.picture.problem || (this.compare.on && !nav.at && !nav.flying ? text.standAtPhoto
                                           : nav.farOut ? text.farOut : ""));
         showProgress(this.picture.loadedShare);

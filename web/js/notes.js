@@ -1,20 +1,27 @@
 // Annotations: marks on surfaces with a title and a text, and the view that shows each best. Their
 // maker places them, and says how a walk begins; visitors read them.
+import {distance, dot} from "./math.js";
 import {MODES} from "./navigation.js";
 import {text} from "./strings.js";
 import {button, byId, make} from "./ui.js";
 import {project, viewFromSaved, viewToSaved} from "./view.js";
 
 const READ_MS = 4000, MS_PER_LETTER = 55; // that a tour stays at an annotation
+const NEAR = 0.05, NEAR_COSINE = 0.97;    // of the scene's distance, and of directions: where a path passes
+
+const isNear = (a, b, most) => a !== null && distance(a.eye, b.eye) < most &&
+                               dot(a.r.slice(6), b.r.slice(6)) > NEAR_COSINE;
 
 export class Notes {
     // seen(point): false where a surface is before it; settings: manifest.walk;
     // pick(x, y): a promise of the point under a CSS pixel, null: none;
     // save(settings): a promise of whether they were saved; null: nothing can be changed
     // reveal(): shows the card
-    constructor(navigator, settings, {canvas, seen, pick, save, wake, reveal})
+    // route: the maker's path as a tour, {plays, play()}; null: a tour goes from annotation to annotation
+    constructor(navigator, settings, {canvas, seen, pick, save, wake, reveal, route})
     {
-        Object.assign(this, {navigator, canvas, seen, pick, saveAll: save, wake, reveal});
+        Object.assign(this, {navigator, canvas, seen, pick, saveAll: save, wake, reveal, route});
+        this.near = -1; // annotation that the route passes; -1: none
         this.settings = {...settings, notes: [...(settings.notes || [])]};
         this.layer = byId("marks");
         this.card = byId("note");
@@ -62,7 +69,7 @@ export class Notes {
 
     get points() { return this.settings.notes.map(note => note.position); }
 
-    open(i)
+    open(i, flies = true)
     {
         const t = text.notes, all = this.settings.notes, note = all[i], close = button(text.close, () => this.close());
         const turn = by => {
@@ -71,21 +78,54 @@ export class Notes {
         };
         const steps = all.length < 2 ? [] : [
             button(t.previous, () => turn(-1)), button(t.next, () => turn(1)),
-            button(this.tour ? t.pause : t.play, () => this.tour ? this.pause(i) : this.play(i))];
+            button(this.touring ? t.pause : t.play, () => this.toggleTour(i))];
         this.card.replaceChildren(make("h2", {textContent: note.title}),
                                   ...(note.text || "").split("\n").map(line => make("p", {textContent: line})),
                                   make("div", {className: "row"}, ...steps, close,
                                        make("span", {className: "small", textContent: t.ofAll(i + 1, all.length)})));
         this.reveal();
         const view = note.view && viewFromSaved(note.view, this.navigator.home);
-        if (view)
+        if (view && flies)
             this.navigator.flyTo(view);
         this.opened = this.marks[i];
-        (this.tour ? steps[2] : close).focus();
+        (this.touring && steps.length ? steps[2] : close).focus();
         this.wake();
     }
 
-    // --- a tour: one annotation after the other ---
+    // --- a tour: the maker's path, or one annotation after the other ---
+
+    get touring() { return this.route ? this.route.plays : this.tour !== 0; }
+
+    // i: annotation to begin at, or to stay at
+    toggleTour(i = 0)
+    {
+        if (this.touring) {
+            this.stopTour();
+        } else if (this.route) {
+            this.near = -1;
+            this.route.play();
+        } else {
+            this.play(i);
+            return;
+        }
+        if (!this.card.hidden)
+            this.open(i, false);
+    }
+
+    // While the route plays: shows the annotation that was written where it passes; null: it has stopped.
+    pass(view)
+    {
+        if (!view) {
+            if (this.near >= 0 && !this.card.hidden)
+                this.open(this.near, false);
+            return;
+        }
+        const near = this.settings.notes.findIndex(note => note.view &&
+            isNear(viewFromSaved(note.view, this.navigator.home), view, NEAR * this.navigator.distance));
+        if (near !== this.near && near >= 0)
+            this.open(near, false);
+        this.near = near;
+    }
 
     play(i)
     {
@@ -94,14 +134,10 @@ export class Notes {
         this.open(i);
     }
 
-    pause(i)
-    {
-        this.stopTour();
-        this.open(i);
-    }
-
     stopTour()
     {
+        if (this.route && this.route.plays)
+            this.route.play(); // a second time: pauses
         clearTimeout(this.tour);
         this.tour = 0;
     }

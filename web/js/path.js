@@ -6,13 +6,17 @@ import {byId, button, make, save} from "./ui.js";
 import {viewFromKey, viewToKey} from "./view.js";
 
 export class PathEditor {
-    // render(path, format): asks the server for it; null: there is no server
-    constructor(navigator, {wake, name, render})
+    // tour: the maker's path, undefined: none; onTour(view): while a path plays, null at its end
+    // render(path, format): asks the server for it, keep(path): makes it the visitors' tour, undefined:
+    // none; null: there is no server
+    constructor(navigator, {wake, name, tour, onTour, render, keep})
     {
         const t = text.path;
         this.navigator = navigator;
         this.wake = wake;
         this.name = name;
+        this.onTour = onTour;
+        this.plays = false;
         this.keys = [];         // views, some with seconds to the next one
         this.element = byId("path");
         this.element.setAttribute("aria-label", text.path.title);
@@ -35,7 +39,12 @@ export class PathEditor {
             make("label", {}, t.seconds, this.seconds), this.scrubber, this.playing, ...this.saving);
         if (render)
             this.addRendering(render);
+        if (keep)
+            this.element.append(make("div", {className: "row"}, button(t.forVisitors, () =>
+                keep(this.keys.length > 1 ? orielPath(this.keys, this.duration) : undefined))));
         this.element.append(this.said);
+        if (tour)
+            this.load(t.title, JSON.stringify(tour));
         this.fill();
     }
 
@@ -164,7 +173,10 @@ export class PathEditor {
 
     show(share)
     {
-        this.navigator.setView(viewAt(this.keys, share));
+        const view = viewAt(this.keys, share);
+        this.navigator.setView(view);
+        if (this.plays)
+            this.onTour(view);
         this.wake();
     }
 
@@ -173,6 +185,7 @@ export class PathEditor {
         this.turn++;
         this.plays = false;
         this.playing.textContent = text.path.play;
+        this.onTour(null);
     }
 
     // From where the slider is, or from the start. A second time: pauses.

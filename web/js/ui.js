@@ -222,7 +222,6 @@ export class Compare {
         this.slider = this.element.querySelector("input");
         this.slider.setAttribute("aria-label", text.compareSlider);
         byId("left-side").textContent = text.sides.own;
-        byId("right-side").textContent = text.sides.photograph;
         this.slider.addEventListener("input", () => this.split());
         this.on = false;
         this.photo = null;
@@ -260,6 +259,7 @@ export class Compare {
             return;
         if (photo !== this.photo) {
             this.photo = photo;
+            byId("right-side").textContent = photo.held_out ? text.sides.heldOut : text.sides.photograph;
             this.image.src = await this.files.address(photo.picture.file);
         }
         const width = window.innerWidth, height = window.innerHeight;
@@ -275,7 +275,8 @@ export class Compare {
 export function buildHelp()
 {
     const dialog = byId("help"), list = make("dl"), title = make("h2", {textContent: text.helpTitle, tabIndex: -1});
-    for (const [keys, what] of text.help)
+    const fingersAlone = matchMedia("(any-pointer: coarse)").matches && !matchMedia("(any-pointer: fine)").matches;
+    for (const [keys, what] of fingersAlone ? text.touch : text.help)
         list.append(make("dt", {textContent: keys}), make("dd", {textContent: what}));
     const close = make("button", {type: "button", textContent: text.close});
     close.addEventListener("click", () => dialog.close());
