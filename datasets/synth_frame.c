@@ -155,11 +155,12 @@ static enum orl_result read_frame(const struct orl_synth *synth, struct orl_synt
         result = orl_image_init(log, &frame->textured, w, h, 1, ORL_PIXEL_F32);
     if (result != ORL_OK)
         goto end;
-    orl_tex_read(synth->radiance, 0, GL_RGB, GL_FLOAT, orl_image_bytes(&frame->radiance),
-                 frame->radiance.f32);
-    if (synth->plain > 0)
-        orl_tex_read(synth->radiance, 0, GL_ALPHA, GL_FLOAT, orl_image_bytes(&frame->textured),
-                     frame->textured.f32);
+    orl_tex_read(synth->radiance, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
+    for (size_t i = 0; i < pixels; i++) {
+        memcpy(frame->radiance.f32 + 3 * i, texels + 4 * i, 3 * sizeof *texels);
+        if (synth->plain > 0)
+            frame->textured.f32[i] = texels[4 * i + 3];
+    }
     orl_tex_read(synth->truth, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
     for (size_t i = 0; i < pixels; i++) {
         memcpy(frame->normal.f32 + 3 * i, texels + 4 * i, 3 * sizeof *texels);
