@@ -29,15 +29,14 @@
         "nearest and some more for what they see too obliquely (`princ`).") \
     FILE(visibility, "hard", "paint=gather paint=tiled", \
         "Which photographs see a surface point: all (`none`), those whose own depth map agrees, " \
-        "with a `hard` or a `soft` limit, those and the ones without depth there (`lenient`), " \
-        "those that the surface faces (`facing`), that it faces and whose depth map agrees " \
-        "(`shadow`), or that it faces with nothing before it (`opaque`).") \
+        "with a `hard` or a `soft` limit, those that the surface faces (`facing`), that it faces and " \
+        "whose depth map agrees (`shadow`), or that it faces with nothing before it (`opaque`).") \
     FILE(weight, "airieau", "paint=gather paint=tiled", \
         "How much a photograph counts that sees a surface point.") \
     SLOT(combine, orl_combine, &orl_combine_mean, "paint=gather paint=tiled", \
         "How the samples of a pixel become one colour: their weighted mean, the mean of the " \
-        "four of greatest weight (`top`), the mean by a recurrence in 8 bits (`recurrence`), the one of greatest weight (`best`), the mean of those that pass a test of their standard " \
-        "deviation (`sigma`), or a mean that is robust against outliers.") \
+        "four of greatest weight (`top`), the one of greatest weight (`best`), the mean of those that pass " \
+        "a test of their standard deviation (`sigma`), or a mean that is robust against outliers.") \
     CHOICE(fill, orl_fill, "none color depth ground room", ORL_FILL_COLOR, "", \
         "What pixels without a surface show: black, the colours of their neighbours, " \
         "photographs projected to a guessed depth, the same with the depth no farther than " \
@@ -51,7 +50,7 @@
         "Photographs are brought to one exposure and white balance, and their vignetting is " \
         "undone. Radiance is always aligned.") \
     CHOICE(occluders, orl_occluders_use, "keep drop", ORL_OCCLUDERS_KEEP, "visibility=hard " \
-        "visibility=lenient visibility=soft visibility=shadow paint=tiled", \
+        "visibility=soft visibility=shadow paint=tiled", \
         "What a photograph shows before the scene and has no points, as the stage `occluders` " \
         "of prepare found it, is painted onto what is behind it, or dropped.") \
     CHOICE(antialias, orl_antialias, "off on", ORL_ANTIALIAS_OFF, "sample=srgb", \
@@ -59,18 +58,8 @@
     CHOICE(median, orl_median, "off holes all", ORL_MEDIAN_OFF, "paint=gather", \
         "A median filter of the painted picture, over 3x3 pixels of it all, or over the 5x5 " \
         "neighbours of surfaces that no photograph painted (`holes`).") \
-    CHOICE(packing, orl_packing, "off on", ORL_PACKING_OFF, "proxy=hull", \
-        "Only the parts of the photographs that show the hull are on the device, side by side in " \
-        "one texture. It takes less memory, and less to upload. Frames that need whole photographs " \
-        "have them: for a room without pictures of the empty place, for guessed depth, for " \
-        "radiance, where photographs are compressed or made smaller to fit, and in the walk.") \
     NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest select=princ", ORL_NO_TRIES, \
         "How many photographs a frame uses.") \
-    NUMBER(extras, 3, 0, 8, "photographs", "select=princ", ORL_NO_TRIES, \
-        "How many more it uses for surfaces that those see too obliquely.") \
-    NUMBER(sigma, 1.17f, 0, 100, "standard deviations", "combine=sigma", ORL_NO_TRIES, \
-        "A sample that lies farther from the mean in any channel is left out, where three " \
-        "photographs or more see the point.") \
     NUMBER(photos_per_pixel, 4, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
         "The most photographs that are blended into a pixel.") \
     NUMBER(candidates, 6, 1, 8, "photographs", "paint=tiled", ORL_NO_TRIES, \
@@ -81,7 +70,7 @@
         "no outliers.") \
     NUMBER(sharpness, 3, 0, 64, "", "weight=lumigraph", ORL_TRIES(1, 2, 3, 4, 6, 10), \
         "How strongly the better photograph is preferred. With 0 all weigh the same.") \
-    NUMBER(depth_tolerance, 0.01f, 1e-5, 0.5, "fraction of depth", "visibility=hard visibility=lenient " \
+    NUMBER(depth_tolerance, 0.01f, 1e-5, 0.5, "fraction of depth", "visibility=hard " \
         "visibility=soft visibility=shadow visibility=opaque paint=tiled", \
         ORL_TRIES(0.003, 0.005, 0.01, 0.02, 0.04), \
         "How far two depths may differ and still count as the same surface.") \
@@ -98,8 +87,6 @@
         "A frame is the mean of so many pictures, which differ in the size of the splats and by " \
         "parts of a pixel: what depends on these alone is chance. Time grows with their number. " \
         "Radiance takes one.") \
-    NUMBER(guess_sharpness, 1.5f, 0, 64, "", "weight=lumigraph", ORL_TRIES(0.5, 1, 2, 4, 8), \
-        "The same as sharpness, where only a guessed depth is known.") \
     NUMBER(guess_blur, 0.06f, 0, 1, "share of parallax", "paint=tiled", \
         ORL_TRIES(0, 0.03, 0.06, 0.12, 0.25), \
         "How far colours may lie from their place where depth is guessed and photographs " \
@@ -107,35 +94,9 @@
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
         "How many depths are tried where only a guessed depth is known, from the guess to " \
         "infinity. The guess moves to where photographs do not see past it. With 0 it stays.") \
-    NUMBER(unknown_trust, 0.5f, 0, 1, "share", "visibility=soft sample=radiance", \
-        ORL_TRIES(0, 0.02, 0.05, 0.15, 0.5), \
-        "How far a photograph is trusted that has no depth where the surface would be.") \
-    NUMBER(distance_floor, 0.03f, 9e-7, 1, "fraction of viewing distance", "weight=airieau", \
-        ORL_TRIES(0.01, 0.03, 0.1, 0.3), \
-        "Keeps Airieau's difference of distances away from zero.") \
-    NUMBER(border_px, 2, 0, 1024, "pixels of the photograph", "paint=gather paint=tiled", \
-        ORL_TRIES(1, 2, 4, 8, 16), \
-        "Photographs fade out over this width at their border where others show the same; with 0 " \
-        "they do not.") \
-    NUMBER(points_per_pixel, 4, 0, 64, "points", "proxy=splats", ORL_NO_TRIES, \
-        "Where more points than this fall into a pixel, splats are thinned and enlarged. With " \
-        "0 all are drawn.") \
-    NUMBER(fatten_px, 2, 0, 16, "pixels", "visibility=opaque", ORL_NO_TRIES, \
-        "How far outlines in a photograph's depth map are fattened, so that what is before " \
-        "does not leak onto what is behind.") \
-    NUMBER(shell, 2, 1, 1000, "times the farthest photograph's distance", "fill=room", ORL_NO_TRIES, \
-        "Radius of the shell around a scene whose room is not known.") \
-    NUMBER(hull_triangles, 0, 0, 1e7f, "triangles", "proxy=hull", ORL_NO_TRIES, \
-        "The hull is simplified to about so many. With 0 it is not.") \
     NUMBER(hull_side, 64, 8, 512, "voxels", "proxy=voxels proxy=hull", ORL_NO_TRIES, \
         "How many voxels the cube around the subject has each way. Time and memory of making " \
-        "the hull grow with the third power.") \
-    NUMBER(projection_bits, 0, 0, 16, "bits", "paint=billboards", ORL_NO_TRIES, \
-        "Where photographs show a voxel comes from tables of so many bits, as on hardware of " \
-        "2003 with 8. With 0 it is computed exactly.") \
-    NUMBER(ghosts, 1, 0, 16, "stops", "sample=radiance", ORL_NO_TRIES, \
-        "Samples that differ from the others by this much, beyond noise and edges, count " \
-        "half. With 0 all count fully.")
+        "the hull grow with the third power.")
 // clang-format on
 
 // The choices and numbers as shaders see them, in this order.

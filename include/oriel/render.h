@@ -23,7 +23,6 @@ enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON };
 enum orl_occluders_use { ORL_OCCLUDERS_KEEP, ORL_OCCLUDERS_DROP };
 enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON };
 enum orl_median { ORL_MEDIAN_OFF, ORL_MEDIAN_HOLES, ORL_MEDIAN_ALL };
-enum orl_packing { ORL_PACKING_OFF, ORL_PACKING_ON };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC };
 // How photographs are sampled: colours as stored, or radiance (struct orl_renderer_params).
 enum orl_sample { ORL_SAMPLE_SRGB, ORL_SAMPLE_RADIANCE };
@@ -38,10 +37,11 @@ enum orl_layer {
 
 enum { ORL_OPTION_NAME_BYTES = 32 };
 
-// Every key of --set, with range, unit, readers and help in option_list.h, and two fields that are
+// Every key of --set, with range, unit, readers and help in option_list.h, and three fields that are
 // no keys:
 struct orl_render_params {
     unsigned leave_out;     // layers that are not read back, whose images stay empty
+    bool every_point;       // splats are not thinned where many fall into a pixel
     enum orl_sample sample; // decides which options are read; set by the renderer
 #define ORL_SLOT_FIELD(field, type, preset, readers, help) const struct type *field;
 #define ORL_FILE_FIELD(field, preset, readers, help) char field[ORL_OPTION_NAME_BYTES];

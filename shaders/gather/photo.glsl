@@ -8,7 +8,7 @@ layout(rgba32f, binding = 7) readonly uniform imageBuffer photo_rows;
 
 // A photograph; see struct photo_data.
 struct photo {
-    vec4 from_view[3], eye, focal, size, gain, lens, noise, selected, offset, region;
+    vec4 from_view[3], eye, focal, size, gain, lens, noise, selected;
 };
 
 // Compilers drop loads of unused members. Loads and divisions are slow: share loads between pixels
@@ -21,8 +21,7 @@ photo photo_at(int i)
                  imageLoad(photo_rows, row + 3), imageLoad(photo_rows, row + 4),
                  imageLoad(photo_rows, row + 5), imageLoad(photo_rows, row + 6),
                  imageLoad(photo_rows, row + 7), imageLoad(photo_rows, row + 8),
-                 imageLoad(photo_rows, row + 9), imageLoad(photo_rows, row + 10),
-                 imageLoad(photo_rows, row + 11));
+                 imageLoad(photo_rows, row + 9));
 }
 
 // A point of the surface that a pixel shows.
@@ -75,21 +74,9 @@ vec4 photo_complete(vec4 texel, vec2 pixel, float slot, float lod)
 #endif
 }
 
-// Where photo_color shows a pixel of the photograph, in texels of level 0. PACKED: photo_color has
-// one layer, in which parts of the photographs lie side by side.
-vec2 photo_place(photo source, vec2 pixel)
-{
-#ifdef PACKED
-    return clamp(pixel + source.offset.xy, source.region.xy, source.region.zw);
-#else
-    return pixel;
-#endif
-}
-
 vec4 photo_bilinear(photo source, vec2 pixel, float mip)
 {
-    vec2 place = photo_place(source, pixel);
-    vec4 texel = photo_texel(place * (1.0 / slot_size.xy), source.gain.w, mip);
+    vec4 texel = photo_texel(pixel * (1.0 / slot_size.xy), source.gain.w, mip);
     return photo_complete(texel, pixel, source.gain.w, mip);
 }
 
@@ -97,6 +84,6 @@ vec4 photo_bilinear(photo source, vec2 pixel, float mip)
 
 vec4 photo_bicubic(photo source, vec2 pixel, float mip)
 {
-    vec4 texel = bicubic(photo_place(source, pixel), source.gain.w, slot_size.xy, mip);
+    vec4 texel = bicubic(pixel, source.gain.w, slot_size.xy, mip);
     return photo_complete(texel, pixel, source.gain.w, floor(mip + 0.5));
 }

@@ -96,7 +96,7 @@ vec4 look(sight one, float least, float limit, spot s)
     // trace of weight remains at equality, so that photographs that tie for the last place paint.
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
     vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
-    float sharpness = is_guess(s) ? opt.guess_sharpness : opt.sharpness;
+    float sharpness = is_guess(s) ? GUESS_SHARPNESS : opt.sharpness;
     bool counts = one.penalty < NOT_SEEN && one.penalty <= limit;
     return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
 }

@@ -60,10 +60,10 @@ ORL_BLOCK(fatten_block)
 {
     IVEC2(drawn_size);  // of the depth map that is read, pixels
     IVEC2(kept_size);   // of the one that is written
-    FLOAT(radius);      // of the lines, pixels that are read
-    FLOAT(line_offset); // factor on their depth
+    FLOAT(line_offset); // factor on the depth of lines
     FLOAT(unused0);
     FLOAT(unused1);
+    FLOAT(unused2);
 };
 #endif
 

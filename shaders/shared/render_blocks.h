@@ -27,9 +27,9 @@ ORL_BLOCK(splat_block)
     IVEC2(view_size);   // pixels
     INT(point_count);   // points of this chunk
     INT(first_point);   // index of the chunk's first point
-    FLOAT(splat_scale); // this and the next two: the options of the same names
+    FLOAT(splat_scale); // this and the next: the options of the same names
     FLOAT(front_layer);
-    FLOAT(points_per_pixel);
+    FLOAT(points_per_pixel); // more than these are thinned; 0: none are
     FLOAT(near);        // depth nearer than which large splats are outliers
 };
 #endif
@@ -67,7 +67,7 @@ ORL_BLOCK(pyramid_block)
 #define ORL_RADIANCE_LIST (ORL_RADIANCE_KEPT + 1) // and the best photograph's weight
 
 // Parameters of a photograph for the gather passes. A storage buffer holds an array of these.
-#define ORL_PHOTO_VEC4S 12
+#define ORL_PHOTO_VEC4S 10
 #if defined(__STDC_VERSION__)
 struct photo_data {
     VEC4S(from_view, 3); // rows of rotation | translation: photo_from_view
@@ -78,10 +78,6 @@ struct photo_data {
     VEC4(lens);          // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
     VEC4(noise);         // of radiance: shot and read noise variance; z: 1 if rounded to 8 bits.
     VEC4(selected);      // x: weight by the selection
-    VEC4(offset);        // xy, of a frame that packs photographs: from a pixel of the photograph to
-                         // its place in the packed texture
-    // Of a frame that packs photographs:
-    VEC4(region);        // places that may be read: least x, y and largest x, y
 };
 #endif
 
@@ -110,21 +106,17 @@ ORL_BLOCK(gather_block)
     INT(kept);           // opt.photos_per_pixel, rounded to a whole number
     INT(asked);          // opt.candidates, rounded to a whole number
     FLOAT(last_mip);     // largest mip level
-    FLOAT(border_px);    // opt.border_px, in pixels of the photographs as stored on the device
+    FLOAT(border_px);    // pixels of the photographs as stored on the device; 0: they do not fade
     FLOAT(outlier_severity); // 1 / opt.outliers^2; 0: no outlier rejection
     FLOAT(blur_per_radian);  // opt.guess_blur if background depth is estimated, else 0; radians
     FLOAT(model_variance);   // of radiance: variance of the relative error at full exposure
     FLOAT(min_radiance);   // least radiance that differs from darkness
-    FLOAT(voxel);            // edge of a voxel, scene units
-    INT(voxel_side);         // voxels each way
     FLOAT(billboard_half);   // half the width of a billboard, scene units
     INT(planes);             // planes of shaders/guess
     FLOAT(min_inverse);    // inverse depth of the farthest one
     INT(tile_side);          // pixels of a tile each way, even
-    FLOAT(unused_1);
-    FLOAT(unused_2);
-    // Rows of rotation | translation: of billboards to units of a voxel, of the room to a space
-    // where its walls are at -1 and 1, or the shell has radius 1.
+    // Rows of rotation | translation: of the room to a space where its walls are at -1 and 1, or the shell
+    // has radius 1.
     VEC4S(local_from_view, 3);
     RENDER_OPTIONS_MEMBER;
 };

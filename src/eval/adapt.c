@@ -235,14 +235,14 @@ enum step_condition { ALWAYS, AFTER_NO_GAIN };
 struct step {
     enum step_condition condition;
     const char *method;      // NULL: the one so far
-    const char *settings[4]; // KEY=VALUE
+    const char *settings[1]; // KEY=VALUE
 };
 
 // In the order of what they gained on the training photographs of measured scenes.
 static const struct step steps[] = {
     {ALWAYS, NULL, {"depth_tolerance=0.003"}}, // exact points, thin things
     {AFTER_NO_GAIN, NULL, {"depth_tolerance=0.04"}},
-    {ALWAYS, NULL, {"photos_per_pixel=2", "guess_sharpness=4"}}, // few photographs of a subject
+    {ALWAYS, NULL, {"photos_per_pixel=2"}}, // few photographs of a subject
     {ALWAYS, NULL, {"antialias=off"}}, // many small photographs, which the view is near to
     {ALWAYS, "oriel-fast", {NULL}},
 };

@@ -10,8 +10,7 @@
 // Settings that trade accuracy for speed in methods that choose a few photographs for each pixel.
 static const char *const option_settings[] = {
     "photos_per_pixel=1", "photos_per_pixel=2", "photos_per_pixel=3", "candidates=2",
-    "candidates=3", "candidates=4", "candidates=8", "points_per_pixel=1",
-    "points_per_pixel=16", "sampling=bilinear", NULL};
+    "candidates=3", "candidates=4", "candidates=8", "sampling=bilinear", NULL};
 static const int photo_divides[] = {2, 4};
 static const int size_divides[] = {2};
 

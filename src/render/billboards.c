@@ -107,30 +107,11 @@ static size_t list(const struct frame *frame, const struct voxel_state *state,
 
 // --- the painter ---
 
-// Where the view's points lie in the grid of voxels, for lookups of the projections.
-static void place_voxels(const struct frame *frame, const struct voxel_state *state,
-                         struct gather_block *block)
-{
-    const struct orl_pose *pose = &frame->view->cam_from_world;
-    const struct orl_hull *cube = &state->voxels.cube;
-    double eye[3];
-    orl_pose_centre(pose, eye);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            block->local_from_view[i][j] = (float)(pose->r[j][i] / cube->voxel);
-        block->local_from_view[i][3] = (float)((eye[i] - cube->origin[i]) / cube->voxel);
-    }
-    block->voxel = (float)cube->voxel;
-    block->voxel_side = cube->side;
-    block->billboard_half = (float)(0.5 * orl_billboard_width(state));
-}
-
 static struct orl_prog *program(const struct frame *frame)
 {
     char defines[64];
-    snprintf(defines, sizeof defines, "PAINTED 1\n%s%s%s", frame->radiance ? "RADIANCE 1\n" : "",
-             frame->reads_chroma ? "CHROMA 1\n" : "",
-             frame->params->projection_bits > 0 ? "TABLES 1\n" : "");
+    snprintf(defines, sizeof defines, "PAINTED 1\n%s%s", frame->radiance ? "RADIANCE 1\n" : "",
+             frame->reads_chroma ? "CHROMA 1\n" : "");
     char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s", frame->gather->options, defines);
     struct orl_prog *prog =
         text ? orl_prog_get_raster(frame->gpu, "hull/billboard.vert", "hull/billboard.frag", text)
@@ -143,7 +124,7 @@ static void draw(const struct frame *frame, const struct voxel_state *state,
                  const struct orl_buf *billboards, size_t count)
 {
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);
-    place_voxels(frame, state, &block);
+    block.billboard_half = (float)(0.5 * orl_billboard_width(state));
     const size_t stride = sizeof(struct billboard);
     const struct orl_raster raster = {
         .prog = program(frame), .params = &block, .params_size = sizeof block,

@@ -21,7 +21,6 @@ struct frame {
     const struct orl_render_params *params;
     bool radiance;             // photographs are sampled as radiance
     bool reads_chroma;         // colours of photographs are luma, and chroma in a second texture
-    bool packs;                // the painter reads colours of photographs from photos->packing
     bool finishes;             // the painter leaves finished pixels (struct orl_painter)
     struct orl_progressive *progressive; // NULL: the frame waits for its photographs
     bool normals;              // the surface has normals

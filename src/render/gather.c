@@ -6,12 +6,15 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/packing.h"
 #include "render/photos.h"
 #include "render/progressive.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 _Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
+
+// By the weight `lumigraph` photographs fade out over so many of their pixels at their borders, where others
+// show the same.
+static const float BORDER_PX = 2;
 
 // --- parameters of the shaders ---
 
@@ -99,9 +102,7 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
         data->lens[c] = aligned ? photo->vignette[c] : 0;
     }
     data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
-    data->gain[3] = frame->packs ? 0 : (float)state->slot;
-    if (frame->packs)
-        orl_packing_describe(photos->packing, index, data);
+    data->gain[3] = (float)state->slot;
     if (!frame->radiance)
         return;
     for (int c = 0; c < 3; c++)
@@ -135,13 +136,13 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
     const struct photos *photos = frame->photos;
     const struct orl_render_params *params = frame->params;
     const struct orl_tex_params *depth = &photos->depth_params;
-    const struct orl_tex_params *color = frame->packs ? &photos->packing->color->params
-                                                      : &photos->color_params;
+    const struct orl_tex_params *color = &photos->color_params;
     for (size_t i = 0; i < count; i++) {
         describe_photo(frame, frame->chosen[first + i], &g->list[i]);
         memcpy(g->list[i].selected, frame->selected[first + i], sizeof g->list[i].selected);
     }
     orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
+    bool fades = strcmp(params->weight, "lumigraph") == 0;
     struct gather_block block = {
         .slot_size = {(float)color->width, (float)color->height, (float)depth->width,
                       (float)depth->height},
@@ -152,7 +153,7 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
         .kept = (int)(params->photos_per_pixel + 0.5f),
         .asked = (int)(params->candidates + 0.5f),
         .last_mip = (float)(color->levels - 1),
-        .border_px = params->border_px / (float)photos->divide,
+        .border_px = fades ? BORDER_PX / (float)photos->divide : 0,
         .outlier_severity = params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
         .blur_per_radian = orl_frame_guesses(frame) ? params->guess_blur : 0,
         .model_variance = (float)(photos->sensor.model * photos->sensor.model),
@@ -167,9 +168,9 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines)
 {
-    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s", frame->gather->options,
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s", frame->gather->options,
                             frame->reads_chroma ? "CHROMA 1\n" : "",
-                            frame->packs ? "PACKED 1\n" : "", defines ? defines : "");
+                            defines ? defines : "");
     struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;
     free(text);
     return prog;
@@ -270,7 +271,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
     struct gather_slots slots;
     struct gather_block block = orl_gather_prepare(frame, first, count);
     orl_gather_slots(frame, &slots);
-    struct orl_tex *color = frame->packs ? frame->photos->packing->color : frame->photos->color;
+    struct orl_tex *color = frame->photos->color;
     struct orl_dispatch d = {
         .prog = generic_program(frame, &slots, sweep),
         .params = &block, .params_size = sizeof block,

@@ -2,7 +2,6 @@
 // intersects cones; here the surface is found on a grid of voxels, at the distance from the cones.
 #include <stdlib.h>
 #include <string.h>
-#include <xxhash.h>
 
 #include "core/memory.h"
 #include "render/prefetch.h"
@@ -38,7 +37,7 @@ static void destroy(struct orl_gpu *gpu, void **handle)
     *handle = NULL;
 }
 
-static enum orl_result make(const struct frame *frame, size_t triangles, struct hull_state *state)
+static enum orl_result make(const struct frame *frame, struct hull_state *state)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct voxels voxels = {0};
@@ -47,11 +46,11 @@ static enum orl_result make(const struct frame *frame, size_t triangles, struct 
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: no silhouettes to make a hull of; see oriel import",
                         frame->scene->dir);
-    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, orl_voxels_key(frame), triangles,
-                                &voxels, &state->mesh.mesh)) {
+    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, orl_voxels_key(frame), &voxels,
+                                &state->mesh.mesh)) {
         result = orl_voxels_make(frame, &voxels);
         if (result == ORL_OK)
-            result = orl_hull_field_mesh(log, &voxels.cube, voxels.field, triangles,
+            result = orl_hull_field_mesh(log, &voxels.cube, voxels.field, 0,
                                          &state->mesh.mesh);
     }
     orl_voxels_warn(log, &voxels, &state->said_endless);
@@ -62,14 +61,13 @@ static enum orl_result make(const struct frame *frame, size_t triangles, struct 
 static enum orl_result update(const struct frame *frame, void *handle, bool *changed)
 {
     struct hull_state *state = handle;
-    size_t triangles = (size_t)(frame->params->hull_triangles + 0.5f);
-    uint64_t key = XXH3_64bits_withSeed(&triangles, sizeof triangles, orl_voxels_key(frame));
+    uint64_t key = orl_voxels_key(frame);
     if (state->mesh.vertices && state->key == key)
         return ORL_OK;
     forget(frame->gpu, state);
     *changed = true;
     orl_pass_begin(frame->gpu, "hull");
-    enum orl_result result = make(frame, triangles, state);
+    enum orl_result result = make(frame, state);
     orl_pass_end(frame->gpu);
     state->key = key;
     if (result != ORL_OK)

@@ -66,7 +66,7 @@ enum orl_result orl_importance_draw(struct orl_importance *c, const struct orl_v
     const struct orl_camera *camera = &view->camera;
     struct orl_render_params params = orl_methods[0].params;
     struct surface surface;
-    params.points_per_pixel = 0;
+    params.every_point = true;
     size_t count = (size_t)camera->width * (size_t)camera->height;
     *nearest = (struct orl_nearest_points){camera->width, camera->height, NULL, NULL};
     nearest->point = orl_array(log, count, sizeof *nearest->point);

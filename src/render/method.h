@@ -34,7 +34,7 @@ struct orl_painter {
     enum orl_result (*paint)(struct frame *frame);
 };
 
-extern const struct orl_combine orl_combine_mean, orl_combine_recurrence;
+extern const struct orl_combine orl_combine_mean;
 
 // The `index`-th implementation of the slot `key`; NULL past the last, or if it is not a slot.
 const void *orl_slot_at(const char *key, size_t index);

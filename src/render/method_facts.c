@@ -23,14 +23,14 @@ const char *orl_method_asks(const struct orl_method *method)
 
 static void name_photographs(const struct orl_render_params *p, char text[64])
 {
-    int nearest = (int)p->nearest, extras = (int)p->extras;
+    int nearest = (int)p->nearest;
     if (p->paint == &orl_paint_tiled)
         snprintf(text, 64, "%d photographs, of %d of its tile", (int)p->photos_per_pixel,
                  (int)p->candidates);
     else if (p->select == &orl_select_nearest)
         snprintf(text, 64, "%d photographs", nearest);
     else if (p->select == &orl_select_princ)
-        snprintf(text, 64, "%d photographs", nearest + extras);
+        snprintf(text, 64, "%d photographs", nearest + ORL_PRINC_EXTRAS);
     else
         snprintf(text, 64, "all photographs");
 }

@@ -32,7 +32,6 @@
     .antialias = ORL_ANTIALIAS_ON
 
 const struct orl_combine orl_combine_mean = {"mean", .sweeps = 1};
-const struct orl_combine orl_combine_recurrence = {"recurrence", .sweeps = 1, .states = 1};
 static const struct orl_combine combine_top = {"top", .sweeps = 2, .states = 2};
 static const struct orl_combine combine_sigma = {"sigma", .sweeps = 2, .states = 2};
 static const struct orl_combine combine_best = {"best", .sweeps = 1};
@@ -48,28 +47,28 @@ const struct orl_method orl_methods[] = {
      {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .min_support = 8, .candidates = 3,
       .photos_per_pixel = 2}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
-     {DEFAULTS .distance_floor = 1e-6f, .border_px = 0, .points_per_pixel = 0}},
+     {DEFAULTS}},
     {"ulr", "the best four photographs by angle and resolution",
-     "Buehler 2001, 4.2, as SIBR's ulrv2", {DEFAULTS .weight = "ulr", .combine = &combine_top, .border_px = 0}},
+     "Buehler 2001, 4.2, as SIBR's ulrv2", {DEFAULTS .weight = "ulr", .combine = &combine_top}},
     {"orzan-view", "the four photographs nearest by direction, outliers left out",
      "Orzan 2005, 4.3",
      {DEFAULTS .select = &orl_select_nearest, .visibility = "none", .weight = "selected",
-      .combine = &combine_sigma, .border_px = 0}},
+      .combine = &combine_sigma}},
     {"orzan-surface", "all photographs that the surface faces, outliers left out",
      "Orzan 2005, 4.4",
-     {DEFAULTS .visibility = "facing", .weight = "normal", .combine = &combine_sigma, .border_px = 0}},
+     {DEFAULTS .visibility = "facing", .weight = "normal", .combine = &combine_sigma}},
     {"orzan-shadow", "the best five photographs by shadow maps, outliers left out, holes by medians",
      "Orzan 2005, 4.5",
      {DEFAULTS .select = &orl_select_nearest, .nearest = 5, .visibility = "shadow", .weight = "normal",
-      .combine = &combine_sigma, .median = ORL_MEDIAN_HOLES, .border_px = 0}},
+      .combine = &combine_sigma, .median = ORL_MEDIAN_HOLES}},
     {"princ", "one photograph a pixel, of the nearest six and some more, without shadow maps",
      "Princ 2014, 2.3",
      {DEFAULTS .select = &orl_select_princ, .nearest = 6, .visibility = "none", .weight = "princ",
-      .combine = &combine_best, .border_px = 0}},
+      .combine = &combine_best}},
     {"li", "a hull of the silhouettes, all photographs that see it alike, before the room's walls",
      "Li 2003, sections 4 and 5",
      {DEFAULTS .proxy = &orl_proxy_hull, .visibility = "opaque", .weight = "equal", .fill = ORL_FILL_ROOM,
-      .border_px = 0, .hull_side = 128, .packing = ORL_PACKING_ON}},
+      .hull_side = 128}},
     {"goldluecke", "voxels of silhouettes as billboards, each from the two photographs nearest by axis",
      "Goldluecke 2003, section 3",
      {DEFAULTS .proxy = &orl_proxy_voxels, .paint = &orl_paint_billboards, .fill = ORL_FILL_NONE}},
@@ -91,7 +90,7 @@ const void *orl_slot_at(const char *key, size_t index)
         {"select", {&orl_select_all, &orl_select_nearest, &orl_select_preselect,
                     &orl_select_princ}},
         {"combine", {&orl_combine_mean, &combine_top, &combine_sigma, &combine_best,
-                     &orl_combine_recurrence, &combine_robust}},
+                     &combine_robust}},
     };
     for (size_t i = 0; i < ORL_COUNT(slots); i++)
         if (strcmp(slots[i].key, key) == 0)

@@ -11,7 +11,6 @@
 #include "render/prefetch.h"
 #include "render/method.h"
 #include "render/occluders.h"
-#include "render/packing.h"
 #include "render/photos.h"
 #include "scene/silhouette.h"
 #include "shared/hull_blocks.h"
@@ -266,19 +265,9 @@ enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos)
     return result;
 }
 
-void orl_photos_spare(struct orl_gpu *gpu, struct photos *photos)
-{
-    for (size_t i = 0; i < photos->scene->photo_count; i++)
-        if (photos->states[i].has_color)
-            return;
-    orl_tex_destroy(gpu, &photos->color);
-    orl_tex_destroy(gpu, &photos->chroma);
-}
-
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
 {
     orl_photo_loader_destroy(&photos->loader);
-    orl_packing_destroy(gpu, &photos->packing);
     orl_tex_destroy(gpu, &photos->color);
     orl_tex_destroy(gpu, &photos->chroma);
     orl_tex_destroy(gpu, &photos->depth);
@@ -508,7 +497,6 @@ static void fatten(const struct frame *frame, const struct surface *surface, con
     // Twice what the shadow test allows.
     struct fatten_block block = {.drawn_size = {surface->width, surface->height},
                                  .kept_size = {kept[0], kept[1]},
-                                 .radius = frame->params->fatten_px,
                                  .line_offset = 1 + 2 * frame->params->depth_tolerance};
     write_depth(frame, surface, kept, slot, "proxy/fatten.comp", &block, sizeof block);
 }
@@ -520,10 +508,10 @@ static bool has_shadow_maps(const struct frame *frame)
 
 uint64_t orl_photos_depth_key(const struct frame *frame)
 {
-    const float shadow[2] = {frame->params->fatten_px, frame->params->depth_tolerance};
+    const float tolerance = frame->params->depth_tolerance;
     const int drops = frame->params->occluders;
     uint64_t key = orl_proxy_key(frame->proxy, frame->params);
-    return has_shadow_maps(frame) ? XXH3_64bits_withSeed(shadow, sizeof shadow, key)
+    return has_shadow_maps(frame) ? XXH3_64bits_withSeed(&tolerance, sizeof tolerance, key)
                                   : XXH3_64bits_withSeed(&drops, sizeof drops, key);
 }
 
@@ -574,7 +562,7 @@ enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool
         return ORL_ERR_CANCELLED;
     give_slot(photos, state);
     enum orl_result result = ORL_OK;
-    if (!state->has_color && !frame->packs)
+    if (!state->has_color)
         result = load_color(frame, photo);
     if (result == ORL_OK && depth && orl_photos_depth_divide(frame, photo) != 1)
         result = orl_photos_draw_depth(frame, photo, 1);

@@ -24,12 +24,11 @@ struct photo_state {
 struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
-    struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence; NULL: all
-                                // frames packed so far
+    struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence; NULL: no
+                                // frame was drawn
     struct orl_tex *chroma;     // of textures=ycc, whose color is luma: Cb, Cr; else NULL
     struct orl_tex_params color_params; // of color
     GLenum format;              // of color
-    struct packing *packing;    // what frames that pack read instead; NULL: none did
     struct orl_tex *loading;    // a photograph before compression; NULL: none is being loaded
     struct orl_tex *depth;      // z; < 0: estimated in a hole, 0: none; NULL: no method asked for it
     struct orl_tex_params depth_params; // of depth
@@ -64,14 +63,12 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
                                 const struct orl_renderer_params *params, size_t budget_bytes,
                                 struct photos *photos);
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
-// Releases the textures of colours while they hold no photograph.
-void orl_photos_spare(struct orl_gpu *gpu, struct photos *photos);
 // Evicts all photographs if the scene shows another time step than they do.
 void orl_photos_follow_time_step(struct photos *photos);
-// Makes the textures of colours if they are not there. Frames that pack do without.
+// Makes the textures of colours if they are not there.
 enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos);
-// Makes a photograph's colour resident, unless the frame packs colours, and its depth if asked for,
-// drawn by the frame's proxy with the frame's parameters. Evicts the least recently used photograph
+// Makes a photograph's colour resident, and its depth if asked for, drawn
+// by the frame's proxy with the frame's parameters. Evicts the least recently used photograph
 // if all slots are taken.
 enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool depth);
 // Brings the mask of a resident photograph to the device: 1 within the subject, 0.5 on its boundary

@@ -28,7 +28,7 @@ struct prefetch {
     int time_step;
     size_t photo_count;
     size_t *masked;         // photographs whose silhouettes make the hull
-    size_t masked_count, triangles;
+    size_t masked_count;
     bool linear, wants_mesh, has_thread;
     int side;
     uint64_t key;           // orl_voxels_key of the time step
@@ -73,7 +73,7 @@ static enum orl_result list(struct prefetch *a)
 {
     enum orl_result result = orl_voxels_list(NULL, &a->voxels);
     if (result == ORL_OK && a->wants_mesh)
-        result = orl_hull_field_mesh(NULL, &a->voxels.cube, a->voxels.field, a->triangles,
+        result = orl_hull_field_mesh(NULL, &a->voxels.cube, a->voxels.field, 0,
                                      &a->mesh);
     return result;
 }
@@ -151,7 +151,6 @@ static enum orl_result prepare_hull(const struct frame *frame, struct prefetch *
     next.scene = &a->scene;
     a->step = (hull || voxels) && orl_voxels_silhouettes(&next) ? STEP_READ : STEP_NONE;
     a->wants_mesh = hull;
-    a->triangles = (size_t)(frame->params->hull_triangles + 0.5f);
     a->side = orl_voxels_side(frame);
     a->key = orl_voxels_key(&next);
     a->masked = orl_array(orl_gpu_log(frame->gpu), a->scene.photo_count, sizeof *a->masked);
@@ -297,10 +296,10 @@ void orl_prefetch_wait(struct prefetch *a)
     pthread_mutex_unlock(&a->lock);
 }
 
-bool orl_prefetch_take_hull(struct orl_gpu *gpu, struct prefetch *a, uint64_t key, size_t triangles,
+bool orl_prefetch_take_hull(struct orl_gpu *gpu, struct prefetch *a, uint64_t key,
                             struct voxels *voxels, struct orl_mesh *mesh)
 {
-    if (!a || a->key != key || (mesh && (!a->wants_mesh || a->triangles != triangles)))
+    if (!a || a->key != key || (mesh && !a->wants_mesh))
         return false;
     wait_for_hull(a);
     if (orl_prefetch_carve(gpu, a) != ORL_OK || orl_prefetch_collect(gpu, a) != ORL_OK)

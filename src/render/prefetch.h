@@ -26,9 +26,9 @@ enum orl_result orl_prefetch_collect(struct orl_gpu *gpu,
 void orl_prefetch_wait(struct prefetch *prefetch);
 
 // True: the hull is the caller's. It was made for the key (orl_voxels_key) and, unless mesh is NULL,
-// for a mesh of this many triangles. prefetch may be NULL.
+// for a mesh. prefetch may be NULL.
 bool orl_prefetch_take_hull(struct orl_gpu *gpu, struct prefetch *prefetch, uint64_t key,
-                            size_t triangles, struct voxels *voxels, struct orl_mesh *mesh);
+                            struct voxels *voxels, struct orl_mesh *mesh);
 // True: the image is the caller's. prefetch may be NULL. A mask is of a silhouette that takes part
 // in the hull; a photograph is as orl_photo_read reads it.
 bool orl_prefetch_take_photo(struct prefetch *prefetch, size_t photo, struct orl_image *image);

@@ -14,7 +14,6 @@
 enum {
     VERTICES_MAX = 20000, // of the model that are projected into a photograph
     STRIDE = 4,           // pixels between the normals that are clustered, each way
-    CLUSTERS_MAX = 8,
     ROUNDS = 10,          // of k-means
 };
 
@@ -232,7 +231,7 @@ static size_t cluster(double (*normals)[3], size_t count, size_t clusters, doubl
         memcpy(means[found++], normals[farthest], sizeof *means);
     }
     for (int round = 0; round < ROUNDS; round++) {
-        double sums[CLUSTERS_MAX][3] = {{0}};
+        double sums[ORL_PRINC_EXTRAS][3] = {{0}};
         for (size_t i = 0; i < count; i++) {
             size_t best = 0;
             for (size_t k = 1; k < found; k++)
@@ -253,11 +252,11 @@ static size_t cluster(double (*normals)[3], size_t count, size_t clusters, doubl
 // One photograph for each cluster of the normals of what is not covered.
 static enum orl_result add_extras(struct frame *frame, bool *taken)
 {
-    size_t clusters = (size_t)(frame->params->extras + 0.5f), count;
-    double(*normals)[3] = NULL, means[CLUSTERS_MAX][3];
+    size_t count;
+    double(*normals)[3] = NULL, means[ORL_PRINC_EXTRAS][3];
     enum orl_result result = find_uncovered(frame, &normals, &count);
     if (result == ORL_OK && count > 0) {
-        clusters = cluster(normals, count, clusters, means);
+        size_t clusters = cluster(normals, count, ORL_PRINC_EXTRAS, means);
         for (size_t k = 0; k < clusters; k++) {
             const double towards[3] = {-means[k][0], -means[k][1], -means[k][2]};
             add_best(frame, taken, towards, true);
@@ -308,7 +307,7 @@ static enum orl_result choose(struct frame *frame, size_t most)
     for (size_t n = (size_t)(frame->params->nearest + 0.5f); n > 0; n--)
         if (!add_best(frame, taken, direction, false))
             break;
-    if (frame->params->extras >= 0.5f)
+    if (result == ORL_OK)
         result = add_extras(frame, taken);
     if (result == ORL_OK)
         weigh(frame, direction, taken);

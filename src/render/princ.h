@@ -4,6 +4,9 @@
 
 #include "render/method.h"
 
+// Photographs beside those by direction, for surfaces that these see too obliquely.
+enum { ORL_PRINC_EXTRAS = 3 };
+
 extern const struct orl_selection orl_select_princ;
 
 #endif

@@ -10,7 +10,6 @@
 #include "render/gather.h"
 #include "render/guess.h"
 #include "render/method.h"
-#include "render/packing.h"
 #include "render/photos.h"
 #include "render/progressive.h"
 #include "render/proxy.h"
@@ -308,10 +307,6 @@ static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
     enum orl_result result = orl_proxy_update(frame);
     frame->depth_key = orl_photos_depth_key(frame);
     if (result == ORL_OK)
-        result = orl_packing_update(frame);
-    if (result == ORL_OK && frame->packs)
-        orl_photos_spare(r->gpu, &r->photos);
-    else if (result == ORL_OK)
         result = orl_photos_ready(r->gpu, &r->photos);
     if (result == ORL_OK)
         result = resize(r, frame);

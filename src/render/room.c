@@ -10,13 +10,16 @@
 #include "render/photos.h"
 #include "render/select.h"
 
+// Radius of the shell around a scene whose room is not known, in distances of the farthest photograph.
+static const double SHELL = 2;
+
 bool orl_frame_shows_room(const struct frame *frame)
 {
     return frame->params->fill == ORL_FILL_ROOM;
 }
 
 // The middle and the half sides of the room. Of a shell: the middle of what the proxy shows, and
-// the same radius thrice, opt.shell times the distance of the farthest photograph.
+// the same radius thrice.
 static void measure(const struct frame *frame, double middle[3], double half[3])
 {
     const struct orl_room *room = &frame->scene->room;
@@ -35,7 +38,7 @@ static void measure(const struct frame *frame, double middle[3], double half[3])
         farthest = fmax(farthest, sqrt(squares));
     }
     for (int k = 0; !room->known && k < 3; k++)
-        half[k] = farthest > 0 ? (double)frame->params->shell * farthest : 1;
+        half[k] = farthest > 0 ? SHELL * farthest : 1;
 }
 
 static void place(const struct frame *frame, struct gather_block *block)
@@ -121,19 +124,13 @@ enum orl_result orl_room_paint(struct frame *frame)
     struct orl_render_params params = *frame->params;
     struct frame room = *frame;
     bool backgrounds = orl_photos_backgrounds(frame->photos);
-    bool recurrence =
-        !frame->radiance && orl_render_params_equal(frame->params, "combine=recurrence");
     room.params = &params;
     room.reads_chroma = frame->reads_chroma && !backgrounds;
-    room.packs = false; // backgrounds are not packed
-    params.border_px = 0;
     snprintf(params.weight, sizeof params.weight, "equal");
-    params.combine = recurrence ? &orl_combine_recurrence : &orl_combine_mean;
+    params.combine = &orl_combine_mean;
     if (backgrounds)
         snprintf(params.visibility, sizeof params.visibility, "none");
     orl_tex_clear(frame->room, 0);
-    if (recurrence)
-        orl_tex_clear(frame->states[0], 0);
     enum orl_result result = orl_select_all.choose(&room, 0);
     if (result == ORL_OK && frame->progressive)
         result = keep_present(&room, backgrounds, &frame->room_absent);

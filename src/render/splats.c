@@ -151,6 +151,12 @@ static enum orl_result resize(struct orl_gpu *gpu, const void *state, int width,
     return result;
 }
 
+// Where more fall into a pixel, splats are thinned and enlarged. 0: all are drawn.
+static float points_per_pixel(const struct orl_render_params *params)
+{
+    return params->every_point ? 0 : 4;
+}
+
 // params: NULL if nothing is drawn.
 static struct splat_block splat_params(const struct cloud *cloud, const struct orl_view *view,
                                        const struct orl_render_params *params)
@@ -161,7 +167,7 @@ static struct splat_block splat_params(const struct cloud *cloud, const struct o
     if (params) {
         block.splat_scale = params->splat_scale;
         block.front_layer = params->front_layer;
-        block.points_per_pixel = params->points_per_pixel;
+        block.points_per_pixel = points_per_pixel(params);
     }
     orl_pose_centre(&view->cam_from_world, eye);
     for (int i = 0; i < 3; i++) {
@@ -315,7 +321,7 @@ static enum orl_result bring(const void *state, const struct orl_view *view,
                              const struct orl_render_params *params)
 {
     const struct cloud *cloud = state;
-    return cloud->pages ? orl_cloud_pages_choose(cloud, view, params->points_per_pixel) : ORL_OK;
+    return cloud->pages ? orl_cloud_pages_choose(cloud, view, points_per_pixel(params)) : ORL_OK;
 }
 
 static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,

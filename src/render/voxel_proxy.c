@@ -48,7 +48,7 @@ static enum orl_result update(const struct frame *frame, void *handle, bool *cha
     *changed = true;
     orl_pass_begin(frame->gpu, "hull");
     enum orl_result result = ORL_OK;
-    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, key, 0, &state->voxels, NULL))
+    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, key, &state->voxels, NULL))
         result = orl_voxels_make(frame, &state->voxels);
     orl_pass_end(frame->gpu);
     orl_voxels_warn(orl_gpu_log(frame->gpu), &state->voxels, &state->said_endless);

@@ -175,7 +175,6 @@ static enum orl_result draw_depth(struct site *site, const struct orl_view *view
     params.splat_scale = site->render.splat_scale;
     params.front_layer = site->render.front_layer;
     params.min_support = site->render.min_support;
-    params.points_per_pixel = site->render.points_per_pixel;
     params.leave_out = ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE | ORL_LAYER_CONFIDENCE;
     struct orl_frame frame;
     enum orl_result result = orl_renderer_draw(site->renderer, view, &params, NULL, &frame);

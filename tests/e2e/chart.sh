@@ -97,10 +97,10 @@ grep -q '^4 rows' stdout.txt && fail "what was measured is lost"
 grep -Eq '^[1-3] rows measured, [1-3] used again' stdout.txt || fail "did not go on"
 
 # Values of one's own, of the methods that read the option.
-runs 0 "${chart[@]}" --quick --method airieau,points --vary distance_floor=0.1,0.5
-grep -q '^airieau  *distance_floor=0.5 ' stdout.txt || fail "no row for a value"
-grep -q '^points  *distance' stdout.txt && fail "a value of an option that is not read"
-runs 2 "${chart[@]}" --quick --method airieau --vary distance_floor=7
+runs 0 "${chart[@]}" --quick --method airieau,points --vary depth_tolerance=0.1,0.5
+grep -q '^airieau  *depth_tolerance=0.5 ' stdout.txt || fail "no row for a value"
+grep -q '^points  *depth' stdout.txt && fail "a value of an option that is not read"
+runs 2 "${chart[@]}" --quick --method airieau --vary depth_tolerance=7
 runs 2 "${chart[@]}" --quick --vary nonsense=7
 
 # Another program's pictures: the photographs themselves are perfect.

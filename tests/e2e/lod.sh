@@ -5,7 +5,7 @@ set -u
 
 monument_scene || exit 77
 name=$(basename "$(find made/images -name '*.jpg' | sort | head -n 1)")
-all=(--layers depth --set points_per_pixel=0 --quiet) # no coarser level will do
+all=(--layers depth --size 960x640 --quiet) # of less than a point a pixel no coarser level will do
 runs 0 "$oriel" render made --at "$name" "${all[@]}" --out whole.png
 runs 0 "$oriel" info made --json
 points=$(grep -o '"points": [0-9]*' stdout.txt | head -n 1)

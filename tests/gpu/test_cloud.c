@@ -47,10 +47,10 @@ static void close_scene(struct scene *s)
     orl_points_finish(&s->points);
 }
 
-static void draw(struct scene *s, float points_per_pixel)
+static void draw(struct scene *s, bool every_point)
 {
     const struct orl_render_params params = {.splat_scale = 1, .front_layer = 0.01f,
-                                             .points_per_pixel = points_per_pixel};
+                                             .every_point = every_point};
     assert_int_equal(orl_proxy_draw(gpu, &s->proxy, &front_view, &params, true,
                                     &s->proxy.view_target, &s->surface), ORL_OK);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
@@ -112,7 +112,7 @@ static void blocks_outside_are_skipped(void **state)
     s.points.position[7][0] = NAN; // dropped
     s.points.position[9][2] = 1e30f;
     open_scene(&s);
-    draw(&s, 0);
+    draw(&s, true);
     const struct point_chunk *chunk = &cloud_of(&s)->chunks[0];
     static bool listed[COUNT];
     size_t items = read_list(&s, listed, COUNT);
@@ -158,9 +158,9 @@ static void dense_blocks_are_thinned_without_holes(void **state)
     static float depth[SIDE * SIDE];
     make_wall(&s);
     open_scene(&s);
-    draw(&s, 0);
+    draw(&s, true);
     assert_int_equal(read_list(&s, listed, sizeof listed) * ORL_ITEM_POINTS, 64 * SIDE * SIDE);
-    draw(&s, 4);
+    draw(&s, false);
     double share = (double)read_list(&s, listed, sizeof listed) * ORL_ITEM_POINTS / (SIDE * SIDE);
     print_message("%.2f points a pixel for 4\n", share);
     assert_true(share >= 4 && share < 9);
@@ -180,7 +180,7 @@ static void runs_are_the_same(void **state)
     open_scene(&s);
     for (int run = 0; run < 5; run++) {
         int to = run > 0 ? 1 : 0;
-        draw(&s, 3);
+        draw(&s, false);
         orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[to], depth[to]);
         orl_tex_read(s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[to], normal[to]);
         if (run == 0)
@@ -204,7 +204,7 @@ static void chunks_draw_as_one(void **state)
         caps->max_buffer_texels = run ? 150000 : texels;
         open_scene(&s);
         assert_int_equal(cloud_of(&s)->chunk_count, run ? 6 : 1);
-        draw(&s, 3);
+        draw(&s, false);
         orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
         orl_tex_read(s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
         close_scene(&s);
@@ -259,7 +259,7 @@ static void pages_draw_as_the_whole(void **state)
         } else {
             open_pages(&p, 0);
         }
-        draw(&p.s, 0);
+        draw(&p.s, true);
         orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
         orl_tex_read(p.s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
         if (run == 0)
@@ -281,7 +281,7 @@ static void few_pages_leave_no_hole(void **state)
     open_pages(&p, 1); // the least: 16 pages; the wall's finest level has 32
     assert_true(p.lod->levels[0].count > 16);
     for (int run = 0; run < 3; run++) {
-        draw(&p.s, run == 1 ? 2 : 0);
+        draw(&p.s, run != 1);
         float *to = depth[run == 2];
         orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[0], to);
         for (int i = 0; i < SIDE * SIDE; i++)
@@ -289,7 +289,7 @@ static void few_pages_leave_no_hole(void **state)
         if (run == 0)
             memcpy(depth[1], depth[0], sizeof depth[0]);
     }
-    draw(&p.s, 0);
+    draw(&p.s, true);
     orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[0], depth[0]);
     assert_memory_equal(depth[0], depth[1], sizeof depth[0]);
     close_pages(&p);
@@ -303,7 +303,7 @@ static void no_points_are_no_depth(void **state)
     assert_int_equal(orl_points_init(NULL, &s.points, 1), ORL_OK);
     s.points.position[0][1] = INFINITY;
     open_scene(&s);
-    draw(&s, 4);
+    draw(&s, false);
     orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_float_equal(depth[i], 0, 0);

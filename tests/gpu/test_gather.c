@@ -12,9 +12,7 @@ enum { SIDE = 48 };
 
 static struct orl_render_params airieau(void)
 {
-    struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
-    params.border_px = 0;
-    return params;
+    return orl_method_find(NULL, "airieau")->params;
 }
 
 // The weights of Airieau 2012, 5.3, for the wall point that pixel (x, y) sees.
@@ -50,8 +48,8 @@ static void weights_are_cosine_over_distance_difference(void **state)
     const int pixels[][2] = {{24, 24}, {15, 30}, {30, 18}};
     for (size_t i = 0; i < ORL_COUNT(pixels); i++) {
         int x = pixels[i][0], y = pixels[i][1];
-        double wr = weight(&view, &f.photos[0].view, x, y, params.distance_floor);
-        double wg = weight(&view, &f.photos[1].view, x, y, params.distance_floor);
+        double wr = weight(&view, &f.photos[0].view, x, y, 1e-6);
+        double wg = weight(&view, &f.photos[1].view, x, y, 1e-6);
         const float *c = color_at(&frame, x, y);
         assert_float_equal(c[0], wr / (wr + wg), 2e-3);
         assert_float_equal(c[1], wg / (wr + wg), 2e-3);
@@ -71,7 +69,8 @@ static void occluded_photographs_are_rejected(void **state)
     add_photo(&f, look_from(-0.4, 0, 0, SIDE, 40), red);
     add_photo(&f, look_from(1.2, 0, 0, SIDE, 40), green);
     struct orl_render_params params = airieau();
-    params.distance_floor = 0.03f; // so that both photographs have a part in what both see
+    // Both photographs have a part in what both see.
+    assert_int_equal(orl_render_params_set(NULL, &params, "weight=equal"), ORL_OK);
     struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     // From x = 1.2 the plate (0.7, z 2) hides the wall around x = 0.2: pixel 24 + 10 * 0.2.
     const float *hidden = color_at(&frame, 26, 24), *open = color_at(&frame, 18, 24);

@@ -15,7 +15,6 @@ static struct orl_view look(double x, double y, double z)
 static struct orl_render_params best(void)
 {
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
-    params.border_px = 0;
     params.outliers = 0; // these photographs disagree on purpose
     return params;
 }

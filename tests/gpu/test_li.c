@@ -1,11 +1,10 @@
-// Li 2003: the hull as a mesh, blending by 1/N and by its recurrence, shadow maps without leaks, and
+// Li 2003: the hull as a mesh, blending by 1/N, shadow maps without leaks, and
 // the room, against answers found by hand and on a figure whose shape is exact.
 #include <math.h>
 
 #include "figure_scene.h"
 #include "render/mesh_proxy.h"
 #include "render/method.h"
-#include "render/packing.h"
 #include "render/photos.h"
 
 enum { SIDE = 64 };
@@ -84,32 +83,6 @@ static void the_hull_lies_on_the_cones(void **state)
     teardown(&f);
 }
 
-// "A tunable parameter for controlling the precision": the paper's hulls have 400 to 500 triangles.
-static void precision_can_be_tuned(void **state)
-{
-    (void)state;
-    static const char *const sets[] = {"hull_triangles=0", "hull_triangles=500"};
-    struct fixture f;
-    size_t triangles[2];
-    double volumes[2];
-    setup_ball(&f);
-    for (int i = 0; i < 2; i++) {
-        struct orl_render_params params = params_of(&sets[i], 1);
-        struct proxy proxy;
-        struct photos photos;
-        hull_of(&f, &params, &proxy, &photos);
-        const struct mesh_state *mesh = proxy.state;
-        triangles[i] = mesh->mesh.triangle_count;
-        volumes[i] = orl_mesh_volume(&mesh->mesh);
-        orl_proxy_finish(gpu, &proxy);
-        orl_photos_finish(gpu, &photos);
-    }
-    assert_true(triangles[0] > 5000 && triangles[1] <= 550);
-    assert_float_equal(volumes[1] / volumes[0], 1, 0.05);
-    assert_true(volumes[0] > 4.18879 * 0.125 * 0.9);
-    teardown(&f);
-}
-
 // 5.2.3: the range of depths is that of the bounding box.
 static void near_and_far_are_tight(void **state)
 {
@@ -127,24 +100,19 @@ static void near_and_far_are_tight(void **state)
 
 // --- section 5.1.2: blending ---
 
-// Three photographs see the middle: a third of each. By the recurrence, with A = 1, 0.56 and 0.34:
-// the first 0.44 * 0.66, the second 0.56 * 0.66, the third 0.34.
+// Three photographs see the middle: a third of each.
 static void photographs_count_alike(void **state)
 {
     (void)state;
-    static const char *const sets[] = {"combine=mean", "combine=recurrence"};
-    static const double expected[2][3] = {{1 / 3.0, 1 / 3.0, 1 / 3.0}, {0.290, 0.370, 0.34}};
     struct fixture f;
     setup_ball(&f); // before photograph 0, the first, the second and the last see the middle
-    for (int i = 0; i < 2; i++) {
-        struct orl_render_params params = params_of(&sets[i], 1);
-        struct orl_frame frame = draw(gpu, &f, look_around(0, 4, SIDE, 60), &params, 0);
-        const float *c = color_at(&frame, SIDE / 2, SIDE / 2);
-        for (int k = 0; k < 3; k++)
-            assert_float_equal(c[k], expected[i][k], 0.01);
-        assert_float_equal(frame.coverage.f32[SIDE / 2 * SIDE + SIDE / 2], 1, 0);
-        orl_frame_finish(&frame);
-    }
+    struct orl_render_params params = params_of(NULL, 0);
+    struct orl_frame frame = draw(gpu, &f, look_around(0, 4, SIDE, 60), &params, 0);
+    const float *c = color_at(&frame, SIDE / 2, SIDE / 2);
+    for (int k = 0; k < 3; k++)
+        assert_float_equal(c[k], 1 / 3.0, 0.01);
+    assert_float_equal(frame.coverage.f32[SIDE / 2 * SIDE + SIDE / 2], 1, 0);
+    orl_frame_finish(&frame);
     teardown(&f);
 }
 
@@ -222,9 +190,9 @@ static void fat_outlines_stop_leaks(void **state)
     assert_int_equal(orl_mesh_write(NULL, path, &mesh), ORL_OK);
     for (int i = 1; i < 8; i++) {
         int of_view;
-        leaks[0] += count_leaks(&f, &views[i], "fatten_px=0", &of_view);
+        leaks[0] += count_leaks(&f, &views[i], "visibility=shadow", &of_view);
         painted[0] += of_view;
-        leaks[1] += count_leaks(&f, &views[i], "fatten_px=2", &of_view);
+        leaks[1] += count_leaks(&f, &views[i], "visibility=opaque", &of_view);
         painted[1] += of_view;
     }
     print_message("leaked pixels: %d of %d, with fat outlines %d of %d\n", leaks[0], painted[0],
@@ -359,125 +327,17 @@ static void the_subject_is_not_on_the_walls(void **state)
 static void turns_change_nothing(void **state)
 {
     (void)state;
-    static const char *const sets[] = {"combine=mean", "combine=recurrence"};
     struct fixture f;
     setup_figure(&f, 4, 96, 72);
-    for (int i = 0; i < 2; i++) {
-        struct orl_render_params params = params_of(&sets[i], 1);
-        const struct orl_renderer_params whole = {.photo_divide = 4, .textures = ORL_TEXTURES_FULL};
-        struct orl_renderer_params tight = whole;
-        tight.max_vram_bytes = 1;
-        struct orl_frame a = draw_by(gpu, &f, f.photos[0].view, &params, &whole);
-        struct orl_frame b = draw_by(gpu, &f, f.photos[0].view, &params, &tight);
-        assert_memory_equal(a.color.data, b.color.data, orl_image_bytes(&a.color));
-        orl_frame_finish(&a);
-        orl_frame_finish(&b);
-    }
-    teardown(&f);
-}
-
-// --- section 5.3: packing ---
-
-// A square of `size` pixels around the middle of what a camera of add_flat_photos shows, as a proxy.
-static void show_square(struct proxy *proxy, float (*corners)[3], double size)
-{
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 2; k++)
-            corners[i][k] = (float)((i >> k & 1 ? 0.5 : -0.5) * size * 4 / 60);
-    *proxy = (struct proxy){.kind = &orl_proxy_hull, .vertices = (const float(*)[3])corners,
-                            .vertex_count = 4, .version = (uint64_t)size};
-}
-
-// From 4 away: the middle, the square beside the picture, and its left half.
-static void add_flat_photos(struct fixture *f)
-{
-    static const uint8_t *const colors[] = {red, green, blue};
-    static const double aside[] = {0, 6, 0.5 * SIDE * 4 / 60};
-    setup_empty(f, 4);
-    for (int i = 0; i < 3; i++)
-        add_photo(f, look_from(aside[i], 0, -4, SIDE, 60), colors[i]);
-}
-
-// 9 pixels around the middle lie within 27 to 37, with 6 more in 21 to 43, and aligned to 4 in 20 to 44.
-// Of the half, 6 pixels around lie outside of the picture: its border is repeated.
-static void regions_lie_side_by_side(void **state)
-{
-    (void)state;
-    struct fixture f;
-    struct photos photos;
-    struct proxy proxy;
-    float corners[4][3] = {{0}};
-    const struct orl_renderer_params none = {0};
-    static const char *const no_room[] = {"fill=none"};
-    struct orl_render_params params = params_of(no_room, 1);
-    add_flat_photos(&f);
-    show_square(&proxy, corners, 9);
-    assert_int_equal(orl_photos_init(gpu, &f.scene, &none, 0, &photos), ORL_OK);
-    struct frame frame = {.gpu = gpu, .scene = &f.scene, .params = &params, .proxy = &proxy,
-                          .photos = &photos};
-    assert_int_equal(orl_packing_update(&frame), ORL_OK);
-    const struct packing *packing = photos.packing;
-    static const struct packed_region expected[] = {
-        {20, 20, 24, 24, 0}, {0, 0, 0, 0, 24}, {-8, 20, 20, 24, 24}};
-    assert_true(frame.packs);
-    assert_memory_equal(packing->regions, expected, sizeof expected);
-    assert_int_equal(packing->color->params.width, 24 + 20 + 20);
-    assert_int_equal(packing->color->params.height, 24 + 20);
-    assert_int_equal(photos.uploaded, 3 * (24 + 20) * 24);
-    uint8_t texels[44][64][4];
-    orl_tex_read(packing->color, 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof texels, texels);
-    for (int x = 0; x < 44; x++)
-        assert_memory_equal(texels[12][x], x < 24 ? red : blue, 3);
-    // Regions that are some pixels larger or smaller have room in the same texture.
-    static const struct {
-        double size;
-        int side; // of the first region
-        bool same;
-    } sizes[] = {{17, 32, true}, {3, 16, true}, {33, 48, false}};
-    for (size_t i = 0; i < ORL_COUNT(sizes); i++) {
-        int width = packing->color->params.width;
-        show_square(&proxy, corners, sizes[i].size);
-        assert_int_equal(orl_packing_update(&frame), ORL_OK);
-        assert_int_equal(packing->regions[0].width, sizes[i].side);
-        assert_true((packing->color->params.width == width) == sizes[i].same);
-    }
-    corners[0][2] = -5; // behind the cameras: nothing is known of where the square is
-    proxy.version++;
-    assert_int_equal(orl_packing_update(&frame), ORL_OK);
-    assert_true(packing->regions[0].x <= 0 && packing->regions[0].width >= SIDE);
-    orl_photos_finish(gpu, &photos);
-    teardown(&f);
-}
-
-// The picture is the one of whole photographs; what goes to the device is several times less.
-static void packed_pictures_are_the_same(void **state)
-{
-    (void)state;
-    static const char *const sets[][2] = {{"fill=none", "packing=on"}, {"fill=none", "packing=off"}};
-    struct fixture f;
-    struct orl_frame frames[2];
-    size_t uploaded[2];
-    setup_figure(&f, 6, 160, 120);
-    struct orl_view view = f.photos[0].view;
-    view.cam_from_world.t[2] += 0.3;
-    for (int i = 0; i < 2; i++) {
-        struct orl_render_params params = params_of(sets[i], 2);
-        struct orl_renderer *renderer;
-        assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
-        assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, &frames[i]), ORL_OK);
-        uploaded[i] = orl_renderer_uploaded(renderer);
-        orl_renderer_destroy(&renderer);
-    }
-    float worst = 0;
-    for (size_t i = 0; i < (size_t)3 * 160 * 120; i++)
-        worst = fmaxf(worst, fabsf(frames[0].color.f32[i] - frames[1].color.f32[i]));
-    print_message("largest difference %g, uploaded %zu and %zu bytes\n", (double)worst,
-                  uploaded[0], uploaded[1]);
-    assert_true(worst < 0.02f); // of linear light; texture coordinates are rounded differently
-    assert_int_equal(uploaded[1], 6 * 3 * 160 * 120);
-    assert_true(2 * uploaded[0] < uploaded[1]);
-    orl_frame_finish(&frames[0]);
-    orl_frame_finish(&frames[1]);
+    struct orl_render_params params = params_of(NULL, 0);
+    const struct orl_renderer_params whole = {.photo_divide = 4, .textures = ORL_TEXTURES_FULL};
+    struct orl_renderer_params tight = whole;
+    tight.max_vram_bytes = 1;
+    struct orl_frame a = draw_by(gpu, &f, f.photos[0].view, &params, &whole);
+    struct orl_frame b = draw_by(gpu, &f, f.photos[0].view, &params, &tight);
+    assert_memory_equal(a.color.data, b.color.data, orl_image_bytes(&a.color));
+    orl_frame_finish(&a);
+    orl_frame_finish(&b);
     teardown(&f);
 }
 
@@ -534,7 +394,6 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_hull_lies_on_the_cones),
-        cmocka_unit_test(precision_can_be_tuned),
         cmocka_unit_test(near_and_far_are_tight),
         cmocka_unit_test(photographs_count_alike),
         cmocka_unit_test(tangent_surfaces_are_not_coloured),
@@ -543,8 +402,6 @@ int main(void)
         cmocka_unit_test(unseen_places_take_colors_of_their_own),
         cmocka_unit_test(the_subject_is_not_on_the_walls),
         cmocka_unit_test(turns_change_nothing),
-        cmocka_unit_test(regions_lie_side_by_side),
-        cmocka_unit_test(packed_pictures_are_the_same),
         cmocka_unit_test(another_proxy_stands_in),
     };
     int failed = cmocka_run_group_tests_name("li", tests, NULL, NULL);

@@ -129,8 +129,7 @@ static void turns_change_nothing(void **state)
 static void both_sides_have_one_penalty(void **state)
 {
     (void)state;
-    static const char *const choices[] = {"weight=lumigraph", "sharpness=1", "border_px=0",
-                                          "visibility=none"};
+    static const char *const choices[] = {"weight=lumigraph", "sharpness=1", "visibility=none"};
     struct fixture f;
     setup(&f, false);
     struct orl_view view = look_from(0, 0, 0, SIDE + 1, 40);
@@ -163,11 +162,9 @@ static void weights_are_those_of_their_formulas(void **state)
     } rows[] = {
         // 1 / (angle + a tenth of how much nearer): 0.1 * 2 / 6, and the angle and 0.1 * 1 / 5.
         {"weight=ulr", 3, 0, (0.2 / 6) / (0.6435011 + 0.02), -2},
-        {"weight=equal", 3, 0, 1, 0},      {"weight=cos", 3, 0, 0.8, 0},
-        {"weight=cos", 0, -2, 1, 0},       {"weight=distance", 3, 0, 1 / 1.25, 0},
-        {"weight=distance", 0, -2, 1 / 1.5, 0},
-        {"weight=airieau", 3, 0, 0.8 * 0.01 / (0.25 + 0.01), 0},
-        {"weight=airieau", 0, -2, 0.01 / (0.5 + 0.01), 0},
+        {"weight=equal", 3, 0, 1, 0},
+        {"weight=airieau", 3, 0, 0.8 / 0.25 / (1 / 0.5), -2},
+        {"weight=airieau", 0, -1, 1 / 0.25 / (1 / 0.5), -2},
     };
     for (size_t i = 0; i < ORL_COUNT(rows); i++) {
         const char *const choices[] = {rows[i].weight, "visibility=none", "combine=mean"};
@@ -177,7 +174,6 @@ static void weights_are_those_of_their_formulas(void **state)
         add_photo(&f, look_from(rows[i].x, 0, rows[i].z, SIDE, 20), green);
         struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
         assert_int_equal(orl_render_params_assign(NULL, &params, choices, 3), ORL_OK);
-        params.distance_floor = 0.01f;
         struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE + 1, 40), &params, 0);
         const float *middle = color_at(&frame, SIDE / 2, SIDE / 2);
         assert_float_equal(middle[1] / middle[0], rows[i].expected, 0.01 * rows[i].expected);
@@ -225,11 +221,11 @@ static void at_its_own_place_a_photograph_shows(void **state)
 }
 
 // A photograph whose own depth map has nothing where the point would be is rejected, unless the
-// method is lenient. Small splats leave holes in the depth of the photograph that stands nearer.
+// method is soft. Small splats leave holes in the depth of the photograph that stands nearer.
 static void without_depth_a_photograph_is_rejected(void **state)
 {
     (void)state;
-    static const char *const lenient[] = {"visibility=lenient", "weight=equal"};
+    static const char *const soft[] = {"visibility=soft", "weight=equal"};
     static const char *const strict[] = {"weight=equal"};
     struct fixture f;
     setup(&f, false);
@@ -240,7 +236,7 @@ static void without_depth_a_photograph_is_rejected(void **state)
     params.splat_scale = 0.2f;
     struct orl_render_params other = params;
     assert_int_equal(orl_render_params_assign(NULL, &params, strict, 1), ORL_OK);
-    assert_int_equal(orl_render_params_assign(NULL, &other, lenient, 2), ORL_OK);
+    assert_int_equal(orl_render_params_assign(NULL, &other, soft, 2), ORL_OK);
     struct orl_frame a = draw(gpu, &f, view, &params, 0), b = draw(gpu, &f, view, &other, 0);
     double rejected = 0, passed = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {

@@ -90,7 +90,7 @@ static void assert_same(const struct orl_image *a, const struct orl_image *b)
 static void pictures_are_the_same(void **state)
 {
     (void)state;
-    static const char *const rows[][2] = {{"li", "hull_triangles=900"},
+    static const char *const rows[][2] = {{"li", "hull_side=64"},
                                           {"goldluecke", "hull_side=32"}};
     // Time step 1 is shown twice. The second list expects what does not come.
     static const int time_steps[4] = {0, 1, 1, 2}, expected[2][4] = {{1, 1, 2, -1}, {2, 0, 2, 0}};
@@ -133,7 +133,7 @@ static void setup_stage(struct stage *s)
 {
     const struct orl_renderer_params none = {0};
     setup_time_steps(&s->f);
-    s->params = params_of("li", "hull_triangles=900");
+    s->params = params_of("li", "hull_side=64");
     assert_int_equal(orl_photos_init(gpu, &s->f.scene, &none, 0, &s->photos), ORL_OK);
     assert_int_equal(orl_proxy_create(gpu, &s->f.scene, &orl_proxy_hull, 0, &s->proxy), ORL_OK);
     s->frame = (struct frame){.gpu = gpu, .scene = &s->f.scene, .params = &s->params,
@@ -212,11 +212,10 @@ static void another_hull_is_not_taken(void **state)
     uint64_t key = orl_voxels_key(&s.frame);
     const bool skip[CAMERAS] = {[2] = true};
     s.frame.skip = skip;
-    assert_false(orl_prefetch_take_hull(gpu, prefetch, orl_voxels_key(&s.frame), 900, &voxels,
+    assert_false(orl_prefetch_take_hull(gpu, prefetch, orl_voxels_key(&s.frame), &voxels,
                                          &mesh));
-    assert_false(orl_prefetch_take_hull(gpu, prefetch, key, 901, &voxels, &mesh));
-    assert_true(orl_prefetch_take_hull(gpu, prefetch, key, 900, &voxels, &mesh));
-    assert_false(orl_prefetch_take_hull(gpu, NULL, key, 900, &voxels, &mesh));
+    assert_true(orl_prefetch_take_hull(gpu, prefetch, key, &voxels, &mesh));
+    assert_false(orl_prefetch_take_hull(gpu, NULL, key, &voxels, &mesh));
     orl_voxels_finish(&voxels);
     orl_mesh_finish(&mesh);
     orl_prefetch_destroy(gpu, &prefetch);
@@ -239,7 +238,7 @@ static void missing_files_are_left_alone(void **state)
     struct prefetch *prefetch = prepare(&s);
     assert_false(orl_prefetch_take_photo(prefetch, 0, &image));
     assert_false(orl_prefetch_take_mask(prefetch, 0, &image));
-    assert_false(orl_prefetch_take_hull(gpu, prefetch, key, 900, &voxels, &mesh));
+    assert_false(orl_prefetch_take_hull(gpu, prefetch, key, &voxels, &mesh));
     orl_prefetch_destroy(gpu, &prefetch);
     finish_stage(&s);
 }

@@ -12,6 +12,8 @@ const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "lev
     "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
     "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
+const POINTS_PER_PIXEL = 4; // more are thinned
+const BORDER_PX = 2;      // over which photographs fade out at their borders
 const LEVELS_MAX = 9;     // of the surfel pyramid
 const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
 export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points"];
@@ -161,7 +163,7 @@ export class Renderer {
 
     splat(camera, options)
     {
-        const gl = this.device.gl, f = this.frame, list = this.cloud.visible(camera, options.points_per_pixel);
+        const gl = this.device.gl, f = this.frame, list = this.cloud.visible(camera, POINTS_PER_PIXEL);
         this.drawn = list.reduce((sum, {count}) => sum + count, 0);
         const common = {...this.values, rotation: camera.r, size: [camera.width, camera.height],
                         cell_low: [0, 0, 0], cell_size: [1, 1, 1], cell_radius: [1, 0]};
@@ -242,7 +244,7 @@ export class Renderer {
         const f = this.frame, store = this.photos, count = store.describe(camera, this.values.typical);
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
                         photo_depth: store.depth, slot_size: [store.width, store.height],
-                        last_mip: store.levels - 1, border_px: o.border_px, photos: count,
+                        last_mip: store.levels - 1, border_px: BORDER_PX, photos: count,
                         blur_per_radian: o.guess_blur,
                         candidates: Math.round(o.candidates), outliers: o.outliers,
                         photos_per_pixel: Math.round(o.photos_per_pixel),

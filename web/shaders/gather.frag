@@ -49,7 +49,7 @@ vec4 look(sight one, float least, float limit, bool guessed)
     float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
     photo source = photo_at(one.index);
     vec3 color = photo_sample(source, one.pixel, one.mip).rgb;
-    return vec4(color, pow(least / one.penalty, guessed ? opt.guess_sharpness : opt.sharpness) * fade);
+    return vec4(color, pow(least / one.penalty, guessed ? GUESS_SHARPNESS : opt.sharpness) * fade);
 }
 
 const float GUESS_SEVERITY = 4.0;

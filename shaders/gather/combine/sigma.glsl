@@ -1,10 +1,11 @@
 // The weighted mean of the inliers of the standard deviation test: Orzan 2005, 4.3.1. With at least
-// three samples, an outlier lies farther than opt.sigma standard deviations from the mean in any
+// three samples, an outlier lies farther than SIGMA standard deviations from the mean in any
 // channel of the photographs' own encoding. A pixel without inliers stays unpainted. Two sweeps:
 // the first computes the mean and the standard deviation, the second adds the inliers.
 #include "gather/each.glsl"
 #include "shared/srgb.glsl"
 
+const float SIGMA = 1.17;
 const float LEAST_SAMPLES = 3.0;
 // Tolerance for rounding where all samples are alike; much less than a step of 8 bits.
 const float ROUNDING = 1e-4;
@@ -44,7 +45,7 @@ void combine_begin(ivec2 at)
     vec4 all = imageLoad(state_0, at);
     mean = all.rgb / max(all.a, 1.0);
     vec3 variance = imageLoad(state_1, at).rgb / max(all.a, 1.0) - mean * mean;
-    allowed = opt.sigma * sqrt(max(variance, 0.0)) + ROUNDING;
+    allowed = SIGMA * sqrt(max(variance, 0.0)) + ROUNDING;
     allowed = all.a >= LEAST_SAMPLES ? allowed : vec3(1e30);
     sum = imageLoad(accumulated, at);
 }

@@ -17,6 +17,8 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 const float LEAST_SHARE_FOUND = 0.02; // of the tile's best weight; below it a pixel asks all others
+// Samples that differ from the others by so many stops, beyond noise and edges, count half.
+const float GHOSTS = 1.0;
 const float DOUBT_FROM = 0.1; // excess up to which a sample loses at most 1 % of its weight
 const float CLIPS_BELOW = 0.5; // mean confidence with respect to clipping
 const float SHARP_FROM = 0.02; // least fraction of the weight of a sample that is read again
@@ -163,7 +165,7 @@ void lessen_ghosts(vec3 level, float noise[ORL_RADIANCE_KEPT])
     EACH_SAMPLE(k) {
         off[k] = stops2(samples[k].color, level);
         // The factor 1 / ln(2)^2 converts squared relative error to squared stops.
-        allowed[k] = opt.ghosts * opt.ghosts + 2.0814 * noise[k];
+        allowed[k] = GHOSTS * GHOSTS + 2.0814 * noise[k];
         doubtful |= weights[k] > 0.0 && off[k] > DOUBT_FROM * allowed[k] ? 1 << k : 0;
     }
     do { // for doubtful samples only, since it reads a texel
@@ -198,7 +200,7 @@ void heed_clipped(bool guessed)
         float below = log2(max(least, min_radiance) /
                            max(dot(samples[k].color, LUMINANCE), min_radiance));
         other += weight;
-        contradicted += weight * smoothstep(opt.ghosts, 2.0 * opt.ghosts, below);
+        contradicted += weight * smoothstep(GHOSTS, 2.0 * GHOSTS, below);
     }
     other = max(other, 1e-30);
     float majority = smoothstep(1.0, 3.0, (all - best) / other);
@@ -219,15 +221,13 @@ vec3 weigh(bool guessed)
         noise[k] = noise_of(photo_at(samples[k].source), inverse);
         weights[k] = total_weight(samples[k], noise[k]);
     }
-    if (opt.ghosts > 0.0)
-        heed_clipped(guessed);
+    heed_clipped(guessed);
     // Subtracting slightly less than the limit keeps samples that tie with it. Weights still fall
     // to almost zero before a sample is replaced.
     float limit = 0.999 * left_out();
     EACH_SAMPLE(k)
         weights[k] = max(weights[k] - limit, 0.0);
-    if (opt.ghosts > 0.0)
-        lessen_ghosts(level, noise);
+    lessen_ghosts(level, noise);
     vec3 sums = vec3(0.0);
     EACH_SAMPLE(k)
         sums += weights[k] * vec3(samples[k].clip * vec2(MODEL / (MODEL + noise[k]), 1.0), 1.0);

@@ -8,7 +8,7 @@ uniform float border_px, last_mip, blur_per_radian;
 uniform vec2 slot_size; // of photo_color, pixels
 uniform vec4 ground;    // dot(xyz, ray) is its inverse depth
 uniform struct {
-    float depth_tolerance, unknown_trust, sharpness, guess_sharpness;
+    float depth_tolerance, sharpness;
 } opt;
 
 const float NOT_SEEN = 1e30; // penalty of a photograph that cannot paint a pixel
