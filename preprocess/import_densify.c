@@ -5,9 +5,13 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "preprocess/calibrate/match.h"
+#include "preprocess/import_pairs.h"
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/scene_json.h"
 #include "preprocess/stages.h"
+
+#define DATABASE ".oriel/known.db"
 
 // --- a prepare job on existing photographs ---
 
@@ -80,13 +84,14 @@ static enum orl_result find_features(struct orl_job *job, const struct paths *pa
         .command = "feature_extractor", .step = "features", .share = 1, .total = 1}, &args);
 }
 
-static enum orl_result match(struct orl_job *job, const struct paths *paths)
+static enum orl_result match(struct orl_job *job, const struct import_job *import)
 {
-    struct orl_colmap_args args = {0};
-    orl_colmap_arg(&args, "--database_path", "%s", paths->database);
-    orl_colmap_arg(&args, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
-    return orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "exhaustive_matcher", .step = "matching", .share = 1, .total = 1}, &args);
+    struct orl_pair_list list;
+    enum orl_result result = orl_import_pairs(import, &list);
+    if (result == ORL_OK)
+        result = orl_match_list(job, DATABASE, &list);
+    orl_pairs_finish(&list);
+    return result;
 }
 
 static enum orl_result triangulate(struct orl_job *job, const struct paths *paths)
@@ -143,7 +148,7 @@ static enum orl_result make_sparse_points(struct orl_job *job, const struct impo
     bare.point_count = 0;
     const struct import_points known = {&bare, false};
     struct paths paths = {
-        orl_job_path(job, ".oriel/known.db"), orl_job_path(job, "images"),
+        orl_job_path(job, DATABASE), orl_job_path(job, "images"),
         orl_job_path(job, ".oriel/train.txt"), orl_job_path(job, ".oriel/known"),
         orl_job_path(job, ".oriel/triangulated")};
     bool have = paths.database && paths.images && paths.list && paths.in && paths.out;
@@ -157,7 +162,7 @@ static enum orl_result make_sparse_points(struct orl_job *job, const struct impo
     if (result == ORL_OK)
         result = find_features(job, &paths);
     if (result == ORL_OK)
-        result = match(job, &paths);
+        result = match(job, import);
     if (result == ORL_OK)
         result = triangulate(job, &paths);
     if (result == ORL_OK)
