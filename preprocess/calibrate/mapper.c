@@ -69,17 +69,23 @@ enum orl_result orl_mapper_run(struct orl_job *job, const struct orl_mapper_run 
         orl_colmap_arg(&args, "--GlobalMapper.ba_refine_extra_params", "0");
     if (mapper != ORL_MAPPER_GLOBAL)
         incremental_settings(run, &args);
+    // COLMAP 4's way to place a photograph that sees too few points ends by a signal in 4.2.1.
+    if (mapper != ORL_MAPPER_GLOBAL && job->colmap_features)
+        orl_colmap_arg(&args, "--Mapper.structure_less_registration_fallback", "0");
     if (mapper == ORL_MAPPER_HIERARCHICAL)
         orl_colmap_arg(&args, "--leaf_max_num_images", "%d", LEAF_MAX);
     if (run->from)
         orl_colmap_arg(&args, "--input_path", "%s", run->from);
     // COLMAP's mapper fails when no pair of photographs can start a model. That is for calibrate to
     // judge, not an error yet. The others have a substitute, whatever they fail from.
-    return orl_job_colmap(job, &(struct orl_colmap_run){
+    struct orl_colmap_run mapping = {
         .command = commands[mapper], .step = "mapping", .share = (double)job->source_count,
-        .total = (double)job->source_count,
-        .tolerated = {mapper == ORL_MAPPER_INCREMENTAL ? "failed to create sparse model" : ""}},
-        &args);
+        .total = (double)job->source_count, .tolerated = {""}};
+    if (mapper == ORL_MAPPER_INCREMENTAL) { // what COLMAP 3 and 4 say of photographs without a model
+        mapping.tolerated[0] = "failed to create sparse model";
+        mapping.tolerated[1] = "Failed to create any sparse model";
+    }
+    return orl_job_colmap(job, &mapping, &args);
 }
 
 enum orl_result orl_mapper_refine(struct orl_job *job, const char *from, const char *out,

@@ -9,8 +9,10 @@ DOUBLE_NO_MODEL=1 run 2 prepare "$work/p" --out "$work/still"
 says "only 0 of 5 photographs could be placed"
 says "all show one view, as of a camera that stood still"
 
-# A COLMAP whose options have other names.
+# A COLMAP whose options have other names, and which says otherwise that it has no model.
 DOUBLE_NEW=1 run 0 prepare "$work/p" --out "$work/new"
+DOUBLE_NEW=1 DOUBLE_NO_MODEL=1 run 2 prepare "$work/p" --out "$work/new-still"
+says "only 0 of 5 photographs could be placed"
 
 # mapped_by COMMANDS: those of COLMAP's programs that made the last model.
 mapped_by() {
