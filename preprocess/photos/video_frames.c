@@ -17,6 +17,7 @@
 enum {
     STRETCH = 6, // frames looked at for each that is taken
     VERSION = 2, // raised when the same video gives other frames
+    RUN_MAX = 5000, // frames that one run of ffmpeg writes: an argument has at most 128 KiB
 };
 static const double FPS = 2; // frames taken of a second
 
@@ -89,36 +90,28 @@ size_t orl_frames_choose(const float *blur, size_t count, size_t stretch, size_t
     return found;
 }
 
-// Writes the chosen frames as 00001.jpg, ...
-static enum orl_result write_frames(const struct clip *clip, const size_t *chosen, size_t count,
-                                    const char *dir)
+// Writes chosen[from] to chosen[to - 1] as JPEG files whose names are their numbers, from 1 on.
+static enum orl_result write_frames(const struct clip *clip, const size_t *chosen, size_t from,
+                                    size_t to, const char *dir)
 {
     const struct orl_log *log = clip->job->log;
-    // ffmpeg reads long filters from a file.
-    char *script = orl_path_join(log, dir, "filter");
-    char *pattern = orl_path_join(log, dir, "%05d.jpg");
-    char *text = orl_array(log, 64 + sizeof clip->video + 32 * count, 1);
-    enum orl_result result = script && pattern && text ? ORL_OK : ORL_ERR_MEMORY;
-    size_t length = 0;
-    if (result == ORL_OK)
-        length = (size_t)sprintf(text, "%sfps=%.6f,select='", clip->video.first, clip->rate);
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        length += (size_t)sprintf(text + length, "%seq(n,%zu)", i ? "+" : "", chosen[i]);
-    if (result == ORL_OK)
-        length += (size_t)sprintf(text + length, "',%snull", clip->video.colours);
-    if (result == ORL_OK)
-        result = orl_file_write(log, script, text, length);
+    char *pattern = orl_path_join(log, dir, "%05d.jpg"), *number = orl_format(log, "%zu", from + 1);
+    char *filter = orl_array(log, 64 + sizeof clip->video + 32 * (to - from), 1);
+    enum orl_result result = pattern && number && filter ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
+        char *end = filter + sprintf(filter, "%sfps=%.6f,select='", clip->video.first, clip->rate);
+        for (size_t i = from; i < to; i++)
+            end += sprintf(end, "%seq(n,%zu)", i > from ? "+" : "", chosen[i]);
+        sprintf(end, "',%snull", clip->video.colours);
         const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
-                                    "-map", "0:V:0", "-filter_script:v", script, "-vsync", "0",
-                                    "-q:v", "1", "-qmin", "1", pattern, NULL};
+                                    "-map", "0:V:0", "-vf", filter, "-fps_mode", "passthrough",
+                                    "-start_number", number, "-q:v", "1", "-qmin", "1", pattern,
+                                    NULL};
         result = run_tool(clip, argv, NULL);
     }
-    if (result == ORL_OK)
-        result = orl_dir_remove(log, script);
-    free(script);
+    free(filter);
+    free(number);
     free(pattern);
-    free(text);
     return result;
 }
 
@@ -176,7 +169,10 @@ static enum orl_result make_frames(struct clip *clip, const char *dir)
     // The last stretch may be a rest.
     if (params->frames && count > (size_t)params->frames)
         count = (size_t)params->frames;
-    result = write_frames(clip, chosen, count, dir);
+    for (size_t from = 0, to; result == ORL_OK && from < count; from = to) {
+        to = count - from < RUN_MAX ? count : from + RUN_MAX;
+        result = write_frames(clip, chosen, from, to, dir);
+    }
     free(chosen);
     return result == ORL_OK ? drop_still(clip, dir) : result;
 }

@@ -216,7 +216,7 @@ enum orl_result orl_video_decode(const struct orl_log *log, const struct orl_pro
                                video.colours);
     char *pattern = orl_path_join(log, frames_dir, "%05d.ppm");
     const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-noautorotate",
-                                "-i", path, "-map", "0:V:0", "-vf", filters, "-vsync", "0",
+                                "-i", path, "-map", "0:V:0", "-vf", filters, "-fps_mode", "passthrough",
                                 "-frames:v", most, "-start_number", "0", pattern, NULL};
     result = filters && pattern
                  ? orl_process_run(log, &(struct orl_process_params){.argv = argv,
