@@ -204,7 +204,9 @@ static enum orl_result write_files(struct writing *w, json_t *files)
         size_t count = left < CELLS_PER_FILE ? left : CELLS_PER_FILE;
         encode_cells(w, c, count, rest, &points);
         char path[64];
-        snprintf(path, sizeof path, "points/%04zu.bin", c / CELLS_PER_FILE);
+        if (!(w->coarse < w->share)) // the coarse file has all points
+            continue;
+        snprintf(path, sizeof path, "%spoints/%04zu.bin", w->site->folder, c / CELLS_PER_FILE);
         result = orl_site_write(w->site, path, rest, points * POINT_BYTES);
         json_t *file = result == ORL_OK ? orl_site_file(w->site, path) : NULL;
         if (file)
@@ -217,8 +219,10 @@ static enum orl_result write_files(struct writing *w, json_t *files)
 }
 
 // Writes the header, the cells' records and the coarse points.
-static enum orl_result write_coarse(struct writing *w)
+static enum orl_result write_coarse(struct writing *w, json_t **file)
 {
+    char path[64];
+    snprintf(path, sizeof path, "%spoints/coarse.bin", w->site->folder);
     const uint32_t header[4] = {magic, 1, (uint32_t)w->order.cells, POINT_BYTES};
     size_t cells = w->order.cells * sizeof *w->words;
     size_t size = sizeof header + cells + w->coarse_size;
@@ -228,46 +232,60 @@ static enum orl_result write_coarse(struct writing *w)
     memcpy(data, header, sizeof header);
     memcpy(data + sizeof header, w->words, cells);
     memcpy(data + sizeof header + cells, w->coarse_data, w->coarse_size);
-    enum orl_result result = orl_site_write(w->site, "points/coarse.bin", data, size);
+    enum orl_result result = orl_site_write(w->site, path, data, size);
+    *file = result == ORL_OK ? orl_site_file(w->site, path) : NULL;
     free(data);
     return result;
 }
 
-enum orl_result orl_site_points(struct site *site, json_t **out)
+enum orl_result orl_site_points(struct site *site, const struct orl_points *points, size_t max_points,
+                                json_t **out)
 {
     struct writing w = {.site = site};
-    struct orl_points level = {0}; // of a cloud that is larger than memory
-    const struct orl_lod *lod = site->scene->lod;
+    size_t before = site->report->points;
     json_t *files = json_array(), *coarse = NULL;
-    enum orl_result result = lod ? orl_lod_sample(lod, (size_t)site->params->max_points, &level) : ORL_OK;
-    if (result == ORL_OK)
-        result = make_order(site->log, lod ? &level : &site->scene->points, &w.order);
+    enum orl_result result = make_order(site->log, points, &w.order);
     if (result == ORL_OK && w.order.count == 0)
         result = orl_fail(site->log, ORL_ERR_DATA, "the scene has no points: nothing to publish");
     if (result != ORL_OK)
         goto end;
     double count = (double)w.order.count;
-    w.share = fmin(1, (double)site->params->max_points / count);
+    w.share = fmin(1, (double)max_points / count);
     w.coarse = fmin(w.share, (double)COARSE_BYTES / POINT_BYTES / count);
     w.words = orl_array(site->log, w.order.cells, sizeof *w.words);
     w.coarse_data = orl_array(site->log, (size_t)ceil(count * w.coarse) + w.order.cells,
                               POINT_BYTES);
     result = w.words && w.coarse_data ? write_files(&w, files) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = write_coarse(&w);
-    coarse = result == ORL_OK ? orl_site_file(site, "points/coarse.bin") : NULL;
+        result = write_coarse(&w, &coarse);
     if (result == ORL_OK) {
-        site->report->first_bytes += (size_t)json_integer_value(json_object_get(coarse, "bytes"));
-        *out = json_pack("{s:I, s:O, s:O}", "count", (json_int_t)site->report->points, "coarse",
+        *out = json_pack("{s:I, s:O, s:O}", "count", (json_int_t)(site->report->points - before), "coarse",
                          coarse, "files", files);
         result = *out ? ORL_OK : ORL_ERR_MEMORY;
     }
 end:
     json_decref(files);
     json_decref(coarse);
-    orl_points_finish(&level);
     free(w.order.index);
     free(w.words);
     free(w.coarse_data);
+    return result;
+}
+
+enum orl_result orl_site_scene_points(struct site *site, json_t **out)
+{
+    struct orl_points level = {0}, walls = {0}; // of a cloud that is larger than memory; of a room
+    const struct orl_lod *lod = site->scene->lod;
+    size_t most = (size_t)site->params->max_points;
+    enum orl_result result = lod ? orl_lod_sample(lod, most, &level) : ORL_OK;
+    if (result == ORL_OK && site->carves)
+        result = orl_site_room(site, &walls);
+    if (result == ORL_OK)
+        result = orl_site_points(site, site->carves ? &walls : lod ? &level : &site->scene->points, most, out);
+    if (result == ORL_OK)
+        site->report->first_bytes +=
+            (size_t)json_integer_value(json_object_get(json_object_get(*out, "coarse"), "bytes"));
+    orl_points_finish(&level);
+    orl_points_finish(&walls);
     return result;
 }

@@ -17,13 +17,17 @@ struct site_range {
 
 struct site {
     const struct orl_log *log;
-    const struct orl_scene *scene;
+    struct orl_scene *scene;
     const struct orl_publish_params *params;
     struct orl_gpu *gpu;
     struct orl_renderer *renderer;
     struct orl_render_params render; // options of the method oriel, as tuned for the scene
     struct site_range range;         // of radiance
     const char *dir;                 // the folder that is written to
+    const char *folder;              // within it, of what is written now: "" or "steps/NNNNN/"
+    bool carves;                     // silhouettes say where the subject is (site_steps.c)
+    struct orl_render_params subject; // of li, which shows it
+    struct orl_room room;            // around the subject, of the first time step: known or a guess
     json_t *settings;                // owned: settings.h
     size_t start;                    // the photograph at which the walk begins unless they say
     struct orl_publish_report *report;
@@ -38,12 +42,25 @@ char *orl_site_path(const struct site *site, const char *path);
 
 // --- points (cells.c) ---
 
-// Writes points/ and sets *points to its part of the manifest.
-enum orl_result orl_site_points(struct site *site, json_t **points);
+// Writes points/ in site->folder and sets *out to its part of the manifest.
+enum orl_result orl_site_points(struct site *site, const struct orl_points *points, size_t max_points,
+                                json_t **out) ORL_CHECK_RESULT;
+// Those of the scene.
+enum orl_result orl_site_scene_points(struct site *site, json_t **out) ORL_CHECK_RESULT;
+
+// --- a subject made of silhouettes, which may move (site_steps.c) ---
+
+// Prepares the first time step: site->room and the points of its walls. Nothing without silhouettes.
+enum orl_result orl_site_room(struct site *site, struct orl_points *walls) ORL_CHECK_RESULT;
+// Gives the pixels without depth the depth of the room's walls.
+void orl_site_room_depth(const struct site *site, const struct orl_view *view, struct orl_image *depth);
+// Writes steps/, the subject and the photographs of each time step, but for the photographs of the first,
+// which the site itself has, and sets *steps to the manifest's array.
+enum orl_result orl_site_steps(struct site *site, json_t **steps) ORL_CHECK_RESULT;
 
 // --- photographs (site_photos.c) ---
 
-// Writes photos/, depth/ and thumbs/, and sets *photos to the manifest's array.
+// Writes photos/, depth/ and thumbs/ in site->folder, and sets *photos to the manifest's array.
 enum orl_result orl_site_photos(struct site *site, json_t **photos);
 // What the scene's radiance is published in: from well below what its brightest photographs see to
 // what its darkest ones clip at.
@@ -53,8 +70,8 @@ enum orl_result orl_site_poster(struct site *site);
 
 // --- manifest (site_manifest.c) ---
 
-// Writes manifest.json and takes over both parts.
-enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos);
+// Writes manifest.json and takes over its parts. steps: NULL of a scene without silhouettes.
+enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos, json_t *steps);
 
 // The entries that the manifests of a site and of a server have in common.
 json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,

@@ -10,6 +10,7 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "core/new_dir.h"
+#include "scene/info.h"
 #include "walk/internal.h"
 
 char *orl_site_path(const struct site *site, const char *path)
@@ -101,33 +102,43 @@ static size_t folder_bytes(const struct site *site, const char *folder)
 
 static enum orl_result write_site(struct site *site)
 {
-    json_t *points = NULL, *photos = NULL;
+    json_t *points = NULL, *photos = NULL, *steps = NULL;
     enum orl_result result = orl_walk_start(site->log, site->scene, &site->start);
     if (result == ORL_OK)
         result = make_folders(site);
     if (result == ORL_OK)
         result = orl_site_page(site);
     if (result == ORL_OK)
-        result = orl_site_points(site, &points);
+        result = orl_site_scene_points(site, &points);
     if (result == ORL_OK)
         result = orl_site_photos(site, &photos);
     if (result == ORL_OK)
         result = orl_site_poster(site);
+    if (result == ORL_OK && site->carves)
+        result = orl_site_steps(site, &steps);
     if (result == ORL_OK) {
         json_t *poster = orl_site_file(site, "poster.jpg");
         site->report->first_bytes += (size_t)json_integer_value(json_object_get(poster, "bytes"));
         json_decref(poster);
-        return orl_site_manifest(site, points, photos);
+        return orl_site_manifest(site, points, photos, steps);
     }
     json_decref(points);
     json_decref(photos);
+    json_decref(steps);
     return result;
 }
 
 // The page paints by the first method (web/shaders), whichever method the scene's default is. The
-// poster must look like the page.
+// poster must look like the page. Where silhouettes alone say where the subject is, or it moves, li has
+// its depth.
 static enum orl_result make_renderer(struct site *site)
 {
+    const struct orl_method *li = orl_method_find(site->log, "li");
+    if (!li)
+        return ORL_ERR_NOT_FOUND;
+    site->subject = li->params;
+    site->carves = orl_scene_silhouettes(site->scene) && !site->params->radiance &&
+                   (site->scene->frame_count || !orl_scene_point_count(site->scene));
     orl_render_params_tuned(site->log, &orl_methods[0], site->scene, &site->render);
     const struct orl_renderer_params limits = {.radiance = site->params->radiance};
     if (limits.radiance) {
@@ -145,7 +156,7 @@ static enum orl_result replace_site(const struct site *site, struct orl_new_dir 
     return result == ORL_OK ? orl_new_dir_replace(site->log, dir) : result;
 }
 
-enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
+enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
                             const struct orl_publish_params *asked,
                             struct orl_publish_report *report)
 {
@@ -154,7 +165,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
     char *title = NULL;
     *report = (struct orl_publish_report){0};
     struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
-                        .report = report};
+                        .report = report, .folder = ""};
     struct orl_new_dir dir;
     enum orl_result result = orl_new_dir_begin_over(log, params.out, &dir);
     if (result == ORL_OK)

@@ -31,9 +31,10 @@ struct orl_publish_report {
     size_t bytes;       // of all files
 };
 
-// Writes the site completely or not at all, without held-out photographs. An earlier site of Oriel
+// Writes the site completely or not at all, without held-out photographs, of a sequence with silhouettes
+// all time steps. The scene shows afterwards what it showed before. An earlier site of Oriel
 // at `out` is replaced. ORL_ERR_ARGUMENT: `out` is another folder.
-enum orl_result orl_publish(struct orl_gpu *gpu, const struct orl_scene *scene,
+enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
                             const struct orl_publish_params *params,
                             struct orl_publish_report *report) ORL_CHECK_RESULT;
 

@@ -629,7 +629,7 @@ static void make_site(struct server *server)
 {
     const struct orl_progress progress = {report_site, site_cancelled, server};
     struct site_table table;
-    enum orl_result result = orl_site_table_make(server->walk.gpu, server->content.scene,
+    enum orl_result result = orl_site_table_make(server->walk.gpu, server->walk.scene,
                                                  server->params->radiance, &progress, &table);
     if (result == ORL_OK)
         server->content.site = table;

@@ -72,7 +72,7 @@ static enum orl_result write_pictures(struct site *site, size_t photo,
     if (result == ORL_OK)
         result = write_smaller(site, &image, camera->width, camera->height,
                                site->params->jpeg_quality, picture);
-    if (result == ORL_OK)
+    if (result == ORL_OK && !*site->folder) // the list of photographs shows the first time step
         result = write_thumb(site, &image, camera, thumb);
     orl_image_finish(&image);
     return result;
@@ -162,19 +162,21 @@ static enum orl_result pack_depth(const struct orl_log *log, const struct orl_im
     return result;
 }
 
-// Draws the depth of the point cloud in this camera without any photograph. The occlusion test
-// compares with this depth.
+// Draws the depth of the point cloud, or of the hull in its room, in this camera without any photograph.
+// The occlusion test compares with this depth.
 static enum orl_result draw_depth(struct site *site, const struct orl_view *view,
                                   struct orl_image *depth)
 {
     const struct orl_method *points = orl_method_find(site->log, "points");
     if (!points)
         return ORL_ERR_NOT_FOUND;
-    struct orl_render_params params = points->params;
+    struct orl_render_params params = site->carves ? site->subject : points->params;
     params.fill = ORL_FILL_NONE;
-    params.splat_scale = site->render.splat_scale;
-    params.front_layer = site->render.front_layer;
-    params.min_support = site->render.min_support;
+    if (!site->carves) {
+        params.splat_scale = site->render.splat_scale;
+        params.front_layer = site->render.front_layer;
+        params.min_support = site->render.min_support;
+    }
     params.leave_out = ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE | ORL_LAYER_CONFIDENCE;
     struct orl_frame frame;
     enum orl_result result = orl_renderer_draw(site->renderer, view, &params, NULL, &frame);
@@ -183,6 +185,8 @@ static enum orl_result draw_depth(struct site *site, const struct orl_view *view
     *depth = frame.depth;
     frame.depth = (struct orl_image){0};
     orl_frame_finish(&frame);
+    if (site->carves)
+        orl_site_room_depth(site, view, depth);
     return ORL_OK;
 }
 
@@ -239,9 +243,9 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
                                   .cam_from_world = photo->view.cam_from_world};
     char picture[64], thumb[64], depth[64];
     float nearest = 1;
-    snprintf(picture, sizeof picture, "photos/%05zu.jpg", number);
+    snprintf(picture, sizeof picture, "%sphotos/%05zu.jpg", site->folder, number);
     snprintf(thumb, sizeof thumb, "thumbs/%05zu.jpg", number);
-    snprintf(depth, sizeof depth, "depth/%05zu.png", number);
+    snprintf(depth, sizeof depth, "%sdepth/%05zu.png", site->folder, number);
     enum orl_result result = site->params->radiance
                                  ? write_radiance(site, index, &c, picture, thumb)
                                  : write_pictures(site, index, &c, picture, thumb);
@@ -274,6 +278,7 @@ enum orl_result orl_site_photos(struct site *site, json_t **out)
 {
     const struct orl_scene *scene = site->scene;
     json_t *photos = json_array();
+    size_t count = 0;
     enum orl_result result = photos ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         if (scene->photos[i].test)
@@ -282,13 +287,15 @@ enum orl_result orl_site_photos(struct site *site, json_t **out)
         if (orl_progress_cancelled(site->params->progress))
             result = ORL_ERR_CANCELLED;
         if (result == ORL_OK)
-            result = write_photo(site, i, site->report->photos, &photo);
+            result = write_photo(site, i, count, &photo);
         if (result == ORL_OK && json_array_append_new(photos, photo) != 0)
             result = ORL_ERR_MEMORY;
-        site->report->photos += result == ORL_OK;
-        orl_progress_report(site->params->progress, "publish", (double)(i + 1),
-                            (double)scene->photo_count, scene->photos[i].name);
+        count += result == ORL_OK;
+        if (!*site->folder)
+            orl_progress_report(site->params->progress, "publish", (double)(i + 1),
+                                (double)scene->photo_count, scene->photos[i].name);
     }
+    site->report->photos += count;
     if (result == ORL_OK)
         *out = photos;
     else
@@ -303,7 +310,8 @@ enum orl_result orl_site_poster(struct site *site)
     struct orl_image srgb = {0};
     (void)orl_walk_settings_start(site->settings, &view.camera, &view);
     view.camera = orl_camera_reframed(&view.camera, POSTER_WIDTH, POSTER_HEIGHT);
-    enum orl_result result = orl_renderer_draw(site->renderer, &view, &site->render, NULL, &frame);
+    const struct orl_render_params *render = site->carves ? &site->subject : &site->render;
+    enum orl_result result = orl_renderer_draw(site->renderer, &view, render, NULL, &frame);
     if (result != ORL_OK)
         return result;
     result = orl_tone_srgb(site->log, &frame.color, &srgb);

@@ -56,7 +56,7 @@ static enum orl_result read_site(const struct orl_log *log, const char *dir,
     return result;
 }
 
-enum orl_result orl_site_table_make(struct orl_gpu *gpu, const struct orl_scene *scene,
+enum orl_result orl_site_table_make(struct orl_gpu *gpu, struct orl_scene *scene,
                                     bool radiance, const struct orl_progress *progress, struct site_table *table)
 {
     const struct orl_log *log = orl_gpu_log(gpu);

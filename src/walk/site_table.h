@@ -18,7 +18,7 @@ struct site_table {
 
 // Publishes the scene into a private folder for temporary files, and keeps its data: manifest,
 // shaders, points, photographs and their depth. The folder is gone when this returns.
-enum orl_result orl_site_table_make(struct orl_gpu *gpu, const struct orl_scene *scene, bool radiance,
+enum orl_result orl_site_table_make(struct orl_gpu *gpu, struct orl_scene *scene, bool radiance,
                                     const struct orl_progress *progress,
                                     struct site_table *table) ORL_CHECK_RESULT;
 void orl_site_table_finish(struct site_table *table);

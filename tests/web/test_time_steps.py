@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Time in the walk: the server's time steps, and the page that plays them. Made by tests/e2e/walk_time_steps.sh:
-test_time_steps.py ORIEL SCENE [SCREENSHOT]."""
+"""Time in the walk: the server's time steps, and the page that plays them, from the server and from static files.
+Made by tests/e2e/walk_time_steps.sh: test_time_steps.py ORIEL SCENE SITE [SCREENSHOT]."""
 import json
 import struct
 import sys
 import time
 import unittest
 
-from browser import Browser
+from browser import Browser, Server
 from client import Client, Walk
 
-ORIEL, SCENE = sys.argv[1:3]
+ORIEL, SCENE, SITE = sys.argv[1:4]
 
 
 class TimeSteps(unittest.TestCase):
@@ -76,8 +76,52 @@ class TimeSteps(unittest.TestCase):
         self.assertEqual(browser.js("return document.querySelector('#time-steps output').textContent"), "3 / 3")
         self.assertFalse(browser.js("return oriel.timeSteps.playing"))
         self.assertEqual(browser.errors(), [])
-        if len(sys.argv) > 3:
-            browser.screenshot(sys.argv[3])
+        if len(sys.argv) > 4:
+            browser.screenshot(sys.argv[4])
+
+    def test_a_site_plays_from_static_files(self):
+        server = Server(SITE)
+        self.addCleanup(server.close)
+        browser = Browser(384, 288)
+        self.addCleanup(browser.close)
+        browser.open(server.address)
+        browser.js("oriel.navigator.setView(oriel.navigator.view, null); oriel.navigator.goTo(oriel.photos[1])")
+        browser.settle()
+        # In any order, each time step at a photograph's place looks like its own photograph best.
+        for shown in (2, 0, 1):
+            browser.js(f"oriel.timeSteps.show({shown})")
+            browser.settle()
+            off = browser.driver.execute_async_script(DIFFERENCES)
+            self.assertEqual(off.index(min(off)), shown, off)
+            self.assertLess(off[shown], 4, off)
+        browser.js("window.seen = new Set(); const {moving} = oriel.picture, put = moving.put.bind(moving); "
+                   "moving.put = renderer => { put(renderer); seen.add(moving.shown); }; oriel.timeSteps.toggle()")
+        browser.wait("return seen.size === 3")
+        browser.js("oriel.timeSteps.toggle()")
+        browser.settle()
+        self.assertEqual(browser.errors(), [])
+
+
+# Mean differences, of 255, of the picture to the second photograph of each time step.
+DIFFERENCES = """
+const done = arguments[0];
+(async () => {
+    const pixels = async (source, width, height) => {
+        const canvas = Object.assign(document.createElement("canvas"), {width, height});
+        canvas.getContext("2d").drawImage(source, 0, 0, width, height);
+        return canvas.getContext("2d").getImageData(0, 0, width, height).data;
+    };
+    const picture = await oriel.picture.capture(oriel.windowCamera(1), 0), {width, height} = picture;
+    const shown = await pixels(picture, width, height), all = [];
+    for (const step of oriel.picture.moving.steps) {
+        const file = await fetch(step.photos[1].picture.file);
+        const photo = await pixels(await createImageBitmap(await file.blob()), width, height);
+        all.push(photo.reduce((sum, value, i) => sum + Math.abs(value - shown[i]), 0) / photo.length * 4 / 3);
+    }
+    oriel.wake();
+    done(all);
+})().catch(error => done([String(error)]));
+"""
 
 
 if __name__ == "__main__":

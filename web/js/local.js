@@ -1,6 +1,7 @@
 // The picture as this browser draws it: points and photographs on its own graphics chip.
 import {Device} from "./gl.js";
 import {clamp, distance} from "./math.js";
+import {Moving} from "./moving.js";
 import {rankPhotos} from "./photos.js";
 import {Cloud} from "./points.js";
 import {LAYERS, loadShaders, Renderer, TONES} from "./renderer.js";
@@ -49,7 +50,9 @@ export class LocalPicture {
         this.device = new Device(canvas);
         this.cloud = new Cloud(this.device, coarse);
         this.renderer = new Renderer(this.device, sources, manifest, photos, this.cloud, photoBudget());
-        this.allBytes = totalBytes(manifest);
+        this.moving = manifest.steps ? new Moving(this.device, files, manifest, photos, onChange) : null;
+        this.timeSteps = null; // of the page
+        this.allBytes = totalBytes(manifest) + (this.moving ? this.moving.bytes : 0);
         this.lookedAt = 0;
         this.rank = [photos[manifest.start]]; // until a view is drawn
         this.points = [];      // in the world, whose visibility frames tell
@@ -60,7 +63,7 @@ export class LocalPicture {
             throw new Error(text.lostDevice);
         });
         canvas.addEventListener("webglcontextrestored", () => location.reload());
-        for (const photo of photos)
+        for (const photo of this.moving ? [] : photos)
             this.request(photo);
         manifest.points.files.forEach((file, number) =>
             files.schedule(() => this.pointsUrgency(file), () => this.loadPoints(file, number)));
@@ -113,7 +116,7 @@ export class LocalPicture {
         for (const photo of this.rank.slice(0, store.slots)) {
             if (photo.slot >= 0)
                 photo.lastUse = ++store.clock;
-            else if (photo.dropped)
+            else if (photo.dropped && !this.moving)
                 this.request(photo);
             photo.dropped = false;
         }
@@ -123,7 +126,7 @@ export class LocalPicture {
     // Everything that the view wants is here.
     get complete()
     {
-        return this.cloud.loaded === this.cloud.points &&
+        return this.cloud.loaded === this.cloud.points && (!this.moving || this.moving.complete) &&
                this.rank.slice(0, this.renderer.photos.slots).every(p => p.slot >= 0);
     }
 
@@ -139,6 +142,8 @@ export class LocalPicture {
         if (this.canvas.width !== full.width || this.canvas.height !== full.height)
             Object.assign(this.canvas, {width: full.width, height: full.height});
         this.rankFor(full, camera === full);
+        if (this.moving)
+            this.moving.show(this.renderer, ...(this.timeSteps ? this.timeSteps.pair : [0, 0]));
         this.renderer.draw(camera, layer);
         this.renderer.show(layer);
         if (camera === full || performance.now() - this.lookedAt > LOOK_EVERY)

@@ -58,7 +58,7 @@ class Walk {
         this.picture = picture;
         this.server = picture.remote ? picture : null;
         this.own = picture.remote ? null : picture; // drawn by this browser
-        this.timeSteps = picture.remote && this.manifest.time_steps > 1 && !this.manifest.follows
+        this.timeSteps = this.manifest.time_steps > 1 && !this.manifest.follows && (picture.remote || picture.moving)
             ? new TimeSteps(this.manifest.time_steps, byId("time-steps"), () => this.change(() => {})) : null;
         picture.timeSteps = this.timeSteps;
         this.follows = Boolean(this.manifest.follows); // what there is to see changes by itself
@@ -335,6 +335,7 @@ class Walk {
     {
         const name = this.picture.layers[this.layer];
         this.picture = picture;
+        picture.timeSteps = this.timeSteps;
         this.layer = Math.max(picture.layers.indexOf(name), 0);
         this.panel.setLayers(picture.layers, this.layer);
         this.panel.showDrawer(picture.remote ? "server" : "browser", "");

@@ -142,6 +142,18 @@ export class PhotoStore {
         photo.slot = slot;
     }
 
+    // Another time step of the photograph, whose depth is told by `entry` of the manifest. It stays where it is.
+    replace(photo, entry, picture, depth)
+    {
+        photo.depth = entry.depth;
+        if (photo.slot < 0 && this.ready.length < this.slots)
+            photo.slot = this.freeSlot();
+        if (photo.slot >= 0) {
+            this.writeColor(picture, photo.slot);
+            this.writeDepth(photo, depth, photo.slot);
+        }
+    }
+
     // Mip levels are made in a texture of its own: of the array they would be made for all layers.
     writeColor(picture, slot)
     {

@@ -48,6 +48,12 @@ export class Cloud {
         }
     }
 
+    release()
+    {
+        this.gl.deleteVertexArray(this.vertices);
+        this.gl.deleteBuffer(this.buffer);
+    }
+
     append(cell, bytes, at, count)
     {
         const gl = this.gl;

@@ -106,7 +106,7 @@ export class Renderer {
     {
         this.device = device;
         this.manifest = manifest;
-        this.cloud = cloud;
+        this.clouds = [cloud]; // and what moves, where something does
         this.programs = makePrograms(device, sources);
         this.photos = new PhotoStore(device, this.programs, photos, photoBytes,
                                      manifest.radiance);
@@ -163,36 +163,39 @@ export class Renderer {
 
     splat(camera, options)
     {
-        const gl = this.device.gl, f = this.frame, list = this.cloud.visible(camera, POINTS_PER_PIXEL);
-        this.drawn = list.reduce((sum, {count}) => sum + count, 0);
+        const gl = this.device.gl, f = this.frame;
+        const lists = this.clouds.map(cloud => ({cloud, list: cloud.visible(camera, POINTS_PER_PIXEL)}));
+        this.drawn = lists.reduce((sum, {list}) => list.reduce((part, {count}) => part + count, sum), 0);
         const common = {...this.values, rotation: camera.r, size: [camera.width, camera.height],
                         cell_low: [0, 0, 0], cell_size: [1, 1, 1], cell_radius: [1, 0]};
         gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.LESS);
         this.device.clear(f.level0);
-        this.drawCells(this.programs.splats, f.level0, common, list, options.splat_scale);
+        this.drawCells(this.programs.splats, f.level0, common, lists, options.splat_scale);
         gl.disable(gl.DEPTH_TEST);
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.ONE, gl.ONE);
         this.device.clear(f.layer);
-        this.drawCells(this.programs.layer, f.layer, {...common, nearest: f.level0.textures[0]}, list,
+        this.drawCells(this.programs.layer, f.layer, {...common, nearest: f.level0.textures[0]}, lists,
                        options.splat_scale);
         gl.disable(gl.BLEND);
     }
 
-    drawCells(program, target, common, list, radiusScale)
+    drawCells(program, target, common, lists, radiusScale)
     {
         const gl = this.device.gl, places = name => program.uniforms.get(name);
         this.device.begin(target);
         program.use(common);
-        gl.bindVertexArray(this.cloud.vertices);
-        for (const {cell, count, enlarged} of list) {
-            program.set(places("cell_low"), sub(cell.low, this.camera.eye));
-            program.set(places("cell_size"), cell.size);
-            if (places("cell_radius"))
-                program.set(places("cell_radius"), [cell.radiusLow * radiusScale * enlarged,
-                                                    cell.radiusOctaves]);
-            gl.drawArrays(gl.POINTS, cell.base, count);
+        for (const {cloud, list} of lists) {
+            gl.bindVertexArray(cloud.vertices);
+            for (const {cell, count, enlarged} of list) {
+                program.set(places("cell_low"), sub(cell.low, this.camera.eye));
+                program.set(places("cell_size"), cell.size);
+                if (places("cell_radius"))
+                    program.set(places("cell_radius"), [cell.radiusLow * radiusScale * enlarged,
+                                                        cell.radiusOctaves]);
+                gl.drawArrays(gl.POINTS, cell.base, count);
+            }
         }
     }
 

@@ -1,0 +1,82 @@
+// What moves in a site: a hull and photographs for each time step. Files are loaded in the order in which
+// time shows them; what is decoded waits for the frame that shows it.
+import {Cloud} from "./points.js";
+
+const OPTIONS = {colorSpaceConversion: "none", premultiplyAlpha: "none"};
+
+export class Moving {
+    // onChange(): another time step is ready.
+    constructor(device, files, manifest, photos, onChange)
+    {
+        Object.assign(this, {device, files, photos, onChange, wanted: 0, shown: -1, ready: null, decoding: false});
+        this.steps = manifest.steps.map(step => ({photos: manifest.photos, ...step}));
+        this.cloud = null;
+        this.steps.forEach((step, number) => {
+            step.loaded = new Promise((done, failed) => files.schedule(
+                () => 1 + (number - this.wanted + this.steps.length) % this.steps.length,
+                () => this.load(step).then(done, error => {
+                    failed(error);
+                    throw error;
+                })));
+            step.loaded.catch(() => {}); // the files say what is wrong
+        });
+    }
+
+    async load(step)
+    {
+        const get = file => this.files.get(file.file);
+        [step.hull, ...step.pictures] = await Promise.all([get(step.points), ...step.photos.flatMap(
+            photo => [get(photo.picture), get(photo.depth)])]);
+        step.here = true;
+    }
+
+    get complete() { return this.shown === this.wanted; }
+
+    get bytes()
+    {
+        const of = photo => photo.picture.bytes + photo.depth.bytes;
+        return this.steps.reduce((sum, {points, photos}) => photos.reduce((s, p) => s + of(p), sum + points.bytes), 0);
+    }
+
+    // Begins what a frame at time step `now` needs, before which `next` will be shown. What was made in the
+    // meantime is put into the renderer, late or not: time leaves out what there was no time for.
+    show(renderer, now, next)
+    {
+        this.wanted = now;
+        if (this.ready)
+            this.put(renderer);
+        if (this.decoding || (this.shown === now && next === now))
+            return;
+        const number = this.shown === now ? next : now;
+        if (number !== this.shown)
+            this.decode(number);
+    }
+
+    async decode(number)
+    {
+        const step = this.steps[number];
+        this.decoding = true;
+        try {
+            await step.loaded;
+            const pictures = await Promise.all(step.pictures.map(
+                bytes => createImageBitmap(new Blob([bytes]), OPTIONS)));
+            this.ready = {number, pictures};
+        } finally {
+            this.decoding = false;
+        }
+        this.onChange();
+    }
+
+    put(renderer)
+    {
+        const {number, pictures} = this.ready, step = this.steps[number];
+        this.ready = null;
+        this.shown = number;
+        if (this.cloud)
+            this.cloud.release();
+        this.cloud = new Cloud(this.device, step.hull);
+        renderer.clouds = [renderer.clouds[0], this.cloud];
+        this.photos.forEach((photo, i) => renderer.photos.replace(photo, step.photos[i], pictures[2 * i], pictures[2 * i + 1]));
+        pictures.forEach(picture => picture.close());
+    }
+}
