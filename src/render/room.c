@@ -10,8 +10,6 @@
 #include "render/photos.h"
 #include "render/select.h"
 
-// Radius of the shell around a scene whose room is not known, in distances of the farthest photograph.
-static const double SHELL = 2;
 
 bool orl_frame_shows_room(const struct frame *frame)
 {
@@ -38,7 +36,7 @@ static void measure(const struct frame *frame, double middle[3], double half[3])
         farthest = fmax(farthest, sqrt(squares));
     }
     for (int k = 0; !room->known && k < 3; k++)
-        half[k] = farthest > 0 ? SHELL * farthest : 1;
+        half[k] = farthest > 0 ? ORL_ROOM_SHELL * farthest : 1;
 }
 
 static void place(const struct frame *frame, struct gather_block *block)

@@ -5,6 +5,9 @@
 
 #include "render/frame.h"
 
+// Radius of the shell around a scene whose room is not known, in distances of the farthest photograph.
+#define ORL_ROOM_SHELL 2.0
+
 // True if this frame shows the room where there is no surface: fill=room.
 bool orl_frame_shows_room(const struct frame *frame);
 // Paints frame->room, in the encoding of blended pixels: the scene's room, or where it has none a

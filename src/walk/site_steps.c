@@ -10,6 +10,7 @@
 #include "io/picture.h"
 #include "render/photos.h"
 #include "render/proxy.h"
+#include "render/room.h"
 #include "scene/cones.h"
 #include "scene/point_radii.h"
 #include "walk/internal.h"
@@ -178,7 +179,7 @@ static enum orl_result find_room(struct site *site, const struct orl_points *hul
             eye[k] -= middle[k];
         farthest = fmax(farthest, sqrt(orl_dot3(eye, eye)));
     }
-    farthest = farthest > 0 ? farthest * (double)site->subject.shell : 1;
+    farthest = farthest > 0 ? farthest * ORL_ROOM_SHELL : 1;
     for (int k = 0; k < 3; k++) {
         site->room.low[k] = middle[k] - farthest;
         site->room.high[k] = middle[k] + farthest;
