@@ -4,7 +4,7 @@
 . "$(dirname "$0")/command_lib"
 /usr/bin/python3 -c 'import flask' 2>/dev/null || { echo "python3-flask is not installed"; exit 77; }
 command -v curl >/dev/null && command -v colmap >/dev/null || { echo "curl or colmap is missing"; exit 77; }
-"$oriel" synth monument --out photos --size 192x128 --count 8 --quiet || exit 1
+"$oriel" synth monument --out photos --size 288x192 --count 8 --quiet || exit 1
 /usr/bin/python3 -B "$source/contrib/nodeodm/oriel_node.py" --port 0 --data data --oriel "$oriel" \
     --token secret >node.txt 2>&1 &
 node=$!
