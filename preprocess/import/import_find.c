@@ -6,37 +6,21 @@
 
 #include "core/memory.h"
 #include "io/picture.h"
+#include "io/video.h"
 #include "preprocess/import/import_internal.h"
 #include "preprocess/job/test_block.h"
 
-static bool has_extension(const char *name, const char *const *known)
-{
-    const char *dot = strrchr(name, '.');
-    for (; dot && *known; known++)
-        if (strcasecmp(dot + 1, *known) == 0)
-            return true;
-    return false;
-}
-
 static bool is_picture(const char *name)
 {
-    static const char *const known[] = {"jpg", "jpeg", "png", "tif", "tiff", "exr", "heic",
-                                        "heif", "avif", "pbm", "pgm", "ppm", "pnm", NULL};
-    return has_extension(name, known) || orl_picture_is_raw(name);
-}
-
-static bool is_clip(const char *name)
-{
-    static const char *const known[] = {"avi", "mp4", "mov", "mkv", "webm", "m4v", "mpg", "mpeg",
-                                        "wmv", NULL};
-    return has_extension(name, known);
+    return orl_path_has_extension(name, "jpg jpeg png tif tiff exr heic heif avif pbm pgm ppm pnm") ||
+           orl_picture_is_raw(name);
 }
 
 // Length of the name without the extension of a picture or clip. Other dots belong to the name.
 static size_t stem_length(const char *name)
 {
     const char *dot = strrchr(name, '.');
-    return dot && (is_picture(name) || is_clip(name)) ? (size_t)(dot - name) : strlen(name);
+    return dot && (is_picture(name) || orl_video_is(name)) ? (size_t)(dot - name) : strlen(name);
 }
 
 static bool same_text(const char *a, size_t a_length, const char *b, size_t b_length)
@@ -114,7 +98,7 @@ static enum orl_result look_inside(const struct orl_log *log, const char *dir, c
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
         const char *name = names.items[i];
         pictures += is_picture(name);
-        if (!is_clip(name))
+        if (!orl_video_is(name))
             continue;
         bool this_one = same_text(name, stem_length(name), role, strlen(role));
         if (!named)
@@ -174,8 +158,8 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
             result = ORL_ERR_MEMORY;
         else if (orl_path_is_dir(path))
             result = look_inside(log, path, role, found);
-        else if (is_picture(file) || is_clip(file))
-            result = set(log, dir, file, is_clip(file) ? IMPORT_CLIP : IMPORT_PICTURE, found);
+        else if (is_picture(file) || orl_video_is(file))
+            result = set(log, dir, file, orl_video_is(file) ? IMPORT_CLIP : IMPORT_PICTURE, found);
         free(path);
     }
     if (result == ORL_OK && loosely && found->kind == IMPORT_NOTHING)
@@ -362,11 +346,10 @@ static enum orl_result find_pictures(struct import_job *job, const char *dir)
 // A JPEG or PNG keeps its name, since every COLMAP tool reads these formats.
 static enum orl_result name_view(const struct import_job *job, struct import_view *view)
 {
-    static const char *const kept[] = {"jpg", "jpeg", "png", NULL};
     const char *name = view->image->name;
     const char *file = orl_path_name(view->picture.path);
     const char *base = orl_path_name(name);
-    bool keep = view->picture.kind == IMPORT_PICTURE && has_extension(file, kept);
+    bool keep = view->picture.kind == IMPORT_PICTURE && orl_path_has_extension(file, "jpg jpeg png");
     // The view keeps the folders in the camera's name and takes the extension of the file.
     view->name = keep ? orl_format(job->log, "%.*s%s", (int)(base - name), name, file)
                       : orl_format(job->log, "%.*s%.*s.jpg", (int)(base - name), name,

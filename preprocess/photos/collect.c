@@ -84,10 +84,9 @@ static void drop_jpegs_of_raw(struct orl_job *job)
     size_t kept = 0;
     for (size_t i = 0; i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
-        static const char *const jpeg[] = {"jpg", "jpeg", NULL};
         const struct orl_source *better = NULL;
         size_t stem = stem_length(source->given);
-        bool may_be = orl_has_extension(source->given, jpeg);
+        bool may_be = orl_path_has_extension(source->given, "jpg jpeg");
         for (size_t k = 0; may_be && k < job->source_count && !better; k++) {
             const struct orl_source *other = &job->sources[k];
             if (other->given && orl_develop_wanted(other->given) &&

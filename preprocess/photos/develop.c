@@ -18,13 +18,7 @@ static const float light_max = 65504; // greatest half float; infinities would s
 
 bool orl_develop_wanted(const char *name)
 {
-    static const char *const known[] = {".tif", ".tiff", ".exr", ".heic", ".heif",
-                                        ".avif"};
-    const char *dot = strrchr(name, '.');
-    for (size_t i = 0; dot && i < ORL_COUNT(known); i++)
-        if (strcasecmp(dot, known[i]) == 0)
-            return true;
-    return orl_picture_is_raw(name);
+    return orl_path_has_extension(name, "tif tiff exr heic heif avif ppm") || orl_picture_is_raw(name);
 }
 
 char *orl_develop_name(const struct orl_log *log, const char *name)

@@ -10,38 +10,26 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "io/video.h"
 #include "preprocess/photos/develop.h"
 #include "preprocess/photos/video_frames.h"
 
 // --- names ---
 
-bool orl_has_extension(const char *name, const char *const *extensions)
-{
-    const char *dot = strrchr(name, '.');
-    for (; dot && *extensions; extensions++)
-        if (strcasecmp(dot + 1, *extensions) == 0)
-            return true;
-    return false;
-}
-
 static bool is_photo_name(const char *name)
 {
-    static const char *const known[] = {"jpg", "jpeg", "png", NULL};
-    return name[0] != '.' && (orl_has_extension(name, known) || orl_develop_wanted(name));
+    return name[0] != '.' && (orl_path_has_extension(name, "jpg jpeg png") || orl_develop_wanted(name));
 }
 
 // Picture formats that Oriel does not read, though a user may expect it to.
 static bool is_other_photo_name(const char *name)
 {
-    static const char *const known[] = {"webp", "bmp", "gif", NULL};
-    return name[0] != '.' && orl_has_extension(name, known);
+    return name[0] != '.' && orl_path_has_extension(name, "webp bmp gif jxl jp2 psd");
 }
 
 static bool is_video_name(const char *name)
 {
-    static const char *const known[] = {"avi", "mp4", "m4v", "mov", "mkv", "webm", "mpg", "mpeg",
-                                        "mts", "m2ts", "wmv", "3gp", "ogv", "insv", NULL};
-    return name[0] != '.' && orl_has_extension(name, known);
+    return name[0] != '.' && orl_video_is(name);
 }
 
 // Files made from a photograph have longer names, and file systems allow 255 bytes.

@@ -12,7 +12,5 @@
 enum orl_result orl_photos_list(struct orl_job *job) ORL_CHECK_RESULT;
 // Records and reports a photograph that is not used.
 void orl_photos_skip(struct orl_job *job, const char *name, const char *why);
-// `extensions` ends with NULL; case is ignored.
-bool orl_has_extension(const char *name, const char *const *extensions);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/command_output.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "eval/choice.h"
 #include "hdr/replace.h"
@@ -46,12 +47,6 @@ struct job {
     const char *method; // name
     bool *skip;         // per photograph
 };
-
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcmp(dot, extension) == 0;
-}
 
 // --- output ---
 
@@ -138,7 +133,7 @@ static enum orl_result check(const struct hdr_options *o, const struct orl_log *
 // By default all layers; a picture format for viewing has colour only.
 static void default_layers(const struct hdr_options *o, struct orl_frame_layers *layers)
 {
-    if (!o->layers.count && !has_extension(o->out, ".png"))
+    if (!o->layers.count && !orl_path_has_extension(o->out, "png"))
         *layers = (struct orl_frame_layers){true, true, true, true};
 }
 

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <xxhash.h>
@@ -33,6 +34,19 @@ const char *orl_path_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
+}
+
+bool orl_path_has_extension(const char *path, const char *extensions)
+{
+    const char *dot = strrchr(orl_path_name(path), '.');
+    size_t length = dot ? strlen(dot + 1) : 0;
+    for (const char *at = extensions; length && *at; at += strspn(at, " ")) {
+        size_t word = strcspn(at, " ");
+        if (word == length && strncasecmp(at, dot + 1, word) == 0)
+            return true;
+        at += word;
+    }
+    return false;
 }
 
 bool orl_path_is_file(const char *path)

@@ -13,6 +13,8 @@ char *orl_path_join(const struct orl_log *log, const char *dir, const char *name
 char *orl_path_append(const struct orl_log *log, const char *path, const char *ending);
 // The part after the last '/', pointing into `path`.
 const char *orl_path_name(const char *path);
+// True when a path ends in a dot and one of these words, which are separated by spaces. Case is ignored.
+bool orl_path_has_extension(const char *path, const char *extensions);
 bool orl_path_is_file(const char *path);
 bool orl_path_is_dir(const char *path);
 

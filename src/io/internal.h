@@ -30,6 +30,7 @@ struct orl_picture_header {
     size_t exif_size, icc_size;
     int bits; // of a sample
     bool panorama, gain_map;
+    double gamma; // PNG: samples are light to this power; 0: they are sRGB's
 };
 enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                      struct orl_picture_header *header);
@@ -51,7 +52,7 @@ enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path,
                                     struct orl_picture_header *header);
 enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                size_t size, int channels, struct orl_image *image);
-// Decodes 8 or 16 bits to linear light, F32 x3. Samples are sRGB unless the file's gamma is 1.
+// Decodes 8 or 16 bits of sRGB to linear light, F32 x3.
 // as_stored: they are only scaled to [0, 1].
 enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
                                       const uint8_t *data, size_t size, bool as_stored,
@@ -84,6 +85,8 @@ struct orl_profile *orl_profile_create(const struct orl_log *log, const char *pa
                                        const void *icc, size_t size);
 // That of Adobe RGB (1998), which cameras name in EXIF alone. NULL when memory runs out.
 struct orl_profile *orl_profile_create_adobe(const struct orl_log *log);
+// That of samples with the primaries of sRGB which, to the power `gamma`, are light.
+struct orl_profile *orl_profile_create_gamma(const struct orl_log *log, double gamma);
 void orl_profile_destroy(struct orl_profile **profile);
 // Converts stored samples in [0, 1], F32 x3, to linear light. Colours outside the Rec. 709 gamut
 // are clipped to it.

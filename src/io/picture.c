@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "core/color.h"
 #include "core/file.h"
@@ -19,20 +18,13 @@ static const size_t max_file_bytes = (size_t)1 << 30;
 
 bool orl_picture_is_raw(const char *path)
 {
-    static const char *const known[] = {"3fr", "arw", "cr2", "cr3", "crw", "dcr", "dng", "erf",
-                                        "iiq", "k25", "kdc", "mef", "mrw", "nef", "nrw", "orf",
-                                        "pef", "raf", "raw", "rw2", "sr2", "srf", "srw", "x3f"};
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < ORL_COUNT(known); i++)
-        if (strcasecmp(dot + 1, known[i]) == 0)
-            return true;
-    return false;
+    return orl_path_has_extension(path, "3fr arw cr2 cr3 crw dcr dng erf iiq k25 kdc mef mrw nef nrw orf "
+                                        "pef raf raw rw2 sr2 srf srw x3f");
 }
 
 bool orl_picture_is_png(const char *path)
 {
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, ".png") == 0;
+    return orl_path_has_extension(path, "png");
 }
 
 static enum format format_of(const char *path, const uint8_t *data, size_t size)
@@ -122,6 +114,8 @@ static struct orl_profile *make_profile(const struct orl_log *log, const char *p
     struct orl_exif exif = {0};
     if (header->icc)
         return orl_profile_create(log, path, header->icc, header->icc_size);
+    if (header->gamma > 0)
+        return orl_profile_create_gamma(log, 1 / header->gamma);
     if (!has_exif_head(header) ||
         orl_exif_decode(NULL, path, header->exif, header->exif_size, &exif) != ORL_OK ||
         !exif.adobe_rgb)

@@ -32,8 +32,8 @@ enum orl_result orl_picture_size(const struct orl_log *log, const char *path, in
 enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
                                  struct orl_image *image) ORL_CHECK_RESULT;
 // Reads linear light, F32 x3, Rec. 709 primaries. 8- and 16-bit samples are taken as sRGB with
-// white at 1, except that the file's colour profile is applied (of JPEG also Adobe RGB by EXIF) and a
-// PNG file with a gamma of 1 is linear. Float TIFF and EXR samples (R, G, B, or Y) are taken unchanged. RAW files get the
+// white at 1, except that the file's colour profile is applied (of JPEG also Adobe RGB by EXIF, of PNG
+// also its gamma). Float TIFF and EXR samples (R, G, B, or Y) are taken unchanged. RAW files get the
 // camera's white balance and are 1 where the sensor saturates.
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image) ORL_CHECK_RESULT;

@@ -20,7 +20,7 @@ struct png_job {
     const uint8_t *data; // next byte to read
     size_t size;
     png_bytepp rows;     // owned
-    bool wide, linear;   // the decoded samples: 16 bits each, linear light
+    bool wide;           // the decoded samples have 16 bits each
 };
 
 static void stop(png_structp png, png_const_charp message)
@@ -64,18 +64,45 @@ static void end_reading(struct png_job *job)
 
 // --- header ---
 
+// The transfer curves of HDR video (PNG's third edition).
+static bool is_hdr(const struct png_job *job)
+{
+    enum { PQ = 16, HLG = 18 };
+    png_unknown_chunkp chunks;
+    int count = png_get_unknown_chunks(job->png, job->info, &chunks);
+    for (int i = 0; i < count; i++)
+        if (memcmp(chunks[i].name, "cICP", 4) == 0 && chunks[i].size == 4)
+            return chunks[i].data[1] == PQ || chunks[i].data[1] == HLG;
+    return false;
+}
+
+// Samples are sRGB-encoded, of 16 bits too, unless the file says otherwise.
+static double gamma_of(const struct png_job *job)
+{
+    const double srgb = 1 / 2.2, tolerance = 0.05;
+    double gamma = 0;
+    int intent;
+    bool told = !png_get_sRGB(job->png, job->info, &intent) &&
+                png_get_gAMA(job->png, job->info, &gamma);
+    return told && gamma > 0.1 && gamma < 10 && fabs(gamma / srgb - 1) > tolerance ? gamma : 0;
+}
+
 static enum orl_result read_header(struct png_job *job, FILE *stream,
                                    struct orl_picture_header *header)
 {
     if (setjmp(png_jmpbuf(job->png)))
         return ORL_ERR_FORMAT;
     png_init_io(job->png, stream);
+    png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep) "cICP", 1);
     png_read_info(job->png, job->info);
     png_uint_32 width = png_get_image_width(job->png, job->info);
     png_uint_32 height = png_get_image_height(job->png, job->info);
     enum orl_result result = orl_picture_check_size(job->log, job->path, width, height);
     if (result != ORL_OK)
         return result;
+    if (is_hdr(job))
+        return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: PNG: its samples are HDR (PQ or HLG); save "
+                        "it as SDR or as EXR", job->path);
     header->width = (int)width;
     header->height = (int)height;
     header->bits = png_get_bit_depth(job->png, job->info);
@@ -101,6 +128,8 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
             return ORL_ERR_MEMORY;
         memcpy(header->icc, icc, icc_size);
         header->icc_size = icc_size;
+    } else {
+        header->gamma = gamma_of(job);
     }
     return ORL_OK;
 }
@@ -117,16 +146,6 @@ enum orl_result orl_png_read_header(const struct orl_log *log, const char *path,
 }
 
 // --- pixels ---
-
-// Samples are linear only when the file's gamma says so: 16-bit files of cameras and converters
-// are sRGB-encoded like other files.
-static bool is_linear(const struct png_job *job)
-{
-    double gamma = 0;
-    int intent;
-    return !png_get_sRGB(job->png, job->info, &intent) &&
-           png_get_gAMA(job->png, job->info, &gamma) && fabs(gamma - 1) < 0.01;
-}
 
 // Decodes RGB or RGBA: 8-bit samples, or with `deep` samples of the file's depth in the machine's
 // byte order.
@@ -151,7 +170,6 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
                         job->path, file_size, (unsigned)width, (unsigned)height);
     png_set_expand(job->png);
     job->wide = deep && png_get_bit_depth(job->png, job->info) == 16;
-    job->linear = is_linear(job);
     if (!deep)
         png_set_scale_16(job->png); // rounds, unlike strip_16
     else if (job->wide)
@@ -240,7 +258,7 @@ enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *pat
         return result;
     to_floats(&job, image);
     size_t count = orl_image_bytes(image) / sizeof(float);
-    for (size_t i = 0; !job.linear && !as_stored && i < count; i++)
+    for (size_t i = 0; !as_stored && i < count; i++)
         image->f32[i] = orl_srgb_decode(image->f32[i]);
     return ORL_OK;
 }

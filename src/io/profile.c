@@ -84,16 +84,25 @@ struct orl_profile *orl_profile_create(const struct orl_log *log, const char *pa
     return profile;
 }
 
-struct orl_profile *orl_profile_create_adobe(const struct orl_log *log)
+static struct orl_profile *create_rgb(const struct orl_log *log, const cmsCIExyY *green, double gamma)
 {
-    const cmsCIExyY green = {0.21, 0.71, 1};
     struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
     if (profile)
         profile->context = cmsCreateContext(NULL, NULL);
     if (profile && (!profile->context ||
-                    !make_transform(profile, make_rgb(profile->context, &green, 563.0 / 256))))
+                    !make_transform(profile, make_rgb(profile->context, green, gamma))))
         orl_profile_destroy(&profile);
     return profile;
+}
+
+struct orl_profile *orl_profile_create_adobe(const struct orl_log *log)
+{
+    return create_rgb(log, &(cmsCIExyY){0.21, 0.71, 1}, 563.0 / 256);
+}
+
+struct orl_profile *orl_profile_create_gamma(const struct orl_log *log, double gamma)
+{
+    return create_rgb(log, &(cmsCIExyY){0.30, 0.60, 1}, gamma);
 }
 
 void orl_profile_destroy(struct orl_profile **handle)

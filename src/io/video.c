@@ -10,6 +10,12 @@
 #include "core/memory.h"
 #include "core/process.h"
 
+bool orl_video_is(const char *path)
+{
+    return orl_path_has_extension(path, "3gp avi flv insv m2ts m4v mkv mov mp4 mpeg mpg mts mxf ogv ts "
+                                        "webm wmv");
+}
+
 // --- tags ---
 
 struct tags {

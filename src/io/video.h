@@ -5,6 +5,9 @@
 #include "oriel/log.h"
 #include "oriel/progress.h"
 
+// True when the extension is that of a video.
+bool orl_video_is(const char *path);
+
 // What is needed to take frames out of a video.
 struct orl_video {
     double seconds; // 0: not known

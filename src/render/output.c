@@ -5,18 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "io/picture.h"
 
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcmp(dot, extension) == 0;
-}
-
 bool orl_frame_can_write(const char *path)
 {
-    return has_extension(path, ".png") || has_extension(path, ".exr");
+    return orl_path_has_extension(path, "png") || orl_path_has_extension(path, "exr");
 }
 
 static enum orl_result write_exr(const struct orl_log *log, const char *path,
@@ -113,9 +108,9 @@ enum orl_result orl_frame_write(const struct orl_log *log, const char *path,
 {
     const struct orl_frame_layers *layers = &output->layers;
     ORL_REQUIRE(log, !layers->confidence || frame->confidence.data);
-    if (has_extension(path, ".exr"))
+    if (orl_path_has_extension(path, "exr"))
         return write_exr(log, path, view, frame, output);
-    if (!has_extension(path, ".png"))
+    if (!orl_path_has_extension(path, "png"))
         return orl_fail(log, ORL_ERR_ARGUMENT, "%s: must end in .png or .exr", path);
     struct orl_image srgb = {0};
     enum orl_result result = orl_tone_apply(log, &frame->color, &output->tone, &srgb);

@@ -341,8 +341,11 @@ static void write_jpeg(const char *path, const uint8_t *pixel, int channels,
     fclose(out);
 }
 
-static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUInt32Number size)
+// With a profile of `size` bytes, or a gamma, or the curve of HDR video.
+static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUInt32Number size,
+                      double gamma, bool hdr)
 {
+    static const uint8_t pq[4] = {9, 16, 0, 1};
     FILE *out = fopen(path, "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png_create_info_struct(png);
@@ -351,8 +354,13 @@ static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUI
     png_init_io(png, out);
     png_set_IHDR(png, info, W, H, depth, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_iCCP(png, info, "profile", 0, icc, size);
+    if (size)
+        png_set_iCCP(png, info, "profile", 0, icc, size);
+    if (gamma > 0)
+        png_set_gAMA(png, info, gamma);
     png_write_info(png, info);
+    if (hdr)
+        png_write_chunk(png, (png_const_bytep) "cICP", pq, sizeof pq);
     static uint8_t row[W * 6];
     size_t bytes = (size_t)depth / 8;
     for (size_t i = 0; i < W * 3 * bytes; i++)
@@ -394,15 +402,15 @@ static void jpeg_and_png_profiles_are_applied(void **state)
     cmsUInt32Number size = make_adobe();
     write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), want, true);
-    write_png(in_dir("p.png"), pixel, 8, size);
+    write_png(in_dir("p.png"), pixel, 8, size, 0, false);
     expect_light(in_dir("p.png"), want, true);
-    write_png(in_dir("p.png"), pixel, 16, size);
+    write_png(in_dir("p.png"), pixel, 16, size, 0, false);
     expect_light(in_dir("p.png"), want, true);
     want_prophoto(stored, want);
     size = make_prophoto();
     write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), want, true);
-    write_png(in_dir("p.png"), pixel, 16, size);
+    write_png(in_dir("p.png"), pixel, 16, size, 0, false);
     expect_light(in_dir("p.png"), want, true);
     // sRGB itself, under whatever name, changes nothing.
     size = save_profile(cmsCreate_sRGBProfile());
@@ -416,6 +424,30 @@ static void jpeg_and_png_profiles_are_applied(void **state)
     for (int c = 0; c < 3; c++)
         want[c] = pow(128 / 255.0, 1.8);
     expect_light(in_dir("p.jpg"), want, true);
+}
+
+// In whichever way a PNG is read; that of sRGB changes nothing.
+static void png_gamma_is_applied(void **state)
+{
+    (void)state;
+    static const double gammas[] = {1, 1 / 1.8, 0.45455};
+    const uint8_t pixel[3] = {128, 153, 77};
+    struct orl_picture_info info;
+    double want[3];
+    for (size_t i = 0; i < ORL_COUNT(gammas); i++)
+        for (int depth = 8; depth <= 16; depth += 8) {
+            bool plain = i == 2;
+            for (int c = 0; c < 3; c++)
+                want[c] = plain ? (double)orl_srgb_decode((float)(pixel[c] / 255.0))
+                                : pow(pixel[c] / 255.0, 1 / gammas[i]);
+            write_png(in_dir("p.png"), pixel, depth, 0, gammas[i], false);
+            expect_light(in_dir("p.png"), want, !plain);
+        }
+    write_png(in_dir("p.png"), pixel, 16, 0, 0, true);
+    struct said said;
+    struct orl_log log = log_to(&said);
+    assert_int_equal(orl_picture_inspect(&log, in_dir("p.png"), &info), ORL_ERR_UNSUPPORTED);
+    assert_non_null(strstr(said.text, "its samples are HDR"));
 }
 
 // Cameras that are set to Adobe RGB say so in EXIF (DCF 2.0), without a profile.
@@ -621,6 +653,7 @@ int main(void)
         cmocka_unit_test(tiff_varieties),
         cmocka_unit_test(tiff_profiles_are_applied),
         cmocka_unit_test(jpeg_and_png_profiles_are_applied),
+        cmocka_unit_test(png_gamma_is_applied),
         cmocka_unit_test(adobe_rgb_by_exif_is_applied),
         cmocka_unit_test(panoramas_are_known_by_xmp),
         cmocka_unit_test(gain_maps_are_known),

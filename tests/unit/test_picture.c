@@ -165,7 +165,7 @@ static void write_png(struct png_kind kind, png_bytep row, const png_color *pale
     png_init_io(png, out);
     png_set_IHDR(png, info, 4, 2, kind.depth, kind.color, kind.interlace,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_gAMA(png, info, 1.0); // must not change what is stored
+    png_set_gAMA(png, info, 1 / 2.2); // must not change what is stored
     if (palette)
         png_set_PLTE(png, info, palette, 3);
     png_bytep rows[2] = {row, row};
