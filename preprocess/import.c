@@ -70,11 +70,6 @@ static void finish(struct import_job *job)
 static void resolve(const struct import_job *job, struct orl_import_params *params)
 {
     const char *stated = job->known.points_file;
-    bool masks = job->known.alpha;
-    for (size_t i = 0; i < job->known.picture_count && !masks; i++)
-        masks = job->known.pictures[i].mask != NULL;
-    if (params->silhouettes == ORL_SILHOUETTES_NONE && masks)
-        params->silhouettes = ORL_SILHOUETTES_STATED;
     if (params->points != ORL_IMPORT_STATED_POINTS)
         return;
     bool there = stated && orl_path_is_file(stated);
@@ -94,9 +89,6 @@ enum orl_result orl_import(const struct orl_log *log, const struct orl_import_pa
         result = orl_known_cameras_read(log, params->cameras, params->pixel_centre, &job.known);
     if (result == ORL_OK)
         resolve(&job, &resolved);
-    if (result == ORL_OK && resolved.hull_side && resolved.silhouettes == ORL_SILHOUETTES_NONE)
-        result = orl_fail(log, ORL_ERR_ARGUMENT, "a hull needs silhouettes: --masks, --silhouettes "
-                          "dark or --background");
     if (result == ORL_OK)
         result = orl_import_find_all(&job);
     if (result == ORL_OK)

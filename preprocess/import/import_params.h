@@ -8,7 +8,6 @@
 #include "oriel/scene.h"
 
 enum orl_import_silhouettes {
-    ORL_SILHOUETTES_NONE,       // unless the file of cameras states masks or alpha
     ORL_SILHOUETTES_STATED,     // masks that the file of cameras names, else the pictures' alpha
     ORL_SILHOUETTES_GIVEN,      // files in masks_dir
     ORL_SILHOUETTES_DARK,       // a subject in front of a dark background

@@ -258,7 +258,7 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
     struct orl_image picture = {0}, mask = {0};
     bool stated = job->params->silhouettes == ORL_SILHOUETTES_STATED && !job->sequence;
     enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
-    if (result == ORL_OK && stated && job->known.alpha && orl_picture_is_png(path))
+    if (result == ORL_OK && stated && orl_picture_is_png(path))
         result = take_alpha(job, view, path, &picture, &mask);
     if (result == ORL_OK && stated && mask_path) {
         orl_image_finish(&mask);
@@ -432,11 +432,16 @@ static enum orl_result drop_surplus(const struct import_job *job)
 
 static void say_unusual(const struct import_job *job)
 {
-    size_t count = 0, gain_maps = 0;
+    size_t count = 0, gain_maps = 0, masked = 0;
     for (size_t i = 0; i < job->view_count; i++) {
         count += job->views[i].composed;
         gain_maps += job->views[i].gain_map;
+        masked += job->views[i].masked;
     }
+    char *masks = orl_path_join(NULL, job->known.folder, "masks");
+    if (!masked && masks && orl_path_is_dir(masks))
+        orl_logf(job->log, ORL_LOG_INFO, "%s is not used: --masks names a folder of masks", masks);
+    free(masks);
     if (gain_maps)
         orl_logf(job->log, ORL_LOG_INFO, ORL_GAIN_MAP_NEWS, gain_maps, job->view_count);
     if (count)

@@ -183,7 +183,8 @@ static enum orl_result carve_mesh(struct import_job *job, const char *folder,
     enum orl_result result =
         silhouettes ? read_silhouettes(job, folder, silhouettes, &count) : ORL_ERR_MEMORY;
     if (result == ORL_OK && !count)
-        result = orl_fail(job->log, ORL_ERR_DATA, "a hull needs silhouettes: no picture has a mask or alpha");
+        result = orl_fail(job->log, ORL_ERR_DATA, "a hull needs silhouettes, and no picture "
+                          "has a mask or alpha: --masks, --silhouettes dark or --background");
     if (result == ORL_OK)
         result = orl_cones_mesh(job->log, silhouettes, count, job->params->hull_side,
                                 (size_t)job->params->hull_triangles, &job->said_endless, mesh);
@@ -283,7 +284,7 @@ static json_t *counts(const struct import_job *job, size_t points, size_t triang
 static json_t *settings(const struct import_job *job)
 {
     static const char *const silhouettes[] = {
-        [ORL_SILHOUETTES_NONE] = "none", [ORL_SILHOUETTES_STATED] = "stated",
+        [ORL_SILHOUETTES_STATED] = "stated",
         [ORL_SILHOUETTES_GIVEN] = "given",
         [ORL_SILHOUETTES_DARK] = "dark", [ORL_SILHOUETTES_BACKGROUND] = "background"};
     static const char *const points[] = {[ORL_IMPORT_STATED_POINTS] = "none",

@@ -66,7 +66,7 @@ static enum orl_result parse_silhouettes(const struct orl_log *log, const char *
     if (!text) {
         params->silhouettes = params->masks_dir    ? ORL_SILHOUETTES_GIVEN
                               : params->background ? ORL_SILHOUETTES_BACKGROUND
-                                                   : ORL_SILHOUETTES_NONE;
+                                                   : ORL_SILHOUETTES_STATED;
         return ORL_OK;
     }
     bool threshold = sscanf(text, "dark=%d%c", &params->dark_threshold, &rest) == 1;

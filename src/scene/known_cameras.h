@@ -35,7 +35,6 @@ struct orl_known_cameras {
     struct orl_known_picture *pictures;
     size_t picture_count;
     bool splits;       // the file states which photographs are held out
-    bool alpha;        // where pictures have alpha, it is the subject's silhouette
     char *points_file; // a cloud in the cameras' world, if it is there; NULL: none is stated; owned
     // The file's coordinates minus `origin` are those of the model and the room.
     double origin[3];

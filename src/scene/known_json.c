@@ -322,7 +322,6 @@ static enum orl_result read_frames(const struct orl_known_source *source,
         if (result == ORL_OK)
             result = orl_known_add(e.log, e.file, e.place, &camera, known);
     }
-    known->alpha = true;
     if (result != ORL_OK)
         return result;
     say_unused_of_frames(source, frames);

@@ -547,7 +547,7 @@ static void refuses(void **state)
     cases[4].params.background = w->dir;
     cases[4].result = ORL_ERR_NOT_FOUND, cases[4].why = "nothing here for the camera cam00";
     cases[5].params.hull_side = 32;
-    cases[5].result = ORL_ERR_ARGUMENT, cases[5].why = "a hull needs silhouettes";
+    cases[5].result = ORL_ERR_DATA, cases[5].why = "a hull needs silhouettes";
     cases[6].params.frames.first = 3;
     cases[6].result = ORL_ERR_DATA, cases[6].why = "3 pictures, but the first frame asked for is 3";
     cases[7].params.points = ORL_IMPORT_CLOUD;

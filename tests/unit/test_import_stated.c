@@ -237,6 +237,25 @@ static void finds_the_pictures_of_a_model(void **state)
     free(model);
 }
 
+// Alpha means the same whatever the cameras' format, and a folder of masks that nobody names is told of.
+static void takes_alpha_of_any_format(void **state)
+{
+    struct work *w = *state;
+    save_picture(w, "images/a.png", true);
+    save_picture(w, "images/b.png", false);
+    save(w, "sparse/0/cameras.txt", "7 PINHOLE 64 48 60 60 32 24\n");
+    save(w, "sparse/0/images.txt", "1 1 0 0 0 0 0 4 7 a.png\n2 1 0 0 0 1 0 4 7 b.png\n");
+    assert_int_equal(import(w, NULL), ORL_OK);
+    assert_true(w->scene->photos[0].masked && !w->scene->photos[1].masked);
+    orl_scene_destroy(&w->scene);
+    assert_int_equal(orl_dir_remove(NULL, w->out), ORL_OK);
+    save_picture(w, "images/a.png", false);
+    save_mask(w, "masks/a.png");
+    assert_int_equal(import(w, NULL), ORL_OK);
+    assert_false(w->scene->photos[0].masked);
+    says(w, "masks is not used: --masks names a folder of masks");
+}
+
 // The folder of pictures is named otherwise, and another system has changed capitals.
 static void finds_pictures_by_other_names(void **state)
 {
@@ -322,7 +341,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(takes_masks), TEST(lays_alpha_on_white), TEST(takes_the_stated_split_and_cloud),
         TEST(leaves_out_what_is_no_picture), TEST(finds_pictures_in_folders), TEST(keeps_a_far_origin), TEST(finds_the_pictures_of_a_model),
-        TEST(finds_pictures_by_other_names),
+        TEST(finds_pictures_by_other_names), TEST(takes_alpha_of_any_format),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

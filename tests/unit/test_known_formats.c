@@ -281,7 +281,7 @@ static void reads_blender_sets(void **state)
     assert_int_equal(w->known.pictures[2].split, ORL_KNOWN_TEST);
     save(w, "transforms_test.json", "{\"camera_angle_x\": 1, \"frames\": [" FRAME("./test/r_0") "]}");
     assert_int_equal(read(w, ""), ORL_OK);
-    assert_true(w->known.alpha && w->known.splits);
+    assert_true(w->known.splits);
     assert_int_equal(w->known.model.image_count, 4);
     assert_string_equal(name_of(w, 0), "test/r_0");
     assert_int_equal(w->known.pictures[2].split, ORL_KNOWN_TEST);
