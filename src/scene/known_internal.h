@@ -43,6 +43,13 @@ enum orl_result orl_known_add_point(const struct orl_log *log, const double posi
 // Notes that an image sees a point. capacities[i] is that of the list of image i.
 enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
                                    size_t *capacities, struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// Reads the rest of a line: the number of a point's views, then of each its camera's index, the feature's
+// index, x and y. image_of[camera]: its image, -1: none; NULL: that of the same index. Notes them unless
+// the point, at the end of the model, was left out.
+struct orl_text_lines;
+enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_count,
+                                     const int64_t *image_of, size_t points_before, size_t *capacities,
+                                     struct orl_colmap_model *model) ORL_CHECK_RESULT;
 // Sets the images' names from the pictures' paths.
 enum orl_result orl_known_name_images(const struct orl_log *log, const char *file,
                                       struct orl_known_cameras *known) ORL_CHECK_RESULT;

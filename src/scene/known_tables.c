@@ -66,21 +66,13 @@ static enum orl_result read_nvm_camera(struct orl_text_lines *l, const double fi
 static enum orl_result read_nvm_point(struct orl_text_lines *l, size_t *capacity, size_t *capacities,
                                       struct orl_colmap_model *model)
 {
-    double at[3], rgb[3], pixel[2];
-    uint64_t views, image, feature;
+    double at[3], rgb[3];
     size_t before = model->point_count;
-    if (!orl_text_numbers(l, at, 3) || !orl_text_numbers(l, rgb, 3) ||
-        !orl_text_id(l, UINT32_MAX, &views))
-        return orl_text_bad(l, "a point needs a position, a colour and the number of its views");
+    if (!orl_text_numbers(l, at, 3) || !orl_text_numbers(l, rgb, 3))
+        return orl_text_bad(l, "a point needs a position and a colour");
     enum orl_result result = orl_known_add_point(l->log, at, rgb, capacity, model);
-    for (uint64_t i = 0; result == ORL_OK && i < views; i++) {
-        if (!orl_text_id(l, UINT32_MAX, &image) || !orl_text_id(l, UINT32_MAX, &feature) ||
-            !orl_text_numbers(l, pixel, 2) || image >= model->image_count)
-            return orl_text_bad(l, "a view needs a camera that is there, a feature, x and y");
-        if (model->point_count > before)
-            result = orl_known_add_view(l->log, (size_t)image, (uint32_t)before, capacities, model);
-    }
-    return result;
+    return result == ORL_OK ? orl_known_read_views(l, model->image_count, NULL, before, capacities, model)
+                            : result;
 }
 
 // The first model of the file; others are of photographs that could not be placed with it.

@@ -153,46 +153,46 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
     return orl_known_add(b->l.log, b->l.path, place, &camera, known);
 }
 
-static enum orl_result read_views(struct bundler *b, uint32_t point,
-                                  struct orl_colmap_model *model)
+enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_count,
+                                     const int64_t *image_of, size_t points_before, size_t *capacities,
+                                     struct orl_colmap_model *model)
 {
-    uint64_t count, camera, key;
+    uint64_t count, camera, feature;
     double xy[2];
-    if (!orl_text_next(&b->l) || !orl_text_id(&b->l, b->camera_count, &count))
-        return orl_text_bad(&b->l, "a point needs the list of its views");
-    for (uint64_t i = 0; i < count; i++) {
-        if (!orl_text_id(&b->l, UINT32_MAX, &camera) || !orl_text_id(&b->l, UINT32_MAX, &key) ||
-            !orl_text_numbers(&b->l, xy, 2) || camera >= b->camera_count)
-            return orl_text_bad(&b->l, "a view needs a camera that is there, key, x and y");
-        enum orl_result result = ORL_OK;
-        if (b->image_of[camera] >= 0)
-            result = orl_known_add_view(b->l.log, (size_t)b->image_of[camera], point, b->capacity, model);
-        if (result != ORL_OK)
-            return result;
+    enum orl_result result = ORL_OK;
+    if (!orl_text_id(l, UINT32_MAX, &count))
+        return orl_text_bad(l, "a point needs the number of its views");
+    for (uint64_t i = 0; result == ORL_OK && i < count; i++) {
+        if (!orl_text_id(l, UINT32_MAX, &camera) || !orl_text_id(l, UINT32_MAX, &feature) ||
+            !orl_text_numbers(l, xy, 2) || camera >= camera_count)
+            return orl_text_bad(l, "a view needs a camera that is there, a feature, x and y");
+        int64_t image = image_of ? image_of[camera] : (int64_t)camera;
+        if (image >= 0 && model->point_count > points_before)
+            result = orl_known_add_view(l->log, (size_t)image, (uint32_t)points_before, capacities, model);
     }
-    return ORL_OK;
+    return result;
 }
 
-static enum orl_result read_point(struct bundler *b, uint32_t index,
-                                  struct orl_colmap_model *model)
+static enum orl_result read_point(struct bundler *b, size_t *capacity, struct orl_colmap_model *model)
 {
-    double rgb[3];
-    struct orl_colmap_point *point = &model->points[index];
-    point->id = index + 1;
-    enum orl_result result =
-        next_numbers(&b->l, point->position, 3, "a point's position needs 3 numbers");
+    double at[3], rgb[3];
+    size_t before = model->point_count;
+    enum orl_result result = next_numbers(&b->l, at, 3, "a point's position needs 3 numbers");
     if (result == ORL_OK)
         result = next_numbers(&b->l, rgb, 3, "a point's colour needs 3 numbers");
-    for (int c = 0; result == ORL_OK && c < 3; c++)
-        point->rgb[c] = (uint8_t)(rgb[c] >= 255 ? 255 : rgb[c] > 0 ? rgb[c] : 0);
-    return result == ORL_OK ? read_views(b, index, model) : result;
+    if (result == ORL_OK)
+        result = orl_known_add_point(b->l.log, at, rgb, capacity, model);
+    if (result == ORL_OK && !orl_text_next(&b->l))
+        result = orl_text_bad(&b->l, "a point needs the list of its views");
+    return result == ORL_OK ? orl_known_read_views(&b->l, b->camera_count, b->image_of, before,
+                                                   b->capacity, model) : result;
 }
 
 static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *known)
 {
     struct orl_text_lines *l = &b->l;
     struct orl_colmap_model *model = &known->model;
-    size_t left = (size_t)(l->end - l->next);
+    size_t left = (size_t)(l->end - l->next), capacity = 0;
     if (!orl_text_next(l) || !orl_text_id(l, 1000000, &b->camera_count) ||
         !orl_text_id(l, UINT32_MAX - 1, &b->point_count) || *l->at)
         return orl_text_bad(l, "not the numbers of cameras and points");
@@ -205,15 +205,13 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
                         b->pictures.count);
     b->image_of = orl_array(l->log, b->camera_count, sizeof *b->image_of);
     b->capacity = orl_array(l->log, b->camera_count, sizeof *b->capacity);
-    model->points = orl_array(l->log, b->point_count, sizeof *model->points);
-    if (!b->image_of || !b->capacity || !model->points)
+    if (!b->image_of || !b->capacity)
         return ORL_ERR_MEMORY;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < b->camera_count; i++)
         result = read_bundler_camera(b, i, known);
-    model->point_count = b->point_count;
-    for (uint32_t i = 0; result == ORL_OK && i < b->point_count; i++)
-        result = read_point(b, i, model);
+    for (uint64_t i = 0; result == ORL_OK && i < b->point_count; i++)
+        result = read_point(b, &capacity, model);
     return result;
 }
 

@@ -64,29 +64,17 @@ void fuzz_bundler(const uint8_t *data, size_t size)
     read_cameras(fuzz_path("."), -1);
 }
 
-void fuzz_middlebury(const uint8_t *data, size_t size)
-{
-    fuzz_save("a_par.txt", data, size);
-    read_cameras(fuzz_path("."), -1);
-}
-
-void fuzz_metashape(const uint8_t *data, size_t size)
-{
-    fuzz_save("cameras.xml", data, size);
-    read_cameras(fuzz_path("cameras.xml"), -1);
-}
-
-void fuzz_realityscan(const uint8_t *data, size_t size)
-{
-    fuzz_save("cameras.csv", data, size);
-    read_cameras(fuzz_path("cameras.csv"), -1);
-}
-
-void fuzz_visualsfm(const uint8_t *data, size_t size)
-{
-    fuzz_save("model.nvm", data, size);
-    read_cameras(fuzz_path("model.nvm"), -1);
-}
+// Formats of one file.
+#define CAMERAS(target, name) \
+    void fuzz_##target(const uint8_t *data, size_t size) \
+    { \
+        fuzz_save(name, data, size); \
+        read_cameras(fuzz_path(name), -1); \
+    }
+CAMERAS(middlebury, "a_par.txt")
+CAMERAS(metashape, "cameras.xml")
+CAMERAS(realityscan, "cameras.csv")
+CAMERAS(visualsfm, "model.nvm")
 
 // The file does not name its pictures: there are two.
 void fuzz_llff(const uint8_t *data, size_t size)

@@ -320,7 +320,7 @@ static void refuses_damage(void **state)
         {"bundle.out", "1 1\n500 0 0\n0 -1 0\n-1 0 0\n0 0 -1\n2 1 3\n1 2 3\n4 5 6\n1 9 0 0 0\n",
          "a camera that is there", ORL_ERR_FORMAT},
         {"bundle.out", "1 1\n500 0 0\n0 -1 0\n-1 0 0\n0 0 -1\n2 1 3\n1 2 3\n4 5 6\n99 0 0 0 0\n",
-         "list of its views", ORL_ERR_FORMAT},
+         "a view needs a camera", ORL_ERR_FORMAT},
         {"cameras.xml", "<a/>", "not Metashape's cameras", ORL_ERR_FORMAT},
         {"cameras.yaml", "", "not a file of cameras that is known", ORL_ERR_FORMAT},
     };
