@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 #include "io/picture.h"
 #include "scene/depth_buffer.h"
+#include "scene/meter.h"
 #include "scene/ply.h"
 
 enum {
@@ -70,20 +71,12 @@ struct picture {
     float linear[256];
 };
 
-// Brings linear light to the scene's exposure and white balance and undoes the vignetting, as
-// photo_aligned of shaders/gather/sample/srgb.glsl does.
+// Brings linear light to the scene's exposure and white balance and undoes the vignetting.
 static void align(const struct orl_photo *photo, const double pixel[2], double rgb[3])
 {
-    const struct orl_camera *c = &photo->view.camera;
-    double x = pixel[0] - c->cx, y = pixel[1] - c->cy;
-    double r2 = (x * x + y * y) * 4 / ((double)c->width * c->width + (double)c->height * c->height);
-    const float *v = photo->vignette;
-    double light = 1 + r2 * ((double)v[0] + r2 * ((double)v[1] + r2 * (double)v[2]));
-    for (int k = 0; k < 3; k++) {
-        double gain = (double)photo->gain[k] / fmax(light, 0.1), value = fmin(rgb[k], 1);
-        double more = gain - 1, third = fmin(more, 0.5);
-        rgb[k] *= gain / (1 + value * (more - third + third * value * value));
-    }
+    float light = orl_illumination(photo->vignette, &photo->view.camera, pixel[0], pixel[1]);
+    for (int k = 0; k < 3; k++)
+        rgb[k] = (double)orl_light_aligned(photo->gain[k] / fmaxf(light, 0.1f), (float)rgb[k]);
 }
 
 // A photograph's colour at a pixel, linear light, interpolated between pixels.
