@@ -19,6 +19,8 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel-config.cmake
 file(RELATIVE_PATH ORL_PREFIX_FROM_LIBDIR "/${CMAKE_INSTALL_LIBDIR}" "/")
 configure_file(cmake/oriel.pc.in oriel.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/oriel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES reports/report.py reports/chart.py reports/stress.py reports/plot.py
+        DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/oriel)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # The man page and completions for shells, made by the program from its own tables.

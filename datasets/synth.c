@@ -40,7 +40,7 @@ enum orl_result orl_synth_check(const struct orl_log *log, const struct orl_synt
         p->height < ORL_SYNTH_SIDE_MIN || p->height > ORL_SYNTH_SIDE_MAX)
         return orl_fail(log, ORL_ERR_ARGUMENT, "size %dx%d: each side must be from %d to %d",
                         p->width, p->height, ORL_SYNTH_SIDE_MIN, ORL_SYNTH_SIDE_MAX);
-    if (p->count < 2 || p->count > ORL_SYNTH_COUNT_MAX)
+    if (p->count < (p->views ? 1 : 2) || p->count > ORL_SYNTH_COUNT_MAX)
         return orl_fail(log, ORL_ERR_ARGUMENT, "%d photographs: must be from 2 to %d", p->count,
                         ORL_SYNTH_COUNT_MAX);
     if (p->exposure_count < 0 || p->exposure_count > ORL_SYNTH_EXPOSURES_MAX)

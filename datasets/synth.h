@@ -49,6 +49,8 @@ struct orl_synth_params {
     // different series, and no two photographs share a viewpoint.
     double exposures_ev[ORL_SYNTH_EXPOSURES_MAX]; // [-12, 12]; 0: a normal exposure
     int exposure_count;    // 0: all photographs at 0 EV
+    // `count` cameras of this size instead of the walk that orl_synth_views makes; NULL: the walk.
+    const struct orl_view *views;
 };
 #define ORL_SYNTH_DEFAULTS \
     ORL_SYNTH_OPTIONS(ORL_OPTION_PRESET) .name = "monument", .width = 768, .height = 512

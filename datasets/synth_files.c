@@ -105,6 +105,8 @@ static enum orl_result write_truth(const struct job *job, int index,
         result = write_map(job, index, "stereo/depth_maps", &frame->depth);
     if (result == ORL_OK)
         result = write_map(job, index, "stereo/normal_maps", &frame->normal);
+    if (result == ORL_OK && frame->textured.data)
+        result = write_map(job, index, "stereo/texture_maps", &frame->textured);
     return result;
 }
 
@@ -240,9 +242,11 @@ static enum orl_result write_cameras(const struct job *job)
 static enum orl_result make_folders(const struct job *job)
 {
     static const char *const folders[] = {"sparse", "depth", "normal", "radiance",
-                                          "stereo/depth_maps", "stereo/normal_maps"};
+                                          "stereo/depth_maps", "stereo/normal_maps",
+                                          "stereo/texture_maps"};
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
+    size_t count = ORL_COUNT(folders) - (job->params->plain > 0 ? 0 : 1);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
         char *path = orl_path_join(job->log, job->truth, folders[i]);
         result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
         free(path);
@@ -291,8 +295,9 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
         result = ORL_ERR_MEMORY;
         goto end;
     }
-    orl_synth_views(params, views);
-    job.views = views;
+    if (!params->views)
+        orl_synth_views(params, views);
+    job.views = params->views ? params->views : views;
     result = make_folders(&job);
     if (result == ORL_OK)
         result = write_cameras(&job);

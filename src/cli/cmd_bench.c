@@ -20,7 +20,7 @@ enum { SIZES_MAX = 8, POINTS_MAX = 16 };
     ROW(quick, "quick", FLAG, "sizes only: no growth, no GL_POINTS") \
     ROW(json, "json", TEXT("FILE"), "write the figures as JSON; - for stdout") \
     ROW(trace, "trace", TEXT("FILE"), "write a few frames for chrome://tracing or ui.perfetto.dev") \
-    ROW(out, "out", TEXT("DIR"), "write plots (SVG) and pictures") \
+    ROW(images, "images", TEXT("DIR"), "write pictures") \
     TEXTURES_OPTION(ROW) \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 COMMAND_OPTIONS(bench_options, BENCH_OPTIONS)
@@ -169,8 +169,6 @@ static enum orl_result report(const struct orl_log *log, const struct bench_opti
         print_tables(bench);
     if (o->json)
         result = report_write(log, o->json, orl_bench_to_json(log, bench));
-    if (result == ORL_OK && o->out)
-        result = orl_bench_plot(log, bench, o->out);
     return result;
 }
 
@@ -201,7 +199,7 @@ static enum orl_result run_bench(struct terminal *terminal, const void *options,
         .frames_max = (size_t)o->frames, .growth = !o->quick,
         .max_vram_bytes = o->max_vram_bytes,
         .textures = o->textures,
-        .image_dir = o->out, .trace = o->trace,
+        .image_dir = o->images, .trace = o->trace,
         .progress = &terminal->progress};
     if (result == ORL_OK)
         result = orl_bench_run(gpu, scene, &params, &bench);

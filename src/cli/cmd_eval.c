@@ -7,13 +7,13 @@
 #include "cli/command_output.h"
 #include "core/memory.h"
 #include "core/text.h"
-#include "eval/eval.h"
+#include "eval/view_figures.h"
 #include "eval/stability.h"
 #include "oriel/hdr.h"
 
 #define EVAL_OPTIONS(ROW) \
-    ROW(method, "method", TEXT("NAME"), \
-        "a method, all, or paired: all, and those of papers again on the proxy of oriel; default: " \
+    ROW(methods, "method", LIST("NAME"), \
+        "methods, or all; with paired also those of papers again on the proxy of oriel; default: " \
         "the scene's, or else the first of oriel methods") \
     ROW(settings, "set", LIST("KEY=VALUE"), "change an option of the method") \
     ROW(vary, "vary", TEXT("KEY=A,B,.."), "once for each value of an option") \
@@ -21,16 +21,22 @@
         "time step of a sequence, from 0; default: the first") \
     ROW(json, "json", TEXT("FILE"), "write the figures as JSON; - for stdout") \
     ROW(images, "images", TEXT("DIR"), "write photographs, renderings, differences") \
+    ROW(pictures, "pictures", TEXT("DIR"), \
+        "measure another program's pictures of the held-out views instead: DIR/PHOTO.png or .jpg") \
     ROW(merge, "merge", MAYBE(ORL_HDR_MERGES, "NAME"), "blend as radiance, as oriel hdr does") \
     ROW(truth, "truth", TEXT("DIR"), \
         "compare with true radiance too; DIR is what oriel synth wrote") \
     ROW(walk, "walk", INT(0, 2, 100000, "N"), \
         "instead: a walk of N frames past the photographs that are not held out; how much each " \
         "frame, warped, differs from the next") \
+    ROW(path, "path", TEXT("FILE"), "instead: along this path, as of render --path") \
+    ROW(views, "views", INT(0, 1, 100000, "N"), "held-out photographs, at most; default: all") \
     ROW(divide, "divide", INT(1, 1, 64, "N"), \
         "pictures at 1/N of their size, as small screens show them") \
     ROW(textures, "textures", CHOICE(orl_textures, ORL_TEXTURES, ORL_TEXTURES_AUTO, "KIND"), \
         "photographs on the device; not with --merge") \
+    ROW(photo_divide, "photo-divide", INT(1, 1, 64, "N"), \
+        "keep them at 1/N of their size or less; not with --merge") \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 COMMAND_OPTIONS(eval_options, EVAL_OPTIONS)
 
@@ -41,7 +47,7 @@ struct job {
     bool verbose;
     struct orl_scene *scene;
     struct orl_gpu *gpu;
-    struct orl_renderer *renderer; // NULL with --merge
+    struct orl_renderer *renderer; // of the current method; NULL with --merge
     struct orl_hdr *hdr;           // of the current method, with --merge
     struct orl_truth truth;
     struct orl_choices choices;
@@ -51,45 +57,36 @@ struct job {
 
 // --- tables on stdout ---
 
-static void print_figures(const struct orl_eval_view *view)
+// A head, then a row for each view and their mean.
+static void print_rows(const struct orl_eval *eval, const char *head, bool of_radiance)
 {
-    const struct orl_metrics *m = &view->metrics;
-    printf(" %7.2f %7.2f %7.2f  %.4f  %.4f  %6.1f  %6.1f %6.1f  %.4f %9.1f\n", m->psnr_db,
-           m->psnr_cc_db, m->psnr_covered_db, m->ssim, view->flip, m->crumbs, 100 * m->coverage,
-           100 * m->completeness, m->ncc_error, view->render_ms);
-}
-
-static void print_radiance(const struct orl_eval *eval)
-{
-    printf("%-24s %9s %9s %9s %9s\n", "radiance", "PU21 dB", "mu dB", "stops", "fitted");
+    printf("%-24s %11s", head, of_radiance ? "" : "size");
+    for (const struct orl_figure *f = orl_figures; f->name; f++)
+        if (f->title && f->of_radiance == of_radiance)
+            printf(" %*s", f->width, f->title);
     for (size_t i = 0; i <= eval->view_count; i++) {
         bool mean = i == eval->view_count;
         const struct orl_eval_view *view = mean ? &eval->mean : &eval->views[i];
-        const struct orl_radiance_metrics *m = &view->radiance;
-        printf("%-24s %9.2f %9.2f %9.4f %9.4f\n",
-               mean ? "mean" : eval->scene->photos[view->photo].name, m->pu21_psnr_db,
-               m->mu_psnr_db, m->log2_rmse, m->log2_rmse_fitted);
+        char size[32] = "", shown[ORL_TEXT_SHOWN] = "mean";
+        if (!mean) {
+            snprintf(size, sizeof size, "%dx%d", view->width, view->height);
+            orl_text_escape(eval->scene->photos[view->photo].name, shown, sizeof shown);
+        }
+        printf("\n%-24s %11s", shown, size);
+        for (const struct orl_figure *f = orl_figures; f->name; f++)
+            if (f->title && f->of_radiance == of_radiance)
+                printf(" %*.*f", f->width, f->digits, f->scale * orl_figure_value(f, view));
     }
+    printf("\n");
 }
 
 static void print_table(const struct orl_eval *eval)
 {
     printf("%s%s%s, %s\n", eval->method, eval->setting[0] ? " " : "", eval->setting,
            eval->device);
-    printf("%-24s %11s %7s %7s %7s  %6s  %6s  %6s  %6s %6s  %6s %9s\n", "photograph", "size", "PSNR",
-           "fitted", "covered", "SSIM", "FLIP", "crumbs", "cover%", "full%", "1-NCC", "ms");
-    for (size_t i = 0; i < eval->view_count; i++) {
-        const struct orl_eval_view *view = &eval->views[i];
-        char size[32], shown[ORL_TEXT_SHOWN];
-        snprintf(size, sizeof size, "%dx%d", view->width, view->height);
-        orl_text_escape(eval->scene->photos[view->photo].name, shown, sizeof shown);
-        printf("%-24s %11s", shown, size);
-        print_figures(view);
-    }
-    printf("%-24s %11s", "mean", "");
-    print_figures(&eval->mean);
+    print_rows(eval, "photograph", false);
     if (eval->has_truth)
-        print_radiance(eval);
+        print_rows(eval, "radiance", true);
 }
 
 static void print_passes(const struct orl_eval *eval)
@@ -136,28 +133,44 @@ static enum orl_result start_hdr(struct job *job, const struct orl_render_params
     return orl_hdr_create(job->gpu, job->scene, &params, &job->hdr);
 }
 
+static enum orl_result start_renderer(struct job *job)
+{
+    const struct orl_renderer_params limits = {
+        .max_vram_bytes = job->options->max_vram_bytes, .textures = job->options->textures,
+        .photo_divide = job->options->photo_divide, .progress = job->progress};
+    return orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
+}
+
+// Measures a method with a renderer of its own, so that it answers for its memory alone.
 static enum orl_result evaluate(struct job *job, const struct orl_choice *choice)
 {
+    const struct eval_options *o = job->options;
     struct orl_eval_params params = {.method = choice->method->name, .setting = choice->setting,
-                                     .render = &choice->params,
-                                     .image_dir = job->options->images,
-                                     .divide = job->options->divide,
-                                     .progress = job->progress,
-                                     .truth = job->options->truth ? &job->truth : NULL};
+                                     .render = &choice->params, .image_dir = o->images,
+                                     .pictures = o->pictures, .views = o->views,
+                                     .divide = o->divide, .progress = job->progress,
+                                     .sequence = o->time_step < 0 && job->scene->frame_count
+                                                     ? job->scene : NULL,
+                                     .truth = o->truth ? &job->truth : NULL};
     struct orl_eval *eval = &job->evals[job->count];
-    if (job->options->merge >= 0) {
-        enum orl_result result = start_hdr(job, &choice->params);
-        if (result != ORL_OK)
-            return result;
+    enum orl_result result = ORL_OK;
+    if (o->pictures) {
+        params.method = "pictures";
+    } else if (o->merge >= 0) {
+        result = start_hdr(job, &choice->params);
         params.draw_radiance = draw_radiance;
         params.draw_priv = job->hdr;
+    } else {
+        result = start_renderer(job);
     }
-    enum orl_result result = orl_eval_run(job->gpu, job->renderer, job->scene, &params, eval);
+    if (result == ORL_OK)
+        result = orl_eval_run(job->gpu, job->renderer, job->scene, &params, eval);
     orl_hdr_destroy(&job->hdr);
+    orl_renderer_destroy(&job->renderer);
     if (result != ORL_OK)
         return result;
     job->count++;
-    if (report_on_stdout(job->options->json))
+    if (report_on_stdout(o->json))
         return ORL_OK;
     if (job->count > 1)
         printf("\n");
@@ -174,18 +187,17 @@ static enum orl_result measure_walk(struct job *job, bool array)
     bool first = true;
     const struct orl_walk_params params = {
         .choices = job->choices.items, .choice_count = job->choices.count, .frames = o->walk,
-        .divide = o->divide, .image_dir = o->images, .priv = &first,
+        .path = o->path, .divide = o->divide, .image_dir = o->images, .priv = &first,
         .on_result = report_on_stdout(o->json) ? NULL : print_walk_row,
         .progress = job->progress};
     struct orl_stability *all = orl_array(job->log, job->choices.count, sizeof *all);
-    if (!all)
-        return ORL_ERR_MEMORY;
-    enum orl_result result =
-        orl_stability_walk_all(job->gpu, job->renderer, job->scene, &params, all);
+    enum orl_result result = all ? start_renderer(job) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_stability_walk_all(job->gpu, job->renderer, job->scene, &params, all);
     if (result == ORL_OK && o->json)
         result = report_write(job->log, o->json, orl_stability_to_json(
             job->log, job->scene, all, job->choices.count, array));
-    for (size_t i = 0; result == ORL_OK && i < job->choices.count; i++)
+    for (size_t i = 0; all && i < job->choices.count; i++)
         orl_stability_finish(&all[i]);
     free(all);
     return result;
@@ -206,10 +218,10 @@ static enum orl_result measure_heldout(struct job *job, bool array)
 
 static enum orl_result check_together(const struct orl_log *log, const struct eval_options *o)
 {
-    if (o->walk && (o->merge >= 0 || o->truth))
+    if ((o->walk || o->path) && (o->merge >= 0 || o->truth))
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk compares frames with each other: "
                         "without --merge and --truth");
-    if (o->walk && o->vary)
+    if ((o->walk || o->path) && o->vary)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary is of held-out photographs: without "
                         "--walk");
     if (o->truth && o->divide > 1)
@@ -218,37 +230,31 @@ static enum orl_result check_together(const struct orl_log *log, const struct ev
     if (o->vary && o->images)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary makes several pictures of one name: "
                         "without --images");
-    if (o->merge >= 0 && o->textures != ORL_TEXTURES_AUTO)
+    if (o->merge >= 0 && (o->textures != ORL_TEXTURES_AUTO || o->photo_divide > 1))
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --merge keeps photographs as it needs them: "
-                        "without --textures");
+                        "without --textures and --photo-divide");
+    if (o->pictures && (o->methods.count || o->settings.count || o->vary || o->merge >= 0 ||
+                        o->truth || o->walk || o->path))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --pictures measures what another program has "
+                        "drawn: without --method, --set, --vary, --merge, --truth, --walk and --path");
     return ORL_OK;
 }
 
 static enum orl_result choose(struct job *job, const struct orl_scene *scene)
 {
     const struct eval_options *o = job->options;
-    struct orl_names methods = {0};
-    enum orl_result result =
-        o->method ? orl_names_add(job->log, &methods, o->method) : ORL_OK;
     orl_choices_finish(&job->choices);
-    if (result == ORL_OK)
-        result = orl_choices_make(job->log, scene,
-                                  o->merge < 0 ? ORL_SAMPLE_SRGB : ORL_SAMPLE_RADIANCE,
-                                  &methods, &o->settings, o->vary, &job->choices);
-    orl_names_finish(&methods);
-    return result;
+    return orl_choices_make(job->log, scene,
+                            o->merge < 0 ? ORL_SAMPLE_SRGB : ORL_SAMPLE_RADIANCE, &o->methods,
+                            &o->settings, o->vary, &job->choices);
 }
 
 static enum orl_result evaluate_scene(struct job *job, const char *scene_dir,
                                       const struct common_options *common)
 {
     const struct eval_options *o = job->options;
-    const struct orl_renderer_params limits = {
-        .max_vram_bytes = o->max_vram_bytes,
-        .textures = o->textures,
-        .progress = job->progress};
     enum orl_result result = check_together(job->log, o);
-    if (result == ORL_OK && o->method) // reports wrong settings before the long work
+    if (result == ORL_OK && o->methods.count) // reports wrong settings before the long work
         result = choose(job, NULL);
     if (result == ORL_OK)
         result = orl_scene_open(job->log, scene_dir, &job->scene);
@@ -256,7 +262,7 @@ static enum orl_result evaluate_scene(struct job *job, const char *scene_dir,
         result = orl_scene_set_frame(job->log, job->scene, o->time_step);
     if (result == ORL_OK)
         result = choose(job, job->scene);
-    if (result == ORL_OK && !o->walk)
+    if (result == ORL_OK && !o->walk && !o->path)
         result = orl_eval_check(job->log, job->scene);
     if (result == ORL_OK && o->truth)
         result = orl_truth_open(job->log, job->scene, o->truth, &job->truth);
@@ -265,13 +271,11 @@ static enum orl_result evaluate_scene(struct job *job, const char *scene_dir,
                                 &(struct orl_gpu_params){.shader_dir = common->shader_dir,
                                                          .debug = common->verbose},
                                 &job->gpu);
-    if (result == ORL_OK && o->merge < 0)
-        result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     if (result != ORL_OK)
         return result;
-    bool array = o->vary || (o->method && (strcmp(o->method, "all") == 0 ||
-                                           strcmp(o->method, "paired") == 0));
-    return o->walk ? measure_walk(job, array) : measure_heldout(job, array);
+    bool array = o->vary || o->methods.count > 1 || orl_names_contain(&o->methods, "all") ||
+                 orl_names_contain(&o->methods, "paired");
+    return o->walk || o->path ? measure_walk(job, array) : measure_heldout(job, array);
 }
 
 static void finish(struct job *job)
@@ -300,7 +304,7 @@ static enum orl_result run_eval(struct terminal *terminal, const void *options,
 const struct command command_eval = {
     .name = "eval", .group = COMMAND_MEASURE,
     .brief = "compare renderings with held-out photographs",
-    .usage = "SCENE [--method NAME|all] [--walk N] [--json FILE] [--images DIR]",
+    .usage = "SCENE [--method NAME,..|all] [--walk N] [--json FILE] [--images DIR]",
     .summary = "Renders the photographs that were held out and says how close the renderings come.",
     COMMAND_TABLE(eval_options), .inputs_min = 1, .inputs_max = 1, .run = run_eval,
 };

@@ -5,40 +5,12 @@
 
 #include "cli/command.h"
 #include "core/json.h"
-#include "eval/stress.h"
 #include "preprocess/plan.h"
 
-// The last column: which report's command takes the option.
 #define PLAN_OPTIONS(ROW) \
     ROW(photographs, "photographs", INT(16, 1, 100000, "N"), "of a job, at most") \
-    ROW(chart, "chart", TEXT("DIR"), "also the rows of oriel chart, into DIR") \
-    ROW(stress, "stress", TEXT("DIR"), "also the rows of oriel stress, into DIR") \
-    ROW(parts, "parts", INT(8, 1, 1000, "N"), "jobs that make the rows of a report") \
-    ROW(quick, "quick", FLAG, "an overview, of a report", "chart stress") \
-    ROW(methods, "method", TEXT("NAME,.."), "of a report; default: all", "chart stress") \
-    ROW(views, "views", INT(-1, 1, 100, "N"), "held-out photographs, of a report", \
-        "chart stress") \
-    ROW(vary, "vary", TEXT("KEY=A,B,.."), "of oriel chart", "chart") \
-    ROW(seconds, "seconds", NUMBER(-1, 0, 3600, "S"), "of timed frames, of oriel chart", "chart") \
-    ROW(peers, "peer", TEXT("NAME=DIR[,ms=..][,MIB=..]"), "of oriel chart", "chart") \
-    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "of oriel chart", "chart") \
-    ROW(axes, "axes", TEXT("NAME,.."), "of oriel stress", "stress") \
-    ROW(side, "size", INT(-1, ORL_STRESS_SIDE_MIN, ORL_STRESS_SIDE_MAX, "PX"), \
-        "of oriel stress", "stress") \
-    ROW(seed, "seed", INT(-1, 0, INT32_MAX, "N"), "of oriel stress", "stress") \
     ROW(json, "json", FLAG, "the graph, with each job's command, costs and files")
 COMMAND_OPTIONS(plan_options, PLAN_OPTIONS)
-
-static enum orl_result add_report(const struct orl_log *log, const struct plan_options *o,
-                                  const char *kind, const char *out, json_t *plan)
-{
-    json_t *options = json_array();
-    const struct orl_plan_report report = {kind, out, options, o->quick, o->parts};
-    orl_arguments_record(options, plan_options_rows(), o, kind);
-    enum orl_result result = out ? orl_plan_add_report(log, plan, &report) : ORL_OK;
-    json_decref(options);
-    return result;
-}
 
 static double number(const json_t *job, const char *key)
 {
@@ -68,20 +40,14 @@ static enum orl_result run_plan(struct terminal *terminal, const void *options,
                                 const struct common_options *common, const char *const *inputs)
 {
     static const char *const kinds[] = {"features", "pairs", "matches", "calibrate",
-                                        "densify",  "fuse",  "finish", "chart", "stress"};
+                                        "densify",  "fuse",  "finish"};
     const struct plan_options *o = options;
     const struct orl_log *log = &terminal->log;
     json_t *plan;
     (void)common;
     enum orl_result result = orl_plan(log, inputs[0], o->photographs, &plan);
-    if (result == ORL_OK)
-        result = add_report(log, o, "chart", o->chart, plan);
-    if (result == ORL_OK)
-        result = add_report(log, o, "stress", o->stress, plan);
-    if (result != ORL_OK) {
-        json_decref(plan);
+    if (result != ORL_OK)
         return result;
-    }
     const json_t *jobs = json_object_get(plan, "jobs");
     char *text = o->json ? json_dumps(plan, JSON_INDENT(1) | JSON_ENSURE_ASCII) : NULL;
     if (o->json && !text)

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "datasets/figures.h"
 #include "datasets/synth.h"
+#include "oriel/path.h"
 
 #define SYNTH_OPTIONS(ROW) \
     ROW(out, "out", NEEDED("DIR"), "photographs go here: a new or empty folder") \
@@ -18,6 +19,8 @@
     ORL_SYNTH_OPTIONS(ROW) \
     ROW(exposures, "exposures", LIST("EV,.."), \
         "exposures, taken in turn, each photograph one; default: 0") \
+    ROW(path, "path", TEXT("FILE"), \
+        "the monument from the views of this path, as of render --path, in place of a walk") \
     ORL_FIGURES_OPTIONS(ROW) \
     ROW(live, "live", TEXT("DIR"), "figures: plays their pictures into DIR/camNN/ too, 25 a second")
 COMMAND_OPTIONS(synth_options, SYNTH_OPTIONS)
@@ -37,6 +40,31 @@ static enum orl_result parse_exposures(const struct orl_log *log, const struct o
         params->exposures_ev[params->exposure_count++] = ev;
     }
     return ORL_OK;
+}
+
+// The views of a path as cameras of the monument's size.
+static enum orl_result read_path(const struct orl_log *log, const char *file,
+                                 struct orl_synth_params *params, struct orl_path *path)
+{
+    struct orl_view *usual = orl_array(log, (size_t)params->count, sizeof *usual);
+    struct orl_photo first = {.name = (char *)"0001.jpg"};
+    struct orl_scene scene = {.dir = (char *)params->name, .photos = &first, .photo_count = 1};
+    enum orl_result result = usual ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        orl_synth_views(params, usual);
+        first.view = usual[0];
+        result = orl_path_read(log, &scene, file, path);
+    }
+    if (result == ORL_OK && path->count > ORL_SYNTH_COUNT_MAX)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: more than %d views", file,
+                          ORL_SYNTH_COUNT_MAX);
+    for (size_t i = 0; result == ORL_OK && i < path->count; i++)
+        path->views[i].camera =
+            orl_camera_resized(&path->views[i].camera, params->width, params->height);
+    params->views = path->views;
+    params->count = (int)path->count;
+    free(usual);
+    return result;
 }
 
 // `path` without trailing slashes, followed by `suffix`.
@@ -88,7 +116,7 @@ static bool has_given(const struct synth_options *o, const char *set)
 static enum orl_result check_options(const struct orl_log *log, const struct synth_options *o,
                                      const char *name, bool is_figures)
 {
-    if (is_figures && (has_given(o, "monument") || o->exposures.count))
+    if (is_figures && (has_given(o, "monument") || o->exposures.count || o->path))
         return orl_fail(log, ORL_ERR_ARGUMENT, "synth figures: takes --cameras, --frames and "
                         "--size; the other options are the monument's");
     if (!is_figures && (has_given(o, "figures") || o->live))
@@ -127,12 +155,18 @@ static enum orl_result run_synth(struct terminal *terminal, const void *options,
         monument.width = figures.width = o->size.width;
         monument.height = figures.height = o->size.height;
     }
+    struct orl_path path = {0};
     enum orl_result result = parse_exposures(log, &o->exposures, &monument);
     if (result == ORL_OK)
         result = check_options(log, o, inputs[0], is_figures);
+    if (result == ORL_OK && o->path)
+        result = orl_synth_check(log, &monument);
+    if (result == ORL_OK && o->path)
+        result = read_path(log, o->path, &monument, &path);
     if (result == ORL_OK)
         result = is_figures ? make_figures(terminal, &figures, o->out, o->live)
                             : make_monument(terminal, common, &monument, o->out, o->truth);
+    orl_path_finish(&path);
     return result;
 }
 

@@ -24,8 +24,7 @@
         "try nothing new after so long, by the clock; default: no limit") \
     ROW(explain, "explain", FLAG, "print what each part of the model buys") \
     ROW(random, "random", FLAG, "also measure random removal") \
-    ROW(json, "json", TEXT("FILE"), "write figures and steps as JSON") \
-    ROW(plots, "plots", TEXT("DIR"), "write waterfall.svg and curve.svg")
+    ROW(json, "json", TEXT("FILE"), "write figures and steps as JSON")
 COMMAND_OPTIONS(trim_options, TRIM_OPTIONS)
 
 enum { MIB = 1 << 20 };
@@ -127,8 +126,6 @@ static enum orl_result run_trim(struct terminal *terminal, const void *options,
         print_summary(o, &trim);
     if (result == ORL_OK && o->json)
         result = orl_trim_write_json(log, o->json, scene, orl_gpu_caps(gpu)->renderer, &trim);
-    if (result == ORL_OK && o->plots)
-        result = orl_trim_write_plots(log, o->plots, scene, &trim);
     orl_trim_finish(&trim);
     orl_gpu_destroy(&gpu);
     orl_scene_destroy(&scene);

@@ -60,7 +60,7 @@ struct command {
 #define COMMANDS(NAME) \
     NAME(prepare) NAME(import) NAME(synth) NAME(densify) NAME(lod) NAME(render) NAME(walk) \
     NAME(publish) NAME(export) NAME(hdr) NAME(info) NAME(methods) NAME(eval) NAME(bench) \
-    NAME(chart) NAME(stress) NAME(tune) NAME(trim) NAME(plan) NAME(help) NAME(calibrate) NAME(fuse)
+    NAME(chart) NAME(stress) NAME(plot) NAME(tune) NAME(trim) NAME(plan) NAME(help) NAME(calibrate) NAME(fuse)
 #define COMMAND_DECLARATION(name) extern const struct command command_##name;
 COMMANDS(COMMAND_DECLARATION)
 extern const struct command *const commands[]; // ended by NULL

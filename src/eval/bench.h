@@ -80,9 +80,4 @@ void orl_bench_finish(struct orl_bench *bench);
 
 // The JSON of docs/reference/json.md, released with free().
 char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench);
-// Writes passes.svg and memory.svg and, with growth, photographs.svg, points.svg and resolution.svg
-// into `dir`, which is made if needed.
-enum orl_result orl_bench_plot(const struct orl_log *log, const struct orl_bench *bench,
-                               const char *dir) ORL_CHECK_RESULT;
-
 #endif

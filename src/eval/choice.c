@@ -104,17 +104,13 @@ static enum orl_result add_varied(const struct orl_log *log, const struct orl_ch
     return result;
 }
 
-static enum orl_result add_paired(const struct wish *wish, const struct orl_method *method,
-                                  struct orl_choices *choices)
+static enum orl_result add_paired(const struct orl_log *log, const struct orl_choice *base,
+                                  struct orl_choice choice, struct orl_choices *choices)
 {
-    struct orl_choice base, choice;
-    enum orl_result result = make(wish, &orl_methods[0], &base);
-    if (result == ORL_OK)
-        result = make(wish, method, &choice);
-    if (result != ORL_OK || !orl_render_params_take_proxy(&base.params, &choice.params))
-        return result;
+    if (!orl_render_params_take_proxy(&base->params, &choice.params))
+        return ORL_OK;
     snprintf(choice.setting, sizeof choice.setting, "%s", orl_choice_paired);
-    return add(wish->log, &choice, choices);
+    return add(log, &choice, choices);
 }
 
 static enum orl_result add_method(const struct wish *wish, const struct orl_method *method,
@@ -135,8 +131,9 @@ enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_sce
 {
     const struct wish wish = {log, scene, sample, settings, varied};
     bool paired = !varied && orl_names_contain(methods, "paired");
-    bool all = paired || orl_names_contain(methods, "all");
+    bool all = orl_names_contain(methods, "all") || (paired && methods->count == 1);
     enum orl_result result = ORL_OK;
+    struct orl_choice base;
     memset(choices, 0, sizeof *choices);
     const struct orl_method *preset = NULL;
     if (!all && !methods->count) {
@@ -145,12 +142,16 @@ enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_sce
     }
     for (const struct orl_method *m = orl_methods; result == ORL_OK && all && m->name; m++)
         result = add_method(&wish, m, choices);
-    for (const struct orl_method *m = orl_methods; result == ORL_OK && paired && m->name; m++)
-        result = add_paired(&wish, m, choices);
     for (size_t i = 0; result == ORL_OK && !all && i < methods->count; i++) {
+        if (paired && strcmp(methods->items[i], "paired") == 0)
+            continue;
         const struct orl_method *method = orl_method_find(log, methods->items[i]);
         result = method ? add_method(&wish, method, choices) : ORL_ERR_ARGUMENT;
     }
+    if (result == ORL_OK && paired)
+        result = make(&wish, &orl_methods[0], &base);
+    for (size_t i = 0, count = choices->count; result == ORL_OK && paired && i < count; i++)
+        result = add_paired(log, &base, choices->items[i], choices);
     if (result != ORL_OK)
         orl_choices_finish(choices);
     return result;

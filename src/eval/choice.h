@@ -38,8 +38,8 @@ struct orl_choices {
     struct orl_choice *items; // owned
     size_t count, capacity;
 };
-// methods: names, which may include "all" and "paired": all methods, and those whose weights go with any
-// proxy once more on that of oriel; none: the scene's default. varied: "KEY=A,B,..", each
+// methods: names; "all" is all of them, and "paired" adds each whose weights go with any proxy once
+// more on that of oriel, by itself to all methods. None: the scene's default. varied: "KEY=A,B,..", each
 // method once with each of the values; NULL: each method once.
 enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_scene *scene,
                                  enum orl_sample sample, const struct orl_names *methods,

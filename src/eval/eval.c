@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "eval/view_figures.h"
 #include "eval/flip.h"
 #include "eval/heldout.h"
 #include "eval/internal.h"
@@ -42,10 +43,14 @@ static enum orl_result draw(const struct view_frames *f, struct orl_frame *frame
 
 static enum orl_result draw_again(void *priv, size_t number)
 {
-    (void)number;
     const struct view_frames *f = priv;
-    if (!f->job->params->draw_radiance)
-        return draw(f, NULL);
+    struct orl_scene *sequence = f->job->params->sequence;
+    if (!f->job->params->draw_radiance) {
+        enum orl_result result = sequence ? orl_timing_show_time_step(f->job->gpu, sequence,
+                                                                      f->job->renderer, number)
+                                          : ORL_OK;
+        return result == ORL_OK ? draw(f, NULL) : result;
+    }
     struct orl_frame frame = {0}; // merging several pictures needs their pixels on the host, so
                                   // reading back is part of the time
     enum orl_result result = draw(f, &frame);
@@ -70,7 +75,7 @@ static void add_pass_times(struct orl_eval *eval, const struct orl_timing *timin
 
 // Draws the picture before the timed frames, which need no other warm-up.
 static enum orl_result draw_and_time(struct job *job, const struct orl_view *view,
-                                     struct orl_frame *frame, double *median_ms)
+                                     struct orl_frame *frame, struct orl_eval_view *measured)
 {
     struct view_frames frames = {job, view, *job->params->render};
     frames.render.leave_out |= ORL_LAYER_NORMAL;
@@ -81,10 +86,13 @@ static enum orl_result draw_and_time(struct job *job, const struct orl_view *vie
     enum orl_result result = draw(&frames, frame);
     if (result == ORL_OK)
         result = orl_timing_take(job->gpu, &params, &timing);
+    if (result == ORL_OK && job->params->sequence) // the photographs are those of the scene itself
+        result = orl_scene_set_frame(job->log, job->params->sequence, -1);
     if (result != ORL_OK)
         return result;
     add_pass_times(job->eval, &timing);
-    *median_ms = timing.median_ms;
+    measured->render_ms = timing.median_ms;
+    measured->cpu_ms = timing.cpu_ms;
     return ORL_OK;
 }
 
@@ -102,34 +110,47 @@ static enum orl_result compare_radiance(const struct job *job, struct orl_eval_v
     return result;
 }
 
-static enum orl_result measure(struct job *job, struct orl_eval_view *view)
+static enum orl_result render(struct job *job, const struct orl_heldout *heldout,
+                              struct orl_eval_view *view, struct orl_image *rendered,
+                              struct orl_image *coverage)
 {
     const struct orl_render_params *render =
         job->params->draw_radiance ? NULL : job->params->render;
-    struct orl_heldout heldout;
-    struct orl_image rendered = {0};
     struct orl_frame frame = {0};
-    enum orl_result result = orl_heldout_load(job->log, job->scene, view->photo,
-                                               job->params->divide > 1 ? job->params->divide : 1,
-                                               &heldout);
-    view->width = heldout.picture.width;
-    view->height = heldout.picture.height;
-    if (result == ORL_OK)
-        result = draw_and_time(job, &heldout.view, &frame, &view->render_ms);
+    enum orl_result result = draw_and_time(job, &heldout->view, &frame, view);
     if (result == ORL_OK && job->params->truth)
         result = compare_radiance(job, view, &frame);
     if (result == ORL_OK)
         result = orl_heldout_expose(job->log, job->scene, view->photo, render, &frame.color,
-                                    &rendered);
+                                    rendered);
+    *coverage = frame.coverage;
+    frame.coverage = (struct orl_image){0};
+    orl_frame_finish(&frame);
+    return result;
+}
+
+static enum orl_result measure(struct job *job, struct orl_eval_view *view)
+{
+    const struct orl_eval_params *params = job->params;
+    struct orl_heldout heldout;
+    struct orl_image rendered = {0}, coverage = {0};
+    enum orl_result result = orl_heldout_load(job->log, job->scene, view->photo,
+                                              params->divide > 1 ? params->divide : 1, &heldout);
+    view->width = heldout.picture.width;
+    view->height = heldout.picture.height;
     if (result == ORL_OK)
-        result = orl_metrics_compare(job->log, &rendered, &heldout.picture, &frame.coverage,
+        result = params->pictures ? orl_eval_read_picture(job->log, job->scene, params->pictures,
+                                                          &heldout, &rendered, &coverage)
+                                  : render(job, &heldout, view, &rendered, &coverage);
+    if (result == ORL_OK)
+        result = orl_metrics_compare(job->log, &rendered, &heldout.picture, &coverage,
                                      &view->metrics);
     if (result == ORL_OK)
         result = orl_flip_compare(job->log, &rendered, &heldout.picture, NULL, &view->flip);
-    if (result == ORL_OK && job->params->image_dir)
-        result = orl_eval_write_images(job->log, job->scene, job->params, view->photo, &rendered,
+    if (result == ORL_OK && params->image_dir)
+        result = orl_eval_write_images(job->log, job->scene, params, view->photo, &rendered,
                                        &heldout.picture);
-    orl_frame_finish(&frame);
+    orl_image_finish(&coverage);
     orl_image_finish(&rendered);
     orl_heldout_finish(&heldout);
     return result;
@@ -139,45 +160,34 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
 
 static void take_means(struct orl_eval *eval)
 {
-    struct orl_eval_view *mean = &eval->mean;
-    double n = (double)eval->view_count;
-    for (size_t i = 0; i < eval->view_count; i++) {
-        const struct orl_metrics *m = &eval->views[i].metrics;
-        mean->metrics.psnr_db += m->psnr_db / n;
-        mean->metrics.psnr_cc_db += m->psnr_cc_db / n;
-        mean->metrics.psnr_covered_db += m->psnr_covered_db / n;
-        mean->metrics.ssim += m->ssim / n;
-        mean->metrics.coverage += m->coverage / n;
-        mean->metrics.completeness += m->completeness / n;
-        mean->metrics.ncc_error += m->ncc_error / n;
-        mean->metrics.crumbs += m->crumbs / n;
-        mean->flip += eval->views[i].flip / n;
-        mean->radiance.pu21_psnr_db += eval->views[i].radiance.pu21_psnr_db / n;
-        mean->radiance.mu_psnr_db += eval->views[i].radiance.mu_psnr_db / n;
-        mean->radiance.log2_rmse += eval->views[i].radiance.log2_rmse / n;
-        mean->radiance.log2_rmse_fitted += eval->views[i].radiance.log2_rmse_fitted / n;
-        mean->render_ms += eval->views[i].render_ms / n;
+    for (const struct orl_figure *f = orl_figures; f->name; f++) {
+        double *mean = (double *)((char *)&eval->mean + f->offset);
+        for (size_t i = 0; i < eval->view_count; i++)
+            *mean += orl_figure_value(f, &eval->views[i]) / (double)eval->view_count;
     }
 }
 
-static enum orl_result list_views(const struct orl_log *log, const struct orl_scene *scene,
-                                  struct orl_eval *eval)
+static enum orl_result list_views(const struct job *job, struct orl_eval *eval)
 {
-    eval->views = orl_array(log, scene->photo_count, sizeof *eval->views);
+    const struct orl_scene *scene = job->scene;
+    size_t held = orl_heldout_count(scene), at = 0, wanted = (size_t)job->params->views;
+    wanted = wanted && wanted < held ? wanted : held;
+    eval->views = orl_array(job->log, held, sizeof *eval->views);
     if (!eval->views)
         return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        if (scene->photos[i].test)
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        if (!scene->photos[i].test)
+            continue;
+        if ((at + 1) * wanted / held > at * wanted / held)
             eval->views[eval->view_count++].photo = i;
+        at++;
+    }
     return ORL_OK;
 }
 
 enum orl_result orl_eval_check(const struct orl_log *log, const struct orl_scene *scene)
 {
-    for (size_t i = 0; i < scene->photo_count; i++)
-        if (scene->photos[i].test)
-            return ORL_OK;
-    return orl_fail(log, ORL_ERR_DATA,
+    return orl_heldout_count(scene) ? ORL_OK : orl_fail(log, ORL_ERR_DATA,
                     "%s: no photograph is held out to compare with; prepare the scene with "
                     "--test-every N, --test-list A,B or --test-block A:B", scene->dir);
 }
@@ -219,7 +229,7 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     snprintf(eval->device, sizeof eval->device, "%s", orl_gpu_caps(gpu)->renderer);
     enum orl_result result = orl_eval_check(job.log, scene);
     if (result == ORL_OK)
-        result = list_views(job.log, scene, eval);
+        result = list_views(&job, eval);
     if (result == ORL_OK)
         result = measure_all(&job);
     if (result != ORL_OK) {
@@ -227,6 +237,8 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
         return result;
     }
     take_means(eval);
+    for (int owner = 0; owner < ORL_OWNER_COUNT; owner++)
+        eval->device_bytes[owner] = orl_gpu_owner_bytes(gpu, (enum orl_owner)owner);
     return ORL_OK;
 }
 

@@ -15,8 +15,8 @@ struct orl_eval_view {
     int width, height;
     struct orl_metrics metrics;
     struct orl_radiance_metrics radiance; // only with a truth
-    double render_ms; // median over frames, see timing.h
-    double flip;      // see flip.h
+    double render_ms, cpu_ms; // medians over frames, see timing.h; 0: not rendered here
+    double flip;              // see flip.h
 };
 
 struct orl_eval {
@@ -29,6 +29,7 @@ struct orl_eval {
     struct orl_eval_view mean; // arithmetic mean of each figure
     struct orl_timing_pass passes[ORL_TIMING_PASSES_MAX]; // means over the views
     size_t pass_count;
+    size_t device_bytes[ORL_OWNER_COUNT]; // after the last view
     bool has_truth;
 };
 
@@ -45,7 +46,12 @@ struct orl_eval_params {
     enum orl_result (*draw_radiance)(void *priv, const struct orl_view *view,
                                      struct orl_frame *frame);
     void *draw_priv;
+    // Another program's pictures of the views, PHOTO.png or .jpg, measured in place of renderings.
+    const char *pictures;
+    int views;  // held-out photographs at most, evenly chosen; 0: all
     int divide; // pictures at 1/divide of the photographs' size; 0: at that size
+    // The scene itself where it is a sequence whose timed frames show a time step each; else NULL.
+    struct orl_scene *sequence;
     const struct orl_truth *truth; // NULL: renderings are compared with the photographs alone
     const struct orl_progress *progress;
 };
@@ -54,8 +60,8 @@ struct orl_eval_params {
 enum orl_result orl_eval_check(const struct orl_log *log,
                                const struct orl_scene *scene) ORL_CHECK_RESULT;
 // Renders the view of every held-out photograph at the photograph's size and compares. A
-// renderer with default orl_renderer_params uses no held-out photograph; with draw_radiance it may
-// be NULL. Fails as orl_eval_check does.
+// renderer with default orl_renderer_params uses no held-out photograph; with draw_radiance or
+// pictures it may be NULL. Fails as orl_eval_check does.
 enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              const struct orl_scene *scene, const struct orl_eval_params *params,
                              struct orl_eval *eval) ORL_CHECK_RESULT;

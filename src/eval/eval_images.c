@@ -1,7 +1,9 @@
-// Pictures that accompany an evaluation's figures.
+// Pictures that accompany an evaluation's figures, and pictures of other programs.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "eval/internal.h"
@@ -76,5 +78,53 @@ enum orl_result orl_eval_write_images(const struct orl_log *log, const struct or
         result = write_as(log, params->image_dir, stem, params->method, ".diff", &panels);
     orl_image_finish(&panels);
     free(stem);
+    return result;
+}
+
+// --- pictures of other programs ---
+
+// NULL: there is none.
+static char *find_picture(const struct orl_log *log, const struct orl_scene *scene,
+                          const char *dir, size_t photo)
+{
+    static const char *const extensions[] = {"png", "jpg", "jpeg", "JPG"};
+    char *stem = orl_eval_file_stem(log, scene, photo), *found = NULL;
+    for (size_t i = 0; stem && !found && i < ORL_COUNT(extensions); i++) {
+        char *path = orl_format(log, "%s/%s.%s", dir, stem, extensions[i]);
+        if (path && orl_path_is_file(path))
+            found = path;
+        else
+            free(path);
+    }
+    free(stem);
+    return found;
+}
+
+enum orl_result orl_eval_read_picture(const struct orl_log *log, const struct orl_scene *scene,
+                                      const char *dir, const struct orl_heldout *heldout,
+                                      struct orl_image *picture, struct orl_image *coverage)
+{
+    int width = heldout->picture.width, height = heldout->picture.height, n = heldout->divide;
+    struct orl_image other = {0};
+    char *path = find_picture(log, scene, dir, heldout->photo);
+    if (!path)
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no picture of %s", dir,
+                        scene->photos[heldout->photo].name);
+    enum orl_result result = orl_picture_read(log, path, 3, &other);
+    // The size may differ, but the shape must agree within a pixel or two.
+    double skew = fabs((double)other.width * height - (double)other.height * width);
+    if (result == ORL_OK && skew > 2 * fmax(other.width, other.height))
+        result = orl_fail(log, ORL_ERR_DATA, "%s has %dx%d pixels, the photograph %dx%d", path,
+                          other.width, other.height, width, height);
+    bool as_photograph = other.width / n == width && other.height / n == height;
+    if (result == ORL_OK)
+        result = as_photograph ? orl_heldout_shrink(log, &other, n, picture)
+                               : orl_bridge_resize(log, &other, width, height, picture);
+    if (result == ORL_OK)
+        result = orl_image_init(log, coverage, width, height, 1, ORL_PIXEL_F32);
+    for (int i = 0; result == ORL_OK && i < width * height; i++)
+        coverage->f32[i] = 1;
+    orl_image_finish(&other);
+    free(path);
     return result;
 }

@@ -2,6 +2,7 @@
 #include <jansson.h>
 
 #include "core/json.h"
+#include "eval/view_figures.h"
 #include "eval/internal.h"
 
 // Takes over `value`, also on failure: `object` or `value` is NULL, or memory ran out.
@@ -10,29 +11,14 @@ static bool set(json_t *object, const char *key, json_t *value)
     return json_object_set_new(object, key, value) == 0;
 }
 
-static bool set_radiance(json_t *object, const struct orl_radiance_metrics *m)
-{
-    return set(object, "pu21_psnr_db", json_real(m->pu21_psnr_db)) &&
-           set(object, "mu_psnr_db", json_real(m->mu_psnr_db)) &&
-           set(object, "log2_rmse", json_real(m->log2_rmse)) &&
-           set(object, "log2_rmse_fitted", json_real(m->log2_rmse_fitted));
-}
-
 static bool set_figures(json_t *object, const struct orl_eval *eval,
                         const struct orl_eval_view *view)
 {
-    const struct orl_metrics *m = &view->metrics;
-    return (!eval->has_truth || set_radiance(object, &view->radiance)) &&
-           set(object, "psnr_db", json_real(m->psnr_db)) &&
-           set(object, "psnr_cc_db", json_real(m->psnr_cc_db)) &&
-           set(object, "psnr_covered_db", json_real(m->psnr_covered_db)) &&
-           set(object, "ssim", json_real(m->ssim)) &&
-           set(object, "coverage", json_real(m->coverage)) &&
-           set(object, "completeness", json_real(m->completeness)) &&
-           set(object, "ncc_error", json_real(m->ncc_error)) &&
-           set(object, "crumbs", json_real(m->crumbs)) &&
-           set(object, "flip", json_real(view->flip)) &&
-           set(object, "render_ms", json_real(view->render_ms));
+    bool ok = true;
+    for (const struct orl_figure *f = orl_figures; ok && f->name; f++)
+        if (!f->of_radiance || eval->has_truth)
+            ok = set(object, f->name, json_real(orl_figure_value(f, view)));
+    return ok;
 }
 
 static json_t *size_json(const struct orl_eval_view *view)
@@ -62,6 +48,16 @@ static bool set_passes(json_t *object, const struct orl_eval *eval)
     return set(object, "passes_ms", passes) && ok;
 }
 
+static bool set_bytes(json_t *object, const struct orl_eval *eval)
+{
+    json_t *owners = json_object();
+    bool ok = true;
+    for (int owner = 0; owner < ORL_OWNER_COUNT; owner++)
+        ok = set(owners, orl_owner_names[owner],
+                 json_integer((json_int_t)eval->device_bytes[owner])) && ok;
+    return set(object, "device_bytes", owners) && ok;
+}
+
 static bool add_eval(json_t *array, const struct orl_eval *eval)
 {
     json_t *object = json_object(), *views = json_array(), *mean = json_object();
@@ -73,7 +69,7 @@ static bool add_eval(json_t *array, const struct orl_eval *eval)
               set_figures(mean, eval, &eval->mean);
     ok = set(object, "views", views) && ok;
     ok = set(object, "mean", mean) && ok;
-    ok = set_passes(object, eval) && ok;
+    ok = set_passes(object, eval) && set_bytes(object, eval) && ok;
     return json_array_append_new(array, object) == 0 && ok;
 }
 

@@ -5,6 +5,7 @@
 #include <jansson.h>
 
 #include "eval/eval.h"
+#include "eval/heldout.h"
 
 // Text of an array of reports, or without `array` of its only report. NULL, logged: out of memory
 // (`whole` false: earlier, while the reports were made), or a name is not UTF-8. Takes over `all`.
@@ -19,5 +20,11 @@ enum orl_result orl_eval_write_images(const struct orl_log *log, const struct or
                                       const struct orl_eval_params *params, size_t photo,
                                       const struct orl_image *rendered,
                                       const struct orl_image *photograph) ORL_CHECK_RESULT;
+// Reads another program's picture of the view, from `dir`, at the photograph's size. All of it counts
+// as covered, F32 x1. ORL_ERR_NOT_FOUND, logged: there is none.
+enum orl_result orl_eval_read_picture(const struct orl_log *log, const struct orl_scene *scene,
+                                      const char *dir, const struct orl_heldout *heldout,
+                                      struct orl_image *picture,
+                                      struct orl_image *coverage) ORL_CHECK_RESULT;
 
 #endif

@@ -403,8 +403,17 @@ enum orl_result orl_stability_walk_all(struct orl_gpu *gpu, struct orl_renderer 
 {
     struct orl_path path = {0};
     size_t done = 0;
-    enum orl_result result = orl_stability_walk(orl_gpu_log(gpu), scene, (size_t)params->frames,
-                                                params->divide, &path);
+    const struct orl_log *log = orl_gpu_log(gpu);
+    enum orl_result result =
+        params->path ? orl_path_read(log, scene, params->path, &path)
+                     : orl_stability_walk(log, scene, (size_t)params->frames, params->divide, &path);
+    if (result == ORL_OK && path.count < 2)
+        result = orl_fail(log, ORL_ERR_DATA, "%s: a walk needs two views", params->path);
+    for (size_t i = 0; result == ORL_OK && params->path && i < path.count; i++) {
+        struct orl_camera *camera = &path.views[i].camera;
+        *camera = orl_camera_resized(camera, camera->width / params->divide,
+                                     camera->height / params->divide);
+    }
     for (; result == ORL_OK && done < params->choice_count; done++) {
         const struct orl_choice *choice = &params->choices[done];
         const struct orl_stability_params one = {

@@ -67,6 +67,7 @@ struct orl_walk_params {
     const struct orl_choice *choices;
     size_t choice_count;
     int frames, divide;    // as for orl_stability_walk
+    const char *path;      // a file of views (orl_path_read) instead of that walk; NULL: the walk
     const char *image_dir; // as in struct orl_stability_params
     void (*on_result)(void *priv, const struct orl_stability *one); // may be NULL
     void *priv;

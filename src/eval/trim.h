@@ -99,10 +99,4 @@ void orl_trim_finish(struct orl_trim *trim);
 enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
                                     const struct orl_scene *scene, const char *device,
                                     const struct orl_trim *trim) ORL_CHECK_RESULT;
-// Writes DIR/waterfall.svg (bytes on the device after each step) and DIR/curve.svg (loss against
-// bytes, beside random removal).
-enum orl_result orl_trim_write_plots(const struct orl_log *log, const char *dir,
-                                     const struct orl_scene *scene,
-                                     const struct orl_trim *trim) ORL_CHECK_RESULT;
-
 #endif

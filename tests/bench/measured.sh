@@ -202,16 +202,15 @@ page_charts() {
     for name in $(scene_names fountain herz sakharov temple monument); do
         chart+=" SCENES/$name"
     done
-    chart+=' --out WORK/chart --seconds 0 --quiet'
+    chart+=' --out WORK/chart --quiet'
     run "$chart" >&2
     cp "$work/chart/chart.svg" "$pages/charts.svg"
     head_of "All methods and settings over several scenes" "$(list $(scene_names fountain herz sakharov temple monument))" "$work/chart/chart.json"
     cat <<'END'
 
 All methods and their settings on the held-out photographs of five scenes, one report. `cpu ms` is the processor time of
-a frame, the geometric mean over the scenes; the figure and the sentences have the wall time, which other work on the
-machine lengthens. *Front*: no other row is both faster, by processor time, and better by PSNR. `sd` is the standard
-deviation over the scenes. A time is the median of few frames and scatters by up to 15 % beside other programs: no setting
+a frame, the geometric mean over the scenes; the figure has the wall time, which other work on the machine lengthens. *Front*: no other row is both faster, by processor time, and better by PSNR. `sd` is the standard
+deviation over the scenes. A time is of few frames and scatters by up to 15 % beside other programs: no setting
 that draws more is faster. [Columns](../reference/chart.md).
 END
     command_block "$chart"
@@ -430,12 +429,12 @@ page_memory() {
 }
 
 page_trim() {
-    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 8 --budget 900 --random --quiet --json WORK/trimmed/NAME.json --plots WORK/trimmed/NAME'
+    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 8 --budget 900 --random --quiet --json WORK/trimmed/NAME.json'
     local name
     mkdir -p "$work/trimmed"
     for name in $(scene_names fountain herz sakharov monument); do
         rm -rf "$work/trimmed/$name"
-        run "${trim/--plots*/--plots WORK/trimmed/$name-plots}" "$name" >"$work/trimmed/$name.txt"
+        run "$trim" "$name" >"$work/trimmed/$name.txt"
         jq --arg scene "$name" '. + {scene: $scene}' "$work/trimmed/$name.json"
     done | jq -s . >"$work/trim.json"
     head_of "Trimming" "$(list $(scene_names fountain herz sakharov monument))" "$work/trim.json"

@@ -44,3 +44,7 @@ for page in man/man1/oriel.1 bash-completion/completions/oriel zsh/site-function
     fish/vendor_completions.d/oriel.fish; do
     [ -s "$work/prefix/share/$page" ] || { echo "share/$page is missing" >&2; exit 1; }
 done
+# A report's script is found where it is installed.
+PATH=/usr/bin:$PATH "$work/prefix/bin/oriel" plot nowhere.json --out plots 2>plot.log &&
+    { echo "a plot of nothing" >&2; exit 1; }
+grep -Eq 'nowhere.json|python3' plot.log || { cat plot.log >&2; exit 1; }

@@ -114,33 +114,4 @@ run 0 job fuse "$work/b" --part 1/2 --photographs 3
 says "nothing left to do"
 run 0 plan "$work/b"
 prints "is whole"
-
-# The rows of a chart as two jobs, and one that finds them all measured.
-run 0 plan "$work/b" --chart "$work/chart" --method points,airieau --quick --parts 2 --json
-cp "$work/out" "$work/rows.json"
-[ "$(grep -c '"name": "chart-000[12]"' "$work/rows.json")" = 2 ] || fail "no jobs of rows"
-jobs_in_order "$work/rows.json"
-prints "0 rows measured, 2 used again"
-[ -s "$work/chart/chart.json" ] || fail "no report of the rows"
-if command -v snakemake >/dev/null; then
-    jobs rows.json || fail "no rows with Snakemake: $(tail -n 5 "$work/err")"
-    grep -q "0 rows measured, 2 used again" "$work/chart/jobs/chart.log" || fail "other rows"
-    jobs rows.json -n
-    prints "Nothing to be done"
-fi
-run 2 plan "$work" --chart "$work/chart"
-# The rows of two reports: none waits for a job that is not in the plan of a whole scene.
-run 0 plan "$work/b" --chart "$work/chart" --stress "$work/stress" --quick --parts 2 --json \
-    --views 3 --seconds 0.5 --vary sampling=nearest,bilinear --axes points,pose --seed 0 \
-    --peer other=pictures,ms=12
-grep -q '"name": "stress-0002"' "$work/out" || fail "no jobs of the rows of stress"
-grep -q '"finish"' "$work/out" && fail "rows wait for a job that is not planned"
-# What decides which rows there are is passed on: to two parts and the whole, of one or both
-# reports.
-for option in views:3:6 seconds:0.5:3 vary:sampling=nearest,bilinear:3 axes:points,pose:3 \
-    seed:0:3 peer:other=pictures,ms=12:3; do
-    IFS=: read -r key value count <<<"$option"
-    [ "$(grep -A 1 "\"--$key\"" "$work/out" | grep -c "\"$value\"")" = "$count" ] ||
-        fail "--$key is not passed on"
-done
 finish

@@ -1,0 +1,160 @@
+// oriel chart, stress and plot: reports that scripts make of what other commands measure. The
+// commands check the options and pass them on.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/command.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "oriel/render.h"
+
+enum { SCENES_MAX = 64 };
+
+#define CHART_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("DIR"), \
+        "the report: chart.html, chart.json, chart.svg; rows in it are used again") \
+    ROW(methods, "method", LIST("NAME"), "methods; default: all") \
+    ROW(vary, "vary", TEXT("KEY=A,B,.."), \
+        "each method that reads this option with each of these values, too") \
+    ROW(quick, "quick", FLAG, \
+        "an overview: methods as they are, two photographs a scene at half their size") \
+    ROW(views, "views", INT(8, 1, 100000, "N"), "held-out photographs of a scene, at most") \
+    ROW(peers, "peer", LIST("NAME=DIR[,ms=..][,MIB=..]"), \
+        "another program's pictures of the held-out views: DIR/SCENE/PHOTO.png") \
+    ROW(part, "part", PART, "only the K-th of N parts of the rows, kept for a run of all") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
+COMMAND_OPTIONS(chart_options, CHART_OPTIONS)
+
+#define STRESS_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("DIR"), \
+        "the report: stress.html, stress.json, figures; rows in it are used again") \
+    ROW(axes, "axes", LIST("NAME,.."), "what gets worse; default: all that the scene serves") \
+    ROW(methods, "method", LIST("NAME"), "methods; default: all") \
+    ROW(quick, "quick", FLAG, "an overview: one view, three of the six severities") \
+    ROW(side, "size", INT(192, 96, 2048, "PX"), "longer side of photographs and pictures") \
+    ROW(photographs, "photographs", INT(16, 4, 500, "N"), "of the synthetic monument") \
+    ROW(views, "views", INT(2, 1, 100, "N"), "held-out photographs, at most") \
+    ROW(part, "part", PART, "only the K-th of N parts of the rows, kept for a run of all") \
+    ROW(seed, "seed", SEED, "of everything random")
+COMMAND_OPTIONS(stress_options, STRESS_OPTIONS)
+
+#define PLOT_OPTIONS(ROW) ROW(out, "out", NEEDED("DIR"), "the figures, as SVG")
+COMMAND_OPTIONS(plot_options, PLOT_OPTIONS)
+
+// --- the script ---
+
+// The script beside the program as it is built, or where it is installed.
+static char *find_script(const struct orl_log *log, const char *program, const char *name)
+{
+    static const char *const folders[] = {"reports", ORL_REPORTS_FROM_BINDIR};
+    int length = (int)(strrchr(program, '/') - program);
+    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
+        char *path = orl_format(log, "%.*s/%s/%s.py", length, program, folders[i], name);
+        if (path && orl_path_is_file(path))
+            return path;
+        free(path);
+    }
+    orl_logf(log, ORL_LOG_ERROR, "%s.py is missing beside %s and in its %s", name, program,
+             ORL_REPORTS_FROM_BINDIR);
+    return NULL;
+}
+
+// Becomes python3 SCRIPT PROGRAM OPTION... -- INPUT...
+static enum orl_result become(const struct orl_log *log, const char *script, const char *program,
+                              const json_t *words, const char *const *inputs)
+{
+    size_t count = json_array_size(words), at = 0, input_count = 0;
+    while (inputs[input_count])
+        input_count++;
+    const char **argv = orl_array(log, count + input_count + 5, sizeof *argv);
+    if (!argv)
+        return ORL_ERR_MEMORY;
+    argv[at++] = "python3";
+    argv[at++] = script;
+    argv[at++] = program;
+    for (size_t i = 0; i < count; i++)
+        argv[at++] = json_string_value(json_array_get(words, i));
+    argv[at++] = "--";
+    for (size_t i = 0; i < input_count; i++)
+        argv[at++] = inputs[i];
+    execvp(argv[0], (char *const *)(uintptr_t)argv);
+    free(argv);
+    return orl_fail(log, ORL_ERR_EXTERNAL, "python3 is missing, which makes this report");
+}
+
+static enum orl_result make_report(struct terminal *terminal, const char *name,
+                                   const struct orl_option *rows, const void *options,
+                                   const struct orl_names *methods,
+                                   const struct common_options *common, const char *const *inputs)
+{
+    const struct orl_log *log = &terminal->log;
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < methods->count; i++)
+        result = orl_method_find(log, methods->items[i]) ? ORL_OK : ORL_ERR_ARGUMENT;
+    if (result != ORL_OK)
+        return result;
+    json_t *words = json_array();
+    char *program = realpath("/proc/self/exe", NULL);
+    char *script = program ? find_script(log, program, name) : NULL;
+    orl_arguments_record(words, rows, options, NULL);
+    orl_arguments_record(words, common_option_rows(), common, NULL);
+    terminal_finish(terminal);
+    result = script ? become(log, script, program, words, inputs) : ORL_ERR_NOT_FOUND;
+    free(script);
+    free(program);
+    json_decref(words);
+    return result;
+}
+
+// --- the commands ---
+
+static enum orl_result run_chart(struct terminal *terminal, const void *options,
+                                 const struct common_options *common, const char *const *inputs)
+{
+    const struct chart_options *o = options;
+    return make_report(terminal, "chart", chart_options_rows(), o, &o->methods, common, inputs);
+}
+
+static enum orl_result run_stress(struct terminal *terminal, const void *options,
+                                  const struct common_options *common, const char *const *inputs)
+{
+    const struct stress_options *o = options;
+    return make_report(terminal, "stress", stress_options_rows(), o, &o->methods, common, inputs);
+}
+
+static enum orl_result run_plot(struct terminal *terminal, const void *options,
+                                const struct common_options *common, const char *const *inputs)
+{
+    const struct orl_names none = {0};
+    return make_report(terminal, "plot", plot_options_rows(), options, &none, common, inputs);
+}
+
+const struct command command_chart = {
+    .name = "chart", .group = COMMAND_MEASURE,
+    .brief = "accuracy against time and memory, all methods",
+    .usage = "SCENE... --out DIR [--quick] [options]",
+    .summary = "Charts accuracy on held-out photographs against time and memory: every method and its\n"
+               "settings, with the Pareto front. Goes on where an earlier run ended.",
+    COMMAND_TABLE(chart_options), .inputs_min = 1, .inputs_max = SCENES_MAX, .run = run_chart,
+};
+
+const struct command command_stress = {
+    .name = "stress", .group = COMMAND_MEASURE,
+    .brief = "accuracy as one thing at a time gets worse, all methods",
+    .usage = "SCENE|synth --out DIR [--quick] [options]",
+    .summary = "Measures every method as one thing at a time gets worse, in six severities, on a scene's\n"
+               "held-out photographs or on the synthetic monument (synth), whose truth is known. Goes on\n"
+               "where an earlier run ended. docs/reference/stress.md lists the axes.",
+    COMMAND_TABLE(stress_options), .inputs_min = 1, .inputs_max = 1, .run = run_stress,
+};
+
+const struct command command_plot = {
+    .name = "plot", .group = COMMAND_MEASURE,
+    .brief = "figures of what bench or trim has measured",
+    .usage = "FILE.json --out DIR",
+    .summary = "Draws figures of what oriel bench --json has written (time by pass, memory by owner,\n"
+               "growth), or oriel trim --json (bytes after each step, loss against bytes).",
+    COMMAND_TABLE(plot_options), .inputs_min = 1, .inputs_max = 1, .run = run_plot,
+};

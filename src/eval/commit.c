@@ -1,8 +1,0 @@
-#include "eval/commit.h"
-
-#include "commit_id.h"
-
-const char *orl_commit(void)
-{
-    return ORL_COMMIT;
-}

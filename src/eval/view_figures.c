@@ -1,0 +1,27 @@
+#include "eval/view_figures.h"
+
+#define AT(member) offsetof(struct orl_eval_view, member)
+
+const struct orl_figure orl_figures[] = {
+    {"psnr_db", "PSNR", 7, 2, 1, false, AT(metrics.psnr_db)},
+    {"psnr_cc_db", "fitted", 7, 2, 1, false, AT(metrics.psnr_cc_db)},
+    {"psnr_covered_db", "covered", 7, 2, 1, false, AT(metrics.psnr_covered_db)},
+    {"ssim", "SSIM", 7, 4, 1, false, AT(metrics.ssim)},
+    {"flip", "FLIP", 7, 4, 1, false, AT(flip)},
+    {"crumbs", "crumbs", 7, 1, 1, false, AT(metrics.crumbs)},
+    {"coverage", "cover%", 7, 1, 100, false, AT(metrics.coverage)},
+    {"completeness", "full%", 6, 1, 100, false, AT(metrics.completeness)},
+    {"ncc_error", "1-NCC", 7, 4, 1, false, AT(metrics.ncc_error)},
+    {"render_ms", "ms", 9, 1, 1, false, AT(render_ms)},
+    {"cpu_ms", NULL, 0, 0, 1, false, AT(cpu_ms)},
+    {"pu21_psnr_db", "PU21 dB", 9, 2, 1, true, AT(radiance.pu21_psnr_db)},
+    {"mu_psnr_db", "mu dB", 9, 2, 1, true, AT(radiance.mu_psnr_db)},
+    {"log2_rmse", "stops", 9, 4, 1, true, AT(radiance.log2_rmse)},
+    {"log2_rmse_fitted", "fitted", 9, 4, 1, true, AT(radiance.log2_rmse_fitted)},
+    {0},
+};
+
+double orl_figure_value(const struct orl_figure *figure, const struct orl_eval_view *view)
+{
+    return *(const double *)((const char *)view + figure->offset);
+}
