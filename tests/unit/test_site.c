@@ -29,7 +29,7 @@ static void start(struct setup *s, size_t side)
     s->params = (struct orl_publish_params){ORL_PUBLISH_DEFAULTS};
     s->params.title = "square";
     s->site = (struct site){.log = &s->log, .scene = &s->scene, .params = &s->params,
-                            .dir = s->dir, .report = &s->report};
+                            .dir = s->dir, .folder = "", .report = &s->report};
     assert_int_equal(orl_points_init(&s->log, &s->scene.points, side * side), ORL_OK);
     for (size_t i = 0; i < side * side; i++) {
         struct orl_points *p = &s->scene.points;
@@ -64,7 +64,7 @@ static uint8_t *read_file(struct setup *s, const char *name, size_t *size)
 static void publish(struct setup *s)
 {
     json_t *json = NULL;
-    assert_int_equal(orl_site_points(&s->site, &json), ORL_OK);
+    assert_int_equal(orl_site_scene_points(&s->site, &json), ORL_OK);
     json_decref(json);
     s->coarse = read_file(s, "points/coarse.bin", &s->size);
     memcpy(&s->cells, s->coarse + 8, sizeof s->cells);
@@ -201,7 +201,7 @@ static void test_no_points_is_an_error(void **state)
     start(&s, 2);
     s.scene.points.count = 0;
     json_t *json = NULL;
-    assert_int_equal(orl_site_points(&s.site, &json), ORL_ERR_DATA);
+    assert_int_equal(orl_site_scene_points(&s.site, &json), ORL_ERR_DATA);
     finish(&s);
 }
 
