@@ -13,7 +13,7 @@
 enum {
     THUMB_SIDE = 160,
     THUMB_QUALITY = 70,
-    RADIANCE_QUALITY = 97, // logarithms have little contrast, and are stretched when shown
+    RADIANCE_QUALITY = 100, // logarithms have little contrast, and are stretched when shown
     REPLACED_STOPS = 8, // above white, that photographs of radiance are published up to
     POSTER_WIDTH = 960,
     POSTER_HEIGHT = 600,

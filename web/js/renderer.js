@@ -1,6 +1,6 @@
 // A frame: depth from points, then colour from photographs. What each pass does is said in its
 // shader; the same passes, by compute shaders, make Oriel's own frames (src/render).
-import {add, dot, rotate, scale, sub} from "./math.js";
+import {add, distance, dot, rotate, scale, sub} from "./math.js";
 import {PhotoStore} from "./photos.js";
 
 // The page's own and, in folders, those that it shares with the renderer.
@@ -14,6 +14,7 @@ const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "lev
 const TILE = 16;           // pixels that share a list of photographs
 const POINTS_PER_PIXEL = 4; // more are thinned
 const BORDER_PX = 2;      // over which photographs fade out at their borders
+const OWN_PLACE = 0.1;     // of the scene's distance, around a photograph's place
 const LEVELS_MAX = 9;     // of the surfel pyramid
 const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
 export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points"];
@@ -242,13 +243,20 @@ export class Renderer {
             pyramid.pushed[0] = pulled[0];
     }
 
+    // Photographs of radiance are merged of all, so that passing the place of one makes nothing flash up.
+    awayFromPhotos(eye)
+    {
+        const near = Math.min(...this.photos.ready.map(photo => distance(photo.eye, eye)));
+        return this.manifest.radiance ? Math.min(near / (OWN_PLACE * this.manifest.distance), 1) : 1;
+    }
+
     gather(camera, o)
     {
         const f = this.frame, store = this.photos, count = store.describe(camera, this.values.typical);
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
                         photo_depth: store.depth, slot_size: [store.width, store.height],
                         last_mip: store.levels - 1, border_px: BORDER_PX, photos: count,
-                        blur_per_radian: o.guess_blur,
+                        blur_per_radian: o.guess_blur, away: this.awayFromPhotos(camera.eye),
                         candidates: Math.round(o.candidates), outliers: o.outliers,
                         photos_per_pixel: Math.round(o.photos_per_pixel),
                         view_depth: f.depth.textures[0], tiles: f.tiles.textures[0]};

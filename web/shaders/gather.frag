@@ -9,6 +9,7 @@ uniform sampler2D view_depth; // < 0: guessed
 uniform highp usampler2D tiles; // choose.frag
 uniform int candidates;
 uniform float outliers, photos_per_pixel;
+uniform float away; // 1, but less near the place of a photograph that shows what all together give
 layout(location = 0) out vec4 painted; // shared/pixel.glsl, finished
 layout(location = 1) out vec4 source; // r, g: number of the best photograph, high and low byte; a: 1
 
@@ -35,7 +36,7 @@ sight consider(int i, vec3 p, bool guessed)
     float sees = guessed ? photo_unhidden_share(source, seen, z) *
                              photo_past_share(source, seen, z) * photo_beside(penalty)
                        : photo_seen_share(seen, z);
-    penalty = guessed ? penalty : photo_surface_penalty(penalty);
+    penalty = guessed ? penalty : length(vec2(penalty, SURFACE_PENALTY * away));
     float sure = sees * photo_border(source, pixel);
     bool paints = sees > (guessed ? GUESS_SURE_MIN : 1e-4);
     return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, p.z));
