@@ -161,7 +161,7 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
 static void take_means(struct orl_eval *eval)
 {
     for (const struct orl_figure *f = orl_figures; f->name; f++) {
-        double *mean = (double *)((char *)&eval->mean + f->offset);
+        double *mean = (void *)((char *)&eval->mean + f->offset);
         for (size_t i = 0; i < eval->view_count; i++)
             *mean += orl_figure_value(f, &eval->views[i]) / (double)eval->view_count;
     }

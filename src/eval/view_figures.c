@@ -23,5 +23,6 @@ const struct orl_figure orl_figures[] = {
 
 double orl_figure_value(const struct orl_figure *figure, const struct orl_eval_view *view)
 {
-    return *(const double *)((const char *)view + figure->offset);
+    const double *value = (const void *)((const char *)view + figure->offset);
+    return *value;
 }
