@@ -1,5 +1,6 @@
 #include "preprocess/calibrate/undistort.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,8 @@
 #include "preprocess/job/colmap_run.h"
 
 #define WORK ".oriel/undistort.tmp"
+
+enum { PINHOLE = 1 }; // COLMAP's model id
 
 static enum orl_result run_undistorter(struct orl_job *job)
 {
@@ -28,6 +31,35 @@ end:
     free(photos);
     free(out);
     free(model);
+    return result;
+}
+
+// COLMAP makes all pictures as small as it is told, but leaves cameras whose distortion is exactly zero
+// as large as they were: these get the size of their pictures.
+static enum orl_result limit_cameras(const struct orl_job *job)
+{
+    struct orl_colmap_model model = {0};
+    const double most = orl_prepare_max_size(job->params);
+    char *dir = orl_job_path(job, WORK "/sparse");
+    size_t limited = 0;
+    enum orl_result result = dir ? orl_colmap_read(job->log, dir, &model) : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < model.camera_count; i++) {
+        struct orl_colmap_camera *camera = &model.cameras[i];
+        const struct orl_camera *c = &camera->pinhole;
+        double scale = most / fmax(c->width, c->height);
+        if (!(scale < 1))
+            continue;
+        camera->pinhole = orl_camera_resized(c, (int)round(scale * c->width),
+                                             (int)round(scale * c->height));
+        camera->model = PINHOLE;
+        camera->param_count = 4;
+        memcpy(camera->params, (double[]){c->fx, c->fy, c->cx, c->cy}, 4 * sizeof(double));
+        limited++;
+    }
+    if (result == ORL_OK && limited)
+        result = orl_colmap_write(job->log, dir, &model);
+    orl_colmap_finish(&model);
+    free(dir);
     return result;
 }
 
@@ -94,6 +126,7 @@ enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
     enum orl_result result;
     if ((result = orl_job_find_colmap(job)) != ORL_OK ||
         (result = run_undistorter(job)) != ORL_OK ||
+        (result = limit_cameras(job)) != ORL_OK ||
         (result = orl_job_set_sparse(job, WORK "/sparse", &model)) != ORL_OK ||
         (result = check_output(job, model, record)) != ORL_OK ||
         (result = orl_undistort_companions(job, ORL_COMPANION_PHOTO, model, WORK "/images",
