@@ -2,6 +2,7 @@
 between runs, figures and pages. `oriel NAME` runs NAME.py with options that it has checked."""
 
 import html
+import importlib.util
 import json
 import math
 import os
@@ -11,6 +12,11 @@ import sys
 
 FIGURES = ["psnr_db", "psnr_cc_db", "psnr_covered_db", "ssim", "flip", "crumbs", "coverage",
            "completeness"]
+
+for module in ("matplotlib", "numpy", "PIL"):
+    if not importlib.util.find_spec(module):
+        sys.exit(f"oriel: error: {sys.executable} has no {module}: reports need numpy, Pillow and "
+                 "Matplotlib (Debian: python3-numpy, python3-pil, python3-matplotlib)")
 
 
 class Failure(Exception):
@@ -201,7 +207,3 @@ def run(make):
     except Failure as failure:
         print(f"oriel: error: {failure}", file=sys.stderr)
         sys.exit(2)
-    except ImportError as failure:
-        print(f"oriel: error: {failure}: the report needs numpy, Pillow and Matplotlib "
-              "(Debian: python3-numpy, python3-pil, python3-matplotlib)", file=sys.stderr)
-        sys.exit(1)

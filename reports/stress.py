@@ -493,7 +493,7 @@ def passers_by(case, level, rng):
 
 def silhouettes(case, level, rng):
     """Each silhouette is `level` pixels too wide or too narrow. The subject stands on black in all
-    pictures, as hulls have no surroundings."""
+    pictures, as hulls have no surroundings. None: nothing is left of a silhouette."""
     reach = range(-int(level), int(level) + 1)
     for name in sorted(case.cameras):
         mask = case.masks[name]
@@ -508,6 +508,8 @@ def silhouettes(case, level, rng):
                     y, x = int(level) + dy, int(level) + dx
                     wide = np.maximum(wide, padded[y:y + mask.shape[0], x:x + mask.shape[1]])
         case.masks[name] = wide if grown is mask else 255 - wide
+        if not case.masks[name].any():
+            return None
     case.hull = True
     return [case]
 
