@@ -5,6 +5,8 @@ set -u
 source_dir=$1 cache=$2
 shift 2
 command -v cppcheck >/dev/null || { echo "cppcheck is not installed"; exit 77; }
+# Each version finds other things, many of them in code that is right: that of Debian 12 decides.
+[[ $(cppcheck --version) = *" 2.10"* ]] || { echo "$(cppcheck --version) is not 2.10"; exit 77; }
 cd "$source_dir" && mkdir -p "$cache" || exit 1
 [ $# -gt 0 ] || set -- src preprocess datasets
 # Found faults print and fail; unknown macros are those of jansson.
