@@ -94,6 +94,36 @@ static enum orl_result match(struct orl_job *job, const struct import_job *impor
     return result;
 }
 
+// Photographs without matches give no points, and COLMAP 3.10 ends by a signal where a known camera is
+// of such a one. Where no two match all stay, and take_points says what is wrong.
+static enum orl_result leave_out_unconnected(struct orl_job *job, const struct paths *paths)
+{
+    struct orl_colmap_model model = {0};
+    struct orl_database *db = NULL;
+    size_t connected = 0, all;
+    enum orl_result result = orl_colmap_read(job->log, paths->in, &model);
+    if (result == ORL_OK)
+        result = orl_database_open(job->log, paths->database, &db);
+    all = model.image_count;
+    for (size_t i = 0; result == ORL_OK && i < all; i++) {
+        const struct orl_colmap_image image = model.images[i];
+        bool is = false;
+        result = orl_database_is_connected(db, image.id, &is);
+        if (is) { // those that stay come first
+            model.images[i] = model.images[connected];
+            model.images[connected++] = image;
+        }
+    }
+    if (result == ORL_OK && connected && connected < all) {
+        model.image_count = connected;
+        result = orl_colmap_write(job->log, paths->in, &model);
+        model.image_count = all;
+    }
+    orl_database_close(&db);
+    orl_colmap_finish(&model);
+    return result;
+}
+
 static enum orl_result triangulate(struct orl_job *job, const struct paths *paths)
 {
     struct orl_colmap_args args = {0};
@@ -163,6 +193,8 @@ static enum orl_result make_sparse_points(struct orl_job *job, const struct impo
         result = find_features(job, &paths);
     if (result == ORL_OK)
         result = match(job, import);
+    if (result == ORL_OK)
+        result = leave_out_unconnected(job, &paths);
     if (result == ORL_OK)
         result = triangulate(job, &paths);
     if (result == ORL_OK)

@@ -213,6 +213,24 @@ enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, ui
     return result;
 }
 
+enum orl_result orl_database_is_connected(struct orl_database *db, uint32_t id, bool *connected)
+{
+    // pair_id, taken apart; COLMAP ignores pairs of fewer inliers.
+    static const char sql[] =
+        "SELECT 1 FROM two_view_geometries WHERE rows >= 15 AND "
+        "?1 IN (pair_id % 2147483647, (pair_id - pair_id % 2147483647) / 2147483647) LIMIT 1";
+    sqlite3_stmt *statement = NULL;
+    int step = SQLITE_ERROR;
+    if (sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK) {
+        sqlite3_bind_int64(statement, 1, id);
+        step = sqlite3_step(statement);
+    }
+    *connected = step == SQLITE_ROW;
+    enum orl_result result = *connected || step == SQLITE_DONE ? ORL_OK : fail(db);
+    sqlite3_finalize(statement);
+    return result;
+}
+
 enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, uint32_t b,
                                            uint32_t (*matches)[2], size_t count)
 {

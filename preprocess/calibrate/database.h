@@ -27,6 +27,9 @@ enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, ui
                                          bool *has) ORL_CHECK_RESULT;
 enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, uint32_t b,
                                            uint32_t (*matches)[2], size_t count) ORL_CHECK_RESULT;
+// True when the photograph has matches with any other that COLMAP uses.
+enum orl_result orl_database_is_connected(struct orl_database *db, uint32_t id,
+                                          bool *connected) ORL_CHECK_RESULT;
 // What is written between the two is written at once, or not at all.
 enum orl_result orl_database_begin(struct orl_database *db) ORL_CHECK_RESULT;
 enum orl_result orl_database_commit(struct orl_database *db) ORL_CHECK_RESULT;

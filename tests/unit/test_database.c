@@ -363,6 +363,21 @@ static void spaces_are_hidden_and_come_back(void **state)
     orl_database_close(&db);
 }
 
+// 1 and 3 have enough in common, 2 and 4 too little, 5 with nothing.
+static void few_inliers_do_not_connect(void **state)
+{
+    (void)state;
+    make_more_tables();
+    run_sql("INSERT INTO two_view_geometries VALUES (2147483647 * 1 + 3, 15), (2147483647 * 2 + 4, 14);");
+    struct orl_database *db = open_database();
+    for (uint32_t id = 1; id <= 5; id++) {
+        bool connected;
+        assert_int_equal(orl_database_is_connected(db, id, &connected), ORL_OK);
+        assert_int_equal(connected, id == 1 || id == 3);
+    }
+    orl_database_close(&db);
+}
+
 static void parts_are_joined(void **state)
 {
     (void)state;
@@ -502,7 +517,8 @@ int main(void)
         FILE_TEST(largest_scales_come_first), FILE_TEST(no_features_is_no_error),
         FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
-        FILE_TEST(parts_are_joined), FILE_TEST(parts_with_rigs_are_joined),
+        FILE_TEST(few_inliers_do_not_connect), FILE_TEST(parts_are_joined),
+        FILE_TEST(parts_with_rigs_are_joined),
         FILE_TEST(a_part_has_the_features_of_its_pairs),
         FILE_TEST(a_part_runs_no_sql_of_a_stranger),
         FILE_TEST(no_trigger_of_a_stranger_runs),
