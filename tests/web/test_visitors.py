@@ -372,7 +372,7 @@ class Live(Visitors):
             return 2.5 * distance(...oriel.ruler.ends);""")
         said = self.js("return document.getElementById('length').textContent")
         self.assertAlmostEqual(float(said.split()[0]) / (100 if said.endswith("cm") else 1), metres, delta=0.02 * metres)
-        self.assertEqual(self.js("return document.getElementById('line').points.numberOfItems"), 2)
+        self.browser.wait("return document.getElementById('line').points.numberOfItems === 2")
 
     def test_held_out_photographs_are_compared(self):
         self.open(address=self.walk().address[:-1])
