@@ -201,7 +201,8 @@ def print_rows(name, rows):
 
 
 def section(name, figure, rows):
-    by = "{method} {setting}".format_map
+    def by(row):
+        return f"{row['method']} {row['setting']}".strip()
     head = ["method", "setting", *(title for title, _, _ in COLUMNS), "front, or what is better and faster"]
     cells = [[row["method"], row["setting"], *(cell(row) for _, _, cell in COLUMNS),
               "front" if row["on_front"] else by(row["dominated_by"]) if row["dominated_by"] else ""]
