@@ -11,8 +11,6 @@
 
 #define WORK ".oriel/undistort.tmp"
 
-enum { PINHOLE = 1 }; // COLMAP's model id
-
 static enum orl_result run_undistorter(struct orl_job *job)
 {
     struct orl_colmap_args args = {0};
@@ -49,11 +47,9 @@ static enum orl_result limit_cameras(const struct orl_job *job)
         double scale = most / fmax(c->width, c->height);
         if (!(scale < 1))
             continue;
-        camera->pinhole = orl_camera_resized(c, (int)round(scale * c->width),
-                                             (int)round(scale * c->height));
-        camera->model = PINHOLE;
-        camera->param_count = 4;
-        memcpy(camera->params, (double[]){c->fx, c->fy, c->cx, c->cy}, 4 * sizeof(double));
+        const struct orl_camera small = orl_camera_resized(c, (int)round(scale * c->width),
+                                                           (int)round(scale * c->height));
+        *camera = orl_colmap_pinhole(camera->id, &small);
         limited++;
     }
     if (result == ORL_OK && limited)

@@ -29,12 +29,6 @@ char *orl_import_path(const struct import_job *job, const char *format, ...)
 
 // --- sparse/ ---
 
-static struct orl_colmap_camera pinhole_camera(uint32_t id, const struct orl_camera *c)
-{
-    return (struct orl_colmap_camera){.id = id, .model = 1, .pinhole = *c,
-                                      .params = {c->fx, c->fy, c->cx, c->cy}, .param_count = 4};
-}
-
 // Sets the points that a photograph sees, if their model has the photograph.
 static void set_points(const struct import_points *points, const char *known_name,
                        struct orl_colmap_image *image)
@@ -65,7 +59,7 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
     for (size_t i = 0; result == ORL_OK && !for_database && i < known->camera_count; i++)
         if (job->targets[i].width) // true when the camera has a picture
             model.cameras[model.camera_count++] =
-                pinhole_camera(known->cameras[i].id, &job->targets[i]);
+                orl_colmap_pinhole(known->cameras[i].id, &job->targets[i]);
     for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
         const struct import_view *view = &job->views[i];
         if (for_database && view->test)
@@ -78,7 +72,7 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
         if (for_database) {
             image->camera_id = image->id;
             model.cameras[model.camera_count++] =
-                pinhole_camera(image->id, &job->targets[view->camera]);
+                orl_colmap_pinhole(image->id, &job->targets[view->camera]);
         }
         set_points(points, view->image->name, image);
     }

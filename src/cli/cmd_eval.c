@@ -7,8 +7,8 @@
 #include "cli/command_output.h"
 #include "core/memory.h"
 #include "core/text.h"
-#include "eval/view_figures.h"
 #include "eval/stability.h"
+#include "eval/view_figures.h"
 #include "oriel/hdr.h"
 
 #define EVAL_OPTIONS(ROW) \

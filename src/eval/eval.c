@@ -6,10 +6,10 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "eval/view_figures.h"
 #include "eval/flip.h"
 #include "eval/heldout.h"
 #include "eval/internal.h"
+#include "eval/view_figures.h"
 
 // Duration of the timed frames of each view.
 static const double seconds = 0.2;

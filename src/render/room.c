@@ -9,41 +9,18 @@
 #include "render/method.h"
 #include "render/photos.h"
 #include "render/select.h"
-
+#include "scene/room.h"
 
 bool orl_frame_shows_room(const struct frame *frame)
 {
     return frame->params->fill == ORL_FILL_ROOM;
 }
 
-// The middle and the half sides of the room. Of a shell: the middle of what the proxy shows, and
-// the same radius thrice.
-static void measure(const struct frame *frame, double middle[3], double half[3])
-{
-    const struct orl_room *room = &frame->scene->room;
-    const double *low = room->known ? room->low : frame->proxy->extent.low;
-    const double *high = room->known ? room->high : frame->proxy->extent.high;
-    double farthest = 0;
-    for (int k = 0; k < 3; k++) {
-        middle[k] = 0.5 * (low[k] + high[k]);
-        half[k] = 0.5 * (high[k] - low[k]);
-    }
-    for (size_t i = 0; !room->known && i < frame->scene->photo_count; i++) {
-        double eye[3], squares = 0;
-        orl_pose_centre(&frame->scene->photos[i].view.cam_from_world, eye);
-        for (int k = 0; k < 3; k++)
-            squares += (eye[k] - middle[k]) * (eye[k] - middle[k]);
-        farthest = fmax(farthest, sqrt(squares));
-    }
-    for (int k = 0; !room->known && k < 3; k++)
-        half[k] = farthest > 0 ? ORL_ROOM_SHELL * farthest : 1;
-}
-
 static void place(const struct frame *frame, struct gather_block *block)
 {
     const struct orl_pose *pose = &frame->view->cam_from_world;
     double middle[3], half[3], eye[3];
-    measure(frame, middle, half);
+    orl_room_measure(frame->scene, frame->proxy->extent.low, frame->proxy->extent.high, middle, half);
     orl_pose_centre(pose, eye);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)

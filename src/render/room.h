@@ -5,15 +5,12 @@
 
 #include "render/frame.h"
 
-// Radius of the shell around a scene whose room is not known, in distances of the farthest photograph.
-#define ORL_ROOM_SHELL 2.0
-
 // True if this frame shows the room where there is no surface: fill=room.
 bool orl_frame_shows_room(const struct frame *frame);
 // Paints frame->room, in the encoding of blended pixels: the scene's room, or where it has none a
 // shell around the scene. With pictures of the place without the subject these are projected, else
 // the photographs, except where the subject is before the walls. Photographs that see a wall count
-// alike (equation 1), or as with combine=recurrence if the frame has that. In radiance photographs
+// alike (equation 1). In radiance photographs
 // are projected, each weighted by its confidence: pictures of the empty place have no exposure.
 // Overwrites the frame's chosen photographs.
 enum orl_result orl_room_paint(struct frame *frame);

@@ -221,6 +221,12 @@ const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_
                               : NULL;
 }
 
+struct orl_colmap_camera orl_colmap_pinhole(uint32_t id, const struct orl_camera *c)
+{
+    return (struct orl_colmap_camera){.id = id, .model = 1, .pinhole = *c,
+                                      .params = {c->fx, c->fy, c->cx, c->cy}, .param_count = 4};
+}
+
 struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,
                                       const struct orl_colmap_image *image)
 {

@@ -65,6 +65,8 @@ const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_
 // NULL when no image has that name.
 const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_model *model,
                                                         const char *name);
+// A camera without distortion.
+struct orl_colmap_camera orl_colmap_pinhole(uint32_t id, const struct orl_camera *camera);
 // Pose and pinhole camera of one of the model's images, without distortion.
 struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,
                                       const struct orl_colmap_image *image);

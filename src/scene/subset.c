@@ -68,9 +68,7 @@ static enum orl_result resize_cameras(const struct orl_log *log, const struct or
         const struct orl_camera *before = &scene->photos[i].view.camera;
         if (!keep[i] || (c->width == before->width && c->height == before->height))
             continue;
-        all[model->camera_count++] = (struct orl_colmap_camera){
-            .id = next, .model = 1, .pinhole = *c, .params = {c->fx, c->fy, c->cx, c->cy},
-            .param_count = 4};
+        all[model->camera_count++] = orl_colmap_pinhole(next, c);
         model->images[i].camera_id = next++;
     }
     free(model->cameras);

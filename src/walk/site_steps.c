@@ -10,9 +10,9 @@
 #include "io/picture.h"
 #include "render/photos.h"
 #include "render/proxy.h"
-#include "render/room.h"
 #include "scene/cones.h"
 #include "scene/point_radii.h"
+#include "scene/room.h"
 #include "walk/internal.h"
 
 enum {
@@ -160,29 +160,18 @@ void orl_site_room_depth(const struct site *site, const struct orl_view *view, s
         }
 }
 
-// Without a room of its own a shell around the subject, as fill=room has it (src/render/room.c).
 static enum orl_result find_room(struct site *site, const struct orl_points *hull)
 {
-    double middle[3], low[3] = {0}, high[3] = {0}, farthest = 0;
-    const struct orl_scene *scene = site->scene;
-    site->room = scene->room;
-    if (scene->room.known)
+    double middle[3], half[3], low[3] = {0}, high[3] = {0};
+    site->room = site->scene->room;
+    if (site->room.known)
         return ORL_OK;
-    enum orl_result result = orl_vertices_range(site->log, (const float (*)[3])hull->position, hull->count,
-                                                0.02, low, high);
-    for (int k = 0; k < 3; k++)
-        middle[k] = 0.5 * (low[k] + high[k]);
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        double eye[3];
-        orl_pose_centre(&scene->photos[i].view.cam_from_world, eye);
-        for (int k = 0; k < 3; k++)
-            eye[k] -= middle[k];
-        farthest = fmax(farthest, sqrt(orl_dot3(eye, eye)));
-    }
-    farthest = farthest > 0 ? farthest * ORL_ROOM_SHELL : 1;
+    enum orl_result result = orl_vertices_range(site->log, (const float (*)[3])hull->position,
+                                                hull->count, 0.02, low, high);
+    orl_room_measure(site->scene, low, high, middle, half);
     for (int k = 0; k < 3; k++) {
-        site->room.low[k] = middle[k] - farthest;
-        site->room.high[k] = middle[k] + farthest;
+        site->room.low[k] = middle[k] - half[k];
+        site->room.high[k] = middle[k] + half[k];
     }
     return result;
 }
