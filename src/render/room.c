@@ -9,7 +9,7 @@
 #include "render/method.h"
 #include "render/photos.h"
 #include "render/select.h"
-#include "scene/room.h"
+#include "scene/room_extent.h"
 
 bool orl_frame_shows_room(const struct frame *frame)
 {

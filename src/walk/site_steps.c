@@ -12,7 +12,7 @@
 #include "render/proxy.h"
 #include "scene/cones.h"
 #include "scene/point_radii.h"
-#include "scene/room.h"
+#include "scene/room_extent.h"
 #include "walk/internal.h"
 
 enum {

@@ -1,4 +1,4 @@
-#include "scene/room.h"
+#include "scene/room_extent.h"
 
 #include <math.h>
 

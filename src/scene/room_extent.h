@@ -1,6 +1,6 @@
 // The room that a scene's subject is in.
-#ifndef ORL_SCENE_ROOM_H
-#define ORL_SCENE_ROOM_H
+#ifndef ORL_SCENE_ROOM_EXTENT_H
+#define ORL_SCENE_ROOM_EXTENT_H
 
 #include "oriel/scene.h"
 
