@@ -68,7 +68,7 @@ finish() {
 }
 
 step dependencies "checking dependencies"
-extra=(libcmocka-dev jq curl openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
+extra=(libcmocka-dev git jq curl openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
     python3-flask python3-matplotlib python3-numpy python3-pil
     glslang-tools spirv-tools cppcheck)
 # HEIC and AVIF files are written by plugins, where libheif has such.
