@@ -158,7 +158,7 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
             result = ORL_ERR_MEMORY;
         else if (orl_path_is_dir(path))
             result = look_inside(log, path, role, found);
-        else if (is_picture(file) || orl_video_is(file))
+        else if (orl_path_is_file(path) && (is_picture(file) || orl_video_is(file))) // no link to nowhere
             result = set(log, dir, file, orl_video_is(file) ? IMPORT_CLIP : IMPORT_PICTURE, found);
         free(path);
     }
@@ -331,9 +331,9 @@ static enum orl_result find_pictures(struct import_job *job, const char *dir)
         }
     }
     if (result == ORL_OK && job->view_count < 2)
-        result = orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s: pictures of %zu of %zu cameras are here "
-                          "(%s is not); two are needed; --images names their folder", dir,
-                          job->view_count, model->image_count, missed ? missed : "none");
+        result = orl_fail(job->log, ORL_ERR_NOT_FOUND, "%s: pictures of %zu of %zu cameras can be "
+                          "used%s%s; two are needed; --images names their folder", dir, job->view_count,
+                          model->image_count, missed ? "; missing: " : "", missed ? missed : "");
     else if (result == ORL_OK && missing)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: no picture for %zu of %zu cameras, as %s: left "
                  "out", dir, missing, model->image_count, missed);

@@ -149,6 +149,8 @@ static bool matches(const struct format *format, const char *name)
 
 static enum orl_result unknown(const struct orl_log *log, const char *path)
 {
+    if (!orl_path_is_file(path))
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such file or folder", path);
     return orl_fail(log, ORL_ERR_FORMAT, "%s: not a file of cameras that is known: oriel import --help "
                     "lists the formats", path);
 }

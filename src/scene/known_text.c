@@ -71,9 +71,12 @@ struct bundler {
 };
 
 // Ends a line of the list after the picture's name, which may have spaces: Bundler writes " 0 FOCAL"
-// after it, or nothing.
+// after it, or nothing; other programs separate them by tabs.
 static void cut_focal_length(char *line)
 {
+    for (char *at = line; *at; at++)
+        if (*at == '\t')
+            *at = ' ';
     char *focal = strrchr(line, ' '), *end;
     if (!focal || strtod(focal, &end) < 0 || end == focal || *end)
         return;

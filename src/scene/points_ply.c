@@ -27,10 +27,9 @@ static void find_roles(const struct orl_ply_element *vertex, int property[ROLE_C
 {
     for (int role = 0; role < ROLE_COUNT; role++) {
         property[role] = orl_ply_property_index(vertex, roles[role]);
-        if (property[role] < 0 && role >= RED && role <= BLUE) {
-            static const char *const other[] = {"diffuse_red", "diffuse_green", "diffuse_blue"};
-            property[role] = orl_ply_property_index(vertex, other[role - RED]);
-        }
+        static const char *const other[][3] = {{"diffuse_red", "diffuse_green", "diffuse_blue"}, {"r", "g", "b"}};
+        for (size_t i = 0; i < ORL_COUNT(other) && property[role] < 0 && role >= RED && role <= BLUE; i++)
+            property[role] = orl_ply_property_index(vertex, other[i][role - RED]);
     }
 }
 
@@ -137,6 +136,8 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
     }
     if (result != ORL_OK)
         return result;
+    if (kept && !gaussian && property[RED] < 0)
+        orl_logf(ply->log, ORL_LOG_INFO, "%s: no colours (red, green, blue): its points are grey", ply->path);
     if (transparent)
         orl_logf(ply->log, ORL_LOG_INFO, "%s: %zu of %zu Gaussians are transparent: dropped",
                  ply->path, transparent, (size_t)vertex->count);

@@ -538,7 +538,7 @@ static void refuses(void **state)
     cases[0].params.images_dir = nowhere;
     cases[0].result = ORL_ERR_NOT_FOUND, cases[0].why = "no such folder";
     cases[1].params.images_dir = w->dir;
-    cases[1].result = ORL_ERR_NOT_FOUND, cases[1].why = "pictures of 0 of 4 cameras are here";
+    cases[1].result = ORL_ERR_NOT_FOUND, cases[1].why = "pictures of 0 of 4 cameras can be used; missing: ";
     cases[2].params.test_list = &unknown;
     cases[2].result = ORL_ERR_ARGUMENT, cases[2].why = "--test-list cam77: no photograph";
     cases[3].params.silhouettes = ORL_SILHOUETTES_GIVEN;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <png.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/json.h"
 #include "exchange/export.h"
@@ -203,9 +204,14 @@ static void leaves_out_what_is_no_picture(void **state)
     save(w, "images/c.png", "");
     save(w, "images/d.png", "<html>not found</html>");
     save(w, "transforms.json", "{" LENS ", \"frames\": [" FRAME("images/a.png", "0", "") ","
-         FRAME("images/b.png", "1", "") "," FRAME("images/c.png", "2", "") "," FRAME("images/d.png", "3", "") "]}");
+         FRAME("images/b.png", "1", "") "," FRAME("images/c.png", "2", "") "," FRAME("images/d.png", "3", "") ","
+         FRAME("images/e.png", "4", "") "]}");
+    char *nowhere = place(w, "images/e.png");
+    assert_int_equal(symlink("gone.png", nowhere), 0);
+    free(nowhere);
     assert_int_equal(import(w, NULL), ORL_OK);
     assert_int_equal(w->scene->photo_count, 2);
+    says(w, "no picture for 1 of 5 cameras, as e.png: left out");
     says(w, "c.png: not a picture that can be read: left out");
     says(w, "d.png: not a picture that can be read: left out");
 }

@@ -180,7 +180,7 @@ static void reads_bundler(void **state)
          "500 0 0\n0 -1 0\n-1 0 0\n0 0 -1\n2 1 3\n"
          "1 2 8\n255 128 0\n2 0 5 10.5 -3 2 7 1 2\n"
          "4 5 9\n1 2 3\n1 1 0 0 0\n");
-    save(dir, "list.txt", "photos/a.jpg 0 500\nphotos/b.jpg\nphotos/c.jpg\n");
+    save(dir, "list.txt", "photos/a.jpg 0 500\nphotos/b.jpg\nphotos/c.jpg\t0\t500\n");
     assert_int_equal(read(NULL, dir, "bundle.out", -1, &known), ORL_OK);
     assert_int_equal(known.model.image_count, 2);
     assert_string_equal(known.model.images[1].name, "c.jpg");
@@ -379,6 +379,8 @@ static void says_what_a_folder_lacks(void **state)
     assert_int_equal(read(&log, dir, NULL, -1, &known), ORL_ERR_NOT_FOUND);
     assert_non_null(strstr(said.text, "no cameras here"));
     assert_int_equal(read(&log, dir, "cameras.json", -1, &known), ORL_ERR_NOT_FOUND);
+    assert_int_equal(read(&log, dir, "sparse", -1, &known), ORL_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.text, "sparse: no such file or folder"));
     save(dir, "a_par.txt", "1\n");
     save(dir, "b_par.txt", "1\n");
     assert_int_equal(read(&log, dir, NULL, -1, &known), ORL_ERR_DATA);

@@ -79,14 +79,16 @@ static void reads_ascii(void **state)
     test_dir_remove(dir);
 }
 
-// By the greatest value of the file, whatever the type is called.
+// By the greatest value of the file, whatever the type is called, under the names that are in use.
 static void scales_colours_of_other_types(void **state)
 {
     (void)state;
     static const struct {
-        const char *type, *colours;
-    } cases[] = {{"ushort", "65535 32896 0"}, {"ushort", "255 128 0"}, {"float", "255 128 0"},
-                 {"double", "1 0.50196 0"}, {"int", "255 128 0"}, {"uchar", "255 128 0"}};
+        const char *type, *colours, *names[3];
+    } cases[] = {{"ushort", "65535 32896 0", {"red", "green", "blue"}},
+                 {"ushort", "255 128 0", {"diffuse_red", "diffuse_green", "diffuse_blue"}},
+                 {"float", "255 128 0", {"r", "g", "b"}}, {"double", "1 0.50196 0", {"red", "green", "blue"}},
+                 {"int", "255 128 0", {"red", "green", "blue"}}, {"uchar", "255 128 0", {"r", "g", "b"}}};
     const uint8_t want[3] = {255, 128, 0};
     char *dir = test_dir_make(), path[4096], text[1024];
     snprintf(path, sizeof path, "%s/points.ply", dir);
@@ -95,8 +97,9 @@ static void scales_colours_of_other_types(void **state)
         const char *t = cases[i].type;
         int length = snprintf(text, sizeof text, "ply\nformat ascii 1.0\nelement vertex 1\n"
                               "property float x\nproperty float y\nproperty float z\n"
-                              "property %s red\nproperty %s green\nproperty %s blue\nend_header\n"
-                              "1 2 3 %s\n", t, t, t, cases[i].colours);
+                              "property %s %s\nproperty %s %s\nproperty %s %s\nend_header\n"
+                              "1 2 3 %s\n", t, cases[i].names[0], t, cases[i].names[1], t,
+                              cases[i].names[2], cases[i].colours);
         save(path, text, (size_t)length);
         assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
         assert_int_equal(points.count, 1);
@@ -104,6 +107,23 @@ static void scales_colours_of_other_types(void **state)
         assert_float_equal(points.position[0][2], 3, 0);
         orl_points_finish(&points);
     }
+    test_dir_remove(dir);
+}
+
+static void says_that_there_are_no_colours(void **state)
+{
+    (void)state;
+    char *dir = test_dir_make(), path[4096];
+    static const char text[] = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                               "property float z\nproperty float intensity\nend_header\n1 2 3 4\n";
+    snprintf(path, sizeof path, "%s/points.ply", dir);
+    save(path, text, sizeof text - 1);
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_points points;
+    assert_int_equal(orl_points_read(&log, path, &points), ORL_OK);
+    assert_non_null(strstr(said.text, "no colours"));
+    orl_points_finish(&points);
     test_dir_remove(dir);
 }
 
@@ -290,6 +310,7 @@ int main(void)
         cmocka_unit_test(round_trips),
         cmocka_unit_test(reads_ascii),
         cmocka_unit_test(scales_colours_of_other_types),
+        cmocka_unit_test(says_that_there_are_no_colours),
         cmocka_unit_test(refuses_bad_headers),
         cmocka_unit_test(refuses_truncated),
         cmocka_unit_test(drops_what_is_not_finite),
