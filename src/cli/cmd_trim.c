@@ -22,8 +22,6 @@
     ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
     ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
         "try nothing new after so long, by the clock; default: no limit") \
-    ROW(explain, "explain", FLAG, "print what each part of the model buys") \
-    ROW(random, "random", FLAG, "also measure random removal") \
     ROW(json, "json", TEXT("FILE"), "write figures and steps as JSON")
 COMMAND_OPTIONS(trim_options, TRIM_OPTIONS)
 
@@ -34,34 +32,9 @@ enum { MIB = 1 << 20 };
 static void print_step(void *priv, const struct orl_trim_step *s)
 {
     (void)priv;
-    if (s->taken)
-        printf("%-36s %8.3f %8.3f %9.2f %9.1f\n", s->what, s->loss_db, s->total_loss_db,
-               s->bytes / MIB, s->ms);
+    printf("%-36s %8.3f %8.3f %9.2f %9.1f\n", s->what, s->loss_db, s->total_loss_db,
+           s->bytes / MIB, s->ms);
     fflush(stdout);
-}
-
-static void print_rate(double db, double saved, double least)
-{
-    if (saved > least)
-        printf(" %12.4f", db / saved);
-    else
-        printf(" %12s", "-");
-}
-
-// What each part of the model buys, from the first trial of each.
-static void print_parts(const struct orl_trim *trim)
-{
-    printf("\n%-36s %8s %9s %9s %12s %12s\n", "without it", "loss dB", "MiB less", "ms less",
-           "dB per MiB", "dB per ms");
-    for (size_t i = 0; i < trim->step_count; i++) {
-        const struct orl_trim_step *s = &trim->steps[i];
-        if (!s->first)
-            continue;
-        printf("%-36s %8.3f %9.2f %9.1f", s->what, s->loss_db, s->saved_bytes / MIB, s->saved_ms);
-        print_rate(s->loss_db, s->saved_bytes / MIB, 1e-3);
-        print_rate(s->loss_db, s->saved_ms, 0.02 * trim->before.frame_ms);
-        printf("\n");
-    }
 }
 
 static void print_row(const char *name, const struct orl_trim_figures *f)
@@ -79,9 +52,6 @@ static void print_summary(const struct trim_options *o, const struct orl_trim *t
            "model MiB", "all MiB", "file MiB", "frame ms", "PSNR dB", "SSIM", "held out", "SSIM");
     print_row("whole", a);
     print_row("trimmed", b);
-    for (size_t i = 0; i < trim->random_count; i++)
-        printf("removed at random: %.2f MiB, %.2f dB lost\n", trim->random[i].bytes / MIB,
-               trim->random[i].loss_db);
     printf("%s: %.1f times smaller on the device; training photographs lost %.3f dB, the worst of "
            "them %.3f%s\n", o->out,
            (double)(a->point_bytes + a->photo_bytes) / (double)(b->point_bytes + b->photo_bytes),
@@ -114,14 +84,12 @@ static enum orl_result run_trim(struct terminal *terminal, const void *options,
         .tolerance_ssim = o->tolerance_ssim, .worst_db = o->worst_db,
         .max_bytes = (size_t)(o->max_mib * MIB), .max_frame_ms = o->max_frame_ms,
         .views = (size_t)o->views, .size_divide = o->size_divide, .budget_s = o->budget_s,
-        .explain = o->explain, .tune = !o->keep_options, .random = o->random,
+        .tune = !o->keep_options,
         .on_step = common->quiet ? NULL : print_step, .progress = &terminal->progress};
     if (result == ORL_OK && !common->quiet)
         printf("%-36s %8s %8s %9s %9s\n", "step", "loss dB", "all dB", "MiB", "frame ms");
     if (result == ORL_OK)
         result = orl_trim_run(gpu, scene, &params, &trim);
-    if (result == ORL_OK && o->explain)
-        print_parts(&trim);
     if (result == ORL_OK)
         print_summary(o, &trim);
     if (result == ORL_OK && o->json)

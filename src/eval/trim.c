@@ -155,16 +155,12 @@ static enum orl_result run(struct trim_search *s)
     enum orl_result result = start(s);
     if (result == ORL_OK && s->params->tune)
         result = tune(s);
-    if (result == ORL_OK && s->params->explain)
-        result = orl_trim_explain(s);
     if (result == ORL_OK)
         result = orl_trim_climb(s);
     if (result == ORL_OK)
         result = orl_trim_make_faster(s);
     if (result == ORL_OK)
         result = orl_trim_confirm(s);
-    if (result == ORL_OK && s->params->random)
-        result = orl_trim_compare_random(s);
     if (result != ORL_OK)
         return result;
     s->trim->choice = *s->params->start;

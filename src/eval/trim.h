@@ -19,15 +19,13 @@ enum orl_trim_part {
 };
 extern const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT];
 
-// One step that was tried.
+// One step that was taken.
 struct orl_trim_step {
     enum orl_trim_part part;
     char what[96];         // such as "points 50 %"
     double loss_db, loss_ssim; // means over the views it was judged by, against the state before it
-    double saved_bytes, saved_ms, saved_file_bytes;
-    bool first;            // the first trial of its kind: what this part of the model buys
-    bool taken;
-    // Of a step that was taken, after it:
+    bool taken;            // false: it was taken back in the end
+    // After it:
     double bytes, ms;      // of the model on the device; of a frame
     double total_loss_db, total_loss_ssim; // means, estimated from the losses of all steps
 };
@@ -44,15 +42,6 @@ struct orl_trim_figures {
     double held_psnr_db, held_ssim; // held-out photographs; 0: there are none
 };
 
-// The scene with points and photographs removed at random, for comparison: at half and a quarter of
-// the bytes, and at as many as the trimmed model has. Two photographs at least are left, which may
-// be more.
-struct orl_trim_random {
-    double bytes, loss_db;
-};
-
-enum { ORL_TRIM_RANDOM_ROWS = 3 };
-
 struct orl_trim_params {
     const struct orl_choice *start; // the method and its options
     const char *out;                // the folder to make
@@ -65,9 +54,7 @@ struct orl_trim_params {
     size_t views;         // photographs that look at each step first, evenly chosen
     int size_divide;      // pictures are compared at 1/n of the photographs' size
     double budget_s;      // no new trial starts after this time; 0: no limit
-    bool explain;         // also times steps that make no frame slower: what they buy
     bool tune;            // tunes the method's options first, which may make room for other steps
-    bool random;          // also measures random removal
     bool settings_only;   // only what scene.json can state: nothing is removed, no folder is made
     void (*on_step)(void *priv, const struct orl_trim_step *step); // after each; may be NULL
     void *priv;
@@ -75,11 +62,9 @@ struct orl_trim_params {
 };
 
 struct orl_trim {
-    struct orl_trim_step *steps; // owned, in the order of trial
+    struct orl_trim_step *steps; // owned
     size_t step_count, step_capacity;
     struct orl_trim_figures before, after;
-    struct orl_trim_random random[ORL_TRIM_RANDOM_ROWS];
-    size_t random_count;
     size_t undone;  // steps taken back because all training photographs together lost too much
     bool complete;  // false: the time ran out
     struct orl_choice choice; // the method with the options that were found

@@ -48,10 +48,6 @@ enum orl_result orl_trim_state_copy(const struct orl_log *log, const struct trim
 enum orl_result orl_trim_model_open(const struct trim_source *source,
                                     const struct trim_state *state,
                                     struct trim_model **out) ORL_CHECK_RESULT;
-// The same with the first `count` points of `order`, as they are.
-enum orl_result orl_trim_model_open_with(const struct trim_source *source,
-                                         const struct trim_state *state, const uint32_t *order,
-                                         size_t count, struct trim_model **out) ORL_CHECK_RESULT;
 void orl_trim_model_close(struct trim_model **model);
 // Bytes of points and photographs on the device, without those in use only while a photograph is
 // loaded.

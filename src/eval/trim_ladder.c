@@ -234,22 +234,23 @@ static bool is_wanted(const struct trim_search *s, const struct trim_trial *t)
 static bool is_timed(const struct trim_search *s, const struct trim_trial *t, bool fits)
 {
     bool changes = t->part == ORL_TRIM_TEXTURES || t->part == ORL_TRIM_OPTION;
-    return s->params->explain || (fits && (changes || s->params->max_frame_ms > 0));
+    return fits && (changes || s->params->max_frame_ms > 0);
 }
 
-// Measures the trial and takes it if it fits and is wanted. `share` 0: it is only measured.
+// Measures the trial and takes it if it fits and is wanted.
 static enum orl_result decide(struct trim_search *s, struct trim_trial *t, bool shares,
                               double share, bool *taken)
 {
     enum orl_result result = orl_trim_trial_measure(s, t, shares);
-    bool fits = result == ORL_OK && share > 0 && orl_trim_trial_fits(s, t, share);
+    bool fits = result == ORL_OK && orl_trim_trial_fits(s, t, share);
     *taken = false;
     if (result == ORL_OK && is_timed(s, t, fits))
         result = orl_trim_time_trial(s, t);
     if (result != ORL_OK)
         return result;
     *taken = fits && is_wanted(s, t);
-    return *taken ? orl_trim_trial_take(s, t) : orl_trim_trial_note(s, t, false);
+    orl_trim_trial_log(s, t, *taken);
+    return *taken ? orl_trim_trial_take(s, t) : ORL_OK;
 }
 
 // Photographs come back that views beside them, or views that lose too much, need.
@@ -284,13 +285,12 @@ static enum orl_result try_level(struct trim_search *s, const struct rung *rung,
 }
 
 // Not possible: it is not taken.
-static enum orl_result try_option(struct trim_search *s, const char *assignment, double share,
-                                  bool *taken)
+static enum orl_result try_option(struct trim_search *s, const char *assignment)
 {
     struct trim_trial t;
     struct orl_render_params next;
     const struct orl_render_option *option = option_of(assignment);
-    *taken = false;
+    bool taken;
     if (!assign(&s->state.render, assignment, &next))
         return ORL_OK;
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
@@ -298,7 +298,7 @@ static enum orl_result try_option(struct trim_search *s, const char *assignment,
     snprintf(t.what, sizeof t.what, "%s", assignment);
     // Where the splats change, the photographs' depth maps are drawn anew.
     if (result == ORL_OK)
-        result = decide(s, &t, !strstr(option->readers, "proxy="), share, taken);
+        result = decide(s, &t, !strstr(option->readers, "proxy="), 1, &taken);
     orl_trim_trial_end(&t);
     return result;
 }
@@ -344,11 +344,10 @@ static enum orl_result climb_levels(struct trim_search *s, const struct rung *ru
 static enum orl_result climb_options(struct trim_search *s, bool until_fast)
 {
     enum orl_result result = ORL_OK;
-    bool taken;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(cheaper); i++) {
         if (until_fast ? s->slower <= orl_trim_slow_limit(s) || is_spent(s, 1) : ends(s))
             break;
-        result = try_option(s, cheaper[i], 1, &taken);
+        result = try_option(s, cheaper[i]);
     }
     return result;
 }
@@ -432,34 +431,12 @@ enum orl_result orl_trim_make_faster(struct trim_search *s)
     return result;
 }
 
-// --- others ---
-
-enum orl_result orl_trim_explain(struct trim_search *s)
-{
-    enum orl_result result = ORL_OK;
-    bool taken;
-    for (int part = 0; result == ORL_OK && part < ORL_TRIM_OPTION; part++) {
-        struct rung rung = {(enum orl_trim_part)part, SIZE_MAX, 0};
-        size_t first = part == ORL_TRIM_TEXTURES ? ORL_TEXTURES_BC7 : 1;
-        while (part == ORL_TRIM_TEXTURES && first < ORL_TEXTURES_COUNT &&
-               !has_level(s, &rung, first))
-            first++;
-        bool has = part != ORL_TRIM_TEXTURES || first < ORL_TEXTURES_COUNT;
-        if (has && max_level(s, &rung) >= first)
-            result = try_level(s, &rung, first, &taken);
-    }
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(cheaper); i++) {
-        s->tried[ORL_TRIM_OPTION] = false; // each of them is a part
-        result = try_option(s, cheaper[i], 0, &taken);
-    }
-    return result;
-}
+// --- tuned options ---
 
 enum orl_result orl_trim_take_options(struct trim_search *s,
                                       const struct orl_render_params *render)
 {
     struct trim_trial t;
-    bool tried = s->tried[ORL_TRIM_OPTION];
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
     t.state.render = *render;
     snprintf(t.what, sizeof t.what, "tuned options");
@@ -468,10 +445,8 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
     bool better = result == ORL_OK && t.step_db < 0 && orl_trim_trial_fits(s, &t, 1);
     if (better)
         result = orl_trim_time_trial(s, &t);
-    s->tried[ORL_TRIM_OPTION] = true; // nothing that makes a frame cheaper
     if (better && result == ORL_OK && t.slower <= orl_trim_slow_limit(s))
         result = orl_trim_trial_take(s, &t);
-    s->tried[ORL_TRIM_OPTION] = tried;
     orl_trim_trial_end(&t);
     return result;
 }

@@ -195,11 +195,11 @@ static enum orl_result draw_first_frame(const struct trim_source *source,
     return result == ORL_OK ? orl_gpu_finish(source->gpu) : result;
 }
 
-static enum orl_result open_model(const struct trim_source *source, const struct trim_state *state,
-                                  const uint32_t *order, size_t count, bool merge,
-                                  struct trim_model **out)
+enum orl_result orl_trim_model_open(const struct trim_source *source,
+                                    const struct trim_state *state, struct trim_model **out)
 {
-    size_t points = 0, photos = 0;
+    size_t points = 0, photos = 0, all = source->scene->points.count;
+    size_t count = (size_t)(orl_trim_point_shares[state->points] * (double)all + 0.5);
     struct trim_model *model = orl_array(source->log, 1, sizeof *model);
     *out = model;
     if (!model)
@@ -208,9 +208,9 @@ static enum orl_result open_model(const struct trim_source *source, const struct
     model->scene.photos = NULL;
     model->scene.defaults = orl_trim_defaults(source, state);
     enum orl_result result = set_photos(source, state, model);
-    if (result == ORL_OK && count < source->scene->points.count) {
-        result = orl_points_thin_out(source->log, &source->scene->points, order, count, merge,
-                                     &model->points);
+    if (result == ORL_OK && count < all) {
+        result = orl_points_thin_out(source->log, &source->scene->points, source->ranking.order,
+                                     count, &model->points);
         model->scene.points = model->points;
     }
     orl_trim_count_bytes(source->gpu, &points, &photos);
@@ -224,21 +224,6 @@ static enum orl_result open_model(const struct trim_source *source, const struct
     if (result != ORL_OK)
         orl_trim_model_close(out);
     return result;
-}
-
-enum orl_result orl_trim_model_open(const struct trim_source *source,
-                                    const struct trim_state *state, struct trim_model **out)
-{
-    size_t count = (size_t)(orl_trim_point_shares[state->points] *
-                            (double)source->scene->points.count + 0.5);
-    return open_model(source, state, source->ranking.order, count, true, out);
-}
-
-enum orl_result orl_trim_model_open_with(const struct trim_source *source,
-                                         const struct trim_state *state, const uint32_t *order,
-                                         size_t count, struct trim_model **out)
-{
-    return open_model(source, state, order, count, false, out);
 }
 
 void orl_trim_model_close(struct trim_model **handle)

@@ -283,7 +283,7 @@ static enum orl_result merge_points(const struct orl_log *log, const struct orl_
 }
 
 enum orl_result orl_points_thin_out(const struct orl_log *log, const struct orl_points *from,
-                                    const uint32_t *order, size_t count, bool merge,
+                                    const uint32_t *order, size_t count,
                                     struct orl_points *to)
 {
     enum orl_result result = orl_points_init(log, to, count);
@@ -300,7 +300,7 @@ enum orl_result orl_points_thin_out(const struct orl_log *log, const struct orl_
     for (size_t k = 0; result == ORL_OK && k < count; k++)
         to->radius[k] = fminf(fmaxf(to->radius[k], from->radius[order[k]]),
                               most * from->radius[order[k]]);
-    if (result == ORL_OK && merge)
+    if (result == ORL_OK)
         result = merge_points(log, from, to);
     if (result != ORL_OK)
         orl_points_finish(to);

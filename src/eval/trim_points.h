@@ -21,11 +21,11 @@ enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_sce
                                        struct orl_point_ranking *ranking) ORL_CHECK_RESULT;
 void orl_point_ranking_finish(struct orl_point_ranking *ranking);
 
-// Makes a cloud of the first `count` points of `order`, with radii that close the gaps. merge: each
-// point also takes the place of the points that it stands for: along its normal it moves to their
-// mean, and its normal and colour become theirs.
+// Makes a cloud of the first `count` points of `order`, with radii that close the gaps. Each point
+// takes the place of the points that it stands for: along its normal it moves to their mean, and its
+// normal and colour become theirs.
 enum orl_result orl_points_thin_out(const struct orl_log *log, const struct orl_points *from,
-                                    const uint32_t *order, size_t count, bool merge,
+                                    const uint32_t *order, size_t count,
                                     struct orl_points *to) ORL_CHECK_RESULT;
 
 #endif

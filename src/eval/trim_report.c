@@ -17,30 +17,26 @@ static json_t *figures_json(const struct orl_trim_figures *f)
 
 static json_t *step_json(const struct orl_trim_step *s)
 {
-    return json_pack("{s:s, s:o, s:f, s:f, s:f, s:f, s:b, s:b, s:f, s:f, s:f, s:f, s:f}", "part",
+    return json_pack("{s:s, s:o, s:f, s:f, s:b, s:f, s:f, s:f, s:f}", "part",
                      orl_trim_part_names[s->part], "what", orl_json_string(s->what), "loss_db",
-                     s->loss_db, "saved_bytes", s->saved_bytes, "saved_ms", s->saved_ms,
-                     "saved_file_bytes", s->saved_file_bytes, "first", s->first, "taken", s->taken,
-                     "bytes", s->bytes, "ms", s->ms, "total_loss_db", s->total_loss_db, "loss_ssim",
-                     s->loss_ssim, "total_loss_ssim", s->total_loss_ssim);
+                     s->loss_db, "loss_ssim", s->loss_ssim, "taken", s->taken, "bytes", s->bytes,
+                     "ms", s->ms, "total_loss_db", s->total_loss_db, "total_loss_ssim",
+                     s->total_loss_ssim);
 }
 
 enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
                                     const struct orl_scene *scene, const char *device,
                                     const struct orl_trim *trim)
 {
-    json_t *steps = json_array(), *random = json_array();
+    json_t *steps = json_array();
     for (size_t i = 0; i < trim->step_count; i++)
         json_array_append_new(steps, step_json(&trim->steps[i]));
-    for (size_t i = 0; i < trim->random_count; i++)
-        json_array_append_new(random, json_pack("{s:f, s:f}", "bytes", trim->random[i].bytes,
-                                                "loss_db", trim->random[i].loss_db));
     json_t *root = json_pack(
-        "{s:o, s:s, s:s, s:o, s:o, s:o, s:b, s:I, s:o, s:o}", "scene", orl_json_string(scene->dir),
+        "{s:o, s:s, s:s, s:o, s:o, s:o, s:b, s:I, s:o}", "scene", orl_json_string(scene->dir),
         "device", device, "method", trim->choice.method->name, "settings",
         orl_choice_settings(trim->choice.method, &trim->choice.params), "before",
         figures_json(&trim->before), "after", figures_json(&trim->after), "complete",
-        trim->complete, "undone", (json_int_t)trim->undone, "steps", steps, "random", random);
+        trim->complete, "undone", (json_int_t)trim->undone, "steps", steps);
     enum orl_result result = root ? orl_json_write(log, path, root)
                                   : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     json_decref(root);

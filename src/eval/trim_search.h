@@ -54,7 +54,6 @@ struct trim_search {
     double bytes, file_bytes;
     double slower; // the time of its frame, as a multiple of the whole scene's
     double first_bytes, first_file_bytes, first_ms;
-    bool tried[ORL_TRIM_PART_COUNT];
     struct trim_past *history; // owned
     size_t history_count, history_capacity;
     double start_s;
@@ -74,18 +73,12 @@ enum orl_result orl_trim_climb(struct trim_search *s) ORL_CHECK_RESULT;
 // Makes a frame that takes longer than it may faster: by cheaper options, or without compressed
 // textures.
 enum orl_result orl_trim_make_faster(struct trim_search *s) ORL_CHECK_RESULT;
-// Measures each part's first step by itself, and takes none.
-enum orl_result orl_trim_explain(struct trim_search *s) ORL_CHECK_RESULT;
 // Takes other options for the method if the judges do not lose by it.
 enum orl_result orl_trim_take_options(struct trim_search *s,
                                       const struct orl_render_params *render) ORL_CHECK_RESULT;
 
 // --- trim_trial.c ---
 
-// Figures of one target in a state, the target being left out; brief: PSNR and SSIM alone.
-enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
-                                      const struct trim_state *state, size_t view, bool brief,
-                                      struct orl_metrics *metrics) ORL_CHECK_RESULT;
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
                             const struct trim_state *state);
 // Begins a trial with the search's state, which the caller changes.
@@ -98,9 +91,8 @@ enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial 
                                        bool shares) ORL_CHECK_RESULT;
 // Whether the losses are within the tolerances, of which the step may use this share of what is left.
 bool orl_trim_trial_fits(const struct trim_search *s, const struct trim_trial *t, double share);
-// Adds it to the report, when it is taken or the first of its part.
-enum orl_result orl_trim_trial_note(struct trim_search *s, const struct trim_trial *t,
-                                    bool taken) ORL_CHECK_RESULT;
+// Logs the trial.
+void orl_trim_trial_log(const struct trim_search *s, const struct trim_trial *t, bool taken);
 // The trial's state becomes the search's.
 enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t) ORL_CHECK_RESULT;
 // Measures all targets in the search's state. `first`: the whole scene, with which later states are
@@ -134,10 +126,5 @@ enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_trial *t)
 // Compares frames of the state, whose model is open, with those of the whole scene, for the report.
 // slow: they are clearly slower than they may be.
 enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow) ORL_CHECK_RESULT;
-
-// --- trim_random.c ---
-
-// Measures the scene with points and photographs removed at random.
-enum orl_result orl_trim_compare_random(struct trim_search *s) ORL_CHECK_RESULT;
 
 #endif

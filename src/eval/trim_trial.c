@@ -8,15 +8,20 @@
 
 // --- figures of a state ---
 
-enum orl_result orl_trim_measure_view(struct trim_search *s, struct orl_renderer *renderer,
-                                      const struct trim_state *state, size_t view, bool brief,
-                                      struct orl_metrics *metrics)
+// PSNR and SSIM of one target in a state, the target being left out.
+static enum orl_result measure_view(struct trim_search *s, struct orl_renderer *renderer,
+                                    const struct trim_state *state, size_t view,
+                                    struct trim_score *score)
 {
-    memset(metrics, 0, sizeof *metrics);
+    struct orl_metrics m;
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
-    return orl_validation_compare(s->source.log, renderer, &s->targets, view, &state->render,
-                                  state->removed, brief, metrics);
+    enum orl_result result =
+        orl_validation_compare(s->source.log, renderer, &s->targets, view, &state->render,
+                               state->removed, true, &m);
+    if (result == ORL_OK)
+        *score = (struct trim_score){m.psnr_db, m.ssim};
+    return result;
 }
 
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
@@ -68,14 +73,10 @@ void orl_trim_trial_end(struct trim_trial *t)
 
 static enum orl_result measure_one(struct trim_search *s, struct trim_trial *t, size_t view)
 {
-    struct orl_metrics m;
     struct orl_renderer *renderer = t->own ? t->own->renderer : s->model->renderer;
-    if (!isnan(t->score[view].db))
-        return ORL_OK;
-    enum orl_result result = orl_trim_measure_view(s, renderer, &t->state, view, true, &m);
-    if (result == ORL_OK)
-        t->score[view] = (struct trim_score){m.psnr_db, m.ssim};
-    return result;
+    return isnan(t->score[view].db)
+               ? measure_view(s, renderer, &t->state, view, &t->score[view])
+               : ORL_OK;
 }
 
 static void set_losses(struct trim_search *s, struct trim_trial *t)
@@ -124,28 +125,26 @@ bool orl_trim_trial_fits(const struct trim_search *s, const struct trim_trial *t
            t->loss.ssim <= fmin(ssim, s->tolerance_ssim) && t->loss.worst_db <= s->worst_db;
 }
 
-enum orl_result orl_trim_trial_note(struct trim_search *s, const struct trim_trial *t, bool taken)
+void orl_trim_trial_log(const struct trim_search *s, const struct trim_trial *t, bool taken)
 {
-    struct orl_trim *trim = s->trim;
-    double ms = s->first_ms * s->slower;
-    bool first = !s->tried[t->part];
-    s->tried[t->part] = true;
     orl_logf(s->source.log, ORL_LOG_DEBUG, "%s: loses %.3f dB, SSIM %.4f; in all %.3f dB, the worst "
              "%.3f dB%s", t->what, t->step_db, t->step_ssim, t->loss.db, t->loss.worst_db,
              taken ? ": taken" : "");
-    if (!first && !taken && t->part != ORL_TRIM_OPTION)
-        return ORL_OK;
+}
+
+// Adds it to the report.
+static enum orl_result note(struct trim_search *s, const struct trim_trial *t)
+{
+    struct orl_trim *trim = s->trim;
     enum orl_result result = orl_grow(s->source.log, (void **)&trim->steps, &trim->step_capacity,
                                       trim->step_count + 1, sizeof *trim->steps);
     if (result != ORL_OK)
         return result;
     struct orl_trim_step *step = &trim->steps[trim->step_count++];
     *step = (struct orl_trim_step){
-        .part = t->part, .loss_db = t->step_db, .loss_ssim = t->step_ssim,
-        .saved_bytes = s->bytes - t->bytes, .saved_ms = ms * (1 - t->slower),
-        .saved_file_bytes = s->file_bytes - t->file_bytes, .first = first, .taken = taken,
-        .bytes = t->bytes, .ms = ms * t->slower, .total_loss_db = t->loss.db,
-        .total_loss_ssim = t->loss.ssim};
+        .part = t->part, .loss_db = t->step_db, .loss_ssim = t->step_ssim, .taken = true,
+        .bytes = t->bytes, .ms = s->first_ms * s->slower * t->slower,
+        .total_loss_db = t->loss.db, .total_loss_ssim = t->loss.ssim};
     memcpy(step->what, t->what, sizeof step->what);
     if (s->params->on_step)
         s->params->on_step(s->params->priv, step);
@@ -154,7 +153,7 @@ enum orl_result orl_trim_trial_note(struct trim_search *s, const struct trim_tri
 
 enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t)
 {
-    enum orl_result result = orl_trim_trial_note(s, t, true);
+    enum orl_result result = note(s, t);
     if (result == ORL_OK)
         result = orl_grow(s->source.log, (void **)&s->history, &s->history_capacity,
                           s->history_count + 1, sizeof *s->history);
@@ -189,15 +188,13 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
     double n = (double)s->targets.count;
     *figures = (struct orl_trim_figures){.frame_ms = figures->frame_ms};
     for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++) {
-        struct orl_metrics m;
         orl_progress_report(s->params->progress, first ? "whole scene" : "trimmed scene",
                             (double)i, n, NULL);
-        result = orl_trim_measure_view(s, s->model->renderer, &s->state, i, true, &m);
-        s->score[i] = (struct trim_score){m.psnr_db, m.ssim};
+        result = measure_view(s, s->model->renderer, &s->state, i, &s->score[i]);
         if (first)
             s->first[i] = s->score[i];
-        figures->psnr_db += m.psnr_db / n;
-        figures->ssim += m.ssim / n;
+        figures->psnr_db += s->score[i].db / n;
+        figures->ssim += s->score[i].ssim / n;
     }
     s->loss = loss_between(s, s->first, s->score);
     figures->worst_loss_db = s->loss.worst_db;

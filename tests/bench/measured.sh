@@ -429,7 +429,7 @@ page_memory() {
 }
 
 page_trim() {
-    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 8 --budget 900 --random --quiet --json WORK/trimmed/NAME.json'
+    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 8 --budget 900 --quiet --json WORK/trimmed/NAME.json'
     local name
     mkdir -p "$work/trimmed"
     for name in $(scene_names fountain herz sakharov monument); do
@@ -462,10 +462,6 @@ END
         .[] | .scene as $scene | .steps[] | select(.taken)
           | [$scene, .what, (.loss_db | fixed(3)), (.total_loss_db | fixed(3)), (.bytes / 1048576 | fixed(2)),
              (.ms | fixed(0))])'
-    printf '**Random removal** of points and photographs: loss in dB at these sizes of the model\n\n'
-    print_table "$work/trim.json" '
-      table(["scene", "model, MiB", "loss, dB"];
-        .[] | .scene as $scene | .random[] | [$scene, (.bytes / 1048576 | fixed(2)), (.loss_db | fixed(2))])'
 }
 
 # Mean of the views of what bench_radiance_error prints.
