@@ -139,13 +139,11 @@ bool orl_render_params_take_proxy(const struct orl_render_params *from,
 struct orl_renderer;
 struct orl_sensor;
 
-// Texture format of photographs on the device. AUTO: FULL if they fit max_vram_bytes, else BC7, or
-// BC1 on software renderers.
-// BC7: 1 byte a pixel. BC1: half a byte. YCC: luma, and chroma at half the size, 3/4 byte. FULL: 4
-// bytes, lossless.
+// Texture format of photographs on the device. AUTO: FULL if they fit max_vram_bytes, else YCC.
+// FULL: 4 bytes a pixel, lossless. YCC: luma, and chroma at half the size, 3/4 byte. BC1: half a byte.
 #define ORL_TEXTURES(NAME) \
-    NAME(ORL_TEXTURES_AUTO, "auto") NAME(ORL_TEXTURES_FULL, "full") NAME(ORL_TEXTURES_BC7, "bc7") \
-    NAME(ORL_TEXTURES_YCC, "ycc") NAME(ORL_TEXTURES_BC1, "bc1")
+    NAME(ORL_TEXTURES_AUTO, "auto") NAME(ORL_TEXTURES_FULL, "full") NAME(ORL_TEXTURES_YCC, "ycc") \
+    NAME(ORL_TEXTURES_BC1, "bc1")
 enum orl_textures { ORL_TEXTURES(ORL_ENUMERATOR) ORL_TEXTURES_COUNT };
 // By enum orl_textures, ended by NULL.
 extern const char *const orl_textures_names[ORL_TEXTURES_COUNT + 1];

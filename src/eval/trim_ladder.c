@@ -123,8 +123,7 @@ static size_t level_of(const struct trim_state *state, enum orl_trim_part part)
     }
 }
 
-// The last level that the scene and the parameters allow. Software renderers decode BC7 several times
-// as slowly.
+// The last level that the scene and the parameters allow.
 static size_t max_level(const struct trim_search *s, const struct rung *rung)
 {
     bool all = !s->params->settings_only;
@@ -140,11 +139,9 @@ static size_t max_level(const struct trim_search *s, const struct rung *rung)
 
 static bool has_level(const struct trim_search *s, const struct rung *rung, size_t level)
 {
-    if (rung->part != ORL_TRIM_TEXTURES)
-        return true;
-    bool software = orl_gpu_caps(s->source.gpu)->software;
-    return level >= ORL_TEXTURES_BC7 && !(software && level == ORL_TEXTURES_BC7) &&
-           orl_textures_available(s->source.gpu, (enum orl_textures)level);
+    return rung->part != ORL_TRIM_TEXTURES ||
+           (level >= ORL_TEXTURES_YCC &&
+            orl_textures_available(s->source.gpu, (enum orl_textures)level));
 }
 
 static void remove_photographs(const struct trim_search *s, size_t count, struct trim_state *state)

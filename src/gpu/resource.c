@@ -3,7 +3,6 @@
 
 #include "core/memory.h"
 #include "gpu/bc1.h"
-#include "gpu/bc7.h"
 #include "gpu/internal.h"
 #include "gpu/rgtc.h"
 
@@ -96,7 +95,6 @@ static size_t texel_bytes(GLenum format)
 static size_t block_bytes(GLenum format)
 {
     switch (format) {
-    case GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM:
     case GL_COMPRESSED_RG_RGTC2:
         return 16;
     case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT:
@@ -111,7 +109,7 @@ bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
 {
     GLint supported = GL_FALSE;
     (void)gpu;
-    // BPTC and RGTC are part of GL 4.5. S3TC is an extension, and GL_EXT_texture_sRGB adds its sRGB formats.
+    // RGTC is part of GL 4.5. S3TC is an extension, and GL_EXT_texture_sRGB adds its sRGB formats.
     if (format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT &&
         !(epoxy_has_gl_extension("GL_EXT_texture_compression_s3tc") &&
           epoxy_has_gl_extension("GL_EXT_texture_sRGB")))
@@ -281,9 +279,7 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
         int from_width = level_side(source->width, level);
         int from_height = level_side(source->height, level);
         orl_tex_read(from, level, GL_RGBA, GL_UNSIGNED_BYTE, room, pixels);
-        if (p->format == GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM)
-            orl_bc7_encode(pixels, width, height, blocks);
-        else if (p->format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT)
+        if (p->format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT)
             orl_bc1_encode(pixels, width, height, blocks);
         else if (p->format == GL_COMPRESSED_RED_RGTC1)
             orl_rgtc_encode_luma(pixels, width, height, blocks);

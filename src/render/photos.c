@@ -150,13 +150,10 @@ static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textur
     photos->format = orl_textures_format(gpu, photos->radiance, textures);
     if (textures == ORL_TEXTURES_AUTO && !photos->radiance && budget &&
         !fits_all(photos, &size, count, budget)) {
-        // llvmpipe reads BC1 as fast as uncompressed texels, but BC7 several times slower.
-        bool software = orl_gpu_caps(gpu)->software;
-        photos->format = orl_textures_format(gpu, false, software ? ORL_TEXTURES_BC1
-                                                                  : ORL_TEXTURES_BC7);
+        photos->format = orl_textures_format(gpu, false, ORL_TEXTURES_YCC);
         if (is_compressed(photos))
             orl_logf(log, ORL_LOG_WARNING, "photographs do not fit in %zu MiB of device memory: "
-                     "compressing them (%s)", budget >> 20, software ? "BC1" : "BC7");
+                     "compressing them", budget >> 20);
     }
     // A view is painted from a few photographs: a few sharp ones are worth more than many blurred.
     int enough = count < RESIDENT_ENOUGH ? count : RESIDENT_ENOUGH;

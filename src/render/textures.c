@@ -27,8 +27,7 @@ enum orl_result orl_textures_choose(const struct orl_log *log, const struct orl_
 // 0: not compressed. Of ycc, the format of luma.
 static GLenum compressed_format(enum orl_textures textures)
 {
-    return textures == ORL_TEXTURES_BC7   ? GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM
-           : textures == ORL_TEXTURES_YCC ? GL_COMPRESSED_RED_RGTC1
+    return textures == ORL_TEXTURES_YCC   ? GL_COMPRESSED_RED_RGTC1
            : textures == ORL_TEXTURES_BC1 ? GL_COMPRESSED_SRGB_S3TC_DXT1_EXT
                                           : 0;
 }

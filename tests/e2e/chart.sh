@@ -47,7 +47,7 @@ runs 2 "${parts[@]}" --part 3/2
 runs 0 "$oriel" chart ws other --quiet --out full --views 1 --method oriel-fast
 grep -q '^oriel-fast  *candidates=2 ' stdout.txt || fail "no settings"
 grep -q '(all scenes)$' stdout.txt || fail "nothing over all scenes"
-for setting in 'photographs at 1/2' 'textures bc7' 'photos_per_pixel=1'; do
+for setting in 'photographs at 1/2' 'textures ycc' 'photos_per_pixel=1'; do
     grep -q "\"setting\": \"$setting\"" full/chart.json || fail "no row $setting"
 done
 runs 0 "$oriel" eval ws --method airieau,paired --json - --quiet

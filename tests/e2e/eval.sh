@@ -69,7 +69,7 @@ for field in pu21_psnr_db mu_psnr_db log2_rmse log2_rmse_fitted psnr_db; do
     [ "$(grep -c "\"$field\"" out.json)" -eq 2 ] || fail "no field $field in view and mean"
 done
 grep -q '^radiance' stdout.txt || fail "no table of radiance"
-runs 2 "$oriel" eval ws --merge fused --textures bc7
+runs 2 "$oriel" eval ws --merge fused --textures ycc
 grep -q 'without --textures' stderr.txt || fail "does not say that --merge ignores --textures"
 runs 2 "$oriel" eval ws --merge added
 grep -q 'fused, series' stderr.txt || fail "does not list the merges"

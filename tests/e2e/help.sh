@@ -44,7 +44,7 @@ completes() { # WORD.. of the line : expected words
 }
 completes oriel ren : render
 completes oriel job "" : calibrate fuse
-completes oriel render --textures b : bc7 bc1
+completes oriel render --textures b : bc1
 completes oriel eval --method orzan-v : orzan-view
 completes oriel job fuse --ph : --photographs
 completes oriel help tri : trim

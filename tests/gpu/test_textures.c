@@ -108,20 +108,11 @@ static void check_flat(enum orl_textures textures, size_t block, float tolerance
         assert_int_equal(bytes_of("photograph chroma"), 3 * blocks_of(SIDE / 2) * 16);
     orl_renderer_destroy(&small);
     float off = largest_difference(&plain, &frame);
-    assert_true(off > 0 || block == 16); // BC1 has 5 or 6 bits
+    assert_true(off > 0); // all lose something
     assert_true(off < tolerance);
     orl_frame_finish(&plain);
     orl_frame_finish(&frame);
     teardown(&f);
-}
-
-// One 8-bit step of sRGB is at most 0.009 of linear light.
-static void bc7_shows_the_same_colours_in_a_quarter(void **state)
-{
-    (void)state;
-    if (!device_has(ORL_TEXTURES_BC7))
-        skip();
-    check_flat(ORL_TEXTURES_BC7, 16, 0.0095f);
 }
 
 static void bc1_shows_like_colours_in_an_eighth(void **state)
@@ -200,8 +191,6 @@ static void small_depth_maps_are_picked(void **state)
 static void short_of_memory_compresses_first(void **state)
 {
     (void)state;
-    if (!device_has(ORL_TEXTURES_BC7) || !device_has(ORL_TEXTURES_BC1))
-        skip();
     struct fixture f;
     setup_row(&f, PHOTOS);
     struct orl_renderer *all = renderer_of(&f, &(struct orl_renderer_params){0});
@@ -218,43 +207,6 @@ static void short_of_memory_compresses_first(void **state)
     }
     assert_true(bytes <= plain / 3);
     teardown(&f);
-}
-
-// Noise of 16 colours on a line, which mode 6 is made of: a block's own steps miss them by at
-// most half a step, which is 15 of red.
-static void bc7_keeps_texels_along_a_line(void **state)
-{
-    (void)state;
-    enum { W = 37, H = 22 }; // no multiple of a block
-    if (!device_has(ORL_TEXTURES_BC7))
-        skip();
-    struct orl_tex_params params = {.width = W, .height = H, .levels = 1,
-                                    .format = GL_SRGB8_ALPHA8, .tag = "plain"};
-    struct orl_tex *from, *to;
-    assert_int_equal(orl_tex_create(gpu, &params, &from), ORL_OK);
-    params.format = GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM;
-    params.layers = 2;
-    assert_int_equal(orl_tex_create(gpu, &params, &to), ORL_OK);
-    static uint8_t in[W * H][4], out[2][W * H][4];
-    for (unsigned i = 0; i < W * H; i++) {
-        unsigned t = (i * 2654435761u >> 20) % 16;
-        uint8_t texel[4] = {(uint8_t)(13 + 15 * t), (uint8_t)(240 - 9 * t), (uint8_t)(60 + t), 255};
-        memcpy(in[i], texel, 4);
-    }
-    orl_tex_write(from, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, in);
-    assert_int_equal(orl_tex_compress_layer(gpu, from, to, 1), ORL_OK);
-    orl_tex_read(to, 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof out, out);
-    double squares = 0;
-    for (int i = 0; i < W * H; i++) {
-        for (int c = 0; c < 3; c++)
-            assert_true(abs(out[1][i][c] - in[i][c]) <= 10);
-        assert_true(out[1][i][3] >= 254);
-        squares += (out[1][i][0] - in[i][0]) * (out[1][i][0] - in[i][0]);
-    }
-    assert_true(sqrt(squares / (W * H)) < 4);
-    orl_tex_destroy(gpu, &from);
-    orl_tex_destroy(gpu, &to);
-    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
 }
 
 // Two colours, each in its half of the picture: luma keeps each pixel, chroma the mean of 2x2.
@@ -352,14 +304,12 @@ int main(void)
 {
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bc7_shows_the_same_colours_in_a_quarter),
         cmocka_unit_test(bc1_shows_like_colours_in_an_eighth),
         cmocka_unit_test(ycc_shows_like_colours_in_a_fifth),
         cmocka_unit_test(ycc_keeps_luma_and_chroma),
         cmocka_unit_test(the_scene_says_how_photographs_are_kept),
         cmocka_unit_test(small_depth_maps_are_picked),
         cmocka_unit_test(short_of_memory_compresses_first),
-        cmocka_unit_test(bc7_keeps_texels_along_a_line),
         cmocka_unit_test(photographs_are_loaded_as_the_viewer_moves),
     };
     int failed = cmocka_run_group_tests_name("textures", tests, NULL, NULL);
