@@ -15,29 +15,6 @@ void orl_cones_finish(struct cones *cones)
     memset(cones, 0, sizeof *cones);
 }
 
-enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                               size_t count, struct cones *cones)
-{
-    memset(cones, 0, sizeof *cones);
-    enum orl_result result = orl_hull_find_bounds(log, silhouettes, count, &cones->bounds);
-    if (result != ORL_OK)
-        return result;
-    cones->all = orl_array(log, count, sizeof *cones->all);
-    if (!cones->all)
-        return ORL_ERR_MEMORY;
-    cones->count = count;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        struct cone *cone = &cones->all[i];
-        cone->view = silhouettes[i].view;
-        result = orl_silhouette_is_open(log, &silhouettes[i].mask, &cone->open);
-        if (result == ORL_OK)
-            result = orl_bridge_distance(log, &silhouettes[i].mask, &cone->distance);
-    }
-    if (result != ORL_OK)
-        orl_cones_finish(cones);
-    return result;
-}
-
 // Signed distance to the outline at a place inside the picture: between pixels' centres linear.
 static double distance_at(const struct orl_image *distance, double x, double y)
 {
@@ -94,6 +71,172 @@ enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *c
                 *at++ = value_at(cones, centre, ORL_CONES_MAX * voxel);
             }
     return ORL_OK;
+}
+
+// --- bounds ---
+
+// The centre of a silhouette's bounding box and half the box's diagonal, in pixels.
+struct blob {
+    double centre[2], reach_px;
+};
+
+static bool find_blob(const struct orl_image *mask, struct blob *blob)
+{
+    int low[2] = {mask->width, mask->height}, high[2] = {-1, -1};
+    const uint8_t *at = mask->u8;
+    for (int y = 0; y < mask->height; y++)
+        for (int x = 0; x < mask->width; x++, at++) {
+            const int here[2] = {x, y};
+            for (int k = 0; *at && k < 2; k++) {
+                low[k] = here[k] < low[k] ? here[k] : low[k];
+                high[k] = here[k] > high[k] ? here[k] : high[k];
+            }
+        }
+    for (int k = 0; k < 2; k++)
+        blob->centre[k] = 0.5 * (low[k] + high[k] + 1);
+    blob->reach_px = 0.5 * hypot(high[0] - low[0] + 1, high[1] - low[1] + 1);
+    return high[0] >= 0;
+}
+
+// The point nearest to the rays through the silhouettes' centres.
+static bool find_centre(const struct orl_silhouette *silhouettes, const struct blob *blobs,
+                        size_t count, double centre[3])
+{
+    struct orl_ray_meeting meeting = {0};
+    for (size_t i = 0; i < count; i++) {
+        double eye[3], ray[3];
+        orl_pose_centre(&silhouettes[i].view.cam_from_world, eye);
+        orl_view_unproject(&silhouettes[i].view, blobs[i].centre[0], blobs[i].centre[1], 1, ray);
+        for (int k = 0; k < 3; k++)
+            ray[k] -= eye[k];
+        orl_ray_meeting_add(&meeting, eye, ray);
+    }
+    return orl_ray_meeting_point(&meeting, centre);
+}
+
+// The largest distance from the centre that any silhouette reaches, in scene units.
+static double find_reach(const struct orl_silhouette *silhouettes, const struct blob *blobs,
+                         size_t count, const double centre[3])
+{
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        double pixel[2], depth;
+        const struct orl_view *view = &silhouettes[i].view;
+        if (!orl_view_project(view, centre, pixel, &depth))
+            continue;
+        double px = blobs[i].reach_px + hypot(pixel[0] - blobs[i].centre[0],
+                                              pixel[1] - blobs[i].centre[1]);
+        most = fmax(most, px * depth / fmin(view->camera.fx, view->camera.fy));
+    }
+    return most;
+}
+
+// Finds the hull's bounding box on a coarse grid of the cube of this half edge around the centre. The
+// bounds become the box with a margin of one voxel; *cut: the hull reaches the cube's faces.
+static enum orl_result try_bounds(const struct orl_log *log, const double centre[3], double reach,
+                                  struct cones *cones, bool *cut)
+{
+    enum { COARSE = 48 };
+    struct orl_hull_bounds *bounds = &cones->bounds;
+    const double start[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach};
+    double voxel = 2 * reach / COARSE;
+    double room = sqrt(1.5) * voxel; // half a voxel's diagonal, seen in a picture's square
+    int low[3] = {COARSE, COARSE, COARSE}, high[3] = {-1, -1, -1}, most = 0;
+    float *field;
+    memcpy(bounds->origin, start, sizeof start);
+    bounds->size = 2 * reach;
+    enum orl_result result = orl_cones_field(log, cones, COARSE, &field);
+    if (result != ORL_OK)
+        return result;
+    for (int i = 0; i < COARSE * COARSE * COARSE; i++) {
+        const int here[3] = {i % COARSE, i / COARSE % COARSE, i / (COARSE * COARSE)};
+        for (int k = 0; (double)field[i] <= room && k < 3; k++) {
+            low[k] = here[k] < low[k] ? here[k] : low[k];
+            high[k] = here[k] > high[k] ? here[k] : high[k];
+        }
+    }
+    free(field);
+    if (high[0] < 0)
+        return orl_fail(log, ORL_ERR_DATA, "the silhouettes have no place in common: are "
+                        "cameras and masks of the same time step?");
+    *cut = false;
+    for (int k = 0; k < 3; k++) {
+        *cut = *cut || low[k] == 0 || high[k] == COARSE - 1;
+        most = high[k] - low[k] + 3 > most ? high[k] - low[k] + 3 : most;
+    }
+    bounds->size = most * voxel;
+    for (int k = 0; k < 3; k++)
+        bounds->origin[k] = start[k] + 0.5 * (low[k] + high[k] + 1 - most) * voxel;
+    return ORL_OK;
+}
+
+// Tries larger cubes while the hull reaches the cube's faces. If it does not end, specks at the
+// borders of silhouettes are more likely than a large subject, and the first cube is the result.
+static enum orl_result find_bounds(const struct orl_log *log, const double centre[3], double reach,
+                                   struct cones *cones)
+{
+    enum { ROUNDS = 4 };
+    bool cut = true;
+    enum orl_result result = ORL_OK;
+    for (int round = 0; result == ORL_OK && cut && round < ROUNDS; round++)
+        result = try_bounds(log, centre, ldexp(reach, round), cones, &cut);
+    cones->bounds.endless = cut;
+    return result == ORL_OK && cut ? try_bounds(log, centre, reach, cones, &cut) : result;
+}
+
+void orl_hull_warn_endless(const struct orl_log *log)
+{
+    orl_logf(log, ORL_LOG_WARNING, "the silhouettes leave room without end; the hull is cut off "
+             "where the subject's outlines end");
+}
+
+// --- the hull ---
+
+// The point around which the hull is, and how far it may reach.
+static enum orl_result find_place(const struct orl_log *log, const struct orl_silhouette *silhouettes,
+                                  size_t count, double centre[3], double *reach)
+{
+    struct blob *blobs = orl_array(log, count, sizeof *blobs);
+    enum orl_result result = blobs ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        if (!find_blob(&silhouettes[i].mask, &blobs[i]))
+            result = orl_fail(log, ORL_ERR_DATA, "silhouette %zu of %zu is empty", i + 1, count);
+    if (result == ORL_OK && (count < 2 || !find_centre(silhouettes, blobs, count, centre)))
+        result = orl_fail(log, ORL_ERR_DATA, "a hull needs silhouettes from two places or more");
+    *reach = result == ORL_OK ? find_reach(silhouettes, blobs, count, centre) : 0;
+    if (result == ORL_OK && !(*reach > 0))
+        result = orl_fail(log, ORL_ERR_DATA, "no camera faces what the silhouettes have in common");
+    free(blobs);
+    return result;
+}
+
+enum orl_result orl_cone_make(const struct orl_log *log, const struct orl_silhouette *silhouette,
+                              struct cone *cone)
+{
+    *cone = (struct cone){.view = silhouette->view};
+    enum orl_result result = orl_silhouette_is_open(log, &silhouette->mask, &cone->open);
+    return result == ORL_OK ? orl_bridge_distance(log, &silhouette->mask, &cone->distance) : result;
+}
+
+enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
+                               size_t count, struct cones *cones)
+{
+    double centre[3], reach;
+    memset(cones, 0, sizeof *cones);
+    enum orl_result result = find_place(log, silhouettes, count, centre, &reach);
+    if (result != ORL_OK)
+        return result;
+    cones->all = orl_array(log, count, sizeof *cones->all);
+    if (!cones->all)
+        return ORL_ERR_MEMORY;
+    cones->count = count;
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        result = orl_cone_make(log, &silhouettes[i], &cones->all[i]);
+    if (result == ORL_OK)
+        result = find_bounds(log, centre, reach, cones);
+    if (result != ORL_OK)
+        orl_cones_finish(cones);
+    return result;
 }
 
 enum orl_result orl_cones_mesh(const struct orl_log *log, const struct orl_silhouette *silhouettes,

@@ -14,17 +14,27 @@ struct cone {
     bool open;                 // the subject leaves the picture
 };
 
+// A cube that contains the visual hull with a small margin.
+struct orl_hull_bounds {
+    double origin[3], size; // lowest corner and edge
+    bool endless; // the silhouettes leave room without end, and the cube cuts the hull off
+};
+// Warns about bounds that are endless.
+void orl_hull_warn_endless(const struct orl_log *log);
+
 struct cones {
     struct cone *all; // owned
     size_t count;
     struct orl_hull_bounds bounds; // of what all of them have in common
 };
 
-// Errors are those of orl_hull_find_bounds.
+enum orl_result orl_cone_make(const struct orl_log *log, const struct orl_silhouette *silhouette,
+                              struct cone *cone) ORL_CHECK_RESULT;
+// ORL_ERR_DATA: a silhouette is empty, or the silhouettes have no place in common.
 enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
                                size_t count, struct cones *cones) ORL_CHECK_RESULT;
 void orl_cones_finish(struct cones *cones);
-// Intersects all cones in a cube of side^3 voxels, x fastest: at each voxel's centre the signed
+// Intersects all cones in their bounds, a cube of side^3 voxels, x fastest: at each voxel's centre the signed
 // distance to the nearest cone, scene units, negative inside. The caller frees *field.
 enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *cones, int side,
                                 float **field) ORL_CHECK_RESULT;

@@ -28,26 +28,10 @@ enum { ORL_HULL_SIDE_MIN = 2, ORL_HULL_SIDE_MAX = 1024 };
 enum orl_result orl_silhouette_is_open(const struct orl_log *log, const struct orl_image *mask,
                                        bool *open) ORL_CHECK_RESULT;
 
-// A cube that contains the visual hull with a small margin.
-struct orl_hull_bounds {
-    double origin[3], size; // lowest corner and edge
-    bool endless; // the silhouettes leave room without end, and the cube cuts the hull off
-};
-// ORL_ERR_DATA: a silhouette is empty, or the silhouettes have no place in common.
-enum orl_result orl_hull_find_bounds(const struct orl_log *log,
-                                     const struct orl_silhouette *silhouettes, size_t count,
-                                     struct orl_hull_bounds *bounds) ORL_CHECK_RESULT;
-// Warns about bounds that are endless.
-void orl_hull_warn_endless(const struct orl_log *log);
 // Makes a hull that fills the cube.
 enum orl_result orl_hull_init(const struct orl_log *log, struct orl_hull *hull, int side,
                               const double origin[3], double size) ORL_CHECK_RESULT;
 void orl_hull_finish(struct orl_hull *hull);
-// Removes the voxels that lie wholly outside one silhouette, so that the hull contains the subject
-// and up to a voxel more (scene/cones.h has the hull itself). Where the silhouette leaves the picture,
-// voxels outside it stay within 45 degrees of that place.
-enum orl_result orl_hull_carve(const struct orl_log *log, const struct orl_silhouette *silhouette,
-                               struct orl_hull *hull) ORL_CHECK_RESULT;
 // Makes the surface, with normals, where a field is 0 that is negative inside: it has a value at each
 // voxel's centre of the cube, x fastest. At most about `triangles` (0: unlimited). cube->inside is not
 // read.

@@ -78,36 +78,18 @@ static int tear_down(void **state)
     return 0;
 }
 
-static bool inside(const struct orl_hull *hull, const double at[3])
-{
-    int i[3];
-    for (int k = 0; k < 3; k++) {
-        i[k] = (int)floor((at[k] - hull->origin[k]) / hull->voxel);
-        if (i[k] < 0 || i[k] >= hull->side)
-            return false;
-    }
-    return hull->inside[i[0] + hull->side * (i[1] + hull->side * i[2])];
-}
-
-// Voxels that may contain a part of the subject stay.
+// The bounds hold all places of the sphere's surface.
 static void holds_the_sphere(void **state)
 {
     struct scene *scene = *state;
-    for (int side = 16; side <= 64; side *= 2) {
-        struct orl_hull hull;
-        const double origin[3] = {CENTRE[0] - 1, CENTRE[1] - 1, CENTRE[2] - 1};
-        assert_int_equal(orl_hull_init(NULL, &hull, side, origin, 2), ORL_OK);
-        for (int i = 0; i < CAMERAS; i++)
-            assert_int_equal(orl_hull_carve(NULL, &scene->all[i], &hull), ORL_OK);
-        for (int i = 0; i < 2000; i++) { // places all over the sphere's surface
-            double z = 1 - (2 * i + 1.0) / 2000, angle = 2.39996322972865 * i;
-            double r = sqrt(1 - z * z) * RADIUS;
-            const double at[3] = {CENTRE[0] + r * cos(angle), CENTRE[1] + r * sin(angle),
-                                  CENTRE[2] + RADIUS * z};
-            assert_true(inside(&hull, at));
-        }
-        orl_hull_finish(&hull);
+    struct cones cones;
+    assert_int_equal(orl_cones_make(NULL, scene->all, CAMERAS, &cones), ORL_OK);
+    for (int k = 0; k < 3; k++) {
+        assert_true(cones.bounds.origin[k] < CENTRE[k] - RADIUS);
+        assert_true(cones.bounds.origin[k] + cones.bounds.size > CENTRE[k] + RADIUS);
     }
+    assert_true(cones.bounds.size < 3 * RADIUS && !cones.bounds.endless);
+    orl_cones_finish(&cones);
 }
 
 // How far a place projects outside a mask: to the nearest corner of a pixel of the subject.
@@ -168,14 +150,16 @@ static void makes_a_mesh(void **state)
 // What the picture's border cuts off is not carved away, else it is.
 static bool keeps_any(const struct orl_silhouette *silhouette)
 {
-    const double origin[3] = {-3.4, -0.2, 4}; // left of the picture's border
-    struct orl_hull hull;
+    struct cone cone;
+    const struct cones cones = {&cone, 1, {{-3.4, -0.2, 4}, 0.4, false}}; // left of the border
+    float *field;
     bool any = false;
-    assert_int_equal(orl_hull_init(NULL, &hull, 2, origin, 0.4), ORL_OK);
-    assert_int_equal(orl_hull_carve(NULL, silhouette, &hull), ORL_OK);
+    assert_int_equal(orl_cone_make(NULL, silhouette, &cone), ORL_OK);
+    assert_int_equal(orl_cones_field(NULL, &cones, 2, &field), ORL_OK);
     for (int i = 0; i < 8; i++)
-        any = any || hull.inside[i];
-    orl_hull_finish(&hull);
+        any = any || field[i] <= 0;
+    orl_image_finish(&cone.distance);
+    free(field);
     return any;
 }
 
