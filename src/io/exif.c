@@ -146,6 +146,7 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
     exif->focal_35mm = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM);
     double turn = get_positive(data, EXIF_IFD_0, EXIF_TAG_ORIENTATION);
     exif->orientation = turn <= 8 ? (int)turn : 0;
+    exif->panorama = (int)get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_CUSTOM_RENDERED) == 6; // Apple's extension
     char interoperability[8];
     get_text(data, EXIF_IFD_INTEROPERABILITY, EXIF_TAG_INTEROPERABILITY_INDEX, interoperability,
              sizeof interoperability);

@@ -32,6 +32,8 @@ struct orl_picture_header {
     bool panorama, gain_map;
     double gamma; // PNG: samples are light to this power; 0: they are sRGB's
 };
+// By Google's Photo Sphere schema, which flat pictures may have, too.
+bool orl_xmp_tells_panorama(const void *xmp, size_t size);
 enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                      struct orl_picture_header *header);
 enum orl_result orl_png_read_header(const struct orl_log *log, const char *path, FILE *stream,

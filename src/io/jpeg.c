@@ -95,28 +95,24 @@ static bool is_exif(const struct jpeg_marker_struct *marker)
            memcmp(marker->data, "Exif\0", 6) == 0;
 }
 
-// True for XMP that has both words.
-static bool is_xmp_with(const struct jpeg_marker_struct *marker, const char *word, const char *other)
+static bool is_xmp(const struct jpeg_marker_struct *marker)
 {
     static const char head[] = "http://ns.adobe.com/xap/1.0/";
-    const void *data = marker->data;
     return marker->marker == JPEG_APP0 + 1 && marker->data_length > sizeof head &&
-           memcmp(data, head, sizeof head) == 0 &&
-           memmem(data, marker->data_length, word, strlen(word)) &&
-           memmem(data, marker->data_length, other, strlen(other));
+           memcmp(marker->data, head, sizeof head) == 0;
 }
 
-// Google's Photo Sphere schema.
-static bool is_panorama(const struct jpeg_marker_struct *marker)
+static bool has_word(const struct jpeg_marker_struct *marker, const char *word)
 {
-    return is_xmp_with(marker, "ProjectionType", "equirectangular");
+    return memmem(marker->data, marker->data_length, word, strlen(word)) != NULL;
 }
 
 // Adobe's schema (Ultra HDR), or the segment of ISO 21496-1.
 static bool is_gain_map(const struct jpeg_marker_struct *marker)
 {
     static const char iso[] = "urn:iso:std:iso:ts:21496:-1";
-    return is_xmp_with(marker, "http://ns.adobe.com/hdr-gain-map/1.0/", "hdrgm:Version") ||
+    return (is_xmp(marker) && has_word(marker, "http://ns.adobe.com/hdr-gain-map/1.0/") &&
+            has_word(marker, "hdrgm:Version")) ||
            (marker->marker == JPEG_APP0 + 2 && marker->data_length >= sizeof iso &&
             memcmp(marker->data, iso, sizeof iso) == 0);
 }
@@ -139,7 +135,7 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
     header->height = (int)info->image_height;
     header->bits = info->data_precision;
     for (jpeg_saved_marker_ptr marker = info->marker_list; marker; marker = marker->next) {
-        header->panorama |= is_panorama(marker);
+        header->panorama |= is_xmp(marker) && orl_xmp_tells_panorama(marker->data, marker->data_length);
         header->gain_map |= is_gain_map(marker);
         if (!is_exif(marker) || header->exif)
             continue;

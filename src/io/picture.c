@@ -123,6 +123,12 @@ static struct orl_profile *make_profile(const struct orl_log *log, const char *p
     return orl_profile_create_adobe(log);
 }
 
+bool orl_xmp_tells_panorama(const void *xmp, size_t size)
+{
+    static const char key[] = "ProjectionType", flat[] = "rectilinear";
+    return memmem(xmp, size, key, sizeof key - 1) && !memmem(xmp, size, flat, sizeof flat - 1);
+}
+
 static enum orl_result read_stream_header(const struct orl_log *log, const char *path,
                                           FILE *stream, enum format format,
                                           struct orl_picture_info *info, struct orl_exif *exif)
@@ -140,7 +146,7 @@ static enum orl_result read_stream_header(const struct orl_log *log, const char 
     info->gain_map = header.gain_map;
     info->profiled = profile != NULL;
     orl_profile_destroy(&profile);
-    if (result == ORL_OK && exif && has_exif_head(&header))
+    if (result == ORL_OK && has_exif_head(&header))
         result = orl_exif_decode(log, path, header.exif, header.exif_size, exif);
     free(header.exif);
     free(header.icc);
@@ -152,6 +158,8 @@ static enum orl_result read_header(const struct orl_log *log, const char *path,
                                    struct orl_picture_info *info, struct orl_exif *exif)
 {
     struct orl_exif unused = {0};
+    if (!exif)
+        exif = &unused;
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
     enum orl_result result = open_file(log, path, &stream, &format);
@@ -164,13 +172,13 @@ static enum orl_result read_header(const struct orl_log *log, const char *path,
         result = read_stream_header(log, path, stream, format, info, exif);
         break;
     case FORMAT_TIFF:
-        result = orl_tiff_inspect(log, path, info, exif ? exif : &unused);
+        result = orl_tiff_inspect(log, path, info, exif);
         break;
     case FORMAT_HEIF:
-        result = orl_heif_inspect(log, path, info, exif ? exif : &unused);
+        result = orl_heif_inspect(log, path, info, exif);
         break;
     case FORMAT_RAW:
-        result = orl_raw_inspect(log, path, info, exif ? exif : &unused);
+        result = orl_raw_inspect(log, path, info, exif);
         break;
     case FORMAT_EXR:
         *info = (struct orl_picture_info){.bits = 32, .unbounded = true};
@@ -179,6 +187,7 @@ static enum orl_result read_header(const struct orl_log *log, const char *path,
     default:
         result = fail_unknown(log, path);
     }
+    info->panorama |= exif->panorama;
     fclose(stream);
     return result;
 }

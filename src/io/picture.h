@@ -11,12 +11,12 @@ struct orl_picture_info {
     int width, height;
     int bits;       // per sample, uncompressed; more than 8: a deep picture
     bool unbounded; // float samples, which may exceed white
-    bool panorama;  // JPEG: its XMP says that it is a spherical panorama (GPano)
+    bool panorama;  // EXIF says so, or XMP in JPEG and PNG (GPano)
     bool gain_map;  // JPEG and HEIF: HDR by a gain map, which is not used
     bool profiled;  // JPEG and PNG: the colours are not those of sRGB
 };
 #define ORL_PANORAMA_ADVICE                                                                        \
-    "a spherical panorama; Oriel needs pictures of ordinary lenses: cut flat views out of it"
+    "a panorama; Oriel needs pictures of ordinary lenses: cut flat views out of it"
 // After the number of such photographs and of all.
 #define ORL_GAIN_MAP_NEWS                                                                          \
     "%zu of %zu photographs are HDR by a gain map, which is not used: their ordinary (SDR) colours are"
@@ -56,6 +56,7 @@ struct orl_exif {
     double exposure_s, aperture, iso, bias_ev;
     double focal_mm, focal_35mm;
     int orientation; // 1 to 8
+    bool panorama;   // stitched by an iPhone
     bool adobe_rgb;  // the colours are those of Adobe RGB (DCF 2.0)
     double taken_s;  // when, by the camera's own clock, in seconds; 0: unknown
     bool placed;     // is its position known?

@@ -106,6 +106,11 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     header->width = (int)width;
     header->height = (int)height;
     header->bits = png_get_bit_depth(job->png, job->info);
+    png_textp texts;
+    int text_count = png_get_text(job->png, job->info, &texts, NULL);
+    for (int i = 0; i < text_count; i++)
+        header->panorama |= strcmp(texts[i].key, "XML:com.adobe.xmp") == 0 &&
+                            orl_xmp_tells_panorama(texts[i].text, strlen(texts[i].text));
 #ifdef PNG_eXIf_SUPPORTED
     png_uint_32 size = 0;
     png_bytep exif = NULL;

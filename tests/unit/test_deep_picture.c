@@ -343,7 +343,7 @@ static void write_jpeg(const char *path, const uint8_t *pixel, int channels,
 
 // With a profile of `size` bytes, or a gamma, or the curve of HDR video.
 static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUInt32Number size,
-                      double gamma, bool hdr)
+                      double gamma, bool hdr, const char *xmp)
 {
     static const uint8_t pq[4] = {9, 16, 0, 1};
     FILE *out = fopen(path, "wb");
@@ -358,6 +358,10 @@ static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUI
         png_set_iCCP(png, info, "profile", 0, icc, size);
     if (gamma > 0)
         png_set_gAMA(png, info, gamma);
+    png_text text = {.compression = PNG_ITXT_COMPRESSION_NONE, .key = (char *)"XML:com.adobe.xmp",
+                     .text = (char *)xmp};
+    if (xmp)
+        png_set_text(png, info, &text, 1);
     png_write_info(png, info);
     if (hdr)
         png_write_chunk(png, (png_const_bytep) "cICP", pq, sizeof pq);
@@ -402,15 +406,15 @@ static void jpeg_and_png_profiles_are_applied(void **state)
     cmsUInt32Number size = make_adobe();
     write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), want, true);
-    write_png(in_dir("p.png"), pixel, 8, size, 0, false);
+    write_png(in_dir("p.png"), pixel, 8, size, 0, false, NULL);
     expect_light(in_dir("p.png"), want, true);
-    write_png(in_dir("p.png"), pixel, 16, size, 0, false);
+    write_png(in_dir("p.png"), pixel, 16, size, 0, false, NULL);
     expect_light(in_dir("p.png"), want, true);
     want_prophoto(stored, want);
     size = make_prophoto();
     write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), want, true);
-    write_png(in_dir("p.png"), pixel, 16, size, 0, false);
+    write_png(in_dir("p.png"), pixel, 16, size, 0, false, NULL);
     expect_light(in_dir("p.png"), want, true);
     // sRGB itself, under whatever name, changes nothing.
     size = save_profile(cmsCreate_sRGBProfile());
@@ -440,10 +444,10 @@ static void png_gamma_is_applied(void **state)
             for (int c = 0; c < 3; c++)
                 want[c] = plain ? (double)orl_srgb_decode((float)(pixel[c] / 255.0))
                                 : pow(pixel[c] / 255.0, 1 / gammas[i]);
-            write_png(in_dir("p.png"), pixel, depth, 0, gammas[i], false);
+            write_png(in_dir("p.png"), pixel, depth, 0, gammas[i], false, NULL);
             expect_light(in_dir("p.png"), want, !plain);
         }
-    write_png(in_dir("p.png"), pixel, 16, 0, 0, true);
+    write_png(in_dir("p.png"), pixel, 16, 0, 0, true, NULL);
     struct said said;
     struct orl_log log = log_to(&said);
     assert_int_equal(orl_picture_inspect(&log, in_dir("p.png"), &info), ORL_ERR_UNSUPPORTED);
@@ -467,19 +471,37 @@ static void adobe_rgb_by_exif_is_applied(void **state)
     expect_light(in_dir("p.jpg"), want, true);
 }
 
-static void panoramas_are_known_by_xmp(void **state)
+// Flat pictures may have Google's schema, too, and an iPhone marks what it stitched in EXIF.
+static void panoramas_are_known(void **state)
 {
     (void)state;
-    static const uint8_t xmp[] = "http://ns.adobe.com/xap/1.0/\0<x:xmpmeta><rdf:Description "
-                                 "GPano:ProjectionType=\"equirectangular\"/></x:xmpmeta>";
+#define XMP "http://ns.adobe.com/xap/1.0/\0<x:xmpmeta><rdf:Description "
+    static const char sphere[] = XMP "GPano:ProjectionType=\"equirectangular\"/></x:xmpmeta>",
+                      cylinder[] = XMP "GPano:ProjectionType=\"cylindrical\"/></x:xmpmeta>",
+                      flat[] = XMP "GPano:ProjectionType=\"rectilinear\"/></x:xmpmeta>", none[] = XMP;
+    static const char stitched[] = "Exif\0\0II*\0\10\0\0\0"
+                                   "\1\0\x69\x87\4\0\1\0\0\0\32\0\0\0\0\0\0\0"   // the EXIF IFD at 26
+                                   "\1\0\1\xa4\3\0\1\0\0\0\6\0\0\0\0\0\0\0";      // CustomRendered 6
+    static const struct {
+        const char *data;
+        unsigned size;
+        bool found;
+    } cases[] = {{sphere, sizeof sphere, true}, {cylinder, sizeof cylinder, true}, {flat, sizeof flat, false},
+                 {none, sizeof none, false}, {stitched, sizeof stitched, true}};
     const uint8_t pixel[3] = {128, 153, 77};
     struct orl_picture_info info;
-    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, 1, xmp, sizeof xmp);
-    assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
-    assert_true(info.panorama && !info.gain_map);
-    write_jpeg(in_dir("p.jpg"), pixel, 3, 0, 1, xmp, 40);
-    assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
-    assert_false(info.panorama);
+    for (size_t i = 0; i < ORL_COUNT(cases); i++) {
+        write_jpeg(in_dir("p.jpg"), pixel, 3, 0, 1, cases[i].data, cases[i].size);
+        assert_int_equal(orl_picture_inspect(NULL, in_dir("p.jpg"), &info), ORL_OK);
+        assert_int_equal(info.panorama, cases[i].found);
+        assert_false(info.gain_map);
+        if (memcmp(cases[i].data, "Exif", 4) == 0)
+            continue;
+        write_png(in_dir("p.png"), pixel, 8, 0, 0, false, cases[i].data + sizeof "http://ns.adobe.com/xap/1.0/");
+        assert_int_equal(orl_picture_inspect(NULL, in_dir("p.png"), &info), ORL_OK);
+        assert_int_equal(info.panorama, cases[i].found);
+    }
+#undef XMP
 }
 
 // Ultra HDR says so in XMP, ISO 21496-1 in a segment of its own.
@@ -655,7 +677,7 @@ int main(void)
         cmocka_unit_test(jpeg_and_png_profiles_are_applied),
         cmocka_unit_test(png_gamma_is_applied),
         cmocka_unit_test(adobe_rgb_by_exif_is_applied),
-        cmocka_unit_test(panoramas_are_known_by_xmp),
+        cmocka_unit_test(panoramas_are_known),
         cmocka_unit_test(gain_maps_are_known),
         cmocka_unit_test(damaged_tiff_is_an_error),
         cmocka_unit_test(unusual_tiff_is_refused_with_advice),
