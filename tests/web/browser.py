@@ -103,10 +103,13 @@ class Browser:
         send("keyUp")
 
     def click(self, x, y, times=1):
+        """A twentieth of a second from event to event, however slow the machine is."""
+        at = time.time()
         for n in range(1, times + 1):
             for kind in ("mousePressed", "mouseReleased"):
                 self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
-                    "type": kind, "x": x, "y": y, "button": "left", "clickCount": n})
+                    "type": kind, "x": x, "y": y, "button": "left", "clickCount": n, "timestamp": at})
+                at += 0.05
 
     def wheel(self, x, y, by):
         self.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {
