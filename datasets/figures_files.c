@@ -222,9 +222,12 @@ enum orl_result orl_figures_play(const struct orl_log *log, const struct orl_pro
         wait_until(start + f / rate);
         orl_progress_report(progress, "live", f, params->frames, NULL);
         for (int c = 0; result == ORL_OK && c < params->cameras; c++) {
-            char *there = orl_format(log, "%s/cam%02d/%05d.png", dir, c, f);
+            char *pipe = orl_format(log, "%s/cam%02d", dir, c);
+            char *there = pipe ? orl_format(log, "%s/%05d.png", pipe, f) : NULL;
             char *here = view_path(&from, "images", c, f, ".png");
-            result = there && here ? orl_file_copy(log, here, there) : ORL_ERR_MEMORY;
+            result = pipe && there && here ? orl_file_copy(log, here, orl_path_is_pipe(pipe) ? pipe : there)
+                                           : ORL_ERR_MEMORY;
+            free(pipe);
             free(there);
             free(here);
         }

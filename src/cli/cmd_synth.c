@@ -22,7 +22,7 @@
     ROW(path, "path", TEXT("FILE"), \
         "the monument from the views of this path, as of render --path, in place of a walk") \
     ORL_FIGURES_OPTIONS(ROW) \
-    ROW(live, "live", TEXT("DIR"), "figures: plays their pictures into DIR/camNN/ too, 25 a second")
+    ROW(live, "live", TEXT("DIR"), "figures: plays their pictures into the folders or pipes DIR/camNN too, 25 a second")
 COMMAND_OPTIONS(synth_options, SYNTH_OPTIONS)
 
 static enum orl_result parse_exposures(const struct orl_log *log, const struct orl_names *names,

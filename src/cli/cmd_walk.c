@@ -13,7 +13,7 @@
         "the printed address") \
     ROW(title, "title", TEXT("TEXT"), "of the page; default: that of walk.json, else the scene's name") \
     ROW(embed_in, "embed-in", TEXT("ORIGINS"), "sites whose pages may frame the walk; default: none") \
-    ROW(live, "live", TEXT("DIR"), "show the pictures that cameras write into DIR/NAME/, as they come") \
+    ROW(live, "live", TEXT("DIR"), "show what cameras write into the folders or pipes DIR/NAME, as it comes") \
     ROW(edits, "edit", FLAG, "other machines may change annotations, title and start view, too") \
     METHOD_OPTIONS(ROW) \
     LIGHT_OPTION(ROW) \

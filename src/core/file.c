@@ -61,6 +61,12 @@ bool orl_path_is_dir(const char *path)
     return stat(path, &st) == 0 && S_ISDIR(st.st_mode);
 }
 
+bool orl_path_is_pipe(const char *path)
+{
+    struct stat st;
+    return stat(path, &st) == 0 && S_ISFIFO(st.st_mode);
+}
+
 bool orl_path_is_inside(const char *dir, const char *path)
 {
     char *real_dir = realpath(dir, NULL), *real_path = realpath(path, NULL);

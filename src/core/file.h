@@ -17,6 +17,7 @@ const char *orl_path_name(const char *path);
 bool orl_path_has_extension(const char *path, const char *extensions);
 bool orl_path_is_file(const char *path);
 bool orl_path_is_dir(const char *path);
+bool orl_path_is_pipe(const char *path);
 
 // True when `path`, after all symbolic links are followed, is the folder or lies below it. False
 // when either is missing.

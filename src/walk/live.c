@@ -1,9 +1,6 @@
 #include "walk/live.h"
 
-#include <ctype.h>
-#include <dirent.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -17,19 +14,20 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "scene/silhouette.h"
+#include "walk/live_cameras.h"
+#include "walk/live_pipes.h"
 
 enum {
     POLL_MS = 5,
-    NUMBER_MAX = 99999, // of the folders of a sequence
+    NUMBERS = 100000, // of the folders of a sequence
     LATENCIES = 1 << 16,
 };
 
 struct camera {
-    size_t photo;      // of the scene
-    char *folder;      // owned: DIR/NAME
+    size_t photo;  // of the scene
+    char *from;    // owned: DIR/NAME, a folder or a pipe
+    char *through; // owned: the folder that a pipe is read into; NULL: none
     struct orl_background background;
-    int newest;        // number of its newest picture; -1: none
-    size_t missing;    // pictures that it lacks and others have
 };
 
 struct live {
@@ -37,6 +35,9 @@ struct live {
     struct orl_scene *scene; // the server's thread alone changes it
     struct camera *cameras;
     size_t camera_count;
+    const char **from, **folders; // of each camera; of its pictures
+    struct orl_live_cameras pictures;
+    struct orl_live_pipes *pipes; // NULL: cameras write into folders
     char *dir; // owned: frames/NNNNN/ of the time steps that are kept
     pthread_t thread;
     bool has_thread;
@@ -58,47 +59,6 @@ static double clock_s(void)
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now); // that of the files' times
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-// --- pictures as they come ---
-
-// The number that ends a name before its ending; -1: there is none.
-static int number_of(const char *name)
-{
-    const char *end = strrchr(name, '.'), *begin;
-    if (!end || name[0] == '.')
-        return -1;
-    for (begin = end; begin > name && isdigit((unsigned char)begin[-1]); begin--)
-        ;
-    long number = begin < end && end - begin < 10 ? strtol(begin, NULL, 10) : -1;
-    return number <= NUMBER_MAX ? (int)number : -1;
-}
-
-// The picture of this number, owned by the caller; NULL: it is not there. *newest: the greatest number.
-static char *find_picture(const struct camera *camera, int number, int *newest)
-{
-    char *found = NULL;
-    DIR *dir = opendir(camera->folder);
-    for (struct dirent *entry; dir && (entry = readdir(dir));) {
-        int here = number_of(entry->d_name);
-        *newest = here > *newest ? here : *newest;
-        if (here >= 0 && here == number && !found)
-            found = orl_path_join(NULL, camera->folder, entry->d_name);
-    }
-    if (dir)
-        closedir(dir);
-    return found;
-}
-
-// The greatest number after `last` that all cameras have reached; -1: none.
-static int next_number(struct live *live, int last)
-{
-    int number = INT_MAX;
-    for (size_t i = 0; i < live->camera_count; i++) {
-        free(find_picture(&live->cameras[i], -1, &live->cameras[i].newest));
-        number = live->cameras[i].newest < number ? live->cameras[i].newest : number;
-    }
-    return number > last ? number : -1;
 }
 
 // --- one time step ---
@@ -156,44 +116,26 @@ static void tell_ready(struct live *live, int number, double since)
     live->first_s = live->steps++ ? live->first_s : live->last_s;
 }
 
-// Makes the time step of this number, which all cameras have.
-static void make_time_step(struct live *live, int number)
+// Makes a time step of a picture of each camera.
+static void make_time_step(struct live *live, char *const *paths)
 {
     enum orl_result result = ORL_OK;
     double since = 0;
+    int number = (int)(live->steps % NUMBERS);
     for (size_t i = 0; result == ORL_OK && i < live->camera_count; i++) {
-        struct camera *camera = &live->cameras[i];
         struct stat status;
-        char *path = find_picture(camera, number, &camera->newest);
-        result = path && stat(path, &status) == 0 ? take_picture(live, camera, number, path)
-                                                  : ORL_ERR_NOT_FOUND;
+        result = stat(paths[i], &status) == 0
+                     ? take_picture(live, &live->cameras[i], number, paths[i])
+                     : orl_fail(live->log, ORL_ERR_NOT_FOUND, "%s: %s", paths[i], strerror(errno));
         if (result == ORL_OK)
             since = fmax(since, (double)status.st_mtim.tv_sec + 1e-9 * (double)status.st_mtim.tv_nsec);
-        free(path);
+        if (live->pipes)
+            unlink(paths[i]);
     }
     if (result == ORL_OK)
         tell_ready(live, number, since);
     else
         remove_time_step(live, number); // a picture that cannot be read has been named
-}
-
-// Do all cameras have this number? Says which one lacks what others have.
-static bool is_whole(struct live *live, int number)
-{
-    size_t there = 0;
-    bool lacks = false;
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t i = 0; i < live->camera_count; i++) {
-            struct camera *camera = &live->cameras[i];
-            char *path = find_picture(camera, number, &camera->newest);
-            there += pass == 0 && path;
-            lacks = lacks || !path;
-            if (pass == 1 && there && !path && !camera->missing++)
-                orl_logf(live->log, ORL_LOG_WARNING, "%s: no picture %d, which other cameras have; such "
-                         "time steps are left out", camera->folder, number);
-            free(path);
-        }
-    return !lacks;
 }
 
 static bool ends(struct live *live)
@@ -207,17 +149,18 @@ static bool ends(struct live *live)
 static void *watch(void *priv)
 {
     struct live *live = priv;
-    int last = -1;
-    while (!ends(live)) {
-        int number = next_number(live, last), whole = -1;
-        for (int n = last >= 0 ? last + 1 : number; number >= 0 && n <= number; n++)
-            whole = is_whole(live, n) ? n : whole;
-        last = number >= 0 ? number : last;
-        if (whole >= 0)
-            make_time_step(live, whole);
+    char **paths = orl_array(live->log, live->camera_count, sizeof *paths);
+    enum orl_result result = paths ? ORL_OK : ORL_ERR_MEMORY;
+    while (result == ORL_OK && !ends(live)) {
+        result = orl_live_cameras_look(&live->pictures, clock_s(), paths);
+        if (result == ORL_OK && paths[0])
+            make_time_step(live, paths);
         else
             nanosleep(&(struct timespec){0, POLL_MS * 1000000}, NULL);
+        for (size_t i = 0; i < live->camera_count; i++)
+            free(paths[i]);
     }
+    free(paths);
     return NULL;
 }
 
@@ -230,10 +173,10 @@ static enum orl_result add_camera(struct live *live, const char *dir, size_t pho
     const char *dot = strrchr(p->name, '.');
     struct orl_image picture = {0};
     char *path = orl_scene_background_path(live->log, live->scene, photo);
-    *camera = (struct camera){.photo = photo, .newest = -1};
-    camera->folder = orl_format(live->log, "%s/%.*s", dir,
-                                dot ? (int)(dot - p->name) : (int)strlen(p->name), p->name);
-    enum orl_result result = path && camera->folder ? ORL_OK : ORL_ERR_MEMORY;
+    *camera = (struct camera){.photo = photo};
+    camera->from = orl_format(live->log, "%s/%.*s", dir,
+                              dot ? (int)(dot - p->name) : (int)strlen(p->name), p->name);
+    enum orl_result result = path && camera->from ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && (!p->masked || !orl_path_is_file(path)))
         result = orl_fail(live->log, ORL_ERR_DATA, "%s: %s has no silhouette or no picture of the empty "
                           "place, which --live needs; import the cameras with --background",
@@ -244,6 +187,52 @@ static enum orl_result add_camera(struct live *live, const char *dir, size_t pho
         result = orl_background_add(live->log, &camera->background, &picture);
     orl_image_finish(&picture);
     free(path);
+    return result;
+}
+
+static enum orl_result add_cameras(struct live *live, const char *dir)
+{
+    enum orl_result result = ORL_OK;
+    const struct orl_scene *scene = live->scene;
+    if (!orl_path_is_dir(dir))
+        return orl_fail(live->log, ORL_ERR_NOT_FOUND, "%s: no such folder; --live takes the one that holds a "
+                        "folder of pictures, or a pipe, for each camera", dir);
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
+        if (!scene->photos[i].test)
+            result = add_camera(live, dir, i);
+    if (result == ORL_OK && !live->camera_count)
+        result = orl_fail(live->log, ORL_ERR_DATA, "%s: all cameras are held out", scene->dir);
+    return result;
+}
+
+// Finds where the pictures come from, and has pipes read.
+static enum orl_result open_cameras(struct live *live)
+{
+    enum orl_result result = ORL_OK;
+    size_t count = live->camera_count, pipes = 0;
+    live->from = orl_array(live->log, count, sizeof *live->from);
+    live->folders = orl_array(live->log, count, sizeof *live->folders);
+    if (!live->from || !live->folders)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        struct camera *camera = &live->cameras[i];
+        bool is_pipe = orl_path_is_pipe(camera->from);
+        if (is_pipe)
+            camera->through = orl_format(live->log, "%s/pipes/%zu", live->dir, i);
+        if (is_pipe && !camera->through)
+            result = ORL_ERR_MEMORY;
+        if (i > 0 && is_pipe != (pipes > 0)) // pipes have time stamps of their own
+            result = orl_fail(live->log, ORL_ERR_DATA, "%s: some cameras have pipes, others do not",
+                              camera->from);
+        pipes += is_pipe;
+        live->from[i] = camera->from;
+        live->folders[i] = is_pipe ? camera->through : camera->from;
+    }
+    if (result == ORL_OK && pipes)
+        result = orl_live_pipes_start(live->log, live->from, live->folders, count, &live->pipes);
+    if (result == ORL_OK)
+        result = orl_live_cameras_init(live->log, live->from, live->folders, count, pipes > 0,
+                                       &live->pictures);
     return result;
 }
 
@@ -261,18 +250,14 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
     live->latency_ms = orl_array(log, LATENCIES, sizeof *live->latency_ms);
     live->dir = orl_format(log, "%s/oriel-live-XXXXXX", base && *base ? base : "/tmp");
     enum orl_result result = live->cameras && live->latency_ms && live->dir ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && !orl_path_is_dir(dir))
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder; --live takes the one that holds a "
-                          "folder of pictures for each camera", dir);
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
-        if (!scene->photos[i].test)
-            result = add_camera(live, dir, i);
-    if (result == ORL_OK && !live->camera_count)
-        result = orl_fail(log, ORL_ERR_DATA, "%s: all cameras are held out", scene->dir);
+    if (result == ORL_OK)
+        result = add_cameras(live, dir);
     if (result == ORL_OK && !mkdtemp(live->dir))
         result = orl_fail(log, ORL_ERR_IO, "%s: %s", live->dir, strerror(errno));
     else if (result == ORL_OK)
         scene->time_steps_dir = live->dir;
+    if (result == ORL_OK)
+        result = open_cameras(live);
     if (result == ORL_OK)
         live->has_thread = pthread_create(&live->thread, NULL, watch, live) == 0;
     if (result == ORL_OK && !live->has_thread)
@@ -297,10 +282,12 @@ static void report(const struct live *live)
              "after their last picture", live->steps,
              seconds > 0 ? (double)(live->steps - 1) / seconds : 0, live->drawn,
              count ? (double)live->latency_ms[count / 2] : 0);
-    for (size_t i = 0; i < live->camera_count; i++)
-        if (live->cameras[i].missing)
-            orl_logf(live->log, ORL_LOG_INFO, "live: %s lacked %zu pictures that others had",
-                     live->cameras[i].folder, live->cameras[i].missing);
+    for (size_t i = 0; i < live->camera_count; i++) {
+        const struct orl_live_camera *camera = &live->pictures.cameras[i];
+        if (camera->missing || camera->late)
+            orl_logf(live->log, ORL_LOG_INFO, "live: %s lacked %zu pictures that others had, and was waited "
+                     "for %zu times", live->cameras[i].from, camera->missing, camera->late);
+    }
 }
 
 void orl_live_stop(struct live **handle)
@@ -315,17 +302,22 @@ void orl_live_stop(struct live **handle)
         pthread_join(live->thread, NULL);
         report(live);
     }
+    orl_live_pipes_stop(&live->pipes);
+    orl_live_cameras_finish(&live->pictures);
     if (live->scene->time_steps_dir) {
         if (orl_dir_remove(live->log, live->dir) != ORL_OK)
             orl_logf(live->log, ORL_LOG_WARNING, "%s: stays", live->dir);
         live->scene->time_steps_dir = NULL;
     }
     for (size_t i = 0; live->cameras && i < live->camera_count; i++) {
-        free(live->cameras[i].folder);
+        free(live->cameras[i].from);
+        free(live->cameras[i].through);
         orl_background_finish(&live->cameras[i].background);
     }
     pthread_mutex_destroy(&live->lock);
     free(live->cameras);
+    free(live->from);
+    free(live->folders);
     free(live->latency_ms);
     free(live->dir);
     free(live);

@@ -6,11 +6,11 @@
 
 struct live;
 
-// Starts to watch DIR/NAME/, NAME being the scene's photograph without its ending, for each camera that
-// is not held out. A picture's number is the one that ends its name before the ending; names that begin
-// with a dot are of files that are still being written. Pictures of one number are a time step. The
-// newest one counts that all cameras have; older ones that were not shown by then are left out. Silhouettes are what differs from the scene's pictures of the empty
-// place. ORL_ERR_DATA: the scene has no silhouettes or no such pictures.
+// Starts to watch DIR/NAME, NAME being the scene's photograph without its ending, for each camera that
+// is not held out: a folder of pictures (live_cameras.h), or a pipe (live_pipes.h) if all are. The newest
+// time step counts that all cameras have; older ones that were not shown by then are left out.
+// Silhouettes are what differs from the scene's pictures of the empty place. ORL_ERR_DATA: the scene has
+// no silhouettes or no such pictures.
 enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scene, const char *dir,
                                struct live **live) ORL_CHECK_RESULT;
 // Says what came and what was missing.

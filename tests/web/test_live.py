@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Live cameras in the walk. Made by tests/e2e/walk_live.sh: test_live.py ORIEL SCENE WORK, in which folders are
 made."""
+import hashlib
 import json
 import os
 import re
@@ -14,7 +15,7 @@ import unittest
 from client import Client, Walk
 
 ORIEL, SCENE, WORK = sys.argv[1:4]
-FRAMES = 75
+FRAMES = 50
 WAIT_S = 60 # a limit for a busy machine
 
 
@@ -27,9 +28,10 @@ def camera_of(manifest):
 
 
 def picture(client, camera):
+    """What tells one picture from another."""
     client.send({"number": 1, "layer": "color", "quality": 90, "rest": True, **camera})
     data = client.receive()[1]
-    return data[24 + 4 * struct.unpack("<6I", data[:24])[5]:]
+    return hashlib.sha256(data[24 + 4 * struct.unpack("<6I", data[:24])[5]:]).hexdigest()
 
 
 def settled(client, camera):
@@ -51,6 +53,12 @@ def wait_for(client, camera, wanted):
         time.sleep(0.2)
 
 
+def feed(out, frames, live):
+    """Cameras that show the walking figure, 25 pictures a second."""
+    return subprocess.Popen([ORIEL, "synth", "figures", "--out", out, "--cameras", "5", "--frames", str(frames),
+                             "--size", "96x72", "--live", live, "--quiet"], stdout=subprocess.DEVNULL)
+
+
 class Live(unittest.TestCase):
     def test_pictures_follow_the_cameras(self):
         live, played, said = (os.path.join(WORK, name) for name in ("live", "played", "said.txt"))
@@ -61,9 +69,7 @@ class Live(unittest.TestCase):
         self.assertTrue(manifest["follows"])
         client, camera = Client(walk), camera_of(manifest)
         still = picture(client, camera) # before the first time step: the scene's own
-        feeder = subprocess.Popen([ORIEL, "synth", "figures", "--out", played, "--cameras", "5", "--frames",
-                                   str(FRAMES), "--size", "96x72", "--live", live, "--quiet"],
-                                  stdout=subprocess.DEVNULL)
+        feeder = feed(played, FRAMES, live)
         seen = []
         while feeder.poll() is None:
             seen.append(picture(client, camera))
@@ -94,6 +100,37 @@ class Live(unittest.TestCase):
         print(f"{steps} of {FRAMES + 1} time steps, {drawn} drawn, {latency} ms after their last picture")
         self.assertGreater(int(drawn), 2)
         self.assertLessEqual(int(steps), FRAMES + 1)
+        self.assertGreater(int(latency), 0)
+
+    def test_pipes_are_read(self):
+        live, played, said = (os.path.join(WORK, name) for name in ("pipes", "piped", "said_pipes.txt"))
+        os.mkdir(live)
+        pipes = [os.path.join(live, f"cam{c:02d}") for c in range(5)]
+        for pipe in pipes:
+            os.mkfifo(pipe)
+        with open(said, "w") as log:
+            walk = Walk(ORIEL, SCENE, "--live", live, stderr=log)
+        client, camera = Client(walk), camera_of(json.loads(walk.get("/manifest.json")[1]))
+        still = picture(client, camera)
+        feeder = feed(played, 10, live)
+        seen = set()
+        while feeder.poll() is None:
+            seen.add(picture(client, camera))
+        self.assertEqual(feeder.returncode, 0)
+        self.assertGreater(len(seen), 1)
+        # Pictures of one time: on a busy machine their time stamps may be too far apart.
+        end = time.monotonic() + WAIT_S
+        while picture(client, camera) != still:
+            self.assertLess(time.monotonic(), end, "another picture than what the cameras show")
+            for c, pipe in enumerate(pipes):
+                with open(os.path.join(played, f"images/cam{c:02d}/00000.png"), "rb") as source, open(pipe, "wb") as to:
+                    to.write(source.read())
+            time.sleep(0.2)
+        client.close()
+        self.assertEqual(walk.close(), 0)
+        with open(said) as log:
+            steps, latency = re.search(r"live: (\d+) time steps.* of (\d+) ms after", log.read()).groups()
+        print(f"{steps} time steps from pipes, {latency} ms after their last picture")
         self.assertGreater(int(latency), 0)
 
 

@@ -1,0 +1,249 @@
+#include "walk/live_cameras.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+static const double late_s = 1;
+enum { DIGITS_MAX = 18 }; // of 64 bits
+
+enum orl_result orl_live_cameras_init(const struct orl_log *log, const char *const *names,
+                                      const char *const *folders, size_t count, bool removes,
+                                      struct orl_live_cameras *cameras)
+{
+    *cameras = (struct orl_live_cameras){.log = log, .count = count, .removes = removes};
+    cameras->cameras = orl_array(log, count, sizeof *cameras->cameras);
+    for (size_t i = 0; cameras->cameras && i < count; i++)
+        cameras->cameras[i] = (struct orl_live_camera){
+            .name = names[i], .folder = folders[i], .last = -1, .newest = -1};
+    return cameras->cameras ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+static void forget_pictures(struct orl_live_camera *camera)
+{
+    for (size_t i = 0; i < camera->count; i++)
+        free(camera->pictures[i].path);
+    camera->count = 0;
+}
+
+void orl_live_cameras_finish(struct orl_live_cameras *cameras)
+{
+    for (size_t i = 0; cameras->cameras && i < cameras->count; i++) {
+        forget_pictures(&cameras->cameras[i]);
+        free(cameras->cameras[i].pictures);
+    }
+    free(cameras->cameras);
+    *cameras = (struct orl_live_cameras){.count = 0};
+}
+
+// --- what is there ---
+
+// The number that ends a name before its ending; -1: there is none.
+static int64_t number_of(const char *name)
+{
+    const char *end = strrchr(name, '.'), *begin;
+    if (!end || name[0] == '.')
+        return -1;
+    for (begin = end; begin > name && isdigit((unsigned char)begin[-1]); begin--)
+        ;
+    return begin < end && end - begin <= DIGITS_MAX ? strtoll(begin, NULL, 10) : -1;
+}
+
+static int compare_pictures(const void *a, const void *b)
+{
+    const struct orl_live_picture *x = a, *y = b;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+static enum orl_result list_pictures(const struct orl_log *log, struct orl_live_camera *camera)
+{
+    enum orl_result result = ORL_OK;
+    DIR *dir = opendir(camera->folder);
+    forget_pictures(camera);
+    for (struct dirent *entry; result == ORL_OK && dir && (entry = readdir(dir));) {
+        int64_t number = number_of(entry->d_name);
+        if (number <= camera->last)
+            continue;
+        result = orl_grow(log, (void **)&camera->pictures, &camera->capacity, camera->count + 1,
+                          sizeof *camera->pictures);
+        char *path = result == ORL_OK ? orl_path_join(log, camera->folder, entry->d_name) : NULL;
+        if (path)
+            camera->pictures[camera->count++] = (struct orl_live_picture){number, path};
+        else
+            result = ORL_ERR_MEMORY;
+    }
+    if (dir)
+        closedir(dir);
+    if (camera->count > 1)
+        qsort(camera->pictures, camera->count, sizeof *camera->pictures, compare_pictures);
+    for (size_t i = 0; i < camera->count; i++) {
+        int64_t number = camera->pictures[i].number;
+        if (camera->newest >= 0 && number > camera->newest)
+            camera->intervals[camera->interval_count++ % ORL_LIVE_INTERVALS] = number - camera->newest;
+        camera->newest = number > camera->newest ? number : camera->newest;
+    }
+    return result;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
+}
+
+// The least of the cameras' median intervals; 0: unknown.
+static int64_t interval_of(const struct orl_live_cameras *cameras)
+{
+    int64_t least = 0;
+    for (size_t i = 0; i < cameras->count; i++) {
+        const struct orl_live_camera *camera = &cameras->cameras[i];
+        size_t count = camera->interval_count;
+        count = count < ORL_LIVE_INTERVALS ? count : ORL_LIVE_INTERVALS;
+        int64_t sorted[ORL_LIVE_INTERVALS];
+        memcpy(sorted, camera->intervals, sizeof sorted);
+        qsort(sorted, count, sizeof *sorted, compare_numbers);
+        if (count > 0 && (!least || sorted[count / 2] < least))
+            least = sorted[count / 2];
+    }
+    return least;
+}
+
+// --- time steps ---
+
+// The oldest picture that is left, `at` pictures having been decided upon; NULL: none.
+static const struct orl_live_picture *oldest_of(const struct orl_live_camera *camera, size_t at)
+{
+    return at < camera->count ? &camera->pictures[at] : NULL;
+}
+
+static bool is_of(const struct orl_live_picture *picture, int64_t number, int64_t interval)
+{
+    return picture && (picture->number == number || 2 * (picture->number - number) < interval);
+}
+
+// What is known of the pictures that belong to the oldest one that is left.
+enum time_step { NONE, WAITS, LACKS, WHOLE };
+
+static enum time_step look_at(const struct orl_live_cameras *cameras, const size_t *at, int64_t interval,
+                              int64_t *number)
+{
+    bool any = false, lacks = false, waits = false;
+    for (size_t i = 0; i < cameras->count; i++) {
+        const struct orl_live_picture *oldest = oldest_of(&cameras->cameras[i], at[i]);
+        if (oldest && (!any || oldest->number < *number))
+            *number = oldest->number;
+        any = any || oldest;
+    }
+    for (size_t i = 0; any && i < cameras->count; i++) {
+        const struct orl_live_picture *oldest = oldest_of(&cameras->cameras[i], at[i]);
+        lacks = lacks || !is_of(oldest, *number, interval);
+        waits = waits || !oldest;
+    }
+    // Before an interval is known, different time stamps may be of one time step.
+    return !any ? NONE : !lacks ? WHOLE : waits || !interval ? WAITS : LACKS;
+}
+
+static void say_missing(const struct orl_live_cameras *cameras, const size_t *at, int64_t number,
+                        int64_t interval)
+{
+    for (size_t i = 0; i < cameras->count; i++) {
+        struct orl_live_camera *camera = &cameras->cameras[i];
+        if (!is_of(oldest_of(camera, at[i]), number, interval) && !camera->missing++)
+            orl_logf(cameras->log, ORL_LOG_WARNING, "%s: no picture %" PRId64 ", which other cameras have; "
+                     "such time steps are left out", camera->name, number);
+    }
+}
+
+// Says once that a camera stands still while others go on.
+static void say_late(const struct orl_live_cameras *cameras, const size_t *at, bool waits, double now_s)
+{
+    for (size_t i = 0; i < cameras->count; i++) {
+        struct orl_live_camera *camera = &cameras->cameras[i];
+        if (!waits || at[i] < camera->count) {
+            camera->waits_since_s = 0;
+            camera->is_late = false;
+        } else if (camera->waits_since_s <= 0) {
+            camera->waits_since_s = now_s;
+        } else if (now_s - camera->waits_since_s > late_s && !camera->is_late) {
+            camera->is_late = true;
+            camera->late++;
+            orl_logf(cameras->log, ORL_LOG_WARNING, "%s: no new picture for more than a second, and other "
+                     "cameras wait for it", camera->name);
+        }
+    }
+}
+
+static enum orl_result copy_paths(const struct orl_live_cameras *cameras, const size_t *at, char **paths)
+{
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; i < cameras->count; i++) {
+        free(paths[i]);
+        paths[i] = orl_strdup(cameras->log, cameras->cameras[i].pictures[at[i]].path);
+        result = paths[i] ? result : ORL_ERR_MEMORY;
+    }
+    return result;
+}
+
+// May a picture belong to the next time step, with a camera that has none of the oldest number?
+static bool suits_next(const struct orl_live_cameras *cameras, const size_t *at, int64_t number,
+                       int64_t interval, int64_t picture)
+{
+    for (size_t i = 0; i < cameras->count; i++) {
+        const struct orl_live_picture *oldest = oldest_of(&cameras->cameras[i], at[i]);
+        if (!is_of(oldest, number, interval) && is_of(oldest, picture, interval))
+            return true;
+    }
+    return false;
+}
+
+// Goes on to what is newer than the time step of this number.
+static void decide(struct orl_live_cameras *cameras, size_t *at, const size_t *before, int64_t number,
+                   int64_t interval)
+{
+    for (size_t i = 0; i < cameras->count; i++) {
+        struct orl_live_camera *camera = &cameras->cameras[i];
+        const struct orl_live_picture *oldest;
+        while (is_of(oldest = oldest_of(camera, at[i]), number, interval) &&
+               !suits_next(cameras, before, number, interval, oldest->number)) {
+            camera->last = oldest->number;
+            at[i]++;
+        }
+    }
+}
+
+enum orl_result orl_live_cameras_look(struct orl_live_cameras *cameras, double now_s, char **paths)
+{
+    // How many pictures of each camera have been decided upon, and had been.
+    size_t *at = orl_array(cameras->log, 2 * cameras->count, sizeof *at);
+    size_t *before = at ? at + cameras->count : NULL;
+    enum orl_result result = at ? ORL_OK : ORL_ERR_MEMORY;
+    int64_t interval, number = -1;
+    enum time_step step = NONE;
+    for (size_t i = 0; i < cameras->count; i++)
+        paths[i] = NULL;
+    for (size_t i = 0; result == ORL_OK && i < cameras->count; i++)
+        result = list_pictures(cameras->log, &cameras->cameras[i]);
+    interval = interval_of(cameras);
+    while (result == ORL_OK && (step = look_at(cameras, at, interval, &number)) >= LACKS) {
+        if (step == WHOLE)
+            result = copy_paths(cameras, at, paths);
+        else
+            say_missing(cameras, at, number, interval);
+        memcpy(before, at, cameras->count * sizeof *at);
+        decide(cameras, at, before, number, interval);
+    }
+    if (result == ORL_OK)
+        say_late(cameras, at, step == WAITS, now_s);
+    for (size_t i = 0; at && cameras->removes && i < cameras->count; i++)
+        for (size_t k = 0; k < at[i]; k++)
+            if (!paths[i] || strcmp(paths[i], cameras->cameras[i].pictures[k].path) != 0)
+                unlink(cameras->cameras[i].pictures[k].path);
+    free(at);
+    return result;
+}
