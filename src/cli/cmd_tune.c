@@ -4,8 +4,8 @@
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "eval/adapt.h"
-#include "eval/tune_json.h"
 #include "oriel/prepare_params.h"
+#include "scene/tuned_settings.h"
 
 enum { VIEWS = 16, ADAPT_BUDGET_S = 120 };
 
@@ -26,26 +26,24 @@ enum { VIEWS = 16, ADAPT_BUDGET_S = 120 };
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 COMMAND_OPTIONS(tune_options, TUNE_OPTIONS)
 
-static void print_trial(void *priv, const struct orl_tune_trial *trial)
+static void print_trial(void *priv, const struct orl_trial *trial)
 {
     (void)priv;
-    if (trial->key)
-        printf("%-18s %9.4g", trial->key, trial->value);
-    else
-        printf("%-18s %9s", "start", "");
-    printf(" %9.3f %8.4f  %s\n", trial->psnr_db, trial->ssim, trial->kept ? "kept" : "");
+    printf("%-18s %9s %9.3f %8.4f  %s\n", trial->key ? trial->key : "start", trial->value,
+           trial->psnr_db, trial->ssim, trial->kept ? "kept" : "");
     fflush(stdout);
 }
 
 static enum orl_result report(const struct orl_log *log, const struct tune_options *o,
-                              const struct orl_scene *scene, const char *device,
-                              const struct orl_method *method, const struct orl_tune *tune)
+                              const char *device, const struct orl_search *search)
 {
-    json_t *settings = orl_choice_settings(method, &tune->best), *value;
+    const struct orl_method *method = search->best.method;
+    json_t *settings = orl_choice_settings(method, &search->best.params), *value;
     const char *key;
     printf("%s: %.3f dB, was %.3f; %zu photographs at 1/%d, each rendered without itself%s\n",
-           method->name, tune->best_db, tune->start_db, tune->views, o->size_divide,
-           tune->complete ? "" : "; the budget ended the search");
+           method->name, search->score.psnr_db, search->trials[0].psnr_db,
+           search->validation.count, o->size_divide,
+           search->complete ? "" : "; the budget ended the search");
     json_object_foreach(settings, key, value)
         if (json_is_string(value))
             printf("--set %s=%s\n", key, json_string_value(value));
@@ -53,9 +51,9 @@ static enum orl_result report(const struct orl_log *log, const struct tune_optio
             printf("--set %s=%.6g\n", key, json_number_value(value));
     enum orl_result result = ORL_OK;
     if (o->json)
-        result = orl_tune_write_json(log, o->json, scene, method, device, o->size_divide, tune);
+        result = orl_search_write_json(log, o->json, device, search);
     if (result == ORL_OK && o->apply)
-        result = orl_tune_apply(log, scene, method, o->size_divide, tune);
+        result = orl_tuned_write(log, search->scene->dir, method->name, orl_search_record(search));
     json_decref(settings);
     return result;
 }
@@ -108,7 +106,7 @@ static enum orl_result run_tune(struct terminal *terminal, const void *options,
     struct orl_gpu *gpu = NULL;
     struct orl_renderer *renderer = NULL;
     struct orl_choice start = {0};
-    struct orl_tune tune = {0};
+    struct orl_search search = {0};
     enum orl_result result = ORL_OK;
     if (o->method) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
@@ -124,18 +122,16 @@ static enum orl_result run_tune(struct terminal *terminal, const void *options,
     struct orl_renderer_params limits = {.max_vram_bytes = o->max_vram_bytes};
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
-    const struct orl_tune_params params = {
-        .method = start.method ? start.method->name : NULL, .start = &start.params,
-        .keys = &o->keys, .size_divide = o->size_divide,
-        .views = (size_t)(o->views ? o->views : VIEWS), .gain_db = o->gain_db, .budget_s = o->budget_s,
+    const struct orl_search_params params = {
+        .size_divide = o->size_divide, .views = (size_t)(o->views ? o->views : VIEWS), .gain_db = o->gain_db, .budget_s = o->budget_s,
         .on_trial = common->quiet ? NULL : print_trial, .progress = &terminal->progress};
     if (result == ORL_OK && !common->quiet)
         printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
     if (result == ORL_OK)
-        result = orl_tune_run(gpu, renderer, scene, &params, &tune);
+        result = orl_search_run(gpu, renderer, scene, &params, &start, &o->keys, &search);
     if (result == ORL_OK)
-        result = report(log, o, scene, orl_gpu_caps(gpu)->renderer, start.method, &tune);
-    orl_tune_finish(&tune);
+        result = report(log, o, orl_gpu_caps(gpu)->renderer, &search);
+    orl_search_finish(&search);
     orl_renderer_destroy(&renderer);
     orl_gpu_destroy(&gpu);
     orl_scene_destroy(&scene);

@@ -6,8 +6,6 @@
 
 #include "core/process.h"
 #include "eval/trim.h"
-#include "eval/tune.h"
-#include "eval/score.h"
 #include "scene/tuned_settings.h"
 
 // Of the time that is left after the methods are compared, tuning may take this share.
@@ -17,7 +15,7 @@ static const double tolerance_db = 0.02, tolerance_ssim = 0.002, gain_db = 0.01;
 // What a step must gain. Gains that did not hold on photographs that were held out were smaller.
 static const double step_gain_db = 0.15;
 
-static size_t ranks_above(const struct orl_adapt_row *rows, size_t count, size_t row)
+static size_t ranks_above(const struct orl_trial *rows, size_t count, size_t row)
 {
     size_t sum = 0;
     for (size_t i = 0; i < count; i++) {
@@ -27,7 +25,7 @@ static size_t ranks_above(const struct orl_adapt_row *rows, size_t count, size_t
     return sum;
 }
 
-size_t orl_adapt_choose(const struct orl_adapt_row *rows, size_t count)
+size_t orl_adapt_choose(const struct orl_trial *rows, size_t count)
 {
     size_t best = 0;
     for (size_t i = 1; i < count; i++) {
@@ -41,51 +39,46 @@ size_t orl_adapt_choose(const struct orl_adapt_row *rows, size_t count)
 // --- the methods ---
 
 struct job {
-    struct orl_gpu *gpu;
-    const struct orl_log *log;
     const struct orl_scene *scene;
     const struct orl_adapt_params *params;
     struct orl_adapt *adapt;
-    struct orl_renderer *renderer;
-    struct orl_validation validation;
-    struct orl_choice choice;   // the best so far
-    struct orl_score score; // of it
-    size_t renderings;          // done, in steps
-    double start_s;
+    struct orl_search search;
+    size_t renderings; // done, in steps
 };
 
-// The time that is left for all but the comparison of methods.
 static double left_s(const struct job *job)
 {
-    return job->params->budget_s - (orl_time_s() - job->start_s);
+    return job->params->budget_s - (orl_time_s() - job->search.start_s);
+}
+
+// Gives what comes next this share of the time that is left for all but the comparison of methods.
+static void give_time(struct job *job, double share)
+{
+    job->search.params.budget_s = job->params->budget_s - (1 - share) * fmax(left_s(job), 0);
 }
 
 // Measures one method. A method that cannot draw the scene, as one that needs a mesh, has no row.
 static enum orl_result add_method(struct job *job, const struct orl_method *method)
 {
     struct orl_adapt *adapt = job->adapt;
+    const struct orl_search *s = &job->search;
     struct orl_render_params render;
     struct orl_score score = {0};
-    orl_render_params_tuned(job->log, method, job->scene, &render);
-    enum orl_result result = orl_score_measure(job->log, job->renderer, &job->validation, &render,
+    orl_render_params_tuned(s->log, method, job->scene, &render);
+    enum orl_result result = orl_score_measure(s->log, s->renderer, &s->validation, &render,
                                                job->params->progress, &score);
     if (result == ORL_OK)
-        adapt->rows[adapt->row_count++] =
-            (struct orl_adapt_row){method, score.psnr_db, score.ssim};
+        adapt->rows[adapt->row_count++] = (struct orl_trial){
+            .method = method, .psnr_db = score.psnr_db, .ssim = score.ssim};
     orl_score_finish(&score);
     bool fatal = result == ORL_ERR_MEMORY || result == ORL_ERR_GPU || result == ORL_ERR_CANCELLED;
     return fatal ? result : ORL_OK;
 }
 
-// A frame that is the mean of several is for stills: what a scene is shown with must be fast.
-static bool is_for_stills(const struct orl_method *method)
-{
-    return method->params.reconstructions > 1;
-}
-
 static enum orl_result compare_methods(struct job *job)
 {
     struct orl_adapt *adapt = job->adapt;
+    const struct orl_log *log = job->search.log;
     size_t count = 0;
     enum orl_result result = ORL_OK;
     while (count < ORL_ADAPT_METHODS_MAX && orl_methods[count].name)
@@ -93,137 +86,66 @@ static enum orl_result compare_methods(struct job *job)
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         orl_progress_report(job->params->progress, "methods", (double)i, (double)count,
                             orl_methods[i].name);
-        if (!is_for_stills(&orl_methods[i]))
+        if (!orl_method_is_for_stills(&orl_methods[i]))
             result = add_method(job, &orl_methods[i]);
     }
     if (result == ORL_OK && !adapt->row_count)
-        result = orl_fail(job->log, ORL_ERR_DATA, "%s: no method can draw this scene",
+        result = orl_fail(log, ORL_ERR_DATA, "%s: no method can draw this scene",
                           job->scene->dir);
+    if (result != ORL_OK)
+        return result;
     adapt->chosen = orl_adapt_choose(adapt->rows, adapt->row_count);
-    job->choice.method = adapt->rows[adapt->chosen].method;
-    if (result != ORL_OK)
-        return result;
-    orl_render_params_tuned(job->log, job->choice.method, job->scene, &job->choice.params);
-    return orl_score_measure(job->log, job->renderer, &job->validation, &job->choice.params,
-                             job->params->progress, &job->score);
+    struct orl_choice choice = {.method = adapt->rows[adapt->chosen].method};
+    orl_render_params_tuned(log, choice.method, job->scene, &choice.params);
+    return orl_search_start(&job->search, &choice);
 }
 
-// --- what other methods do ---
+// --- what can be saved ---
 
-// Tries an option's value; keeps it if it is better. Values that do not go with the other choices
-// change nothing.
-static enum orl_result try_value(struct job *job, const struct orl_render_option *option,
-                                 const char *value)
-{
-    char assignment[2 * ORL_OPTION_NAME_BYTES + 2], own[ORL_OPTION_NAME_BYTES];
-    struct orl_render_params render = job->choice.params;
-    struct orl_score score = {0};
-    orl_render_option_print(option, &render, own, sizeof own);
-    snprintf(assignment, sizeof assignment, "%s=%s", option->key, value);
-    if (strcmp(own, value) == 0 || orl_render_params_set(NULL, &render, assignment) != ORL_OK)
-        return ORL_OK;
-    enum orl_result result = orl_score_measure(job->log, job->renderer, &job->validation, &render,
-                                               job->params->progress, &score);
-    if (result == ORL_OK && orl_score_better(&score, &job->score, gain_db)) {
-        orl_logf(job->log, ORL_LOG_INFO, "%s: %.2f dB, SSIM %.4f", assignment, score.psnr_db,
-                 score.ssim);
-        orl_score_finish(&job->score);
-        job->score = score;
-        job->choice.params = render;
-        return ORL_OK;
-    }
-    orl_score_finish(&score);
-    return result == ORL_ERR_ARGUMENT || result == ORL_ERR_NOT_FOUND ? ORL_OK : result;
-}
-
-// Tries the values that other methods have for an option, each of them once.
-static enum orl_result borrow_option(struct job *job, const struct orl_render_option *option)
-{
-    char value[ORL_OPTION_NAME_BYTES], before[ORL_OPTION_NAME_BYTES];
-    enum orl_result result = ORL_OK;
-    for (const struct orl_method *m = orl_methods; result == ORL_OK && m->name; m++) {
-        bool known = false;
-        orl_render_option_print(option, &m->params, value, sizeof value);
-        for (const struct orl_method *other = orl_methods; other < m; other++) {
-            orl_render_option_print(option, &other->params, before, sizeof before);
-            known = known || strcmp(value, before) == 0;
-        }
-        if (!known && !is_for_stills(m) && left_s(job) > 0)
-            result = try_value(job, option, value);
-    }
-    return result;
-}
-
-static enum orl_result borrow(struct job *job)
-{
-    enum orl_result result = ORL_OK;
-    size_t count = 0, done = 0;
-    while (orl_render_options[count].key)
-        count++;
-    for (; result == ORL_OK && done < count; done++) {
-        const struct orl_render_option *option = &orl_render_options[done];
-        orl_progress_report(job->params->progress, "options", (double)done, (double)count,
-                            option->key);
-        // Another proxy or painter would be another method.
-        if (strcmp(option->key, "proxy") != 0 && strcmp(option->key, "paint") != 0)
-            result = borrow_option(job, option);
-    }
-    return result;
-}
-
-// --- numbers, and what can be saved ---
-
-static enum orl_result tune(struct job *job)
-{
-    struct orl_tune tune;
-    const struct orl_tune_params tuning = {
-        .method = job->choice.method->name, .start = &job->choice.params,
-        .size_divide = job->params->size_divide, .views = job->params->views, .gain_db = gain_db,
-        .budget_s = tune_share * left_s(job), .progress = job->params->progress};
-    enum orl_result result = orl_tune_run(job->gpu, job->renderer, job->scene, &tuning, &tune);
-    if (result != ORL_OK)
-        return result;
-    job->choice.params = tune.best;
-    job->adapt->tuned_db = tune.best_db;
-    job->adapt->tuned_ssim = tune.best_ssim;
-    job->adapt->complete = tune.complete;
-    orl_tune_finish(&tune);
-    return ORL_OK;
-}
-
-static enum orl_result trim(struct job *job)
+static enum orl_result trim(struct job *job, struct orl_gpu *gpu)
 {
     struct orl_trim trim;
     const struct orl_trim_params trimming = {
-        .start = &job->choice, .tolerance_db = tolerance_db, .tolerance_ssim = tolerance_ssim,
+        .start = &job->search.best, .tolerance_db = tolerance_db, .tolerance_ssim = tolerance_ssim,
         .worst_db = 5 * tolerance_db, .views = job->params->views,
         .size_divide = job->params->size_divide, .budget_s = left_s(job), .settings_only = true,
         .progress = job->params->progress};
-    enum orl_result result = orl_trim_run(job->gpu, job->scene, &trimming, &trim);
+    enum orl_result result = orl_trim_run(gpu, job->scene, &trimming, &trim);
     if (result != ORL_OK)
         return result;
     job->adapt->complete = job->adapt->complete && trim.complete;
-    job->choice = trim.choice;
+    job->search.best = trim.choice;
     job->adapt->defaults = trim.defaults;
     orl_trim_finish(&trim);
     return ORL_OK;
 }
 
-static enum orl_result search(struct job *job)
+// Notes what the search has found so far.
+static void note_best(struct job *job)
 {
+    job->adapt->tuned_db = job->search.score.psnr_db;
+    job->adapt->tuned_ssim = job->search.score.ssim;
+}
+
+static enum orl_result search(struct job *job, struct orl_gpu *gpu)
+{
+    struct orl_search *s = &job->search;
     enum orl_result result = compare_methods(job);
-    job->adapt->plain_db = job->score.psnr_db;
-    job->adapt->plain_ssim = job->score.ssim;
+    job->adapt->plain_db = s->score.psnr_db;
+    job->adapt->plain_ssim = s->score.ssim;
+    give_time(job, 1);
     if (result == ORL_OK && left_s(job) > 0)
-        result = borrow(job);
-    job->adapt->tuned_db = job->score.psnr_db;
-    job->adapt->tuned_ssim = job->score.ssim;
-    if (result == ORL_OK && left_s(job) > 0)
-        result = tune(job);
+        result = orl_search_borrow(s);
+    give_time(job, tune_share);
+    if (result == ORL_OK && left_s(job) > 0) {
+        result = orl_search_numbers(s, NULL);
+        job->adapt->complete = s->complete;
+    }
+    note_best(job);
     // Trimming has a renderer of its own.
-    orl_renderer_destroy(&job->renderer);
+    orl_renderer_destroy(&s->renderer);
     if (result == ORL_OK && left_s(job) > 0)
-        result = trim(job);
+        result = trim(job, gpu);
     return result;
 }
 
@@ -269,16 +191,16 @@ static enum orl_result set_step(const struct job *job, const struct step *step,
                                 struct orl_choice *choice)
 {
     enum orl_result result = ORL_OK;
-    *choice = job->choice;
+    *choice = job->search.best;
     if (step->method) {
-        choice->method = orl_method_find(job->log, step->method);
+        choice->method = orl_method_find(job->search.log, step->method);
         if (!choice->method)
             return ORL_ERR_ARGUMENT;
-        orl_render_params_tuned(job->log, choice->method, job->scene, &choice->params);
+        orl_render_params_tuned(job->search.log, choice->method, job->scene, &choice->params);
     }
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(step->settings); i++)
         if (step->settings[i])
-            result = orl_render_params_set(job->log, &choice->params, step->settings[i]);
+            result = orl_render_params_set(job->search.log, &choice->params, step->settings[i]);
     return result;
 }
 
@@ -299,8 +221,8 @@ static enum orl_result render_views(struct job *job, const struct orl_choice *ch
     orl_progress_report(job->params->progress, "adapt", (double)job->renderings,
                         (double)orl_adapt_renderings(job->scene), NULL);
     job->renderings += count - score->count;
-    return orl_score_extend(job->log, job->renderer, &job->validation, &choice->params,
-                            job->params->progress, count, score);
+    return orl_score_extend(job->search.log, job->search.renderer, &job->search.validation,
+                            &choice->params, job->params->progress, count, score);
 }
 
 // Takes the step if it is clearly better. Half of the views suffice to see that it is not.
@@ -308,25 +230,25 @@ static enum orl_result try_step(struct job *job, const struct step *step, bool *
 {
     struct orl_choice choice;
     struct orl_score score = {0};
-    size_t count = job->validation.count;
+    size_t count = job->search.validation.count;
     *taken = false;
     enum orl_result result = set_step(job, step, &choice);
-    if (result != ORL_OK || is_same(&choice, &job->choice))
+    if (result != ORL_OK || is_same(&choice, &job->search.best))
         return result;
     result = render_views(job, &choice, (count + 1) / 2, &score);
-    if (result == ORL_OK && orl_score_gain_db(&score, &job->score) >= step_gain_db / 2) {
+    if (result == ORL_OK && orl_score_gain_db(&score, &job->search.score) >= step_gain_db / 2) {
         result = render_views(job, &choice, count, &score);
         *taken = result == ORL_OK &&
-                 orl_score_clearly_better(&score, &job->score, step_gain_db);
+                 orl_score_clearly_better(&score, &job->search.score, step_gain_db);
     }
     if (*taken) {
         for (size_t i = 0; i < ORL_COUNT(step->settings) && step->settings[i]; i++)
-            orl_logf(job->log, ORL_LOG_INFO, "adapt: %s", step->settings[i]);
-        orl_logf(job->log, ORL_LOG_INFO, "adapt: %s: %.2f dB, SSIM %.4f", choice.method->name,
+            orl_logf(job->search.log, ORL_LOG_INFO, "adapt: %s", step->settings[i]);
+        orl_logf(job->search.log, ORL_LOG_INFO, "adapt: %s: %.2f dB, SSIM %.4f", choice.method->name,
                  score.psnr_db, score.ssim);
-        orl_score_finish(&job->score);
-        job->score = score;
-        job->choice = choice;
+        orl_score_finish(&job->search.score);
+        job->search.score = score;
+        job->search.best = choice;
         return ORL_OK;
     }
     orl_score_finish(&score);
@@ -342,14 +264,14 @@ static enum orl_result take_steps(struct job *job)
 {
     struct orl_adapt *adapt = job->adapt;
     const struct orl_names none = {0};
-    size_t most = orl_adapt_renderings(job->scene), count = job->validation.count;
+    size_t most = orl_adapt_renderings(job->scene), count = job->search.validation.count;
     bool taken = false;
     enum orl_result result =
-        orl_choice_make(job->log, job->scene, ORL_SAMPLE_SRGB, NULL, &none, &job->choice);
+        orl_choice_make(job->search.log, job->scene, ORL_SAMPLE_SRGB, NULL, &none, &job->search.best);
     if (result == ORL_OK)
-        result = render_views(job, &job->choice, count, &job->score);
-    adapt->plain_db = job->score.psnr_db;
-    adapt->plain_ssim = job->score.ssim;
+        result = render_views(job, &job->search.best, count, &job->search.score);
+    adapt->plain_db = job->search.score.psnr_db;
+    adapt->plain_ssim = job->search.score.ssim;
     adapt->complete = true;
     for (size_t i = 0; result == ORL_OK && adapt->complete && i < ORL_COUNT(steps); i++) {
         if (!is_for(steps[i].condition, taken))
@@ -358,8 +280,7 @@ static enum orl_result take_steps(struct job *job)
         if (adapt->complete)
             result = try_step(job, &steps[i], &taken);
     }
-    adapt->tuned_db = job->score.psnr_db;
-    adapt->tuned_ssim = job->score.ssim;
+    note_best(job);
     orl_progress_report(job->params->progress, "adapt", 1, 1, NULL);
     return result;
 }
@@ -369,23 +290,24 @@ static enum orl_result take_steps(struct job *job)
 enum orl_result orl_adapt_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_adapt_params *params, struct orl_adapt *adapt)
 {
-    struct job job = {.gpu = gpu, .log = orl_gpu_log(gpu), .scene = scene, .params = params,
-                      .adapt = adapt, .start_s = orl_time_s()};
+    struct job job = {.scene = scene, .params = params, .adapt = adapt};
+    struct orl_renderer *renderer = NULL;
+    const struct orl_search_params searching = {
+        .size_divide = params->size_divide, .views = params->views, .gain_db = gain_db,
+        .progress = params->progress};
     memset(adapt, 0, sizeof *adapt);
     adapt->defaults = scene->defaults;
-    enum orl_result result =
-        orl_validation_load(job.log, scene, params->views, params->size_divide, &job.validation);
+    enum orl_result result = orl_renderer_create(gpu, scene, NULL, &renderer);
     if (result == ORL_OK)
-        result = orl_renderer_create(gpu, scene, NULL, &job.renderer);
-    adapt->views = job.validation.count;
+        result = orl_search_begin(gpu, renderer, scene, &searching, &job.search);
+    adapt->views = job.search.validation.count;
     if (result == ORL_OK)
-        result = params->search ? search(&job) : take_steps(&job);
-    orl_renderer_destroy(&job.renderer);
-    orl_validation_finish(&job.validation);
-    orl_score_finish(&job.score);
-    adapt->choice = job.choice;
+        result = params->search ? search(&job, gpu) : take_steps(&job);
+    orl_renderer_destroy(&job.search.renderer);
+    adapt->choice = job.search.best;
+    orl_search_finish(&job.search);
     if (result == ORL_OK)
-        adapt->defaults.method = (char *)job.choice.method->name;
+        adapt->defaults.method = (char *)adapt->choice.method->name;
     return result;
 }
 

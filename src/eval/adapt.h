@@ -3,14 +3,8 @@
 #ifndef ORL_EVAL_ADAPT_H
 #define ORL_EVAL_ADAPT_H
 
-#include "eval/choice.h"
-#include "oriel/progress.h"
+#include "eval/search.h"
 
-// Means over training photographs, each rendered without itself.
-struct orl_adapt_row {
-    const struct orl_method *method;
-    double psnr_db, ssim;
-};
 enum { ORL_ADAPT_METHODS_MAX = 32 };
 
 struct orl_adapt_params {
@@ -25,7 +19,7 @@ struct orl_adapt_params {
 
 struct orl_adapt {
     // Of the search: the methods that can draw the scene, and the index of the chosen one.
-    struct orl_adapt_row rows[ORL_ADAPT_METHODS_MAX];
+    struct orl_trial rows[ORL_ADAPT_METHODS_MAX];
     size_t row_count, chosen;
     struct orl_choice choice; // the method, with the options that were found
     struct orl_scene_defaults defaults; // and the rest of what scene.json states; texts are not
@@ -45,12 +39,12 @@ size_t orl_adapt_renderings(const struct orl_scene *scene);
 
 // The index of the row to choose: the method that no other beats in PSNR or in SSIM. Where the two
 // disagree, the one of the least sum of ranks; of those, that of the greatest PSNR.
-size_t orl_adapt_choose(const struct orl_adapt_row *rows, size_t count);
+size_t orl_adapt_choose(const struct orl_trial *rows, size_t count);
 
 // Steps: tries a few changes of the scene's method that gained on scenes that were measured, and
 // keeps what is clearly better (score.h). Search: compares all methods. Of the best one, tries
 // for each option the values that other methods have, keeps what is better, then tunes its numbers
-// (tune.h), and finds which of the renderer's settings save memory or time without a loss that
+// (search.h), and finds which of the renderer's settings save memory or time without a loss that
 // counts (trim.h). ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN training photographs.
 enum orl_result orl_adapt_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_adapt_params *params,

@@ -10,7 +10,7 @@
 #include "core/new_dir.h"
 #include "core/process.h"
 #include "eval/trim_search.h"
-#include "eval/tune.h"
+#include "eval/search.h"
 
 enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
 // Least gain of a tuned option, as a share of the tolerance.
@@ -119,18 +119,17 @@ static enum orl_result start(struct trim_search *s)
 // Fits the method's options at half the size, where a frame takes a quarter of the time.
 static enum orl_result tune(struct trim_search *s)
 {
-    struct orl_tune tune;
+    struct orl_search search;
     const struct orl_trim_params *p = s->params;
-    const struct orl_tune_params params = {
-        .method = p->start->method->name, .start = &s->state.render,
+    const struct orl_search_params params = {
         .size_divide = TUNED_DIVIDE * p->size_divide, .views = TUNED_VIEWS,
         .gain_db = tuned_gain * p->tolerance_db, .budget_s = tuned_time * p->budget_s,
         .progress = p->progress};
-    enum orl_result result =
-        orl_tune_run(s->source.gpu, s->model->renderer, s->source.scene, &params, &tune);
+    enum orl_result result = orl_search_run(s->source.gpu, s->model->renderer, s->source.scene,
+                                            &params, p->start, NULL, &search);
     if (result == ORL_OK)
-        result = orl_trim_take_options(s, &tune.best);
-    orl_tune_finish(&tune);
+        result = orl_trim_take_options(s, &search.best.params);
+    orl_search_finish(&search);
     return result;
 }
 

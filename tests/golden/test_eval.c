@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "eval/eval.h"
-#include "eval/tune.h"
+#include "eval/search.h"
 #include "io/picture.h"
 #include "tiny_scene.h"
 
@@ -141,15 +141,14 @@ static void tune_measures_what_eval_reports(void **state)
     scene.photos[last].vignette[0] = -0.3f;
     double figures[2];
     for (size_t k = 0; k < ORL_COUNT(uses); k++) {
-        struct orl_render_params render = orl_method_find(NULL, "oriel")->params;
-        render.alignment = uses[k];
-        const struct orl_eval_params eval_params = {.method = "oriel", .render = &render};
-        const struct orl_tune_params tune_params = {.method = "oriel", .start = &render,
-                                                    .size_divide = 1, .views = 1,
-                                                    .budget_s = 1e-6};
+        struct orl_choice choice = {.method = orl_method_find(NULL, "oriel")};
+        choice.params = choice.method->params;
+        choice.params.alignment = uses[k];
+        const struct orl_eval_params eval_params = {.method = "oriel", .render = &choice.params};
+        const struct orl_search_params params = {.size_divide = 1, .views = 1, .budget_s = 1e-6};
         struct orl_renderer *renderer;
         struct orl_eval eval;
-        struct orl_tune tune;
+        struct orl_search search;
         for (size_t i = 0; i < scene.photo_count; i++)
             scene.photos[i].test = i == last;
         assert_int_equal(orl_renderer_create(gpu, &scene, NULL, &renderer), ORL_OK);
@@ -157,14 +156,15 @@ static void tune_measures_what_eval_reports(void **state)
         orl_renderer_destroy(&renderer);
         scene.photos[last].test = false;
         assert_int_equal(orl_renderer_create(gpu, &scene, NULL, &renderer), ORL_OK);
-        assert_int_equal(orl_tune_run(gpu, renderer, &scene, &tune_params, &tune), ORL_OK);
+        assert_int_equal(orl_search_run(gpu, renderer, &scene, &params, &choice, NULL, &search),
+                         ORL_OK);
         orl_renderer_destroy(&renderer);
-        assert_int_equal(tune.trial_count, 1);
-        assert_float_equal(tune.start_db, eval.mean.metrics.psnr_db, 1e-3);
-        assert_float_equal(tune.trials[0].ssim, eval.mean.metrics.ssim, 1e-5);
-        figures[k] = tune.start_db;
+        assert_int_equal(search.trial_count, 1);
+        assert_float_equal(search.trials[0].psnr_db, eval.mean.metrics.psnr_db, 1e-3);
+        assert_float_equal(search.trials[0].ssim, eval.mean.metrics.ssim, 1e-5);
+        figures[k] = search.trials[0].psnr_db;
         orl_eval_finish(&eval);
-        orl_tune_finish(&tune);
+        orl_search_finish(&search);
     }
     assert_true(fabs(figures[0] - figures[1]) > 0.5); // the exposure is no trifle here
     tiny_scene_finish(&scene);

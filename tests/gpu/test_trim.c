@@ -437,7 +437,7 @@ static void adapting_stores_the_best_method(void **state)
     assert_int_equal(orl_adapt_store(NULL, f.dir, &adapt), ORL_OK);
     orl_scene_destroy(&scene);
     assert_true(adapt.row_count >= 3);
-    const struct orl_adapt_row *best = &adapt.rows[adapt.chosen];
+    const struct orl_trial *best = &adapt.rows[adapt.chosen];
     for (size_t i = 0; i < adapt.row_count; i++)
         assert_false(adapt.rows[i].psnr_db > best->psnr_db && adapt.rows[i].ssim > best->ssim);
     assert_int_equal(orl_scene_open(NULL, f.dir, &scene), ORL_OK);

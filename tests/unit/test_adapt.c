@@ -6,7 +6,8 @@
 static void the_best_of_both_is_chosen(void **state)
 {
     (void)state;
-    const struct orl_adapt_row rows[] = {{NULL, 20, 0.8}, {NULL, 22, 0.9}, {NULL, 21, 0.85}};
+    const struct orl_trial rows[] = {{.psnr_db = 20, .ssim = 0.8}, {.psnr_db = 22, .ssim = 0.9},
+                                     {.psnr_db = 21, .ssim = 0.85}};
     assert_int_equal(orl_adapt_choose(rows, 3), 1);
     assert_int_equal(orl_adapt_choose(rows, 1), 0);
 }
@@ -15,13 +16,14 @@ static void the_best_of_both_is_chosen(void **state)
 static void ranks_decide_where_figures_disagree(void **state)
 {
     (void)state;
-    const struct orl_adapt_row rows[] = {{NULL, 22, 0.80}, {NULL, 21.9, 0.90}, {NULL, 20, 0.85}};
+    const struct orl_trial rows[] = {{.psnr_db = 22, .ssim = 0.80}, {.psnr_db = 21.9, .ssim = 0.90},
+                                     {.psnr_db = 20, .ssim = 0.85}};
     assert_int_equal(orl_adapt_choose(rows, 3), 1);
-    const struct orl_adapt_row even[] = {{NULL, 20, 0.9}, {NULL, 21, 0.8}};
+    const struct orl_trial even[] = {{.psnr_db = 20, .ssim = 0.9}, {.psnr_db = 21, .ssim = 0.8}};
     assert_int_equal(orl_adapt_choose(even, 2), 1);
 }
 
-// Verdicts of four photographs, each by its PSNR; SSIM is the same for all.
+// Scores of four photographs, each by its PSNR; SSIM is the same for all.
 static struct orl_score score(double views[4][2], double a, double b, double c, double d)
 {
     const double psnr[] = {a, b, c, d};

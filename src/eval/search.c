@@ -1,0 +1,273 @@
+#include "eval/search.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/json.h"
+#include "core/memory.h"
+#include "core/process.h"
+
+enum { ROUNDS_MAX = 8 };
+
+bool orl_method_is_for_stills(const struct orl_method *method)
+{
+    return method->params.reconstructions > 1;
+}
+
+enum orl_result orl_search_begin(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                                 const struct orl_scene *scene,
+                                 const struct orl_search_params *params, struct orl_search *s)
+{
+    *s = (struct orl_search){.log = orl_gpu_log(gpu), .renderer = renderer, .scene = scene,
+                             .params = *params, .start_s = orl_time_s(), .complete = true};
+    ORL_REQUIRE(s->log, params->size_divide >= 1 && params->size_divide <= 16);
+    return orl_validation_load(s->log, scene, params->views, params->size_divide, &s->validation);
+}
+
+void orl_search_finish(struct orl_search *s)
+{
+    if (!s)
+        return;
+    orl_validation_finish(&s->validation);
+    orl_score_finish(&s->score);
+    free(s->trials);
+    memset(s, 0, sizeof *s);
+}
+
+bool orl_search_is_over(const struct orl_search *s)
+{
+    return s->params.budget_s > 0 && orl_time_s() - s->start_s >= s->params.budget_s;
+}
+
+// --- one trial ---
+
+static enum orl_result note_trial(struct orl_search *s, const struct orl_trial *trial)
+{
+    enum orl_result result = orl_grow(s->log, (void **)&s->trials, &s->trial_capacity,
+                                      s->trial_count + 1, sizeof *s->trials);
+    if (result != ORL_OK)
+        return result;
+    s->trials[s->trial_count++] = *trial;
+    if (s->params.on_trial)
+        s->params.on_trial(s->params.priv, trial);
+    return ORL_OK;
+}
+
+// Measures a choice and keeps it if it is better than the best so far, or the first. `same`: the
+// change has no effect at all; may be NULL.
+static enum orl_result try_choice(struct orl_search *s, const struct orl_choice *choice,
+                                  struct orl_trial *trial, bool *same)
+{
+    struct orl_score score = {0};
+    double done = (double)s->trial_count, total = fmax(s->planned, done + 1);
+    orl_progress_report(s->params.progress, "search", done, total, trial->key);
+    enum orl_result result = orl_score_measure(s->log, s->renderer, &s->validation,
+                                               &choice->params, s->params.progress, &score);
+    if (result != ORL_OK)
+        return result;
+    trial->method = choice->method;
+    trial->psnr_db = score.psnr_db;
+    trial->ssim = score.ssim;
+    trial->kept = !s->score.count || orl_score_better(&score, &s->score, s->params.gain_db);
+    if (same)
+        *same = score.psnr_db == s->score.psnr_db && score.ssim == s->score.ssim;
+    if (trial->kept) {
+        orl_score_finish(&s->score);
+        s->score = score;
+        s->best = *choice;
+    } else {
+        orl_score_finish(&score);
+    }
+    return note_trial(s, trial);
+}
+
+enum orl_result orl_search_start(struct orl_search *s, const struct orl_choice *choice)
+{
+    struct orl_trial trial = {.key = NULL};
+    orl_score_finish(&s->score);
+    return try_choice(s, choice, &trial, NULL);
+}
+
+// --- numbers ---
+
+static float *field(struct orl_render_params *params, const struct orl_render_option *option)
+{
+    return (float *)((char *)params + option->offset);
+}
+
+// The next of the option's values to try beyond `from`; NAN: none.
+static double next_try(const struct orl_render_option *option, double from, int direction)
+{
+    double next = NAN;
+    for (int i = 0; i < option->try_count; i++) {
+        double value = option->tries[i];
+        // The stored value is a float, so values are compared with a tolerance.
+        if ((value - from) * direction <= 1e-6 * fabs(from))
+            continue;
+        if (isnan(next) || (next - value) * direction > 0)
+            next = value;
+    }
+    return next;
+}
+
+static enum orl_result move_number(struct orl_search *s, const struct orl_render_option *option,
+                                   bool *better)
+{
+    enum orl_result result = ORL_OK;
+    bool moved = false, same = false;
+    for (int direction = 1; direction >= -1 && !moved && !same; direction -= 2) {
+        struct orl_trial trial = {.key = option->key, .kept = true};
+        while (result == ORL_OK && trial.kept && !orl_search_is_over(s)) {
+            struct orl_choice choice = s->best;
+            double value = next_try(option, (double)*field(&choice.params, option), direction);
+            if (isnan(value))
+                break;
+            *field(&choice.params, option) = (float)value;
+            snprintf(trial.value, sizeof trial.value, "%.6g", value);
+            result = try_choice(s, &choice, &trial, &same);
+            moved = moved || (result == ORL_OK && trial.kept);
+        }
+    }
+    *better = *better || moved;
+    return result;
+}
+
+static bool is_chosen(const struct orl_search *s, const struct orl_render_option *option,
+                      const struct orl_names *keys)
+{
+    if (option->try_count == 0 || !orl_render_option_read(option, &s->best.params))
+        return false;
+    return !keys || !keys->count || orl_names_contain(keys, option->key);
+}
+
+enum orl_result orl_search_numbers(struct orl_search *s, const struct orl_names *keys)
+{
+    enum orl_result result = ORL_OK;
+    bool better = true;
+    s->planned = (double)s->trial_count;
+    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+        s->planned += is_chosen(s, o, keys) ? 3 : 0;
+    for (int round = 0; result == ORL_OK && better && round < ROUNDS_MAX && !orl_search_is_over(s);
+         round++) {
+        better = false;
+        for (const struct orl_render_option *o = orl_render_options; result == ORL_OK && o->key; o++)
+            if (is_chosen(s, o, keys))
+                result = move_number(s, o, &better);
+    }
+    s->complete = !orl_search_is_over(s);
+    return result;
+}
+
+static enum orl_result check_keys(const struct orl_log *log, const struct orl_names *keys)
+{
+    for (size_t i = 0; keys && i < keys->count; i++) {
+        const struct orl_render_option *option = orl_render_option_find(keys->items[i]);
+        if (!option || option->try_count == 0)
+            return orl_fail(log, ORL_ERR_ARGUMENT, "%s: not an option that can be tuned",
+                            keys->items[i]);
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                               const struct orl_scene *scene,
+                               const struct orl_search_params *params,
+                               const struct orl_choice *start, const struct orl_names *keys,
+                               struct orl_search *s)
+{
+    *s = (struct orl_search){0};
+    enum orl_result result = check_keys(orl_gpu_log(gpu), keys);
+    if (result == ORL_OK)
+        result = orl_search_begin(gpu, renderer, scene, params, s);
+    if (result == ORL_OK)
+        result = orl_search_start(s, start);
+    if (result == ORL_OK)
+        result = orl_search_numbers(s, keys);
+    if (result == ORL_OK)
+        orl_progress_report(params->progress, "search", 1, 1, NULL);
+    else
+        orl_search_finish(s);
+    return result;
+}
+
+// --- what other methods do ---
+
+// Values that do not go with the other choices change nothing.
+static enum orl_result borrow_value(struct orl_search *s, const struct orl_render_option *option,
+                                    const char *value)
+{
+    char assignment[2 * ORL_OPTION_NAME_BYTES + 2], own[ORL_OPTION_NAME_BYTES];
+    struct orl_choice choice = s->best;
+    struct orl_trial trial = {.key = option->key};
+    orl_render_option_print(option, &choice.params, own, sizeof own);
+    snprintf(assignment, sizeof assignment, "%s=%s", option->key, value);
+    if (strcmp(own, value) == 0 || orl_render_params_set(NULL, &choice.params, assignment) != ORL_OK)
+        return ORL_OK;
+    snprintf(trial.value, sizeof trial.value, "%s", value);
+    enum orl_result result = try_choice(s, &choice, &trial, NULL);
+    if (result == ORL_OK && trial.kept)
+        orl_logf(s->log, ORL_LOG_INFO, "%s: %.2f dB, SSIM %.4f", assignment, trial.psnr_db,
+                 trial.ssim);
+    return result == ORL_ERR_ARGUMENT || result == ORL_ERR_NOT_FOUND ? ORL_OK : result;
+}
+
+static enum orl_result borrow_option(struct orl_search *s, const struct orl_render_option *option)
+{
+    char value[ORL_OPTION_NAME_BYTES], before[ORL_OPTION_NAME_BYTES];
+    enum orl_result result = ORL_OK;
+    for (const struct orl_method *m = orl_methods; result == ORL_OK && m->name; m++) {
+        bool known = false;
+        orl_render_option_print(option, &m->params, value, sizeof value);
+        for (const struct orl_method *other = orl_methods; other < m; other++) {
+            orl_render_option_print(option, &other->params, before, sizeof before);
+            known = known || strcmp(value, before) == 0;
+        }
+        if (!known && !orl_method_is_for_stills(m) && !orl_search_is_over(s))
+            result = borrow_value(s, option, value);
+    }
+    return result;
+}
+
+enum orl_result orl_search_borrow(struct orl_search *s)
+{
+    enum orl_result result = ORL_OK;
+    for (const struct orl_render_option *o = orl_render_options; result == ORL_OK && o->key; o++)
+        // Another proxy or painter would be another method.
+        if (strcmp(o->key, "proxy") != 0 && strcmp(o->key, "paint") != 0)
+            result = borrow_option(s, o);
+    return result;
+}
+
+// --- what was found ---
+
+json_t *orl_search_record(const struct orl_search *s)
+{
+    return json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
+                     orl_choice_settings(s->best.method, &s->best.params), "before_psnr_db",
+                     s->trials[0].psnr_db, "psnr_db", s->score.psnr_db, "photographs",
+                     (json_int_t)s->validation.count, "size_divide", s->params.size_divide,
+                     "complete", s->complete);
+}
+
+enum orl_result orl_search_write_json(const struct orl_log *log, const char *path, const char *device,
+                                      const struct orl_search *s)
+{
+    json_t *root = orl_search_record(s), *trials = json_array();
+    for (size_t i = 0; i < s->trial_count; i++) {
+        const struct orl_trial *t = &s->trials[i];
+        json_array_append_new(trials, json_pack("{s:s?, s:o, s:f, s:f, s:b}", "key", t->key, "value",
+                                                t->key ? json_real(atof(t->value)) : json_null(),
+                                                "psnr_db", t->psnr_db, "ssim", t->ssim, "kept",
+                                                t->kept));
+    }
+    json_object_set_new(root, "scene", orl_json_string(s->scene->dir));
+    json_object_set_new(root, "method", json_string(s->best.method->name));
+    json_object_set_new(root, "device", json_string(device));
+    enum orl_result result = json_object_set_new(root, "trials", trials) == 0
+                                 ? orl_json_write(log, path, root)
+                                 : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    json_decref(root);
+    return result;
+}
