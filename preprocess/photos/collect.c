@@ -326,6 +326,7 @@ enum orl_result orl_stage_collect(struct orl_job *job)
     enum orl_result result;
     if ((result = orl_photos_list(job)) != ORL_OK)
         return result;
+    orl_masks_set_aside(job);
     drop_jpegs_of_raw(job);
     if ((result = drop_duplicates(job)) != ORL_OK || (result = inspect_all(job)) != ORL_OK)
         return result;

@@ -4,6 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <png.h>
+
 #include "preprocess/expose/expose.h"
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/photos/doubts.h"
@@ -171,6 +173,41 @@ static void collects_what_can_be_used(void **state)
     for (size_t i = 0; i < ORL_COUNT(skipped); i++)
         assert_non_null(strstr(w.said.text, skipped[i]));
     assert_null(strstr(w.said.text, "notes.txt"));
+    world_close(&w);
+}
+
+// Masks that lie among the photographs are no photographs, whatever the custom; a photograph whose name
+// only looks like a mask's stays. Alpha is mentioned.
+static void knows_masks_among_photographs(void **state)
+{
+    (void)state;
+    static const char *const photos[] = {"images/a.png", "images/b.jpg", "images/c.jpg", "images/old_mask.jpg"};
+    static const char *const masks[] = {"masks/a.png", "masks/b.jpg.png", "images/c_mask.png",
+                                        "images/b.mask.png", "images/dynamic_mask_c.png"};
+    struct world w;
+    world_open(&w);
+    char path[4096];
+    static const char *const folders[] = {"images", "masks"};
+    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
+        snprintf(path, sizeof path, "%s/%s", w.photos, folders[i]);
+        assert_int_equal(orl_dir_make(NULL, path), ORL_OK);
+    }
+    for (size_t i = 0; i < ORL_COUNT(photos); i++)
+        save_photo(w.photos, photos[i], (uint32_t)i);
+    for (size_t i = 0; i < ORL_COUNT(masks); i++)
+        save_photo(w.photos, masks[i], (uint32_t)i + 10);
+    static uint8_t pixels[96 * 80 * 4]; // transparent but for the first pixel
+    pixels[3] = 255;
+    png_image image = {.version = PNG_IMAGE_VERSION, .width = 96, .height = 80, .format = PNG_FORMAT_RGBA};
+    snprintf(path, sizeof path, "%s/images/a.png", w.photos);
+    assert_int_equal(png_image_write_to_file(&image, path, 0, pixels, 0, NULL), 1);
+    assert_int_equal(orl_stage_collect(&w.job), ORL_OK);
+    assert_int_equal(w.job.given, ORL_COUNT(photos));
+    assert_int_equal(w.job.source_count, ORL_COUNT(photos));
+    for (size_t i = 0; i < ORL_COUNT(photos); i++)
+        assert_string_equal(w.job.sources[i].given, photos[i]);
+    assert_non_null(strstr(w.said.text, "5 masks among the photographs, as images/b.mask.png, are not used"));
+    assert_non_null(strstr(w.said.text, "images/a.png: its alpha is not used"));
     world_close(&w);
 }
 
@@ -349,6 +386,7 @@ int main(void)
         cmocka_unit_test(reads_progress),
         cmocka_unit_test(groups_exposures),
         cmocka_unit_test(collects_what_can_be_used),
+        cmocka_unit_test(knows_masks_among_photographs),
         cmocka_unit_test(refuses_too_few),
         cmocka_unit_test(refuses_ambiguous_names),
         cmocka_unit_test(holds_out_by_name),
