@@ -19,6 +19,7 @@ from PIL import Image, ImageDraw
 
 POINTS_MAX, POINT_STEP = 120000, 3
 PHOTOS_LEFT, PHOTOS_FOR_A_VIEW = 3, 2
+STEPS_APART = 8  # of the cameras that are most out of step
 LOSSES_DB = [1, 3, 6]
 BARS_DISTANCE_M, FOCAL = 9.8, 28 / 35  # of the monument's bars; focal length of the larger side
 
@@ -55,6 +56,7 @@ class Case:
         self.cameras, self.photos, self.masks = {}, {}, {}
         self.tests, self.left_out, self.gains = set(), set(), {}
         self.points = {key: np.zeros((0, 3)) for key in ("xyz", "normal", "rgb")}
+        self.empty, self.steps = {}, {}  # of the figure: pictures without it; its time steps
         self.jpeg = self.hull = None
 
     def copy(self):
@@ -225,18 +227,21 @@ def monument(run, words=()):
     return case
 
 
-def figure(run):
-    """A walking figure in a room, with silhouettes."""
+def figure(run, steps=1):
+    """A walking figure in a room, with silhouettes, at the middle one of so many time steps."""
     side, views, folder = int(run.options["size"]), views_of(run), run.work / "figure"
     shutil.rmtree(folder, ignore_errors=True)
-    run.needs("synth", "figures", "--out", folder, "--frames", 1, "--size", f"{side}x{side * 2 // 3}",
+    run.needs("synth", "figures", "--out", folder, "--frames", steps, "--size", f"{side}x{side * 2 // 3}",
               "--cameras", int(run.options["photographs"]) + views)
     case = Case()
     for c in report.json.loads((folder / "cameras.json").read_text())["cameras"]:
         name, size = c["name"], (c["width"], c["height"])
+        files = [f"{name}/{step:05d}.png" for step in range(steps)] if steps > 1 else [f"{name}.png"]
         case.cameras[name] = Camera(name, size, c["K"], c["R"], c["t"])
-        case.photos[name] = read_picture(folder / "images" / f"{name}.png", size, "RGB")
-        case.masks[name] = read_picture(folder / "masks" / f"{name}.png", size, "L")
+        case.steps[name] = [(read_picture(folder / "images" / file, size, "RGB"),
+                             read_picture(folder / "masks" / file, size, "L")) for file in files]
+        case.photos[name], case.masks[name] = case.steps[name][steps // 2]
+        case.empty[name] = read_picture(folder / "background" / f"{name}.png", size, "RGB")
     hold_out(case, views)
     return case
 
@@ -523,6 +528,38 @@ def hull_cameras(case, level, rng):
     return [case]
 
 
+def unsynchronised(source, level, rng):
+    """Each camera shows the figure up to `level` time steps before or after the views."""
+    case = source.get("steps", lambda: figure(source.run, 2 * STEPS_APART + 1))
+    names = case.used()
+    for name, rank in zip(names, rng.permutation(len(names))):
+        late = round(level * (2 * rank / max(len(names) - 1, 1) - 1))
+        case.photos[name], case.masks[name] = case.steps[name][STEPS_APART + late]
+    return silhouettes(case, 0, rng)
+
+
+def backgrounds(source, level, rng):
+    """Silhouettes are what differs from pictures of the empty room, in light of up to `level` stops
+    more or less."""
+    case, folder = source.get("figure", lambda: figure(source.run)), source.run.work / "difference"
+    empty = case.copy()
+    empty.photos = empty.empty.copy()
+    expose(empty, 2 * level, rng, [1, 1, 1])
+    shutil.rmtree(folder, ignore_errors=True)
+    for kind, pictures in (("images", case.photos), ("background", empty.photos)):
+        (folder / kind).mkdir(parents=True)
+        for name in case.used():
+            Image.fromarray(pictures[name]).save(folder / kind / f"{name}.png")
+    report.write_json(folder / "cameras.json", {
+        "pixel_centre": 0.5, "cameras": [case.cameras[n].json() for n in case.used()]})
+    source.run.needs("import", folder / "cameras.json", "--images", folder / "images", "--background",
+                     folder / "background", "--points", "none", "--out", folder / "scene")
+    for name in case.used():
+        mask = read_picture(folder / "scene" / "masks" / f"{name}.png.png", case.cameras[name].size, "L")
+        case.masks[name] = np.where(mask > 0, 255, 0).astype(np.uint8)
+    return silhouettes(case, 0, rng)
+
+
 def angle(case, level, rng):
     """Leaves out the photographs that see a view's target from directions within `level` degrees;
     each view has a case of its own."""
@@ -565,10 +602,12 @@ def moved_views(run, case, factor, zoom):
 # --- the axes ---
 
 class Axis:
-    def __init__(self, title, unit, levels, change=None, needs="", generate=None, settings=(), own_truth=False):
+    def __init__(self, title, unit, levels, change=None, needs="", generate=None, make=None, settings=(),
+                 own_truth=False):
         self.title, self.unit, self.levels, self.change = title, unit, levels, change
-        self.needs, self.generate = needs, generate  # needs: "truth", "masks" or nothing
-        self.settings, self.own_truth = settings, own_truth
+        self.needs, self.generate, self.make = needs, generate, make
+        self.settings, self.own_truth = settings, own_truth  # needs: "truth", "masks", "figure" or nothing
+        self.on_hull = needs in ("masks", "figure")
 
 
 def bars_m(run, level):
@@ -602,6 +641,10 @@ AXES = {
                         needs="masks", settings=["fill=none"]),
     "hull-cameras": Axis("cameras left out (three stay), methods on their hull", "%",
                          [0, 25, 50, 65, 75, 100], hull_cameras, needs="masks", settings=["fill=none"]),
+    "unsynchronised": Axis("cameras out of step, methods on their hull", "time steps",
+                           [0, 1, 2, 3, 5, STEPS_APART], make=unsynchronised, needs="figure", settings=["fill=none"]),
+    "backgrounds": Axis("other light on the empty place, methods on their hull", "EV",
+                        [0, 0.1, 0.2, 0.3, 0.5, 1], make=backgrounds, needs="figure", settings=["fill=none"]),
     "angle": Axis("angle to the nearest photograph used", "degrees", [0, 7, 15, 25, 40, 60], angle),
     "nearer": Axis("the viewer comes nearer", "times the distance", [1, 0.8, 0.65, 0.5, 0.35, 0.25],
                    needs="truth", own_truth=True),
@@ -625,7 +668,7 @@ class Source:
     def serves(self, axis):
         if axis.needs == "masks" and not self.synth:
             return (self.scene / "masks").is_dir()
-        return self.synth or axis.needs != "truth"
+        return self.synth or axis.needs not in ("truth", "figure")
 
     def get(self, kind, make):
         if kind not in self.cases:
@@ -636,6 +679,8 @@ class Source:
         """The cases of a severity; None: the scene cannot be made as bad as this."""
         run, axis = self.run, AXES[name]
         rng = np.random.default_rng([int(run.options["seed"]), list(AXES).index(name)])
+        if axis.make:
+            return axis.make(self, level, rng)
         if axis.generate:
             return [monument(run, axis.generate(run, level))]
         if not self.synth:
@@ -654,7 +699,7 @@ class Source:
 def settings_of(axis, values):
     """Options of a method on an axis: those of the axis's that it reads; on a hull it stands on that."""
     keys = [s for s in axis.settings if s.split("=")[0] in values]
-    if axis.needs == "masks" and values["proxy"] == "splats":
+    if axis.on_hull and values["proxy"] == "splats":
         keys.append("proxy=mesh")
     return tuple(keys)
 
@@ -666,7 +711,7 @@ def measure_severity(run, source, name, level, methods):
         return {}
     groups = {}
     for method, values in methods.items():
-        if not (AXES[name].needs == "masks" and values["paint"] == "points"):
+        if not (AXES[name].on_hull and values["paint"] == "points"):
             groups.setdefault(settings_of(AXES[name], values), []).append(method)
     for case in cases:
         scene, path = case.write(run, run.work / "case"), run.work / "walk.json"
