@@ -5,7 +5,9 @@ usage: tests/mutants/run.py BUILD [--changed COMMIT] [--minutes N] [--jobs N] [-
 
 BUILD is a build folder (Ninja) whose tests are built. A change of list.json to a C file is made in a
 copy, which is compiled and linked into the test ahead of the library; one to a shader in a copy of
-all shaders, which the test reads (ORIEL_TEST_SHADERS). Neither the source nor BUILD is touched.
+all shaders, which the test reads (ORIEL_TEST_SHADERS); one to a file of web/ in a copy of a published
+site, on which the named test of tests/web/test_page.py runs in a browser (page/CLASS.TEST). Neither the
+source nor BUILD is touched.
 Named changes alone are tried, with --changed those of files that differ from COMMIT, and with
 --minutes only as many as begin within that time: what is left is told, and is no failure.
 
@@ -26,6 +28,7 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
+PAGE = "page/"  # of tests in a browser
 LIMIT_S = 300  # of a test; a change that makes it endless is noticed
 
 
@@ -45,6 +48,7 @@ class Build:
         self.compile = {os.path.realpath(os.path.join(c["directory"], c["file"])): c["command"]
                         for c in json.loads(found[found.index("["):]) if "-c " in c["command"]}
         self.sound, self.locks, self.lock = {}, {}, threading.Lock()
+        self.pages = None  # a folder with a scene and its site, when a test needs it
 
     def object_of(self, path, text, work):
         """Compiles a changed C file."""
@@ -79,11 +83,33 @@ class Build:
             raise Broken("does not link:\n" + made.stdout[-2000:])
         return out
 
-    def passes(self, program, shaders=None):
+    def page_folder(self):
+        """Holds made/, a scene, and served/path/site, which is it published, as tests/e2e/publish.sh has it."""
+        with self.lock:
+            if not self.pages:
+                self.pages = tempfile.TemporaryDirectory()
+                oriel = os.path.join(self.folder, "oriel")
+                for command in ([oriel, "synth", "monument", "--out", "photos", "--size", "240x160", "--count", "8"],
+                                [os.path.join(self.folder, "tests/bench_truth_scene"), "photos", "photos-truth",
+                                 "made", "2", "4"],
+                                [oriel, "publish", "made", "--out", "served/path/site"]):
+                    made = run(command, cwd=self.pages.name)
+                    if made.returncode:
+                        raise Broken("no site:\n" + made.stdout[-2000:])
+            return self.pages.name
+
+    def page_passes(self, test, site):
+        if not shutil.which("chromedriver"):
+            return None
+        return self.passes("/usr/bin/python3", "-B", os.path.join(SOURCE, "tests/web/test_page.py"),
+                           os.path.join(self.folder, "oriel"), os.path.join(self.folder, "tests/bench_web_pictures"),
+                           os.path.join(self.page_folder(), "made"), site, "no-single-file", test[len(PAGE):])
+
+    def passes(self, *program, shaders=None):
         """None: it is skipped."""
         environment = dict(os.environ, **({"ORIEL_TEST_SHADERS": shaders} if shaders else {}))
         try:
-            status = run([program], timeout=LIMIT_S, env=environment,
+            status = run(program, timeout=LIMIT_S, env=environment,
                          cwd=os.path.join(self.folder, "tests")).returncode
         except subprocess.TimeoutExpired:
             return False
@@ -97,7 +123,8 @@ class Build:
             own = self.locks.setdefault(test, threading.Lock())
         with own:
             if test not in self.sound:
-                self.sound[test] = self.passes(self.own_program(test))
+                self.sound[test] = (self.page_passes(test, os.path.join(self.page_folder(), "served/path/site"))
+                                    if test.startswith(PAGE) else self.passes(self.own_program(test)))
             if self.sound[test] is False:
                 raise Broken(test + " fails without a change")
 
@@ -114,12 +141,18 @@ def changed_text(entry):
 def prepare(build, entry, work):
     """What runs a test with the change."""
     path, text = os.path.realpath(os.path.join(SOURCE, entry["file"])), changed_text(entry)
+    if entry["file"].startswith("web/"):
+        site = os.path.join(work, "served/path/site")
+        shutil.copytree(os.path.join(build.page_folder(), "served/path/site"), site)
+        with open(os.path.join(site, entry["file"][len("web/"):]), "w") as file:
+            file.write(text)
+        return lambda test: build.page_passes(test, site)
     if entry["file"].startswith("shaders/"):
         shaders = os.path.join(work, "shaders")
         shutil.copytree(os.path.join(SOURCE, "shaders"), shaders)
         with open(os.path.join(work, entry["file"]), "w") as file:
             file.write(text)
-        return lambda test: build.passes(build.own_program(test), shaders)
+        return lambda test: build.passes(build.own_program(test), shaders=shaders)
     changed = build.object_of(path, text, work)
     return lambda test: build.passes(build.program(test, changed, work))
 

@@ -106,6 +106,17 @@ static void test_hole_of_another_colour(void **state)
     assert_int_equal(filled(f), 0);
 }
 
+// The pane has the wall's colour, but its frame has not.
+static void test_hole_within_a_frame(void **state)
+{
+    struct fixture *f = *state;
+    for (int y = TOP; y < BOTTOM; y++)
+        for (int x = LEFT; x < RIGHT; x++)
+            if (y < TOP + 2 || y >= BOTTOM - 2 || x < LEFT + 2 || x >= RIGHT - 2)
+                f->picture.levels[0].u8[y * WIDTH + x] = WALL - 30;
+    assert_int_equal(filled(f), 0);
+}
+
 // Nothing to the right: a plain sky beside a wall.
 static void test_surface_on_one_side(void **state)
 {
@@ -151,6 +162,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_plain_hole, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_hole_of_another_colour, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_hole_within_a_frame, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_surface_on_one_side, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_doubtful_surface, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_mask, set_up, tear_down),

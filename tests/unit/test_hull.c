@@ -126,6 +126,36 @@ static void lies_on_the_cones(void **state)
         }
 }
 
+// Even where its mirrored cone holds it: a camera sees nothing behind it.
+static void leaves_out_what_is_behind_a_camera(void **state)
+{
+    enum { VOXELS = 8 };
+    struct scene *scene = *state;
+    struct cone cone;
+    struct cones cones = {.all = &cone, .count = 1};
+    float *field;
+    double eye[3];
+    int behind = 0;
+    assert_int_equal(orl_cone_make(NULL, scene->all, &cone), ORL_OK);
+    orl_pose_centre(&scene->all[0].view.cam_from_world, eye);
+    cones.bounds.size = 2;
+    for (int k = 0; k < 3; k++)
+        cones.bounds.origin[k] = eye[k] - 1;
+    assert_int_equal(orl_cones_field(NULL, &cones, VOXELS, &field), ORL_OK);
+    for (int i = 0; i < VOXELS * VOXELS * VOXELS; i++) {
+        const int at[3] = {i % VOXELS, i / VOXELS % VOXELS, i / VOXELS / VOXELS};
+        double place[3], local[3];
+        for (int k = 0; k < 3; k++)
+            place[k] = cones.bounds.origin[k] + (at[k] + 0.5) * cones.bounds.size / VOXELS;
+        orl_pose_apply(&scene->all[0].view.cam_from_world, place, local);
+        behind += local[2] < 0;
+        assert_true(local[2] >= 0 || field[i] > 0);
+    }
+    assert_true(behind > 100);
+    free(field);
+    orl_image_finish(&cone.distance);
+}
+
 static void makes_a_mesh(void **state)
 {
     struct scene *scene = *state;
@@ -236,6 +266,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(holds_the_sphere), cmocka_unit_test(lies_on_the_cones),
+        cmocka_unit_test(leaves_out_what_is_behind_a_camera),
         cmocka_unit_test(makes_a_mesh),
         cmocka_unit_test(keeps_what_borders_cut),
         cmocka_unit_test(says_once_that_it_does_not_end), cmocka_unit_test(refuses_what_has_no_hull),

@@ -86,6 +86,11 @@ static void numbers_are_paired(void **state)
     assert_int_equal(set->cameras.cameras[0].missing + set->cameras.cameras[2].missing, 0);
     add(set, 0, "10.png");
     expect(set, 0, (const char *const[]){"10.png", "10.png", "10.png"});
+    for (int i = 0; i < CAMERAS; i++) {
+        add(set, i, "11.png");
+        add(set, i, "12.png");
+    }
+    expect(set, 0, (const char *const[]){"12.png", "12.png", "12.png"});
     assert_int_equal(test_count_entries(set->folders[0]), 2); // what has been decided upon is removed
 }
 
