@@ -102,7 +102,7 @@ class Case:
     # --- files ---
 
     def write(self, run, folder):
-        """The case as a scene, folder/scene."""
+        """The case as a scene, folder/scene. None: its silhouettes leave no hull."""
         shutil.rmtree(folder, ignore_errors=True)
         names = [n for n in sorted(self.cameras) if n not in self.left_out]
         for kind in ("images", *(["masks"] if self.hull else [])):
@@ -125,7 +125,10 @@ class Case:
         else:
             write_points(folder / "points.ply", self.points)
             words += ["--points", folder / "points.ply"]
-        run.needs(*words)
+        if run.call(*words) is None:
+            if self.hull:
+                return None
+            raise Failure("oriel import failed")
         if self.gains:
             path = folder / "scene" / "scene.json"
             manifest = report.json.loads(path.read_text())
@@ -715,6 +718,8 @@ def measure_severity(run, source, name, level, methods):
             groups.setdefault(settings_of(AXES[name], values), []).append(method)
     for case in cases:
         scene, path = case.write(run, run.work / "case"), run.work / "walk.json"
+        if scene is None:
+            return {}
         report.write_json(path, case.walk())
         walk = ["--path", path]
         for settings, group in groups.items():
