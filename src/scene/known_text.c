@@ -92,7 +92,8 @@ static void cut_focal_length(char *line)
 static enum orl_result read_list(const struct orl_log *log, const char *folder,
                                  struct orl_names *pictures)
 {
-    static const char *const known[] = {"list.txt", "bundle/list.txt", "../list.txt"};
+    static const char *const known[] = {"list.txt", "bundle/list.txt", "../list.txt",
+                                        "imagelist.lst"}; // RealityCapture's
     struct orl_text_lines l = {0};
     enum orl_result result = ORL_OK;
     bool found = false;

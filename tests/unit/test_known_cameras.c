@@ -196,6 +196,14 @@ static void reads_bundler(void **state)
     assert_int_equal(known.model.images[1].point_count, 1);
     assert_int_equal(known.model.images[1].points[0], 0);
     orl_known_cameras_finish(&known);
+    // RealityCapture calls the list otherwise.
+    char *list = test_path(dir, "list.txt"), *other = test_path(dir, "imagelist.lst");
+    assert_int_equal(rename(list, other), 0);
+    free(list);
+    free(other);
+    assert_int_equal(read(NULL, dir, "bundle.out", -1, &known), ORL_OK);
+    assert_string_equal(known.model.images[1].name, "c.jpg");
+    orl_known_cameras_finish(&known);
     test_dir_remove(dir);
 }
 
