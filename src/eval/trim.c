@@ -108,11 +108,9 @@ static enum orl_result start(struct trim_search *s)
         result = orl_trim_time_first(s);
     if (result != ORL_OK)
         return result;
-    s->bytes = s->first_bytes = orl_trim_model_bytes(s, s->model, &s->state);
+    s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
     s->slower = 1;
     s->trim->before.frame_ms = s->first_ms;
-    s->file_bytes = (double)orl_trim_photo_file_bytes(source, source->scene->dir, NULL);
-    s->first_file_bytes = s->file_bytes = fmax(s->file_bytes, 1);
     return ORL_OK;
 }
 
@@ -200,24 +198,18 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                         "are in points.lod: remove it, and where there is no points.ply, oriel "
                         "prepare --resume with a larger --max-ram writes one", scene->dir);
     struct orl_new_dir part = {.fd = -1};
-    char *work = NULL;
     enum orl_result result = ORL_OK;
     if (!params->settings_only)
         result = orl_new_dir_begin(log, params->out, &part);
-    if (part.path)
-        work = orl_path_join(log, part.path, ".trials");
-    struct trim_search s = {.source = {.gpu = gpu, .log = log, .scene = scene, .work = work},
+    struct trim_search s = {.source = {.gpu = gpu, .log = log, .scene = scene},
                             .params = params, .trim = trim, .part = part.path,
                             .start_s = orl_time_s()};
     if (result == ORL_OK)
         result = run(&s);
     finish(&s);
-    if (result == ORL_OK && work)
-        result = orl_dir_remove(log, work);
     if (result == ORL_OK && part.path)
         result = orl_new_dir_finish(log, &part);
     orl_new_dir_abort(log, &part);
-    free(work);
     if (result != ORL_OK)
         orl_trim_finish(trim);
     return result;

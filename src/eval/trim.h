@@ -12,8 +12,6 @@ enum orl_trim_part {
     ORL_TRIM_PHOTOGRAPH, // fewer photographs
     ORL_TRIM_TEXTURES,   // compressed photographs on the device
     ORL_TRIM_DEPTH,      // smaller depth maps of photographs on the device
-    ORL_TRIM_RESOLUTION, // smaller photographs
-    ORL_TRIM_QUALITY,    // JPEG files of lower quality
     ORL_TRIM_OPTION,     // a cheaper value of one of the method's options
     ORL_TRIM_PART_COUNT
 };

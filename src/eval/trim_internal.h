@@ -7,16 +7,13 @@
 #include "eval/trim_points.h"
 
 // Levels of the parts, from the whole scene on.
-enum { TRIM_POINT_LEVELS = 25, TRIM_SCALE_LEVELS = 4, TRIM_QUALITY_LEVELS = 4,
-       TRIM_DEPTH_LEVELS = 5 };
+enum { TRIM_POINT_LEVELS = 25, TRIM_DEPTH_LEVELS = 5 };
 extern const double orl_trim_point_shares[TRIM_POINT_LEVELS];
-extern const double orl_trim_scales[TRIM_SCALE_LEVELS];
-extern const int orl_trim_qualities[TRIM_QUALITY_LEVELS]; // of JPEG; 0: the file as it is
 
 // What is left of a scene.
 struct trim_state {
-    size_t points, scale, quality, depth; // levels
-    enum orl_textures textures;           // AUTO: as in the scene
+    size_t points, depth;       // levels
+    enum orl_textures textures; // AUTO: as in the scene
     struct orl_render_params render;
     size_t photographs; // so many of the search's order were to go; few may have come back
     bool *removed; // owned, per photograph
@@ -29,15 +26,12 @@ struct trim_source {
     const struct orl_log *log;
     const struct orl_scene *scene;
     struct orl_point_ranking ranking;
-    const char *work; // folder for photographs on trial
-    bool rewritable;  // photographs may be written anew: nothing else has their pixels
 };
 
 // A scene in a state, ready to render.
 struct trim_model {
     struct orl_scene scene; // shares what does not change with the source's scene
     struct orl_points points;
-    char *dir; // owned
     struct orl_renderer *renderer;
     size_t point_bytes, photo_bytes; // on the device, with all photographs
 };
@@ -52,12 +46,6 @@ void orl_trim_model_close(struct trim_model **model);
 // Bytes of points and photographs on the device, without those in use only while a photograph is
 // loaded.
 void orl_trim_count_bytes(const struct orl_gpu *gpu, size_t *points, size_t *photos);
-// Makes the photographs of these levels in the work folder, unless they are there.
-enum orl_result orl_trim_make_photos(const struct trim_source *source, size_t scale,
-                                     size_t quality, char **dir) ORL_CHECK_RESULT;
-// Bytes of files that the photographs (not held out, not removed) take in DIR/images.
-size_t orl_trim_photo_file_bytes(const struct trim_source *source, const char *dir,
-                                 const bool *removed);
 // Bytes of the scene's points, cameras, photographs that are not held out and their masks, on disk.
 size_t orl_trim_scene_file_bytes(const struct orl_log *log, const struct orl_scene *scene);
 // Writes the scene of this state to the folder `out`, drawn by the choice's method.

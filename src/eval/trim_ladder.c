@@ -11,7 +11,7 @@
 #include "eval/trim_search.h"
 
 const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
-    "points", "photograph", "textures", "depth", "resolution", "quality", "option"};
+    "points", "photograph", "textures", "depth", "option"};
 
 // A view is rendered from two photographs at least when it is left out itself.
 enum { TRAIN_MIN = 3 };
@@ -47,9 +47,7 @@ static const struct rung ladder[] = {
     {ORL_TRIM_TEXTURES, ORL_TEXTURES_BC1, 1},
     {ORL_TRIM_PHOTOGRAPH, SIZE_MAX, 0.5},
     {ORL_TRIM_POINTS, TRIM_POINT_LEVELS - 1, 1},
-    {ORL_TRIM_RESOLUTION, TRIM_SCALE_LEVELS - 1, 1},
     {ORL_TRIM_OPTION, 0, 1},
-    {ORL_TRIM_QUALITY, TRIM_QUALITY_LEVELS - 1, 1},
 };
 
 // --- options ---
@@ -90,24 +88,11 @@ size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t co
     return (2 * i + 1) * s->targets.count / (2 * count);
 }
 
-// Photographs can be written anew unless other files have their pixels.
-static bool is_rewritable(const struct orl_log *log, const struct orl_scene *scene)
-{
-    char *mesh = orl_scene_mesh_path(log, scene);
-    bool rewritable = mesh && !orl_path_is_file(mesh) && scene->frame_count == 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        rewritable = rewritable && !scene->photos[i].linear && !scene->photos[i].masked;
-    free(mesh);
-    return rewritable;
-}
-
 void orl_trim_plan(struct trim_search *s)
 {
     size_t n = s->targets.count, views = s->params->views;
     s->judge_count = n < JUDGES_MAX ? n : JUDGES_MAX;
     s->validation_count = views && views < s->judge_count ? views : s->judge_count;
-    s->source.rewritable =
-        !s->params->settings_only && is_rewritable(s->source.log, s->source.scene);
 }
 
 static size_t level_of(const struct trim_state *state, enum orl_trim_part part)
@@ -117,8 +102,6 @@ static size_t level_of(const struct trim_state *state, enum orl_trim_part part)
     case ORL_TRIM_PHOTOGRAPH: return state->photographs;
     case ORL_TRIM_TEXTURES: return state->textures;
     case ORL_TRIM_DEPTH: return state->depth;
-    case ORL_TRIM_RESOLUTION: return state->scale;
-    case ORL_TRIM_QUALITY: return state->quality;
     default: return 0;
     }
 }
@@ -131,8 +114,6 @@ static size_t max_level(const struct trim_search *s, const struct rung *rung)
     switch (rung->part) {
     case ORL_TRIM_POINTS: return all && s->source.scene->points.count ? rung->max : 0;
     case ORL_TRIM_PHOTOGRAPH: return all && n > TRAIN_MIN ? n - TRAIN_MIN : 0;
-    case ORL_TRIM_RESOLUTION:
-    case ORL_TRIM_QUALITY: return s->source.rewritable ? rung->max : 0;
     default: return rung->max;
     }
 }
@@ -171,19 +152,11 @@ static void set_level(const struct trim_search *s, enum orl_trim_part part, size
         state->textures = (enum orl_textures)level;
         snprintf(t->what, SIZE, "textures %s", orl_textures_names[level]);
         break;
-    case ORL_TRIM_DEPTH:
+    default:
         state->depth = level;
         defaults = orl_trim_defaults(&s->source, state);
         snprintf(t->what, SIZE, "depth 1/%d, %d bits", defaults.depth_divide,
                  defaults.depth_half ? 16 : 32);
-        break;
-    case ORL_TRIM_RESOLUTION:
-        state->scale = level;
-        snprintf(t->what, SIZE, "photographs at %.3g", orl_trim_scales[level]);
-        break;
-    default:
-        state->quality = level;
-        snprintf(t->what, SIZE, "JPEG quality %d", orl_trim_qualities[level]);
     }
 }
 
@@ -214,20 +187,17 @@ static bool is_spent(const struct trim_search *s, double share)
     return s->params->budget_s > 0 && orl_time_s() - s->start_s >= share * s->params->budget_s;
 }
 
-// Whether the step saves what is wanted: bytes or files, time by options; towards a budget, what is
-// above it.
+// Whether the step saves what is wanted: bytes, or time by options; towards a budget, what is above it.
 static bool is_wanted(const struct trim_search *s, const struct trim_trial *t)
 {
     if (orl_trim_has_budget(s))
         return (!has_bytes(s) && t->bytes < s->bytes) || (!has_time(s) && t->slower < 1);
-    return t->part == ORL_TRIM_OPTION ? t->slower < 1
-                                      : t->bytes < s->bytes || t->file_bytes < s->file_bytes;
+    return t->part == ORL_TRIM_OPTION ? t->slower < 1 : t->bytes < s->bytes;
 }
 
 // --- steps ---
 
-// Fewer points, smaller maps and smaller photographs make no frame slower, and files are not drawn.
-// What loses too much to be taken is not timed.
+// Fewer points and smaller maps make no frame slower. What loses too much to be taken is not timed.
 static bool is_timed(const struct trim_search *s, const struct trim_trial *t, bool fits)
 {
     bool changes = t->part == ORL_TRIM_TEXTURES || t->part == ORL_TRIM_OPTION;

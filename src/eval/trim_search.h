@@ -24,7 +24,7 @@ struct trim_trial {
     struct trim_score *score; // owned, per target; NAN: not measured
     struct trim_loss loss;    // against the whole scene
     double step_db, step_ssim; // loss against the state before
-    double bytes, file_bytes;
+    double bytes;
     double slower; // the time of a frame is multiplied by this; 1: the same, or not timed
 };
 
@@ -33,7 +33,7 @@ struct trim_past {
     struct trim_state state;
     struct trim_score *score;
     struct trim_loss loss;
-    double bytes, file_bytes, slower;
+    double bytes, slower;
     size_t step; // index of the report's step
 };
 
@@ -51,9 +51,9 @@ struct trim_search {
     double tolerance_db, tolerance_ssim, worst_db; // at this time; they grow towards a budget
     struct trim_state first_state, state;
     struct trim_model *model; // of `state`
-    double bytes, file_bytes;
+    double bytes;
     double slower; // the time of its frame, as a multiple of the whole scene's
-    double first_bytes, first_file_bytes, first_ms;
+    double first_ms;
     struct trim_past *history; // owned
     size_t history_count, history_capacity;
     double start_s;

@@ -104,8 +104,6 @@ enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial 
         return result;
     const struct trim_model *model = shares ? s->model : t->own;
     t->bytes = orl_trim_model_bytes(s, model, &t->state);
-    t->file_bytes = (double)orl_trim_photo_file_bytes(&s->source, model->scene.dir,
-                                                      t->state.removed);
     for (size_t i = 0; result == ORL_OK && i < s->validation_count; i++) {
         size_t judge = (2 * i + 1) * s->judge_count / (2 * s->validation_count);
         result = measure_one(s, t, orl_trim_validation_view(s, judge, s->judge_count));
@@ -161,13 +159,12 @@ enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t)
         return result;
     s->history[s->history_count++] =
         (struct trim_past){.state = s->state, .score = s->score, .loss = s->loss,
-                           .bytes = s->bytes, .file_bytes = s->file_bytes, .slower = s->slower,
+                           .bytes = s->bytes, .slower = s->slower,
                            .step = s->trim->step_count - 1};
     s->state = t->state;
     s->score = t->score;
     s->loss = t->loss;
     s->bytes = t->bytes;
-    s->file_bytes = t->file_bytes;
     s->slower *= t->slower;
     t->state.removed = NULL;
     t->score = NULL;
@@ -217,7 +214,6 @@ static enum orl_result take_back(struct trim_search *s)
     s->score = past->score;
     s->loss = past->loss;
     s->bytes = past->bytes;
-    s->file_bytes = past->file_bytes;
     s->slower = past->slower;
     orl_trim_model_close(&s->model);
     return orl_trim_model_open(&s->source, &s->state, &s->model);

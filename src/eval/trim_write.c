@@ -109,20 +109,14 @@ static enum orl_result copy_tree(const struct writer *w, const char *name)
 
 static enum orl_result write_photos(const struct writer *w)
 {
-    const struct orl_scene *scene = w->source->scene;
-    char *dir = orl_path_join(w->log, w->out, "images");
-    enum orl_result result = dir ? orl_dir_make(w->log, dir) : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        if (!w->keep[i])
-            continue;
-        const char *folder = scene->photos[i].test ? scene->dir : w->model->scene.dir;
-        char *from = orl_format(w->log, "%s/images/%s", folder, scene->photos[i].name);
-        char *name = orl_path_join(w->log, "images", scene->photos[i].name);
-        result = from && name ? copy(w, from, name) : ORL_ERR_MEMORY;
-        free(from);
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < w->source->scene->photo_count; i++) {
+        char *name = orl_path_join(w->log, "images", w->source->scene->photos[i].name);
+        result = name ? ORL_OK : ORL_ERR_MEMORY;
+        if (name && w->keep[i])
+            result = copy_tree(w, name);
         free(name);
     }
-    free(dir);
     return result;
 }
 
@@ -211,18 +205,17 @@ static enum orl_result write_manifest(const struct writer *w)
 
 static enum orl_result write_parts(const struct writer *w)
 {
-    static const char *const others[] = {"masks", "background", "occluders", "images_linear",
+    static const char *const trees[] = {"masks", "background", "occluders", "images_linear",
                                          "frames", "mesh.ply"};
     enum orl_result result = write_photos(w);
     if (result == ORL_OK)
         result = write_points(w);
     if (result == ORL_OK)
-        result = orl_subset_write_model(w->log, w->source->scene, w->keep, &w->model->scene,
-                                        w->out);
+        result = orl_subset_write_model(w->log, w->source->scene, w->keep, w->out);
     if (result == ORL_OK)
         result = orl_subset_add_checksums(w->log, w->out, w->sums);
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(others); i++)
-        result = copy_tree(w, others[i]);
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(trees); i++)
+        result = copy_tree(w, trees[i]);
     return result == ORL_OK ? write_manifest(w) : result;
 }
 

@@ -50,32 +50,6 @@ enum orl_result orl_subset_copy_photo(const struct orl_log *log, const struct or
 
 // --- the sparse model ---
 
-// Gives the photographs whose size changes cameras of their own.
-static enum orl_result resize_cameras(const struct orl_log *log, const struct orl_scene *scene,
-                                      const bool *keep, const struct orl_scene *sizes,
-                                      struct orl_colmap_model *model)
-{
-    uint32_t next = 0;
-    struct orl_colmap_camera *all =
-        orl_array(log, model->camera_count + model->image_count, sizeof *all);
-    if (!all)
-        return ORL_ERR_MEMORY;
-    memcpy(all, model->cameras, model->camera_count * sizeof *all);
-    for (size_t i = 0; i < model->camera_count; i++)
-        next = all[i].id >= next ? all[i].id + 1 : next;
-    for (size_t i = 0; i < model->image_count; i++) {
-        const struct orl_camera *c = &sizes->photos[i].view.camera;
-        const struct orl_camera *before = &scene->photos[i].view.camera;
-        if (!keep[i] || (c->width == before->width && c->height == before->height))
-            continue;
-        all[model->camera_count++] = orl_colmap_pinhole(next, c);
-        model->images[i].camera_id = next++;
-    }
-    free(model->cameras);
-    model->cameras = all;
-    return ORL_OK;
-}
-
 // Writes the images of `all` that stay. They are listed in an array of their own, since `all` owns
 // the names of every image.
 static enum orl_result write_kept(const struct orl_log *log, const struct orl_colmap_model *all,
@@ -95,8 +69,7 @@ static enum orl_result write_kept(const struct orl_log *log, const struct orl_co
 }
 
 enum orl_result orl_subset_write_model(const struct orl_log *log, const struct orl_scene *scene,
-                                       const bool *keep, const struct orl_scene *sizes,
-                                       const char *dir)
+                                       const bool *keep, const char *dir)
 {
     struct orl_colmap_model all = {0};
     char *sparse = orl_path_join(log, dir, "sparse");
@@ -106,8 +79,6 @@ enum orl_result orl_subset_write_model(const struct orl_log *log, const struct o
     // Photographs and the images of the model have equal indices.
     if (result == ORL_OK && all.image_count != scene->photo_count)
         result = orl_fail(log, ORL_ERR_DATA, "%s: its sparse model has changed", scene->dir);
-    if (result == ORL_OK && sizes)
-        result = resize_cameras(log, scene, keep, sizes, &all);
     if (result == ORL_OK)
         result = write_kept(log, &all, keep, sparse);
     orl_colmap_finish(&all);
@@ -186,7 +157,7 @@ enum orl_result orl_subset_begin(const struct orl_log *log, const struct orl_sce
     if (result == ORL_OK)
         result = copy_if_there(log, scene, orl_scene_mesh_path(log, scene), dir);
     if (result == ORL_OK)
-        result = orl_subset_write_model(log, scene, keep, NULL, dir);
+        result = orl_subset_write_model(log, scene, keep, dir);
     if (result == ORL_OK) {
         orl_subset_keep_photographs(scene, keep, *manifest);
         json_object_del(*manifest, "tuned"); // other photographs want other settings

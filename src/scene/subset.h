@@ -23,12 +23,10 @@ enum orl_result orl_subset_copy_masks(const struct orl_log *log, const struct or
 
 // --- the steps of orl_subset_begin ---
 
-// Writes DIR/sparse with the photographs with keep[i]. sizes: the scene with other cameras; each
-// photograph whose camera differs in size from that in `scene` gets a camera of its own. NULL: all
-// cameras stay. ORL_ERR_DATA: the model has other photographs than when the scene was opened.
+// Writes DIR/sparse with the photographs with keep[i]. ORL_ERR_DATA: the model has other photographs
+// than when the scene was opened.
 enum orl_result orl_subset_write_model(const struct orl_log *log, const struct orl_scene *scene,
-                                       const bool *keep, const struct orl_scene *sizes,
-                                       const char *dir) ORL_CHECK_RESULT;
+                                       const bool *keep, const char *dir) ORL_CHECK_RESULT;
 // Removes all photographs but those with keep[i] from the manifest `root`, and sets the counts of
 // photographs.
 void orl_subset_keep_photographs(const struct orl_scene *scene, const bool *keep, json_t *root);
