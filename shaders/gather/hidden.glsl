@@ -8,12 +8,6 @@ bool photo_agrees(vec4 seen, float z)
     return any(lessThanEqual(abs(seen - z), vec4(opt.depth_tolerance * z)));
 }
 
-// True if the photograph has no depth there, or only an estimate in a hole.
-bool photo_knows_nothing(vec4 seen)
-{
-    return all(lessThanEqual(seen, vec4(0.0)));
-}
-
 // True if none of these depths lies clearly in front of z. For estimated background depth, which
 // only says that the point is behind everything else.
 bool photo_unhidden(vec4 seen, float z)

@@ -8,12 +8,6 @@
 
 const char orl_choice_paired[] = "on the proxy of oriel";
 
-void orl_choice_label(const struct orl_choice *choice, char label[ORL_CHOICE_LABEL_MAX])
-{
-    snprintf(label, ORL_CHOICE_LABEL_MAX, "%s%s%s", choice->method->name,
-             choice->setting[0] ? " " : "", choice->setting);
-}
-
 // What all choices of a command have in common.
 struct wish {
     const struct orl_log *log;

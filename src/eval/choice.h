@@ -16,9 +16,6 @@ struct orl_choice {
 
 // The setting of a paper's method on the proxy and background of the first method, oriel.
 extern const char orl_choice_paired[];
-enum { ORL_CHOICE_LABEL_MAX = 128 };
-// Method and setting: "airieau on the proxy of oriel".
-void orl_choice_label(const struct orl_choice *choice, char label[ORL_CHOICE_LABEL_MAX]);
 
 // scene: its tuned values are used; NULL: none are. method: a name; NULL: the scene's default.
 // sample: what the renderer samples photographs for, which decides which options may be set.

@@ -308,26 +308,3 @@ enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_ima
     free(two.all);
     return result;
 }
-
-enum orl_result orl_flip_paint(const struct orl_log *log, const struct orl_image *map,
-                               struct orl_image *picture)
-{
-    // Matplotlib's magma at nine equal steps, interpolated linearly.
-    static const float magma[9][3] = {{0, 0, 4},       {28, 16, 68},    {79, 18, 123},
-                                      {129, 37, 129},  {181, 54, 122},  {229, 80, 100},
-                                      {251, 135, 97},  {254, 194, 135}, {252, 253, 191}};
-    enum orl_result result =
-        orl_image_init(log, picture, map->width, map->height, 3, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
-    size_t count = (size_t)map->width * (size_t)map->height;
-    for (size_t i = 0; i < count; i++) {
-        float at = 8 * fminf(fmaxf(map->f32[i], 0), 1);
-        int step = at >= 8 ? 7 : (int)at;
-        for (size_t c = 0; c < 3; c++)
-            picture->u8[3 * i + c] =
-                (uint8_t)lrintf(magma[step][c] + (at - (float)step) *
-                                                     (magma[step + 1][c] - magma[step][c]));
-    }
-    return ORL_OK;
-}

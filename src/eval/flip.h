@@ -12,9 +12,4 @@ enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_ima
                                  const struct orl_image *b, struct orl_image *map,
                                  double *mean) ORL_CHECK_RESULT;
 
-// Paints an error map in the usual colours: magma, from black (0) through purple to pale yellow
-// (1). map: F32 x1; picture: U8 x3.
-enum orl_result orl_flip_paint(const struct orl_log *log, const struct orl_image *map,
-                               struct orl_image *picture) ORL_CHECK_RESULT;
-
 #endif

@@ -91,26 +91,6 @@ size_t orl_heldout_count(const struct orl_scene *scene)
     return count;
 }
 
-enum orl_result orl_heldout_load_some(const struct orl_log *log, const struct orl_scene *scene,
-                                      size_t wanted, int divide, struct orl_heldout **views,
-                                      size_t *view_count)
-{
-    size_t held = orl_heldout_count(scene), at = 0;
-    if (!wanted || wanted > held)
-        wanted = held;
-    *view_count = 0;
-    *views = orl_array(log, wanted, sizeof **views);
-    enum orl_result result = *views ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        if (!scene->photos[i].test)
-            continue;
-        if ((at + 1) * wanted / held > at * wanted / held)
-            result = orl_heldout_load(log, scene, i, divide, &(*views)[(*view_count)++]);
-        at++;
-    }
-    return result;
-}
-
 // --- the rendering ---
 
 // True when the rendering is at the scene's reference exposure. It then has to be brought to what

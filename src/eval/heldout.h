@@ -21,11 +21,6 @@ enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_sce
                                  struct orl_heldout *heldout) ORL_CHECK_RESULT;
 // The number of photographs that are held out.
 size_t orl_heldout_count(const struct orl_scene *scene);
-// Reads `wanted` held-out photographs, evenly chosen; 0, or more than there are: all. Each of
-// *views is finished with orl_heldout_finish, then the array with free(), also after a failure.
-enum orl_result orl_heldout_load_some(const struct orl_log *log, const struct orl_scene *scene,
-                                      size_t wanted, int divide, struct orl_heldout **views,
-                                      size_t *view_count) ORL_CHECK_RESULT;
 // Averages divide x divide pixels in linear light. Pixels left over at the end of a row or column
 // are dropped. U8 x3.
 enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_image *from,

@@ -95,7 +95,7 @@ enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *v)
 enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones, int side,
                                 const struct orl_buf *field, struct voxels *voxels)
 {
-    *voxels = (struct voxels){.carved = true, .endless = cones->bounds.endless,
+    *voxels = (struct voxels){.endless = cones->bounds.endless,
                               .cube = {.side = side, .voxel = cones->bounds.size / side}};
     memcpy(voxels->cube.origin, cones->bounds.origin, sizeof voxels->cube.origin);
     voxels->field = orl_array(log, cells(side), sizeof *voxels->field);

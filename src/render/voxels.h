@@ -8,7 +8,6 @@
 
 struct voxels {
     struct orl_hull cube; // side, origin, voxel; inside stays NULL
-    bool carved;          // from silhouettes; false: from points
     bool endless;         // struct orl_hull_bounds
     // At each voxel's centre, x fastest, scene units: of a hull the signed distance to the nearest
     // cone of a silhouette, negative inside; of points -voxel where there are some, else voxel.

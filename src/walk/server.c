@@ -35,7 +35,6 @@ enum {
 struct session {
     struct lws *wsi;
     struct session *next;
-    bool walks;
     // A client that walks: its newest request, and the frame that is being sent.
     struct walk_request request;
     struct orl_choice choice; // its method and options
@@ -197,7 +196,6 @@ static int continue_file(struct lws *wsi, struct session *session)
 static void add_session(struct server *server, struct lws *wsi, struct session *session)
 {
     session->wsi = wsi;
-    session->walks = true;
     session->next = server->sessions;
     server->sessions = session;
     server->session_count++;

@@ -87,7 +87,6 @@ static void papers_on_one_proxy(void **state)
     struct orl_names none = {0}, paired = names_of("paired", NULL);
     struct orl_choices choices;
     const struct orl_render_params *oriel = &orl_methods[0].params;
-    char label[ORL_CHOICE_LABEL_MAX];
     assert_int_equal(orl_choices_make(NULL, NULL, ORL_SAMPLE_SRGB, &paired, &none, NULL, &choices),
                      ORL_OK);
     assert_int_equal(choices.count, count_methods() + 7);
@@ -103,8 +102,7 @@ static void papers_on_one_proxy(void **state)
         assert_string_equal(c->params.visibility, own->visibility);
         assert_string_not_equal(c->method->name, "goldluecke");
     }
-    orl_choice_label(&choices.items[count_methods()], label);
-    assert_string_equal(label, "airieau on the proxy of oriel");
+    assert_string_equal(choices.items[count_methods()].setting, "on the proxy of oriel");
     orl_choices_finish(&choices);
     orl_names_finish(&paired);
 }

@@ -1,7 +1,7 @@
 // Views: where the viewer is, where they look, and what part of it the window frames.
 // A frame is a picture of height 1: focal lengths and the principal point's offset from the
 // middle in that unit, so that a photograph's own framing survives any window.
-import {dot, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
+import {dot, mix, mix3, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
         sub} from "./math.js";
 
 // Quarters, clockwise, that turn a picture of each EXIF orientation upright (orl_photo_upright).
@@ -60,12 +60,6 @@ const BEHIND = 1.04; // depths that differ by less may be of one surface
 
 // Is a point behind the surface that its pixel shows? 0: no surface.
 export const isBehind = (depth, surface) => surface > 0 && depth > BEHIND * surface;
-
-// What a pixel (of the camera) looks along, in the world, unit length.
-export function rayOf(camera, x, y)
-{
-    return normalize(rotateBack(camera.r, [(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1]));
-}
 
 // --- in files: keyframes of src/scene/path.c, views of walk.json ---
 
