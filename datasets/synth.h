@@ -39,6 +39,7 @@ enum orl_synth_response { ORL_SYNTH_RESPONSES(ORL_ENUMERATOR) };
         "makes the monument shine; 1: as a mirror", "monument") \
     ROW(bars_m, "bars", NUMBER(0, 0, 1.5, "METRES"), \
         "upright bars of this diameter before the monument", "monument") \
+    ROW(vehicle, "vehicle", FLAG, "a vehicle, a lamp and two wires before the monument", "monument") \
     ROW(plain, "plain", NUMBER(0, 0, 1, "SHARE"), \
         "share of the walls that has no texture", "monument")
 struct orl_synth_params {
@@ -79,6 +80,7 @@ struct orl_synth_frame {
     struct orl_image depth;    // f32, z in camera space at the pixel's centre; 0: sky
     struct orl_image normal;   // f32, 3 channels, camera frame, unit; 0 0 0: sky
     struct orl_image textured; // f32: 0 where a plain wall is; empty without plain walls
+    struct orl_image vehicle;  // u8: 255 where the vehicle, the lamp or a wire is; empty without
 };
 enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_params *params,
                                  struct orl_synth **out) ORL_CHECK_RESULT;

@@ -90,6 +90,14 @@ static enum orl_result write_map(const struct job *job, int index, const char *f
     return result;
 }
 
+static enum orl_result write_mask(const struct job *job, int index, const struct orl_image *image)
+{
+    char *path = view_path(job, job->truth, "vehicle", index, ".png");
+    enum orl_result result = path ? orl_png_write(job->log, path, image) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
 static enum orl_result write_truth(const struct job *job, int index,
                                    const struct orl_synth_frame *frame)
 {
@@ -107,6 +115,8 @@ static enum orl_result write_truth(const struct job *job, int index,
         result = write_map(job, index, "stereo/normal_maps", &frame->normal);
     if (result == ORL_OK && frame->textured.data)
         result = write_map(job, index, "stereo/texture_maps", &frame->textured);
+    if (result == ORL_OK && frame->vehicle.data)
+        result = write_mask(job, index, &frame->vehicle);
     return result;
 }
 
@@ -215,12 +225,12 @@ static enum orl_result write_summary(const struct job *job)
     for (int v = 0; v < 256; v++)
         json_array_append_new(curve, json_real(orl_synth_decode(p->response, v / 255.0)));
     return write_json(job, "synth.json",
-                      json_pack("{s:s, s:[ii], s:i, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:s, "
-                                "s:o, s:s, s:o}",
+                      json_pack("{s:s, s:[ii], s:i, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:b, "
+                                "s:s, s:o, s:s, s:o}",
                                 "name", p->name, "size", p->width, p->height, "count", p->count,
                                 "seed", (json_int_t)p->seed, "contrast", p->contrast_ev, "noise",
                                 p->noise, "vignette", p->vignette, "drift", p->drift_ev, "gloss",
-                                p->gloss, "bars", p->bars_m, "plain", p->plain, "response",
+                                p->gloss, "bars", p->bars_m, "plain", p->plain, "vehicle", p->vehicle, "response",
                                 orl_synth_response_name(p->response), "linear", curve,
                                 "oriel", ORL_VERSION, "photographs", photos));
 }
@@ -241,12 +251,14 @@ static enum orl_result write_cameras(const struct job *job)
 
 static enum orl_result make_folders(const struct job *job)
 {
-    static const char *const folders[] = {"sparse", "depth", "normal", "radiance",
-                                          "stereo/depth_maps", "stereo/normal_maps",
-                                          "stereo/texture_maps"};
+    const char *const folders[] = {"sparse", "depth", "normal", "radiance", "stereo/depth_maps",
+                                   "stereo/normal_maps",
+                                   job->params->plain > 0 ? "stereo/texture_maps" : NULL,
+                                   job->params->vehicle ? "vehicle" : NULL};
     enum orl_result result = ORL_OK;
-    size_t count = ORL_COUNT(folders) - (job->params->plain > 0 ? 0 : 1);
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
+        if (!folders[i])
+            continue;
         char *path = orl_path_join(job->log, job->truth, folders[i]);
         result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
         free(path);

@@ -8,6 +8,7 @@
 #include "datasets/synth.h"
 
 enum {
+    KIND_PLAIN = 1, KIND_VEHICLE = 2, // of a pixel, as synth/frame.comp writes it
     TILE = 8,        // side of a work group, and of a tile of synth/cone.comp, pixels
     BAND_PIXELS = 65536, // pixels of one dispatch, short enough for the watchdog of a desktop GPU
 };
@@ -27,7 +28,8 @@ struct orl_synth {
     int width, height;
     uint32_t seed;
     double contrast_ev, gloss, bars_m, plain;
-    char variant[64]; // defines of the programs
+    bool vehicle;
+    char variant[80]; // defines of the programs
     struct orl_tex *start, *radiance, *truth;
 };
 
@@ -53,11 +55,11 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
     *synth = (struct orl_synth){.gpu = gpu, .width = params->width, .height = params->height,
                                 .seed = params->seed, .contrast_ev = params->contrast_ev,
                                 .gloss = params->gloss, .bars_m = params->bars_m,
-                                .plain = params->plain};
-    snprintf(synth->variant, sizeof synth->variant, "%s%s%s%s",
+                                .plain = params->plain, .vehicle = params->vehicle};
+    snprintf(synth->variant, sizeof synth->variant, "%s%s%s%s%s",
              params->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : "",
              params->gloss > 0 ? "GLOSS 1\n" : "", params->bars_m > 0 ? "BARS 1\n" : "",
-             params->plain > 0 ? "PLAIN 1\n" : "");
+             params->plain > 0 ? "PLAIN 1\n" : "", params->vehicle ? "VEHICLE 1\n" : "");
     int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
     result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
     if (result == ORL_OK)
@@ -153,13 +155,17 @@ static enum orl_result read_frame(const struct orl_synth *synth, struct orl_synt
         result = orl_image_init(log, &frame->normal, w, h, 3, ORL_PIXEL_F32);
     if (result == ORL_OK && synth->plain > 0)
         result = orl_image_init(log, &frame->textured, w, h, 1, ORL_PIXEL_F32);
+    if (result == ORL_OK && synth->vehicle)
+        result = orl_image_init(log, &frame->vehicle, w, h, 1, ORL_PIXEL_U8);
     if (result != ORL_OK)
         goto end;
     orl_tex_read(synth->radiance, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
     for (size_t i = 0; i < pixels; i++) {
         memcpy(frame->radiance.f32 + 3 * i, texels + 4 * i, 3 * sizeof *texels);
         if (synth->plain > 0)
-            frame->textured.f32[i] = texels[4 * i + 3];
+            frame->textured.f32[i] = texels[4 * i + 3] != KIND_PLAIN;
+        if (synth->vehicle)
+            frame->vehicle.u8[i] = texels[4 * i + 3] == KIND_VEHICLE ? 255 : 0;
     }
     orl_tex_read(synth->truth, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
     for (size_t i = 0; i < pixels; i++) {
@@ -201,4 +207,5 @@ void orl_synth_frame_finish(struct orl_synth_frame *frame)
     orl_image_finish(&frame->depth);
     orl_image_finish(&frame->normal);
     orl_image_finish(&frame->textured);
+    orl_image_finish(&frame->vehicle);
 }

@@ -5,6 +5,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "synth/noise.glsl"
 #include "synth/primitives.glsl"
 #include "synth/monument.glsl"
+#include "synth/vehicle.glsl"
 #include "synth/town.glsl"
 #include "synth/trace.glsl"
 layout(r32f, binding = 0) writeonly uniform image2D start_image;

@@ -5,6 +5,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "synth/noise.glsl"
 #include "synth/primitives.glsl"
 #include "synth/monument.glsl"
+#include "synth/vehicle.glsl"
 #include "synth/town.glsl"
 #include "synth/trace.glsl"
 #include "synth/material.glsl"
@@ -95,7 +96,7 @@ const int FIRST_COUNT = SAMPLE_COUNT;
 #define sample_at(i) samples[i]
 #endif
 
-#ifdef GLOSS
+#if defined(GLOSS) || defined(VEHICLE)
 // What a mirror at the hit shows: one reflection, of surfaces as if without gloss.
 vec3 mirrored(Hit hit, vec3 ray)
 {
@@ -117,6 +118,15 @@ vec3 color_of(Hit hit, vec3 ray)
 #ifdef GLOSS
     if (part_at(hit.p) == PART_MONUMENT)
         color = mix(color, mirrored(hit, normalize(ray)), view_light.y);
+#endif
+#ifdef VEHICLE
+    if (part_at(hit.p) == PART_VEHICLE) {
+        vec3 way = normalize(ray);
+        float facing = clamp(1.0 + dot(way, hit.n), 0.0, 1.0);
+        float mirror = vehicle_surface(hit.p).a; // more at grazing angles (Schlick 1994)
+        mirror += mirror > 0.0 ? (1.0 - mirror) * pow(facing, 5.0) : 0.0;
+        color = mix(color, mirrored(hit, way), mirror);
+    }
 #endif
     return color;
 }
@@ -162,11 +172,15 @@ void main()
         mean = fine / float(FINE * FINE);
 #endif
     vec3 n = vec3(dot(centre.n, right.xyz), dot(centre.n, down.xyz), dot(centre.n, forward.xyz));
-    float textured = 1.0;
+    float kind = 0.0; // 1: of a plain wall, 2: of the vehicle
 #ifdef PLAIN
     if (centre.t < SKY_T && is_plain(centre.p, part_at(centre.p)))
-        textured = 0.0;
+        kind = 1.0;
 #endif
-    imageStore(radiance_image, pixel, vec4(mean, textured));
+#ifdef VEHICLE
+    if (centre.t < SKY_T && part_at(centre.p) == PART_VEHICLE)
+        kind = 2.0;
+#endif
+    imageStore(radiance_image, pixel, vec4(mean, kind));
     imageStore(truth_image, pixel, vec4(n, centre.t < SKY_T ? centre.t : 0.0));
 }

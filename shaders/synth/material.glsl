@@ -251,7 +251,7 @@ const float PLAIN_CELL = 1.2; // side of the cubes in which walls are plain or n
 bool is_plain(vec3 p, int part)
 {
     ivec3 cell = ivec3(floor(p / PLAIN_CELL));
-    return part != PART_GROUND && part != PART_TREES &&
+    return part != PART_GROUND && part != PART_TREES && part != PART_VEHICLE &&
            spread(hash_cell(cell)).x < view_light.w;
 }
 #endif
@@ -266,6 +266,10 @@ Material material_at(vec3 p, vec3 n, float footprint)
 #ifdef BARS
     if (part == PART_BARS)
         return Material(vec3(0.10, 0.14, 0.12) * (fract(2.0 * p.y) < 0.5 ? 1.0 : 2.5), vec3(0.0));
+#endif
+#ifdef VEHICLE
+    if (part == PART_VEHICLE)
+        return Material(vehicle_surface(p).rgb, vec3(0.0));
 #endif
     if (part == PART_GROUND)
         return paving(p, footprint);

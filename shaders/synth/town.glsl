@@ -146,7 +146,7 @@ float bars(vec3 p)
 #endif
 
 const int PART_MONUMENT = 0, PART_FRAGMENTS = 1, PART_TOWN = 2, PART_TREES = 3, PART_GROUND = 4,
-          PART_BARS = 5;
+          PART_BARS = 5, PART_VEHICLE = 6;
 
 // All surfaces except the ground, whose intersection with rays has a closed form.
 float solids(vec3 p)
@@ -160,6 +160,9 @@ float solids(vec3 p)
 #ifdef BARS
     d = min(d, bars(p));
 #endif
+#ifdef VEHICLE
+    d = min(d, vehicle(p));
+#endif
     return d;
 }
 
@@ -170,6 +173,10 @@ int part_at(vec3 p)
 #ifdef BARS
     if (bars(p) < least)
         return PART_BARS;
+#endif
+#ifdef VEHICLE
+    if (vehicle(p) < least)
+        return PART_VEHICLE;
 #endif
     if (least == g)
         return PART_GROUND;

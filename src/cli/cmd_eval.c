@@ -58,11 +58,12 @@ struct job {
 // --- tables on stdout ---
 
 // A head, then a row for each view and their mean.
-static void print_rows(const struct orl_eval *eval, const char *head, bool of_radiance)
+static void print_rows(const struct orl_eval *eval, const char *head,
+                       enum orl_figure_group group)
 {
-    printf("%-24s %11s", head, of_radiance ? "" : "size");
+    printf("%-24s %11s", head, group == ORL_FIGURES_PICTURE ? "size" : "");
     for (const struct orl_figure *f = orl_figures; f->name; f++)
-        if (f->title && f->of_radiance == of_radiance)
+        if (f->title && f->group == group)
             printf(" %*s", f->width, f->title);
     for (size_t i = 0; i <= eval->view_count; i++) {
         bool mean = i == eval->view_count;
@@ -74,7 +75,7 @@ static void print_rows(const struct orl_eval *eval, const char *head, bool of_ra
         }
         printf("\n%-24s %11s", shown, size);
         for (const struct orl_figure *f = orl_figures; f->name; f++)
-            if (f->title && f->of_radiance == of_radiance)
+            if (f->title && f->group == group)
                 printf(" %*.*f", f->width, f->digits, f->scale * orl_figure_value(f, view));
     }
     printf("\n");
@@ -84,9 +85,11 @@ static void print_table(const struct orl_eval *eval)
 {
     printf("%s%s%s, %s\n", eval->method, eval->setting[0] ? " " : "", eval->setting,
            eval->device);
-    print_rows(eval, "photograph", false);
-    if (eval->has_truth)
-        print_rows(eval, "radiance", true);
+    static const char *const heads[] = {"photograph", "radiance", "vehicle, lamp, wires"};
+    _Static_assert(ORL_COUNT(heads) == ORL_FIGURE_GROUPS, "a head for each");
+    for (enum orl_figure_group group = 0; group < ORL_FIGURE_GROUPS; group++)
+        if (orl_figures_known(group, eval))
+            print_rows(eval, heads[group], group);
 }
 
 static void print_passes(const struct orl_eval *eval)

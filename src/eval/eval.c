@@ -129,6 +129,20 @@ static enum orl_result render(struct job *job, const struct orl_heldout *heldout
     return result;
 }
 
+static enum orl_result compare_vehicle(const struct job *job, struct orl_eval_view *view,
+                                       const struct orl_image *rendered,
+                                       const struct orl_image *photograph,
+                                       const struct orl_image *coverage)
+{
+    struct orl_image vehicle;
+    enum orl_result result = orl_truth_vehicle(job->log, job->params->truth, view->photo, &vehicle);
+    if (result == ORL_OK)
+        result = orl_metrics_of_part(job->log, rendered, photograph, coverage, &vehicle,
+                                     &view->vehicle);
+    orl_image_finish(&vehicle);
+    return result;
+}
+
 static enum orl_result measure(struct job *job, struct orl_eval_view *view)
 {
     const struct orl_eval_params *params = job->params;
@@ -147,6 +161,8 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
                                      &view->metrics);
     if (result == ORL_OK)
         result = orl_flip_compare(job->log, &rendered, &heldout.picture, NULL, &view->flip);
+    if (result == ORL_OK && job->eval->has_vehicle)
+        result = compare_vehicle(job, view, &rendered, &heldout.picture, &coverage);
     if (result == ORL_OK && params->image_dir)
         result = orl_eval_write_images(job->log, job->scene, params, view->photo, &rendered,
                                        &heldout.picture);
@@ -226,6 +242,7 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     eval->method = params->method;
     snprintf(eval->setting, sizeof eval->setting, "%s", params->setting ? params->setting : "");
     eval->has_truth = params->truth != NULL;
+    eval->has_vehicle = params->truth && params->truth->vehicle;
     snprintf(eval->device, sizeof eval->device, "%s", orl_gpu_caps(gpu)->renderer);
     enum orl_result result = orl_eval_check(job.log, scene);
     if (result == ORL_OK)

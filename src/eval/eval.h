@@ -15,6 +15,7 @@ struct orl_eval_view {
     int width, height;
     struct orl_metrics metrics;
     struct orl_radiance_metrics radiance; // only with a truth
+    struct orl_part_metrics vehicle;     // only with one in the truth
     double render_ms, cpu_ms; // medians over frames, see timing.h; 0: not rendered here
     double flip;              // see flip.h
 };
@@ -30,7 +31,7 @@ struct orl_eval {
     struct orl_timing_pass passes[ORL_TIMING_PASSES_MAX]; // means over the views
     size_t pass_count;
     size_t device_bytes[ORL_OWNER_COUNT]; // after the last view
-    bool has_truth;
+    bool has_truth, has_vehicle;
 };
 
 struct orl_eval_params {

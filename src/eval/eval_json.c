@@ -16,7 +16,7 @@ static bool set_figures(json_t *object, const struct orl_eval *eval,
 {
     bool ok = true;
     for (const struct orl_figure *f = orl_figures; ok && f->name; f++)
-        if (!f->of_radiance || eval->has_truth)
+        if (orl_figures_known(f->group, eval))
             ok = set(object, f->name, json_real(orl_figure_value(f, view)));
     return ok;
 }

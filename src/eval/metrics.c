@@ -296,8 +296,10 @@ static float greatest_near(const struct orl_image *image, int x, int y)
     return greatest;
 }
 
-static enum orl_result measure_crumbs(const struct orl_log *log, const struct orl_image *a,
-                                      const struct orl_image *b, struct orl_metrics *metrics)
+// Of the pixels where `part`, F32 x1, is above 0.5; NULL: of all.
+static enum orl_result count_crumbs(const struct orl_log *log, const struct orl_image *a,
+                                    const struct orl_image *b, const struct orl_image *part,
+                                    size_t *count)
 {
     const float stands_out = 0.1f, in_photograph = stands_out / 3;
     struct orl_image rendered, photograph = {0};
@@ -306,10 +308,12 @@ static enum orl_result measure_crumbs(const struct orl_log *log, const struct or
     if (result == ORL_OK)
         result = prominence(log, b, &photograph);
     for (int y = 0; result == ORL_OK && y < a->height; y++)
-        for (int x = 0; x < a->width; x++)
-            crumbs += rendered.f32[(size_t)y * (size_t)a->width + (size_t)x] > stands_out &&
+        for (int x = 0; x < a->width; x++) {
+            size_t i = (size_t)y * (size_t)a->width + (size_t)x;
+            crumbs += (!part || part->f32[i] > 0.5f) && rendered.f32[i] > stands_out &&
                       greatest_near(&photograph, x, y) <= in_photograph;
-    metrics->crumbs = 1e4 * (double)crumbs / (double)pixel_count(a);
+        }
+    *count = crumbs;
     orl_image_finish(&rendered);
     orl_image_finish(&photograph);
     return result;
@@ -341,9 +345,33 @@ enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_
     enum orl_result result = orl_metrics_ssim(log, a, b, &measured.ssim);
     if (result == ORL_OK)
         result = measure_rephoto(log, a, b, &measured);
+    size_t crumbs = 0;
     if (result == ORL_OK)
-        result = measure_crumbs(log, a, b, &measured);
+        result = count_crumbs(log, a, b, NULL, &crumbs);
+    measured.crumbs = 1e4 * (double)crumbs / (double)pixel_count(a);
     if (result == ORL_OK)
         *metrics = measured;
     return result;
+}
+
+enum orl_result orl_metrics_of_part(const struct orl_log *log, const struct orl_image *a,
+                                    const struct orl_image *b, const struct orl_image *coverage,
+                                    const struct orl_image *part, struct orl_part_metrics *metrics)
+{
+    memset(metrics, 0, sizeof *metrics);
+    ORL_REQUIRE(log, part->data && part->type == ORL_PIXEL_F32 && part->width == a->width &&
+                         part->height == a->height);
+    struct orl_metrics whole = {0};
+    size_t shown = 0, covered = 0, crumbs = 0;
+    measure_psnr(a, b, part, &whole);
+    for (size_t i = 0; i < pixel_count(part); i++) {
+        shown += part->f32[i] > 0.5f;
+        covered += part->f32[i] > 0.5f && coverage->f32[i] > 0.5f;
+    }
+    enum orl_result result = count_crumbs(log, a, b, part, &crumbs);
+    if (result != ORL_OK || !shown)
+        return result;
+    *metrics = (struct orl_part_metrics){whole.psnr_covered_db, 1e4 * (double)crumbs / (double)shown,
+                                         (double)covered / (double)shown};
+    return ORL_OK;
 }

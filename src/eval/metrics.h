@@ -19,6 +19,18 @@ struct orl_metrics {
 enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_image *a,
                                     const struct orl_image *b, const struct orl_image *coverage,
                                     struct orl_metrics *metrics) ORL_CHECK_RESULT;
+
+// A part of the picture, as the vehicle of oriel synth --vehicle. All 0 where nothing of it is shown.
+struct orl_part_metrics {
+    double psnr_db;  // over its pixels
+    double crumbs;   // per 10,000 of its pixels
+    double coverage; // share of its pixels with coverage > 0.5
+};
+// part: F32 x1, above 0.5 where it is; the rest as above.
+enum orl_result orl_metrics_of_part(const struct orl_log *log, const struct orl_image *a,
+                                    const struct orl_image *b, const struct orl_image *coverage,
+                                    const struct orl_image *part,
+                                    struct orl_part_metrics *metrics) ORL_CHECK_RESULT;
 // psnr_db alone, and ssim alone.
 double orl_metrics_psnr_db(const struct orl_image *a, const struct orl_image *b);
 enum orl_result orl_metrics_ssim(const struct orl_log *log, const struct orl_image *a,

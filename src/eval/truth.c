@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "io/exr.h"
+#include "io/picture.h"
 #include "scene/remap.h"
 
 // Length of a name without its extension.
@@ -65,6 +66,9 @@ enum orl_result orl_truth_open(const struct orl_log *log, const struct orl_scene
     truth->dir = orl_strdup(log, dir);
     truth->ev = orl_array(log, scene->photo_count, sizeof *truth->ev);
     char *model = orl_path_join(log, scene->dir, ".oriel/calibrate/model");
+    char *vehicle = orl_path_join(log, dir, "vehicle");
+    truth->vehicle = vehicle && orl_path_is_dir(vehicle);
+    free(vehicle);
     enum orl_result result = truth->dir && truth->ev && model ? read_summary(log, truth)
                                                               : ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_path_is_dir(model))
@@ -95,21 +99,21 @@ static const struct orl_colmap_camera *find_camera(const struct orl_truth *truth
     return NULL;
 }
 
-// Undistorts radiance from the pixels of the photograph as taken to those of the scene.
+// Undistorts what was seen from the pixels of the photograph as taken to those of the scene.
 static enum orl_result bring_to_pixels(const struct orl_log *log, const struct orl_truth *truth,
                                        const struct orl_photo *photo, const char *path,
-                                       struct orl_image *seen, struct orl_image *radiance)
+                                       struct orl_image *seen, struct orl_image *out)
 {
     const struct orl_camera *to = &photo->view.camera;
     if (truth->model.image_count) {
         const struct orl_colmap_camera *from = find_camera(truth, photo->name);
-        return from ? orl_undistort(log, from, to, seen, radiance)
+        return from ? orl_undistort(log, from, to, seen, out)
                     : orl_fail(log, ORL_ERR_DATA, "%s: not in the calibrated model", photo->name);
     }
     if (seen->width != to->width || seen->height != to->height)
         return orl_fail(log, ORL_ERR_DATA, "%s: %dx%d pixels, but the photograph has %dx%d", path,
                         seen->width, seen->height, to->width, to->height);
-    *radiance = *seen;
+    *out = *seen;
     memset(seen, 0, sizeof *seen);
     return ORL_OK;
 }
@@ -132,6 +136,27 @@ enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth
     size_t count = result == ORL_OK ? orl_image_bytes(radiance) / sizeof(float) : 0;
     for (size_t i = 0; i < count; i++)
         radiance->f32[i] *= scale;
+    orl_image_finish(&seen);
+    free(path);
+    return result;
+}
+
+enum orl_result orl_truth_vehicle(const struct orl_log *log, const struct orl_truth *truth,
+                                  size_t index, struct orl_image *vehicle)
+{
+    memset(vehicle, 0, sizeof *vehicle);
+    const struct orl_photo *photo = &truth->scene->photos[index];
+    struct orl_image mask = {0}, seen = {0};
+    char *path = orl_format(log, "%s/vehicle/%.*s.png", truth->dir,
+                            (int)stem_length(photo->name), photo->name);
+    enum orl_result result = path ? orl_picture_read(log, path, 1, &mask) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_image_init(log, &seen, mask.width, mask.height, 1, ORL_PIXEL_F32);
+    for (size_t i = 0; result == ORL_OK && i < orl_image_bytes(&mask); i++)
+        seen.f32[i] = (float)mask.u8[i] / 255;
+    if (result == ORL_OK)
+        result = bring_to_pixels(log, truth, photo, path, &seen, vehicle);
+    orl_image_finish(&mask);
     orl_image_finish(&seen);
     free(path);
     return result;

@@ -11,6 +11,7 @@ struct orl_truth {
     const struct orl_scene *scene;  // not owned
     char *dir;                      // owned
     double *ev;                     // owned; true exposure of each photograph of the scene
+    bool vehicle;                   // the truth says where one is
     struct orl_colmap_model model;  // the calibrated cameras with their distortion, or empty
 };
 
@@ -24,5 +25,9 @@ void orl_truth_finish(struct orl_truth *truth);
 // scene's middle exposure.
 enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth *truth,
                                size_t photo, struct orl_image *radiance) ORL_CHECK_RESULT;
+// How much of a photograph's pixel shows the vehicle, the lamp or a wire, F32 x1, undistorted. Only
+// with truth->vehicle.
+enum orl_result orl_truth_vehicle(const struct orl_log *log, const struct orl_truth *truth,
+                                  size_t photo, struct orl_image *vehicle) ORL_CHECK_RESULT;
 
 #endif

@@ -489,6 +489,33 @@ static void troubles_are_where_they_belong(void **state)
         orl_synth_frame_finish(&frames[i]);
 }
 
+// The truth tells the pixels of the vehicle from all others, which keep their surfaces.
+static void a_vehicle_stands_before_the_monument(void **state)
+{
+    (void)state;
+    struct orl_synth_params params = small_params();
+    struct orl_synth *synth;
+    struct orl_synth_frame frame;
+    params.vehicle = true;
+    assert_int_equal(orl_synth_create(gpu, &params, &synth), ORL_OK);
+    assert_int_equal(orl_synth_draw(synth, NULL, &drawn.views[drawn.index_a], &frame), ORL_OK);
+    orl_synth_destroy(&synth);
+    size_t of_it = 0, darkest = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        float before = drawn.a.depth.f32[i], now = frame.depth.f32[i];
+        of_it += frame.vehicle.u8[i] > 0;
+        if (frame.vehicle.u8[i])
+            assert_true(now > 0 && (before <= 0 || now < before));
+        else
+            assert_float_equal(now, before, 1e-3);
+        darkest += frame.vehicle.u8[i] && frame.radiance.f32[3 * i + 1] < 0.02f;
+    }
+    assert_between((int)of_it, WIDTH * HEIGHT / 50, WIDTH * HEIGHT / 5);
+    assert_true(darkest > 10); // tyres
+    assert_null(drawn.a.vehicle.data);
+    orl_synth_frame_finish(&frame);
+}
+
 static void refuses_what_is_out_of_range(void **state)
 {
     (void)state;
@@ -558,6 +585,7 @@ int main(void)
         cmocka_unit_test(ground_is_flat),
         cmocka_unit_test(normals_face_the_camera),
         cmocka_unit_test(troubles_are_where_they_belong),
+        cmocka_unit_test(a_vehicle_stands_before_the_monument),
     };
     const struct CMUnitTest files[] = {
         cmocka_unit_test(exposure_follows_the_srgb_curve),

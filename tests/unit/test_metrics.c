@@ -202,6 +202,36 @@ static void specks_are_crumbs(void **state)
     assert_float_equal(m.crumbs, 1e4 * (5 + 12) / 1000, 1e-9);
 }
 
+// Its left half is off by 10 and has a crumb, and a tenth of it is not covered.
+static void figures_of_a_part_are_of_its_pixels(void **state)
+{
+    (void)state;
+    struct orl_image a = flat(40, 20, 100, 100, 100), b = flat(40, 20, 100, 100, 100);
+    struct orl_image coverage = covered(40, 20, 1), part = covered(40, 20, 0);
+    for (int i = 0; i < 40 * 20; i++)
+        if (i % 40 < 20) {
+            dab(&b, i % 40, i / 40, 110);
+            part.f32[i] = 1;
+            coverage.f32[i] = i / 40 < 18;
+        }
+    struct orl_part_metrics m;
+    assert_int_equal(orl_metrics_of_part(NULL, &a, &b, &coverage, &part, &m), ORL_OK);
+    assert_float_equal(m.psnr_db, 20 * log10(255.0 / 10), 1e-6);
+    assert_float_equal(m.coverage, 0.9, 1e-9);
+    assert_float_equal(m.crumbs, 0, 0);
+    dab(&a, 10, 10, 200); // a crumb of the part
+    dab(&a, 30, 10, 200); // one that is not of the part
+    assert_int_equal(orl_metrics_of_part(NULL, &a, &b, &coverage, &part, &m), ORL_OK);
+    assert_float_equal(m.crumbs, 1e4 / 400, 1e-9);
+    memset(part.f32, 0, orl_image_bytes(&part));
+    assert_int_equal(orl_metrics_of_part(NULL, &a, &b, &coverage, &part, &m), ORL_OK);
+    assert_float_equal(m.psnr_db, 0, 0);
+    orl_image_finish(&a);
+    orl_image_finish(&b);
+    orl_image_finish(&coverage);
+    orl_image_finish(&part);
+}
+
 static void colour_fit_undoes_an_affine_change(void **state)
 {
     (void)state;
@@ -285,6 +315,7 @@ int main(void)
         cmocka_unit_test(holes_are_incomplete),
         cmocka_unit_test(flat_against_textured),
         cmocka_unit_test(specks_are_crumbs),
+        cmocka_unit_test(figures_of_a_part_are_of_its_pixels),
         cmocka_unit_test(colour_fit_undoes_an_affine_change),
         cmocka_unit_test(pictures_of_any_size),
         cmocka_unit_test(different_sizes_are_refused),
