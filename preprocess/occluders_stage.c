@@ -37,9 +37,12 @@ static enum orl_result write_masks(struct orl_job *job, const struct orl_scene *
     return result;
 }
 
-static enum orl_result find(struct orl_job *job, struct orl_gpu *gpu,
-                            const struct orl_scene *scene, json_t *occluded)
+// Of renderings in which nothing is taken for an occluder.
+static enum orl_result find(struct orl_job *job, struct orl_gpu *gpu, struct orl_scene *scene,
+                            json_t *occluded)
 {
+    for (size_t i = 0; i < scene->photo_count; i++)
+        scene->photos[i].occluded = 0;
     struct orl_image *masks = orl_array(job->log, scene->photo_count, sizeof *masks);
     double *shares = orl_array(job->log, scene->photo_count, sizeof *shares);
     enum orl_result result = masks && shares ? ORL_OK : ORL_ERR_MEMORY;

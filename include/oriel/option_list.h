@@ -49,10 +49,6 @@
     CHOICE(alignment, orl_alignment_use, "off on", ORL_ALIGNMENT_OFF, "paint=gather paint=tiled", \
         "Photographs are brought to one exposure and white balance, and their vignetting is " \
         "undone. Radiance is always aligned.") \
-    CHOICE(occluders, orl_occluders_use, "keep drop", ORL_OCCLUDERS_KEEP, "visibility=hard " \
-        "visibility=soft visibility=shadow paint=tiled", \
-        "What a photograph shows before the scene and has no points, as the stage `occluders` " \
-        "of prepare found it, is painted onto what is behind it, or dropped.") \
     CHOICE(antialias, orl_antialias, "off on", ORL_ANTIALIAS_OFF, "sample=srgb", \
         "Colours are averaged across depth discontinuities, as a camera does.") \
     CHOICE(median, orl_median, "off holes all", ORL_MEDIAN_OFF, "paint=gather", \

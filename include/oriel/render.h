@@ -20,7 +20,6 @@ enum orl_fill {
     ORL_FILL_COUNT
 };
 enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON };
-enum orl_occluders_use { ORL_OCCLUDERS_KEEP, ORL_OCCLUDERS_DROP };
 enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON };
 enum orl_median { ORL_MEDIAN_OFF, ORL_MEDIAN_HOLES, ORL_MEDIAN_ALL };
 enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC };

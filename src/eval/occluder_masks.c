@@ -367,7 +367,6 @@ static enum orl_result set_params(struct finder *f)
         return ORL_ERR_NOT_FOUND;
     f->points = points->params;
     f->nearest = oriel->params;
-    f->nearest.occluders = ORL_OCCLUDERS_KEEP;
     f->consensus = f->nearest;
     return orl_render_params_assign(f->log, &f->consensus, consensus, ORL_COUNT(consensus));
 }

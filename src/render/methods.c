@@ -23,8 +23,7 @@
 // Photographs of the tiles that see a surface best, and what nothing covers from guessed depth.
 #define TILED \
     .paint = &orl_paint_tiled, .select = &orl_select_preselect, .visibility = "soft", .weight = "lumigraph", \
-    .combine = &combine_robust, .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON, \
-    .occluders = ORL_OCCLUDERS_DROP
+    .combine = &combine_robust, .fill = ORL_FILL_GROUND, .alignment = ORL_ALIGNMENT_ON
 
 // What makes depth and edges better, and frames slower.
 #define REFINED \

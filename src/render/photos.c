@@ -506,10 +506,9 @@ static bool has_shadow_maps(const struct frame *frame)
 uint64_t orl_photos_depth_key(const struct frame *frame)
 {
     const float tolerance = frame->params->depth_tolerance;
-    const int drops = frame->params->occluders;
     uint64_t key = orl_proxy_key(frame->proxy, frame->params);
     return has_shadow_maps(frame) ? XXH3_64bits_withSeed(&tolerance, sizeof tolerance, key)
-                                  : XXH3_64bits_withSeed(&drops, sizeof drops, key);
+                                  : key;
 }
 
 enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, int divide)
@@ -535,8 +534,7 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, i
         fatten(frame, &surface, kept, state->slot);
     } else {
         fill_holes(frame, &surface, kept, state->slot);
-        if (frame->params->occluders == ORL_OCCLUDERS_DROP)
-            result = orl_occluders_put(frame, index, kept);
+        result = orl_occluders_put(frame, index, kept);
     }
     if (result != ORL_OK)
         return result;

@@ -195,10 +195,7 @@ static enum orl_result put_occluders(const struct site *site, size_t photo, floa
                                      struct orl_image *depth)
 {
     struct orl_image mask;
-    enum orl_result result = ORL_OK;
-    if (site->render.occluders == ORL_OCCLUDERS_KEEP)
-        return ORL_OK;
-    result = orl_occluders_read(site->log, site->scene, photo, &mask);
+    enum orl_result result = orl_occluders_read(site->log, site->scene, photo, &mask);
     for (int y = 0; result == ORL_OK && mask.height && y < depth->height; y++)
         for (int x = 0; x < depth->width; x++) {
             int row = y * mask.height / depth->height, column = x * mask.width / depth->width;

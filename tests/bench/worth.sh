@@ -9,7 +9,7 @@ set -euo pipefail
 oriel=$1
 shift
 without=(fill=color fill=depth guess_depths=0 guess_blur=0 antialias=off alignment=off min_support=0
-    front_layer=0 outliers=0 occluders=keep sampling=bilinear)
+    front_layer=0 outliers=0 sampling=bilinear)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
