@@ -363,7 +363,7 @@ stress_matrix() { # FILE
       table(["what gets worse", "from", "to"] + [.methods[] | "`" + . + "`"];
         .axes[] | . as $a
         | [.title, (.levels[0] | tostring),
-           (.levels[-1] | tostring) + " " + .unit] +
+           ([$r.rows[] | select(.axis == $a.name)][-1].level | tostring) + " " + .unit] +
           [$r.methods[] as $m
            | [$r.losses[] | select(.axis == $a.name and .method == $m)][0]
            | if . == null then "-" else (.lost_db | fixed(1)) + ", " + (.at[1] | level($a)) end])'
