@@ -74,7 +74,8 @@ def rows_of(run, scene, methods):
                   "views": run.options["views"], "quick": run.options.get("quick", False)}
     rows = []
     for method, values in methods.items():
-        which = [method] if run.list_of("method") else [method, "paired"]
+        paired = not run.list_of("method") or "paired" in run.list_of("method")
+        which = [method, "paired"] if paired else [method]
         for setting, words in {"": [], **settings_of(run, values)}.items():
             name = f"{method}.{setting}" if setting else method
             found = run.kept(scene["name"], name, provenance, lambda: measure(

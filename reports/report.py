@@ -69,7 +69,7 @@ class Report:
 
     def methods(self):
         """Name and options of each method that is asked for, with its values of them."""
-        names = self.list_of("method") or [
+        names = [name for name in self.list_of("method") if name != "paired"] or [
             line.split()[0] for line in self.needs("methods").splitlines()
             if line[:1].islower() and "  " in line]
         found = {}

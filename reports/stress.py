@@ -21,6 +21,7 @@ POINTS_MAX, POINT_STEP = 120000, 3
 PHOTOS_LEFT, PHOTOS_FOR_A_VIEW = 3, 2
 STEPS_APART = 8  # of the cameras that are most out of step
 LOSSES_DB = [1, 3, 6]
+ON_ORIEL = "+oriel"  # after a method's name: its weights on the proxy and the guesses of oriel
 BARS_DISTANCE_M, FOCAL = 9.8, 28 / 35  # of the monument's bars; focal length of the larger side
 
 
@@ -712,7 +713,7 @@ def measure_severity(run, source, name, level, methods):
     cases, rows = source.change(name, level), {}
     if cases is None:
         return {}
-    groups = {}
+    groups, paired = {}, [] if AXES[name].on_hull else [n for n in run.list_of("method") if n == "paired"]
     for method, values in methods.items():
         if not (AXES[name].on_hull and values["paint"] == "points"):
             groups.setdefault(settings_of(AXES[name], values), []).append(method)
@@ -724,10 +725,11 @@ def measure_severity(run, source, name, level, methods):
         walk = ["--path", path]
         for settings, group in groups.items():
             how = [word for s in settings for word in ("--set", s)]
-            drawn = run.measure(scene, group, how, walk=walk)
+            drawn = run.measure(scene, group + paired, how, walk=walk)
             for found in drawn if drawn is not None else [
-                    row for method in group for row in run.measure(scene, [method], how, walk=walk) or []]:
-                rows.setdefault(found["method"], []).append(found)
+                    row for method in group
+                    for row in run.measure(scene, [method] + paired, how, walk=walk) or []]:
+                rows.setdefault(found["method"] + (ON_ORIEL if found.get("setting") else ""), []).append(found)
     return {method: {"device": found[0]["device"], "flicker": mean([f["flicker"] for f in found]),
                      "mean": {key: mean([f["mean"][key] for f in found]) for key in FIGURES}}
             for method, found in rows.items() if len(found) == len(cases)}
@@ -812,7 +814,7 @@ def make(run):
         raise Failure(f"no axis that is asked for suits {source.name}")
     kept = {key: run.options.get(key) for key in ("quick", "size", "photographs", "views", "seed")}
     kept["scene"] = "synth" if source.synth else report.state_of(source.scene)
-    kept["methods"] = methods
+    kept["methods"], kept["paired"] = methods, "paired" in run.list_of("method")
     axes, rows = [], []
     run.out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as work:
@@ -830,7 +832,8 @@ def make(run):
     if "part" not in run.options:
         if not rows:
             raise Failure("no method could be measured")
-        write(run, source, axes, methods, rows)
+        more = sorted({row["method"] for row in rows if row["method"] not in methods})
+        write(run, source, axes, [*methods, *more], rows)
     print(f"{run.measured} rows measured, {run.reused} used again, {run.left_out} left out: "
           f"{run.out}/{'rows' if 'part' in run.options else 'stress.html'}")
 

@@ -31,7 +31,8 @@ COMMAND_OPTIONS(chart_options, CHART_OPTIONS)
     ROW(out, "out", NEEDED("DIR"), \
         "the report: stress.html, stress.json, figures; rows in it are used again") \
     ROW(axes, "axes", LIST("NAME,.."), "what gets worse; default: all that the scene serves") \
-    ROW(methods, "method", LIST("NAME"), "methods; default: all") \
+    ROW(methods, "method", LIST("NAME"), "methods, or with paired also those of papers again on the proxy of oriel; " \
+        "default: all") \
     ROW(quick, "quick", FLAG, "an overview: one view, three of the six severities") \
     ROW(side, "size", INT(192, 96, 2048, "PX"), "longer side of photographs and pictures") \
     ROW(photographs, "photographs", INT(16, 4, 500, "N"), "of the synthetic monument") \
@@ -92,7 +93,8 @@ static enum orl_result make_report(struct terminal *terminal, const char *name,
     const struct orl_log *log = &terminal->log;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < methods->count; i++)
-        result = orl_method_find(log, methods->items[i]) ? ORL_OK : ORL_ERR_ARGUMENT;
+        result = strcmp(methods->items[i], "paired") == 0 || orl_method_find(log, methods->items[i])
+                     ? ORL_OK : ORL_ERR_ARGUMENT;
     if (result != ORL_OK)
         return result;
     json_t *words = json_array();

@@ -6,7 +6,7 @@ set -u
 
 needs_reports
 small=(--quick --size 96 --photographs 4 --quiet)
-some=(--axes photographs,points,pose,exposure,jpeg,nearer --method ulr,points)
+some=(--axes photographs,points,pose,exposure,jpeg,nearer --method ulr,points,paired)
 runs 0 env ORIEL_GPU_CHECK=1 "$oriel" stress synth --out report "${some[@]}" "${small[@]}"
 [ -s stderr.txt ] && fail "--quiet is not quiet"
 grep -q '^18 rows measured, 0 used again, 0 left out' stdout.txt || fail "no summary"
@@ -23,6 +23,8 @@ done
 # db AXIS METHOD: PSNR at the first severity and at the worst.
 db() { awk -v axis="($1" -v method="$2" '/^method/ { on = index($0, axis) } on && $1 == method { print $2, $3 }' stdout.txt; }
 for axis in points pose exposure jpeg; do
+    # The same weights on the depth and the background of oriel are better.
+    echo "$(db $axis ulr) $(db $axis ulr+oriel)" | awk '!($3 > $1 + 0.5) { exit 1 }' || fail "$axis: not on the proxy of oriel"
     db $axis ulr | awk '!($1 > 10 && $2 < $1 - 0.3) { exit 1 }' || fail "$axis costs nothing: $(db $axis ulr)"
 done
 for axis in pose jpeg; do
