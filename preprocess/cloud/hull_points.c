@@ -37,7 +37,7 @@ static void voxel_centre(const struct orl_hull *cube, size_t index, double centr
 }
 
 // How many photographs may be wrong about a place.
-static int pardoned(const struct orl_hull_points *hull)
+static int wrong_allowed(const struct orl_hull_points *hull)
 {
     return (int)(hull->count / WRONG_ONE_IN);
 }
@@ -64,7 +64,7 @@ static bool excludes(const struct orl_silhouette *s, const double world[3])
 
 static bool is_outside(const struct orl_hull_points *hull, const double world[3])
 {
-    int against = 0, most = pardoned(hull);
+    int against = 0, most = wrong_allowed(hull);
     for (size_t i = 0; i < hull->count && against <= most; i++)
         against += excludes(&hull->silhouettes[i], world);
     return against > most;
@@ -391,7 +391,7 @@ enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_p
     if (!hull->through)
         return ORL_OK;
     for (size_t i = 0; i < voxel_count(&hull->cube); i++)
-        hull->cube.inside[i] = hull->cube.inside[i] && hull->through[i] <= pardoned(hull);
+        hull->cube.inside[i] = hull->cube.inside[i] && hull->through[i] <= wrong_allowed(hull);
     enum orl_result result = keep_parts(log, points, hull->outside, &hull->cube);
     for (size_t i = 0; i < voxel_count(&hull->cube); i++)
         any = any || hull->cube.inside[i];

@@ -238,14 +238,14 @@ static void say_response(const struct exposing *e, const struct orl_source *sour
         [ORL_RESPONSE_FEW_SAMPLES] = "too few points seen at several exposures",
         [ORL_RESPONSE_SRGB] = "it fits"};
     const struct orl_log *log = e->job->log;
-    if (fit->verdict == ORL_RESPONSE_FOUND)
+    if (fit->outcome == ORL_RESPONSE_FOUND)
         orl_logf(log, ORL_LOG_INFO,
                  "expose: response curve of %s from %zu points (radiance agrees within %.2f EV, "
                  "as sRGB within %.2f)", camera_name(source), fit->points, fit->spread_ev,
                  fit->spread_srgb_ev);
     else
         orl_logf(log, ORL_LOG_INFO, "expose: sRGB is taken for the response of %s: %s",
-                 camera_name(source), why[fit->verdict]);
+                 camera_name(source), why[fit->outcome]);
 }
 
 static enum orl_result fit_camera(struct exposing *e, int camera)
@@ -272,7 +272,7 @@ static enum orl_result fit_camera(struct exposing *e, int camera)
         goto end;
     if (e->last)
         say_response(e, source, &fit);
-    if (fit.verdict != ORL_RESPONSE_FOUND)
+    if (fit.outcome != ORL_RESPONSE_FOUND)
         goto end;
     for (size_t i = 0; i < e->count; i++)
         if (e->photos[i].camera == camera)

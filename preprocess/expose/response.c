@@ -421,7 +421,7 @@ static enum orl_result fit_channel(const struct orl_log *log, struct problem *p,
     memset(p->offset, 0, p->photo_count * sizeof *p->offset);
     fit->points = choose(p);
     if (fit->points < POINTS_MIN || !spans(p)) {
-        fit->verdict = ORL_RESPONSE_FEW_SAMPLES;
+        fit->outcome = ORL_RESPONSE_FEW_SAMPLES;
         return ORL_OK;
     }
     double srgb = 0, found = 0;
@@ -466,10 +466,10 @@ enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_sam
 {
     memset(fit, 0, sizeof *fit);
     set_srgb(response);
-    fit->verdict = ORL_RESPONSE_ONE_EXPOSURE;
+    fit->outcome = ORL_RESPONSE_ONE_EXPOSURE;
     if (!(exposure_range(samples, photos) >= ORL_RESPONSE_RANGE_EV))
         return ORL_OK;
-    fit->verdict = ORL_RESPONSE_FOUND;
+    fit->outcome = ORL_RESPONSE_FOUND;
     size_t count = samples->count;
     struct problem p = {.samples = samples, .photos = photos, .photo_count = photo_count};
     size_t unknowns = TERMS + photo_count;
@@ -488,11 +488,11 @@ enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_sam
         p.light = block + 4 * count;
         set_logarithms(&p);
     }
-    for (int c = 0; result == ORL_OK && c < 3 && fit->verdict == ORL_RESPONSE_FOUND; c++)
+    for (int c = 0; result == ORL_OK && c < 3 && fit->outcome == ORL_RESPONSE_FOUND; c++)
         result = fit_channel(log, &p, c, response->linear[c], fit);
-    if (fit->verdict == ORL_RESPONSE_FOUND && fit->spread_ev > MUST_GAIN * fit->spread_srgb_ev)
-        fit->verdict = ORL_RESPONSE_SRGB;
-    if (result != ORL_OK || fit->verdict != ORL_RESPONSE_FOUND)
+    if (fit->outcome == ORL_RESPONSE_FOUND && fit->spread_ev > MUST_GAIN * fit->spread_srgb_ev)
+        fit->outcome = ORL_RESPONSE_SRGB;
+    if (result != ORL_OK || fit->outcome != ORL_RESPONSE_FOUND)
         set_srgb(response);
     free(block);
     free(p.matrix);

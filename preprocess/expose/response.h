@@ -5,7 +5,7 @@
 #include "preprocess/expose/samples.h"
 #include "oriel/scene.h"
 
-enum orl_response_verdict {
+enum orl_response_outcome {
     ORL_RESPONSE_FOUND,
     ORL_RESPONSE_ONE_EXPOSURE, // exposures differ by less than ORL_RESPONSE_RANGE_EV
     ORL_RESPONSE_FEW_SAMPLES,  // there are few, or they cover few values
@@ -20,7 +20,7 @@ struct orl_response_photo {
 };
 
 struct orl_response_fit {
-    enum orl_response_verdict verdict;
+    enum orl_response_outcome outcome;
     size_t points; // scene points seen at different exposures
     double spread_srgb_ev, spread_ev; // robust spread of a point's radiance by sRGB and by the
                                       // curve
@@ -30,7 +30,7 @@ struct orl_response_fit {
 // outliers. The curve is sRGB times the exponential of a smooth polynomial of the value. The
 // polynomial continues the curve where there are no samples. It also removes an ambiguity of series
 // with equal steps, which cannot show a ripple with the period of the step. Exposures may be wrong
-// in single photographs as long as they are right on average. With any verdict but
+// in single photographs as long as they are right on average. With any outcome but
 // ORL_RESPONSE_FOUND the curve is sRGB.
 enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_samples *samples,
                                  const struct orl_response_photo *photos, size_t photo_count,

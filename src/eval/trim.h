@@ -1,5 +1,5 @@
 // Finds the least model that still serves: what of a scene can go without a loss that counts.
-// Training photographs judge, each rendered without itself; held-out ones confirm once at the end.
+// Training photographs decide, each rendered without itself; held-out ones confirm once at the end.
 #ifndef ORL_EVAL_TRIM_H
 #define ORL_EVAL_TRIM_H
 
@@ -21,7 +21,7 @@ extern const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT];
 struct orl_trim_step {
     enum orl_trim_part part;
     char what[96];         // such as "points 50 %"
-    double loss_db, loss_ssim; // means over the views it was judged by, against the state before it
+    double loss_db, loss_ssim; // means over the views that decided, against the state before it
     bool taken;            // false: it was taken back in the end
     // After it:
     double bytes, ms;      // of the model on the device; of a frame

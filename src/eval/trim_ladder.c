@@ -16,7 +16,7 @@ const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
 // A view is rendered from two photographs at least when it is left out itself.
 enum { TRAIN_MIN = 3 };
 enum {
-    JUDGES_MAX = 48,     // targets that judge a step; all confirm the whole
+    DECIDING_MAX = 48,   // targets that decide on a step; all confirm the whole
     MENDS_MAX = 4,       // of photographs that go together
     BISECTIONS = 5,      // of points or photographs
     BUDGET_DIVIDE = 12,  // towards a budget they go in so many steps
@@ -91,8 +91,8 @@ size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t co
 void orl_trim_plan(struct trim_search *s)
 {
     size_t n = s->targets.count, views = s->params->views;
-    s->judge_count = n < JUDGES_MAX ? n : JUDGES_MAX;
-    s->validation_count = views && views < s->judge_count ? views : s->judge_count;
+    s->deciding_count = n < DECIDING_MAX ? n : DECIDING_MAX;
+    s->validation_count = views && views < s->deciding_count ? views : s->deciding_count;
 }
 
 static size_t level_of(const struct trim_state *state, enum orl_trim_part part)

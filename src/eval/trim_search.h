@@ -44,7 +44,7 @@ struct trim_search {
     const char *part; // the folder that becomes params->out when it is whole
     struct orl_validation targets; // all training photographs
     size_t validation_count; // targets that look at a step first
-    size_t judge_count;      // targets that judge it then
+    size_t deciding_count;   // targets that decide on it then
     size_t *order;           // owned: targets in the order in which their photographs go
     struct trim_score *first, *score; // owned, per target: of the whole scene, of `state`
     struct trim_loss loss;            // of `state`
@@ -73,7 +73,7 @@ enum orl_result orl_trim_climb(struct trim_search *s) ORL_CHECK_RESULT;
 // Makes a frame that takes longer than it may faster: by cheaper options, or without compressed
 // textures.
 enum orl_result orl_trim_make_faster(struct trim_search *s) ORL_CHECK_RESULT;
-// Takes other options for the method if the judges do not lose by it.
+// Takes other options for the method if the deciding targets do not lose by it.
 enum orl_result orl_trim_take_options(struct trim_search *s,
                                       const struct orl_render_params *render) ORL_CHECK_RESULT;
 
@@ -86,7 +86,7 @@ enum orl_result orl_trim_trial_begin(struct trim_search *s, enum orl_trim_part p
                                      struct trim_trial *t) ORL_CHECK_RESULT;
 void orl_trim_trial_end(struct trim_trial *t);
 // Opens the trial's model, unless the search's `shares` it. Then measures it by the targets that look
-// first, and by all judges unless the first lose far more than is allowed.
+// first, and by all that decide unless the first lose far more than is allowed.
 enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial *t,
                                        bool shares) ORL_CHECK_RESULT;
 // Whether the losses are within the tolerances, of which the step may use this share of what is left.
@@ -107,7 +107,7 @@ enum orl_result orl_trim_confirm(struct trim_search *s) ORL_CHECK_RESULT;
 // The order in which photographs go: each time the one whose two nearest that are left are nearest.
 enum orl_result orl_trim_order_photos(struct trim_search *s) ORL_CHECK_RESULT;
 // Photographs come back beside which views change by more than renderings there are wrong anyway: no
-// training photograph judges its own removal, as it is left out of its own view in any case.
+// training photograph decides on its own removal, as it is left out of its own view in any case.
 enum orl_result orl_trim_put_back(struct trim_search *s,
                                   struct trim_state *state) ORL_CHECK_RESULT;
 

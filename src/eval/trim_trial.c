@@ -87,7 +87,7 @@ static void set_losses(struct trim_search *s, struct trim_trial *t)
     t->step_ssim = step.ssim;
 }
 
-// Whether a few views leave it open that the judges together allow the step.
+// Whether a few views leave it open that all that decide allow the step.
 static bool is_open(const struct trim_search *s, const struct trim_trial *t)
 {
     struct trim_trial half = *t;
@@ -105,12 +105,12 @@ enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial 
     const struct trim_model *model = shares ? s->model : t->own;
     t->bytes = orl_trim_model_bytes(s, model, &t->state);
     for (size_t i = 0; result == ORL_OK && i < s->validation_count; i++) {
-        size_t judge = (2 * i + 1) * s->judge_count / (2 * s->validation_count);
-        result = measure_one(s, t, orl_trim_validation_view(s, judge, s->judge_count));
+        size_t deciding = (2 * i + 1) * s->deciding_count / (2 * s->validation_count);
+        result = measure_one(s, t, orl_trim_validation_view(s, deciding, s->deciding_count));
     }
     set_losses(s, t);
-    for (size_t i = 0; result == ORL_OK && is_open(s, t) && i < s->judge_count; i++)
-        result = measure_one(s, t, orl_trim_validation_view(s, i, s->judge_count));
+    for (size_t i = 0; result == ORL_OK && is_open(s, t) && i < s->deciding_count; i++)
+        result = measure_one(s, t, orl_trim_validation_view(s, i, s->deciding_count));
     set_losses(s, t);
     return result;
 }

@@ -109,46 +109,46 @@ static float linearise(const struct series *s, int channel, float color)
 }
 
 // A series' sample of a pixel.
-struct opinion {
+struct estimate {
     float color[3]; // radiance
     float clip;     // confidence with respect to clipping, less without a surface
 };
 
 static void form_opinions(const struct orl_sensor *sensor, const struct series *s, float ev_above,
-                          const struct orl_frame *picture, struct opinion *opinions, size_t stride)
+                          const struct orl_frame *picture, struct estimate *estimates, size_t stride)
 {
     size_t pixels = (size_t)picture->color.width * (size_t)picture->color.height;
     for (size_t i = 0; i < pixels; i++) {
-        struct opinion *opinion = &opinions[i * stride];
+        struct estimate *estimate = &estimates[i * stride];
         float peak = 0, scale = exp2f(-s->ev);
         for (int c = 0; c < 3; c++) {
             float x = linearise(s, c, picture->color.f32[3 * i + (size_t)c]);
-            opinion->color[c] = scale * x;
+            estimate->color[c] = scale * x;
             peak = fmaxf(peak, x);
         }
-        opinion->clip = orl_clip_trust(sensor, peak, ev_above) *
+        estimate->clip = orl_clip_trust(sensor, peak, ev_above) *
                         (picture->coverage.f32[i] > 0.5f ? 1 : UNCOVERED_SHARE);
     }
 }
 
 static float trust_at(const struct orl_sensor *sensor, const struct series *s,
-                      const struct opinion *opinion, const float level[3])
+                      const struct estimate *estimate, const float level[3])
 {
     float scale = exp2f(s->ev), model = (float)(sensor->model * sensor->model);
     const float exposure[3] = {scale * level[0], scale * level[1], scale * level[2]};
-    return opinion->clip * model / (model + orl_relative_variance(sensor, exposure, true));
+    return estimate->clip * model / (model + orl_relative_variance(sensor, exposure, true));
 }
 
 // Merges twice, since the confidence depends on the amount of light. In the first round each series
 // uses its own estimate of it, in the second the merged one.
 static void merge_pixel(const struct orl_sensor *sensor, const struct series_set *set, float least,
-                        const struct opinion *opinions, float color[3], float *confidence)
+                        const struct estimate *estimates, float color[3], float *confidence)
 {
     float level[3];
     for (int round = 0; round < 2; round++) {
         float sum[3] = {0}, total = 0, trusted = 0;
         for (size_t k = 0; k < set->count; k++) {
-            const struct opinion *o = &opinions[k];
+            const struct estimate *o = &estimates[k];
             float trust = trust_at(sensor, &set->items[k], o, round ? level : o->color);
             for (int c = 0; c < 3; c++)
                 sum[c] += trust * o->color[c];
@@ -185,7 +185,7 @@ static void exposure_range(const struct series_set *set, float range[2])
 static enum orl_result draw_series(struct series_set *set, size_t k,
                                    const struct orl_hdr_params *params,
                                    const struct orl_view *view, const bool *skip,
-                                   struct opinion *opinions, struct orl_frame *frame)
+                                   struct estimate *estimates, struct orl_frame *frame)
 {
     struct series *s = &set->items[k];
     struct orl_frame picture;
@@ -199,7 +199,7 @@ static enum orl_result draw_series(struct series_set *set, size_t k,
     enum orl_result result = orl_renderer_draw(set->renderer, view, &render, s->skip, &picture);
     if (result != ORL_OK)
         return result;
-    form_opinions(&params->sensor, s, s->ev - range[0], &picture, opinions + k, set->count);
+    form_opinions(&params->sensor, s, s->ev - range[0], &picture, estimates + k, set->count);
     if (k == 0) {
         *frame = picture;
     } else {
@@ -216,20 +216,20 @@ enum orl_result orl_series_draw(const struct orl_log *log, struct series_set *se
     size_t pixels = (size_t)view->camera.width * (size_t)view->camera.height;
     float range[2];
     memset(frame, 0, sizeof *frame);
-    struct opinion *opinions = orl_array(log, pixels, set->count * sizeof *opinions);
-    enum orl_result result = opinions ? ORL_OK : ORL_ERR_MEMORY;
+    struct estimate *estimates = orl_array(log, pixels, set->count * sizeof *estimates);
+    enum orl_result result = estimates ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t k = 0; result == ORL_OK && k < set->count; k++)
-        result = draw_series(set, k, params, view, skip, opinions, frame);
+        result = draw_series(set, k, params, view, skip, estimates, frame);
     if (result == ORL_OK)
         result = orl_image_init(log, &frame->confidence, view->camera.width, view->camera.height, 1,
                                 ORL_PIXEL_F32);
     exposure_range(set, range);
     float least = orl_least_radiance(&params->sensor, range[1], true);
     for (size_t i = 0; result == ORL_OK && i < pixels; i++)
-        merge_pixel(&params->sensor, set, least, opinions + i * set->count,
+        merge_pixel(&params->sensor, set, least, estimates + i * set->count,
                     frame->color.f32 + 3 * i, &frame->confidence.f32[i]);
     if (result != ORL_OK)
         orl_frame_finish(frame);
-    free(opinions);
+    free(estimates);
     return result;
 }

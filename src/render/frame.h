@@ -39,7 +39,6 @@ struct frame {
     size_t *chosen;
     float (*selected)[4];      // by the selection: weight of each; x y z its own use
     size_t chosen_count;
-    size_t chosen_extra;       // princ: photographs before this one were chosen by direction
     // Pixels as in shaders/shared/pixel.glsl, finished at the end. Half floats if the painter
     // finishes pixels.
     struct orl_tex *picture;

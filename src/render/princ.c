@@ -132,7 +132,7 @@ static void view_direction(const struct frame *frame, double out[3])
 }
 
 // Adds the photograph that agrees best with a direction and is not chosen yet; false: none is left.
-static bool add_best(struct frame *frame, bool *taken, const double direction[3], bool extra)
+static bool add_best(struct frame *frame, bool *taken, const double direction[3])
 {
     double best = -2;
     size_t index = SIZE_MAX;
@@ -147,7 +147,6 @@ static bool add_best(struct frame *frame, bool *taken, const double direction[3]
         return false;
     taken[index] = true;
     frame->chosen[frame->chosen_count++] = index;
-    frame->chosen_extra = extra ? frame->chosen_extra : frame->chosen_count;
     return true;
 }
 
@@ -259,7 +258,7 @@ static enum orl_result add_extras(struct frame *frame, bool *taken)
         size_t clusters = cluster(normals, count, ORL_PRINC_EXTRAS, means);
         for (size_t k = 0; k < clusters; k++) {
             const double towards[3] = {-means[k][0], -means[k][1], -means[k][2]};
-            add_best(frame, taken, towards, true);
+            add_best(frame, taken, towards);
         }
     }
     free(normals);
@@ -272,11 +271,11 @@ static int by_index(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-// Into what shaders are told, photographs ascending.
-static void weigh(struct frame *frame, const double direction[3], bool *extra)
+// Into what shaders are told, photographs ascending. The first `nearest` were chosen by direction.
+static void weigh(struct frame *frame, const double direction[3], size_t nearest, bool *extra)
 {
     memset(extra, 0, frame->scene->photo_count * sizeof *extra);
-    for (size_t i = frame->chosen_extra; i < frame->chosen_count; i++)
+    for (size_t i = nearest; i < frame->chosen_count; i++)
         extra[frame->chosen[i]] = true;
     qsort(frame->chosen, frame->chosen_count, sizeof *frame->chosen, by_index);
     for (size_t i = 0; i < frame->chosen_count; i++) {
@@ -303,14 +302,14 @@ static enum orl_result choose(struct frame *frame, size_t most)
     for (size_t i = 0; i < frame->scene->photo_count; i++)
         taken[i] = !frame->photos->states[i].usable || (frame->skip && frame->skip[i]);
     view_direction(frame, direction);
-    frame->chosen_count = frame->chosen_extra = 0;
+    frame->chosen_count = 0;
     for (size_t n = (size_t)(frame->params->nearest + 0.5f); n > 0; n--)
-        if (!add_best(frame, taken, direction, false))
+        if (!add_best(frame, taken, direction))
             break;
+    size_t nearest = frame->chosen_count;
+    result = add_extras(frame, taken);
     if (result == ORL_OK)
-        result = add_extras(frame, taken);
-    if (result == ORL_OK)
-        weigh(frame, direction, taken);
+        weigh(frame, direction, nearest, taken);
 end:
     free(taken);
     return result;

@@ -276,7 +276,7 @@ static void response_is_found(void **state)
     struct orl_response_fit fit;
     tell_exposures(photos);
     assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
-    assert_int_equal(fit.verdict, ORL_RESPONSE_FOUND);
+    assert_int_equal(fit.outcome, ORL_RESPONSE_FOUND);
     for (int c = 0; c < 3; c++) {
         double squares = 0, scale = 0, norm = 0, truth[256];
         int v = 0;
@@ -315,7 +315,7 @@ static void vignetting_of_every_order_is_undone(void **state)
     for (int i = 0; i < PHOTOS; i++)
         photos[i].vignette[1] = -0.6f;
     assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
-    assert_int_equal(fit.verdict, ORL_RESPONSE_FOUND);
+    assert_int_equal(fit.outcome, ORL_RESPONSE_FOUND);
     print_message("spread %g EV\n", fit.spread_ev);
     assert_true(fit.spread_ev < 0.08);
     orl_samples_finish(&samples);
@@ -340,7 +340,7 @@ static void curves_never_fall(void **state)
             if (samples.items[i].value[c] > 128)
                 samples.items[i].value[c] = 128 + 0.9f * (255 - samples.items[i].value[c]);
     assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
-    assert_int_equal(fit.verdict, ORL_RESPONSE_FOUND);
+    assert_int_equal(fit.outcome, ORL_RESPONSE_FOUND);
     for (int c = 0; c < 3; c++)
         for (int v = 1; v < 256; v++)
             assert_true(response.linear[c][v] > response.linear[c][v - 1]);
@@ -363,16 +363,16 @@ static void response_stays_srgb_without_reason(void **state)
     struct orl_response_fit fit;
     tell_exposures(photos);
     assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
-    assert_int_equal(fit.verdict, ORL_RESPONSE_SRGB);
+    assert_int_equal(fit.outcome, ORL_RESPONSE_SRGB);
     assert_float_equal(response.linear[1][128], orl_srgb_decode(128 / 255.0f), 1e-6);
     for (int i = 0; i < PHOTOS; i++)
         photos[i].ev = 0.1 * i;
     assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
-    assert_int_equal(fit.verdict, ORL_RESPONSE_FEW_SAMPLES);
+    assert_int_equal(fit.outcome, ORL_RESPONSE_FEW_SAMPLES);
     for (int i = 0; i < PHOTOS; i++)
         photos[i].ev = 0.05 * i;
     assert_int_equal(orl_response_fit(NULL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
-    assert_int_equal(fit.verdict, ORL_RESPONSE_ONE_EXPOSURE);
+    assert_int_equal(fit.outcome, ORL_RESPONSE_ONE_EXPOSURE);
     orl_samples_finish(&samples);
 }
 

@@ -123,7 +123,7 @@ static void fit(const struct stack *stack, struct orl_response *response)
         photos[i] = (struct orl_response_photo){.use = true, .ev = stack->ev[i]};
     assert_int_equal(orl_response_fit(NULL, &samples, photos, (size_t)stack->photos, response,
                                       &found), ORL_OK);
-    assert_int_equal(found.verdict, ORL_RESPONSE_FOUND);
+    assert_int_equal(found.outcome, ORL_RESPONSE_FOUND);
     for (int c = 0; c < 3; c++)
         for (int v = 1; v < 256; v++)
             assert_true(response->linear[c][v] > response->linear[c][v - 1]);
