@@ -3,24 +3,12 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "core/vec3.h"
 #include "preprocess/calibrate/match.h"
 
 enum { PARTNERS = 20 }; // that a photograph is matched with, where they are many
 static const double SAME_WAY = 0.5; // cosine of the angle between directions of view, at least
-
-struct partner {
-    double distance2;
-    uint32_t view;
-};
-
-static int by_distance(const void *a, const void *b)
-{
-    const struct partner *x = a, *y = b;
-    if (x->distance2 != y->distance2)
-        return x->distance2 < y->distance2 ? -1 : 1;
-    return x->view < y->view ? -1 : x->view > y->view;
-}
 
 static int by_views(const void *a, const void *b)
 {
@@ -32,7 +20,7 @@ static int by_views(const void *a, const void *b)
 
 // The partners of view `a`, the nearest first; how many.
 static size_t find_partners(const struct import_job *import, size_t a, bool all,
-                            struct partner *partners)
+                            struct orl_ranked *partners)
 {
     const struct orl_pose *pose = &import->views[a].image->cam_from_world;
     double eye[3], off[3];
@@ -46,9 +34,9 @@ static size_t find_partners(const struct import_job *import, size_t a, bool all,
         orl_pose_centre(other, off);
         for (int k = 0; k < 3; k++)
             off[k] -= eye[k];
-        partners[count++] = (struct partner){orl_dot3(off, off), (uint32_t)b};
+        partners[count++] = (struct orl_ranked){orl_dot3(off, off), b};
     }
-    qsort(partners, count, sizeof *partners, by_distance);
+    qsort(partners, count, sizeof *partners, orl_order_ranked);
     return all || count < PARTNERS ? count : PARTNERS;
 }
 
@@ -58,14 +46,14 @@ enum orl_result orl_import_pairs(const struct import_job *import, struct orl_pai
     for (size_t i = 0; i < import->view_count; i++)
         train += !import->views[i].test;
     bool all = orl_match_way(ORL_MATCHING_AUTO, train) == ORL_MATCHING_EXHAUSTIVE;
-    struct partner *partners = orl_array(import->log, import->view_count, sizeof *partners);
+    struct orl_ranked *partners = orl_array(import->log, import->view_count, sizeof *partners);
     *list = (struct orl_pair_list){
         .items = orl_array(import->log, train * (all ? train : PARTNERS), sizeof *list->items)};
     enum orl_result result = partners && list->items ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t a = 0; result == ORL_OK && a < import->view_count; a++) {
         size_t count = import->views[a].test ? 0 : find_partners(import, a, all, partners);
         for (size_t i = 0; i < count; i++) {
-            uint32_t b = partners[i].view;
+            uint32_t b = (uint32_t)partners[i].index;
             list->items[list->count++] = (struct orl_pair){a < b ? (uint32_t)a : b,
                                                            a < b ? b : (uint32_t)a};
         }

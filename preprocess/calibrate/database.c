@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 
 struct orl_database {
     const struct orl_log *log;
@@ -72,19 +73,6 @@ void orl_database_close(struct orl_database **db)
 
 // --- features ---
 
-struct ranked {
-    float scale;
-    size_t row;
-};
-
-static int by_scale(const void *a, const void *b)
-{
-    const struct ranked *x = a, *y = b;
-    if (x->scale != y->scale)
-        return x->scale < y->scale ? 1 : -1;
-    return x->row < y->row ? -1 : x->row > y->row;
-}
-
 // A keypoint is x, y, scale, orientation or x, y and a 2x2 matrix.
 static float scale_of(const float *keypoint, size_t columns)
 {
@@ -115,7 +103,7 @@ static enum orl_result take_largest(const struct orl_database *db, const struct 
                                     const struct table *all, size_t limit, uint8_t **descriptors,
                                     size_t *count)
 {
-    struct ranked *order = orl_array(db->log, all->rows, sizeof *order);
+    struct orl_ranked *order = orl_array(db->log, all->rows, sizeof *order);
     size_t kept = all->rows < limit ? all->rows : limit;
     uint8_t *out = orl_array(db->log, kept, ORL_SIFT_SIZE);
     if (!order || !out) {
@@ -128,12 +116,12 @@ static enum orl_result take_largest(const struct orl_database *db, const struct 
         memcpy(keypoint, (const float *)keypoints->data + i * keypoints->columns,
                keypoints->columns * sizeof *keypoint);
         float scale = scale_of(keypoint, keypoints->columns);
-        order[i] = (struct ranked){isfinite(scale) ? scale : 0, i};
+        order[i] = (struct orl_ranked){isfinite(scale) ? -(double)scale : 0, i};
     }
-    qsort(order, all->rows, sizeof *order, by_scale);
+    qsort(order, all->rows, sizeof *order, orl_order_ranked);
     for (size_t i = 0; i < kept; i++)
         memcpy(out + i * ORL_SIFT_SIZE,
-               (const uint8_t *)all->data + order[i].row * ORL_SIFT_SIZE, ORL_SIFT_SIZE);
+               (const uint8_t *)all->data + order[i].index * ORL_SIFT_SIZE, ORL_SIFT_SIZE);
     free(order);
     *descriptors = out;
     *count = kept;

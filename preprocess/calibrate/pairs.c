@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "preprocess/calibrate/vlad.h"
 
 enum {
@@ -110,23 +111,10 @@ static double place_apart(const struct choice *c, size_t a, size_t b)
     return hypot(east, x->latitude - y->latitude);
 }
 
-struct neighbour {
-    double distance;
-    uint32_t photo;
-};
-
-static int by_distance(const void *a, const void *b)
-{
-    const struct neighbour *x = a, *y = b;
-    if (x->distance != y->distance)
-        return x->distance < y->distance ? -1 : 1;
-    return x->photo < y->photo ? -1 : x->photo > y->photo;
-}
-
 // Proposes each photograph with its `nearest` in this respect.
 static enum orl_result propose_near(struct choice *c, distance_fn distance, size_t nearest)
 {
-    struct neighbour *others = orl_array(c->log, c->count, sizeof *others);
+    struct orl_ranked *others = orl_array(c->log, c->count, sizeof *others);
     enum orl_result result = others ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t a = 0; result == ORL_OK && a < c->count; a++) {
         size_t known = 0;
@@ -135,11 +123,11 @@ static enum orl_result propose_near(struct choice *c, distance_fn distance, size
         for (size_t b = 0; b < c->count; b++) {
             double d = a == b ? NAN : distance(c, a, b);
             if (!isnan(d))
-                others[known++] = (struct neighbour){d, (uint32_t)b};
+                others[known++] = (struct orl_ranked){d, b};
         }
-        qsort(others, known, sizeof *others, by_distance);
+        qsort(others, known, sizeof *others, orl_order_ranked);
         for (size_t i = 0; result == ORL_OK && i < known && i < nearest; i++)
-            result = propose(c, 0, (uint32_t)a, others[i].photo);
+            result = propose(c, 0, (uint32_t)a, (uint32_t)others[i].index);
     }
     free(others);
     return result;
@@ -250,19 +238,20 @@ static void choose_best(struct choice *c)
 // Photographs in succession usually overlap, even where few features say so.
 static enum orl_result choose_successive(struct choice *c)
 {
-    struct neighbour *order = orl_array(c->log, c->count, sizeof *order);
+    struct orl_ranked *order = orl_array(c->log, c->count, sizeof *order);
     size_t known = 0;
     if (!order)
         return ORL_ERR_MEMORY;
     for (size_t p = 0; p < c->count; p++)
         if (!isnan(c->photos[p].taken_s))
-            order[known++] = (struct neighbour){c->photos[p].taken_s, (uint32_t)p};
-    qsort(order, known, sizeof *order, by_distance);
+            order[known++] = (struct orl_ranked){c->photos[p].taken_s, p};
+    qsort(order, known, sizeof *order, orl_order_ranked);
     for (size_t i = 1; i < known; i++) {
         struct orl_preempt_pair *pair =
-            order[i].distance - order[i - 1].distance > SOON_S
+            order[i].key - order[i - 1].key > SOON_S
                 ? NULL
-                : find_pair(c, c->pair_count, order[i - 1].photo, order[i].photo);
+                : find_pair(c, c->pair_count, (uint32_t)order[i - 1].index,
+                            (uint32_t)order[i].index);
         if (pair)
             choose(c, (size_t)(pair - c->pairs));
     }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "scene/nearest_points.h"
 
 // --- members: photographs divided by where they stand ---
@@ -138,18 +139,6 @@ void orl_clusters_finish(struct orl_clusters *clusters)
 
 // --- photographs of a cluster ---
 
-struct helper {
-    double score;
-    size_t image;
-};
-
-static int compare_helpers(const void *left, const void *right)
-{
-    const struct helper *a = left, *b = right;
-    return a->score > b->score ? -1 : a->score < b->score ? 1
-           : a->image < b->image ? -1 : a->image > b->image;
-}
-
 size_t orl_clusters_helpers(size_t size)
 {
     return (size + 1) / 2;
@@ -160,7 +149,7 @@ enum orl_result orl_clusters_photographs(const struct orl_log *log,
                                          struct orl_names *names)
 {
     const struct orl_colmap_model *model = clusters->model;
-    struct helper *helpers = orl_array(log, model->image_count + 1, sizeof *helpers);
+    struct orl_ranked *helpers = orl_array(log, model->image_count + 1, sizeof *helpers);
     bool *take = orl_array(log, model->image_count + 1, sizeof *take);
     enum orl_result result = helpers && take ? ORL_OK : ORL_ERR_MEMORY;
     size_t count = 0;
@@ -172,12 +161,12 @@ enum orl_result orl_clusters_photographs(const struct orl_log *log,
             if (clusters->owner[image->points[k]] == cluster)
                 score += shown(model, image, image->points[k]);
         if (score > 0)
-            helpers[count++] = (struct helper){score, i};
+            helpers[count++] = (struct orl_ranked){-score, i};
     }
     if (result == ORL_OK)
-        qsort(helpers, count, sizeof *helpers, compare_helpers);
+        qsort(helpers, count, sizeof *helpers, orl_order_ranked);
     for (size_t i = 0; result == ORL_OK && i < count && i < orl_clusters_helpers(clusters->size); i++)
-        take[helpers[i].image] = true;
+        take[helpers[i].index] = true;
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
         if (take[i])
             result = orl_names_add(log, names, model->images[i].name);

@@ -7,6 +7,7 @@
 #include "bridge/bridge.h"
 #include "core/color.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "eval/validation.h"
 
 // Pixels of pictures of ORL_OCCLUDERS_SIDE, and differences in square roots of light, as the length
@@ -242,11 +243,6 @@ enum orl_result orl_occluder_mask(const struct orl_log *log,
 // of photographs and not with its square.
 enum { OTHERS_MAX = 16 };
 
-struct other {
-    size_t photo;
-    double apart;
-};
-
 struct finder {
     const struct orl_log *log;
     const struct orl_scene *scene;
@@ -255,16 +251,10 @@ struct finder {
     struct orl_render_params nearest, consensus, points;
     struct orl_image *masks; // by photograph
     double *shares;
-    struct other *others; // owned: room for all photographs
+    struct orl_ranked *others; // owned: room for all photographs
     bool *skip;           // owned
     bool *proven;         // owned: photographs whose occluders stand
 };
-
-static int by_apart(const void *a, const void *b)
-{
-    double first = ((const struct other *)a)->apart, second = ((const struct other *)b)->apart;
-    return (first > second) - (first < second);
-}
 
 // Skips what the rendering of a photograph's view does without: see orl_validation_leave_out, and
 // all but the nearest.
@@ -277,11 +267,11 @@ static void set_skip(const struct finder *f, size_t photo, const bool *removed)
         if (f->skip[i] || f->scene->photos[i].test)
             continue;
         orl_validation_apart(f->scene, photo, i, &distance, &angle);
-        f->others[count++] = (struct other){i, distance + angle};
+        f->others[count++] = (struct orl_ranked){distance + angle, i};
     }
-    qsort(f->others, count, sizeof *f->others, by_apart);
+    qsort(f->others, count, sizeof *f->others, orl_order_ranked);
     for (size_t k = OTHERS_MAX; k < count; k++)
-        f->skip[f->others[k].photo] = true;
+        f->skip[f->others[k].index] = true;
 }
 
 // Finds the occluders of a photograph, compared with renderings without `removed` (NULL: none).

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "core/vec3.h"
 #include "render/frame.h"
 #include "render/photos.h"
@@ -265,19 +266,13 @@ static enum orl_result add_extras(struct frame *frame, bool *taken)
     return result;
 }
 
-static int by_index(const void *a, const void *b)
-{
-    const size_t *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 // Into what shaders are told, photographs ascending. The first `nearest` were chosen by direction.
 static void weigh(struct frame *frame, const double direction[3], size_t nearest, bool *extra)
 {
     memset(extra, 0, frame->scene->photo_count * sizeof *extra);
     for (size_t i = nearest; i < frame->chosen_count; i++)
         extra[frame->chosen[i]] = true;
-    qsort(frame->chosen, frame->chosen_count, sizeof *frame->chosen, by_index);
+    qsort(frame->chosen, frame->chosen_count, sizeof *frame->chosen, orl_order_sizes);
     for (size_t i = 0; i < frame->chosen_count; i++) {
         const struct photo_aspect *aspect = &frame->proxy->aspects[frame->chosen[i]];
         double agrees = fmax(orl_dot3(direction, aspect->direction), 1e-3);

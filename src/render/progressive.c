@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "core/process.h"
 #include "render/fill.h"
 #include "render/photos.h"
@@ -19,11 +20,6 @@ enum {
 };
 
 // --- order ---
-
-struct candidate {
-    size_t photo;
-    double use;
-};
 
 // The sum of inverse penalties over a few points at the scene's typical distance. A photograph that
 // shows none of them comes last, the nearest first.
@@ -43,14 +39,6 @@ static double use_of(const struct frame *frame, size_t photo)
     }
     double apart = hypot(hypot(eye[0] - from[0], eye[1] - from[1]), eye[2] - from[2]);
     return sum + 1e-6 / (1 + apart / typical);
-}
-
-static int most_useful(const void *a, const void *b)
-{
-    const struct candidate *x = a, *y = b;
-    if (x->use != y->use)
-        return x->use > y->use ? -1 : 1;
-    return (x->photo > y->photo) - (x->photo < y->photo);
 }
 
 // --- steps ---
@@ -187,16 +175,16 @@ static enum orl_result sort(const struct frame *frame, struct loading *loading)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     size_t count = frame->chosen_count, most = (size_t)frame->photos->slot_count;
-    struct candidate *all = orl_array(log, count, sizeof *all);
+    struct orl_ranked *all = orl_array(log, count, sizeof *all);
     loading->order = orl_array(log, count, sizeof *loading->order);
     loading->count = count < most ? count : most;
     enum orl_result result = all && loading->order ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
-        all[i] = (struct candidate){frame->chosen[i], use_of(frame, frame->chosen[i])};
+        all[i] = (struct orl_ranked){-use_of(frame, frame->chosen[i]), frame->chosen[i]};
     if (result == ORL_OK)
-        qsort(all, count, sizeof *all, most_useful);
+        qsort(all, count, sizeof *all, orl_order_ranked);
     for (size_t i = 0; result == ORL_OK && i < loading->count; i++)
-        loading->order[i] = all[i].photo;
+        loading->order[i] = all[i].index;
     free(all);
     return result;
 }

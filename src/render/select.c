@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "render/frame.h"
 #include "shared/penalty.h"
 
@@ -49,23 +50,10 @@ static double deviation(const struct frame *frame, size_t photo)
     return cosine >= 1 ? 0 : cosine > -1 ? acos(cosine) : 3.141592653589793; // includes NaN
 }
 
-struct direction {
-    size_t photo;
-    double penalty;
-};
-
-static int by_penalty(const void *a, const void *b)
-{
-    const struct direction *x = a, *y = b;
-    if (x->penalty != y->penalty)
-        return x->penalty < y->penalty ? -1 : 1;
-    return (x->photo > y->photo) - (x->photo < y->photo);
-}
-
 static int by_index(const void *a, const void *b)
 {
-    const struct direction *x = a, *y = b;
-    return (x->photo > y->photo) - (x->photo < y->photo);
+    const struct orl_ranked *x = a, *y = b;
+    return (x->index > y->index) - (x->index < y->index);
 }
 
 // Each photograph has weight 1 - p / p', where p' is the penalty of the first one left out, so that
@@ -74,21 +62,21 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
 {
     (void)most; // photographs that do not fit on the device are asked in batches
     size_t count = 0, kept = (size_t)(frame->params->nearest + 0.5f);
-    struct direction *all = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count,
-                                      sizeof *all);
+    struct orl_ranked *all = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count,
+                                       sizeof *all);
     if (!all)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < frame->scene->photo_count; i++)
         if (may_use(frame, i))
-            all[count++] = (struct direction){i, deviation(frame, i)};
-    qsort(all, count, sizeof *all, by_penalty);
-    double threshold = count > kept ? all[kept].penalty : INFINITY;
+            all[count++] = (struct orl_ranked){deviation(frame, i), i};
+    qsort(all, count, sizeof *all, orl_order_ranked);
+    double threshold = count > kept ? all[kept].key : INFINITY;
     kept = count < kept ? count : kept;
     qsort(all, kept, sizeof *all, by_index);
     for (size_t i = 0; i < kept; i++) {
         // As in oriel, a trace of weight lets photographs that tie with the first left out paint.
-        double weight = threshold > 0 ? 1.00001 - all[i].penalty / threshold : 1;
-        frame->chosen[i] = all[i].photo;
+        double weight = threshold > 0 ? 1.00001 - all[i].key / threshold : 1;
+        frame->chosen[i] = all[i].index;
         frame->selected[i][0] = (float)weight;
     }
     frame->chosen_count = kept;

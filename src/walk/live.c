@@ -12,6 +12,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "io/picture.h"
 #include "scene/silhouette.h"
 #include "walk/live_cameras.h"
@@ -267,17 +268,11 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
     return result;
 }
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static void report(const struct live *live)
 {
     size_t count = live->drawn < LATENCIES ? live->drawn : LATENCIES;
     double seconds = live->last_s - live->first_s;
-    qsort(live->latency_ms, count, sizeof *live->latency_ms, compare_floats);
+    qsort(live->latency_ms, count, sizeof *live->latency_ms, orl_order_floats);
     orl_logf(live->log, ORL_LOG_INFO, "live: %zu time steps, %.1f a second; %zu drawn, a median of %.0f ms "
              "after their last picture", live->steps,
              seconds > 0 ? (double)(live->steps - 1) / seconds : 0, live->drawn,
