@@ -3,7 +3,7 @@
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/backdrop.glsl"
-#include "gather/guess_blur.glsl"
+#include "gather/blend.glsl"
 #include "gather/sample/srgb.glsl"
 #include "shared/pixel.glsl"
 #include <visibility>
@@ -19,49 +19,6 @@ layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
 #include "gather/unfinished.glsl"
-
-// A pixel's surface point.
-struct spot {
-    vec3 p;      // z 0: no surface
-    float guess; // 1: on estimated background depth, else 0; no bool: docs/develop/shaders.md
-};
-
-bool is_guess(spot s)
-{
-    return s.guess > 0.0;
-}
-
-// A photograph that shows the surface point.
-struct sight {
-    float penalty;
-    int index;  // index of the photograph
-    vec2 pixel; // projection of the point into the photograph
-    float mip;
-};
-
-// The best photographs of a pixel in ascending order of penalty, and the next greater penalty.
-struct ranking {
-    sight best[KEPT];
-    float next; // the limit of what is blended
-};
-
-// The code selects rather than branches, here and below: a branch costs a software renderer a mask
-// on every value that outlives it.
-void insert(sight s, inout ranking r)
-{
-    for (int k = 0; k < KEPT; k++) {
-        bool better = s.penalty < r.best[k].penalty;
-        sight other = r.best[k];
-        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.index : other.index,
-                          better ? s.pixel : other.pixel, better ? s.mip : other.mip);
-        s = sight(better ? other.penalty : s.penalty, better ? other.index : s.index,
-                  better ? other.pixel : s.pixel, better ? other.mip : s.mip);
-    }
-    r.next = min(r.next, s.penalty);
-}
-
-// Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
-const float GUESS_SURE_MIN = 0.1;
 
 void consider(int i, photo source, spot s, inout ranking r)
 {
@@ -89,44 +46,13 @@ void consider(int i, photo source, spot s, inout ranking r)
     insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z)), r);
 }
 
-// One photograph's colour and its weight.
-vec4 look(sight one, float least, float limit, spot s)
+// Samples with the k-th photograph of a ranking. Every one is read: see insert.
+vec4 look(ranking r, int k, spot s)
 {
-    // The weight is full until the penalty comes near that of the first photograph left out. A
-    // trace of weight remains at equality, so that photographs that tie for the last place paint.
-    float fade = limit == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / limit));
+    sight one = r.best[k];
     vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
-    float sharpness = is_guess(s) ? GUESS_SHARPNESS : opt.sharpness;
-    bool counts = one.penalty < NOT_SEEN && one.penalty <= limit;
-    return counts ? vec4(color, pow(least / one.penalty, sharpness) * fade) : vec4(0.0);
-}
-
-// Factor on the outlier severity on estimated depth, where a photograph that differs usually shows
-// another surface.
-const float GUESS_SEVERITY = 4.0;
-
-// Colour, and 1 if there is a sample; blur: for estimated depth. Samples far from the consensus
-// lose weight: pedestrians, leaves, reflections. The square roots of the weights make it a
-// consensus of all photographs rather than of the best one; the square roots of light make
-// differences roughly perceptually uniform.
-vec4 blend(spot s, ranking r, out float blur)
-{
-    vec4 samples[KEPT], vote = vec4(0.0), sum = vec4(0.0);
-    for (int k = 0; k < KEPT; k++) {
-        samples[k] = look(r.best[k], r.best[0].penalty, r.next, s);
-        vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
-    }
-    vec3 mean = vote.rgb / max(vote.a, 1e-30);
-    vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
-    float severity = outlier_severity * (is_guess(s) ? GUESS_SEVERITY : 1.0);
-    for (int k = 0; k < KEPT; k++) {
-        vec3 off = sqrt(samples[k].rgb) - mean;
-        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
-        apart += vec2(dot(off, off), 1.0) * samples[k].a;
-    }
-    apart.y = max(apart.y, 1e-30);
-    blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
-    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
+    float weight = sight_weight(r, k, s);
+    return weight > 0.0 ? vec4(color, weight) : vec4(0.0);
 }
 
 void main()
@@ -141,9 +67,7 @@ void main()
         float stored = imageLoad(view_depth, at).r; // 0 outside
         spots[k] = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
                         stored < 0.0 ? 1.0 : 0.0);
-        rankings[k].next = NOT_SEEN;
-        for (int n = 0; n < KEPT; n++)
-            rankings[k].best[n] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
+        clear(rankings[k]);
     }
     ivec2 tile = corner / tile_side; // of all four pixels, since the tile's side is even
     int list = (tile.y * tiles_across + tile.x) * CANDIDATES, c = 0;
@@ -161,7 +85,10 @@ void main()
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt
     for (int k = 0; k < 4; k++) {
         float own;
-        colors[k] = blend(spots[k], rankings[k], own);
+        vec4 samples[KEPT];
+        for (int n = 0; n < KEPT; n++)
+            samples[n] = look(rankings[k], n, spots[k]);
+        colors[k] = blend(spots[k], rankings[k], samples, own);
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
         seed += colors[k];
         guess += guessed;

@@ -8,9 +8,9 @@ const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "lev
     "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
     "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "radiance_unpack.frag", "gather/photo.glsl", "choose.frag",
     "gather.frag", "colors.glsl", "seed_color.frag",
-    "compose.frag", "show.frag", "gather/bicubic.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl",
+    "compose.frag", "show.frag", "gather/bicubic.glsl", "gather/blend.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl",
     "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
-    "proxy/octahedron.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
+    "proxy/octahedron.glsl", "proxy/push.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
 const POINTS_PER_PIXEL = 4; // more are thinned
 const BORDER_PX = 2;      // over which photographs fade out at their borders
@@ -257,7 +257,7 @@ export class Renderer {
                         photo_depth: store.depth, slot_size: [store.width, store.height],
                         last_mip: store.levels - 1, border_px: BORDER_PX, photos: count,
                         blur_per_radian: o.guess_blur, away: this.awayFromPhotos(camera.eye),
-                        candidates: Math.round(o.candidates), outliers: o.outliers,
+                        candidates: Math.round(o.candidates), outlier_severity: o.outliers > 0 ? 1 / (o.outliers * o.outliers) : 0,
                         photos_per_pixel: Math.round(o.photos_per_pixel),
                         view_depth: f.depth.textures[0], tiles: f.tiles.textures[0]};
         for (const [key, value] of Object.entries(o))

@@ -1,0 +1,93 @@
+// The best few photographs of a pixel and their blend, for the painter `tiled` and for the page. The
+// file that includes this one defines KEPT, the most photographs that a pixel may blend, and fills the
+// ranking.
+#include "gather/penalty.glsl"
+#include "gather/guess_blur.glsl"
+
+// A pixel's surface point.
+struct spot {
+    vec3 p;      // z 0: no surface
+    float guess; // 1: on estimated background depth, else 0; no bool: docs/develop/shaders.md
+};
+
+bool is_guess(spot s)
+{
+    return s.guess > 0.0;
+}
+
+// A photograph that shows the surface point.
+struct sight {
+    float penalty;
+    int index;  // index of the photograph
+    vec2 pixel; // projection of the point into the photograph
+    float mip;
+};
+
+// The best photographs of a pixel in ascending order of penalty, and the next greater penalty.
+struct ranking {
+    sight best[KEPT];
+    float next; // the limit of what is blended
+};
+
+void clear(out ranking r)
+{
+    r.next = NOT_SEEN;
+    for (int k = 0; k < KEPT; k++)
+        r.best[k] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
+}
+
+// The code selects rather than branches, here and below: a branch costs a software renderer a mask
+// on every value that outlives it.
+void insert(sight s, inout ranking r)
+{
+    for (int k = 0; k < KEPT; k++) {
+        bool better = s.penalty < r.best[k].penalty;
+        sight other = r.best[k];
+        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.index : other.index,
+                          better ? s.pixel : other.pixel, better ? s.mip : other.mip);
+        s = sight(better ? other.penalty : s.penalty, better ? other.index : s.index,
+                  better ? other.pixel : s.pixel, better ? other.mip : s.mip);
+    }
+    r.next = min(r.next, s.penalty);
+}
+
+// Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
+const float GUESS_SURE_MIN = 0.1;
+
+// Weight of the k-th photograph.
+float sight_weight(ranking r, int k, spot s)
+{
+    sight one = r.best[k];
+    // The weight is full until the penalty comes near that of the first photograph left out. A
+    // trace of weight remains at equality, so that photographs that tie for the last place paint.
+    float fade = r.next == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / r.next));
+    float sharpness = is_guess(s) ? GUESS_SHARPNESS : opt.sharpness;
+    bool counts = one.penalty < NOT_SEEN && one.penalty <= r.next;
+    return counts ? pow(r.best[0].penalty / one.penalty, sharpness) * fade : 0.0;
+}
+
+// Factor on the outlier severity on estimated depth, where a photograph that differs usually shows
+// another surface.
+const float GUESS_SEVERITY = 4.0;
+
+// Colour, and 1 if there is a sample; samples: colour, weight; blur: for estimated depth. Samples far
+// from the consensus lose weight: pedestrians, leaves, reflections. The square roots of the weights
+// make it a consensus of all photographs rather than of the best one; the square roots of light make
+// differences roughly perceptually uniform.
+vec4 blend(spot s, ranking r, vec4 samples[KEPT], out float blur)
+{
+    vec4 vote = vec4(0.0), sum = vec4(0.0);
+    for (int k = 0; k < KEPT; k++)
+        vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
+    vec3 mean = vote.rgb / max(vote.a, 1e-30);
+    vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
+    float severity = outlier_severity * (is_guess(s) ? GUESS_SEVERITY : 1.0);
+    for (int k = 0; k < KEPT; k++) {
+        vec3 off = sqrt(samples[k].rgb) - mean;
+        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
+        apart += vec2(dot(off, off), 1.0) * samples[k].a;
+    }
+    apart.y = max(apart.y, 1e-30);
+    blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
+    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
+}
