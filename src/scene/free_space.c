@@ -10,6 +10,7 @@
 enum {
     VIEWS_MAX = 24,     // that vote; more hardly change the result
     PER_CELL = 4,       // points of a cell on average, which sets its size
+    VISITED_MAX = 64,   // of a cell: where more crowd, each visited one stands for several
     SIDES = 4,          // quadrants around a point in the picture
     FAR_MIN = 2,        // points behind in each of them, without which nothing is looked through
     THROUGH_MIN = 2,    // photographs that must look through a point to drop it
@@ -108,14 +109,14 @@ static void count_around(const struct cells *c, size_t i, double tolerance, size
     *near = 0;
     memset(far, 0, SIDES * sizeof *far);
     for (int y = row > 0 ? row - 1 : 0; y <= row + 1 && y < c->rows; y++) {
-        int first = column > 0 ? column - 1 : 0;
-        int last = column + 1 < c->columns ? column + 1 : c->columns - 1;
-        // The cells of a row follow one another.
-        for (uint32_t k = c->start[y * c->columns + first];
-             k < c->start[y * c->columns + last + 1]; k++) {
-            const float *other = c->sorted[k];
-            far[2 * (other[1] > at[1]) + (other[0] > at[0])] += other[2] > high;
-            *near += other[2] >= low && other[2] <= high && c->point[k] != i;
+        for (int x = column > 0 ? column - 1 : 0; x <= column + 1 && x < c->columns; x++) {
+            const uint32_t *cell = &c->start[y * c->columns + x];
+            const uint32_t step = (cell[1] - cell[0]) / VISITED_MAX + 1;
+            for (uint32_t k = cell[0]; k < cell[1]; k += step) {
+                const float *other = c->sorted[k];
+                far[2 * (other[1] > at[1]) + (other[0] > at[0])] += other[2] > high ? step : 0;
+                *near += other[2] >= low && other[2] <= high ? step - (c->point[k] == i) : 0;
+            }
         }
     }
 }

@@ -23,7 +23,7 @@ readers=(
     "colmap_binary src/scene/colmap_binary.c src/scene/colmap.c src/scene/colmap_distort.c"
     "colmap_text src/scene/colmap_text.c"
     "depth_map src/scene/colmap_map.c"
-    "ply src/scene/points_ply.c src/scene/points.c src/scene/point_radii.c src/scene/thin.c"
+    "ply src/scene/points_ply.c src/scene/points.c src/scene/point_radii.c"
     "lod src/scene/point_lod.c src/scene/point_lod_levels.c src/scene/point_lod_write.c"
     "manifest src/scene/manifest.c src/scene/tuned_settings.c src/core/json.c"
     "stages src/scene/manifest.c"

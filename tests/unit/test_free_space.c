@@ -1,5 +1,6 @@
 // Points in mid-air, which photographs look through.
 #include <string.h>
+#include <time.h>
 
 #include "scene/free_space.h"
 #include "test.h"
@@ -103,12 +104,38 @@ static void keeps_what_it_cannot_tell(void **state)
     orl_points_finish(&points);
 }
 
+// Points that crowd in one pixel take time as their number.
+static double seconds_of_a_crowd(int count)
+{
+    struct orl_view views[VIEWS];
+    struct orl_points points;
+    struct timespec from, to;
+    place(views);
+    assert_int_equal(orl_points_init(NULL, &points, (size_t)count), ORL_OK);
+    points.count = 0;
+    for (int i = 0; i < count; i++)
+        add(&points, 0, 0, 4, 1);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, views, VIEWS, &points), ORL_OK);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
+    assert_int_equal(points.count, count);
+    orl_points_finish(&points);
+    return (double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec);
+}
+
+static void crowds_take_their_number(void **state)
+{
+    (void)state;
+    test_grows_in_proportion(seconds_of_a_crowd);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(drops_what_photographs_look_through),
         cmocka_unit_test(keeps_what_photographs_agree_on),
         cmocka_unit_test(keeps_what_it_cannot_tell),
+        cmocka_unit_test(crowds_take_their_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
