@@ -65,6 +65,7 @@ class Live(unittest.TestCase):
         os.mkdir(live)
         with open(said, "w") as log:
             walk = Walk(ORIEL, SCENE, "--live", live, stderr=log)
+        self.addCleanup(walk.process.kill)
         manifest = json.loads(walk.get("/manifest.json")[1])
         self.assertTrue(manifest["follows"])
         client, camera = Client(walk), camera_of(manifest)
@@ -110,6 +111,7 @@ class Live(unittest.TestCase):
             os.mkfifo(pipe)
         with open(said, "w") as log:
             walk = Walk(ORIEL, SCENE, "--live", live, stderr=log)
+        self.addCleanup(walk.process.kill)
         client, camera = Client(walk), camera_of(json.loads(walk.get("/manifest.json")[1]))
         still = picture(client, camera)
         feeder = feed(played, 10, live)
