@@ -34,16 +34,18 @@ static size_t png_length(const uint8_t *bytes, size_t count)
 static size_t jpeg_length(const uint8_t *bytes, size_t count)
 {
     size_t at = 2;
-    while (at + 4 <= count) {
+    while (at + 2 <= count) {
         uint8_t marker = bytes[at + 1];
         if (bytes[at] != 0xff || marker == 0 || marker == 0xff || (marker >= 0xd0 && marker <= 0xd7))
             at++; // data of a scan, in which 0xff is followed by 0 or by a marker to restart at; filling
         else if (marker == 0xd9)
             return at + 2;
+        else if (at + 4 > count)
+            return 0;
         else
             at += 2 + big_endian(bytes + at + 2, 2); // a segment, which may hold a thumbnail's markers
     }
-    return at + 2 <= count && bytes[at] == 0xff && bytes[at + 1] == 0xd9 ? at + 2 : 0;
+    return 0;
 }
 
 bool orl_stream_find_picture(const uint8_t *bytes, size_t count, size_t *begin, size_t *length)

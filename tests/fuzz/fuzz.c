@@ -20,7 +20,7 @@ const struct fuzz_target fuzz_targets[] = {
     {"raw", fuzz_raw},                     {"cameras_json", fuzz_cameras_json},
     {"metashape", fuzz_metashape},         {"realityscan", fuzz_realityscan},
     {"visualsfm", fuzz_visualsfm},         {"llff", fuzz_llff},
-    {"polycam", fuzz_polycam},
+    {"polycam", fuzz_polycam},             {"stream", fuzz_stream},
     {"bundler", fuzz_bundler},             {"middlebury", fuzz_middlebury},
     {"workspace", fuzz_workspace},         {"mesh", fuzz_mesh},
     {"database", fuzz_database},           {"walk_message", fuzz_walk_message},

@@ -49,6 +49,7 @@ void fuzz_exposures(const uint8_t *data, size_t size);
 void fuzz_exif(const uint8_t *data, size_t size);
 void fuzz_jpeg(const uint8_t *data, size_t size);
 void fuzz_png(const uint8_t *data, size_t size);
+void fuzz_stream(const uint8_t *data, size_t size);
 void fuzz_tiff(const uint8_t *data, size_t size);
 void fuzz_heif(const uint8_t *data, size_t size);
 void fuzz_exr(const uint8_t *data, size_t size);

@@ -33,6 +33,7 @@ readers=(
     "exif src/io/exif.c"
     "jpeg src/io/jpeg.c src/io/picture.c"
     "png src/io/png.c"
+    "stream src/io/stream.c"
     "tiff src/io/tiff.c src/io/profile.c"
     "heif src/io/heif.c"
     "exr src/io/exr_read.c"

@@ -7,6 +7,7 @@
 #include "io/exr.h"
 #include "io/internal.h"
 #include "io/picture.h"
+#include "io/stream.h"
 
 static void write_again(const struct orl_image *image)
 {
@@ -65,6 +66,24 @@ void fuzz_jpeg(const uint8_t *data, size_t size)
 void fuzz_png(const uint8_t *data, size_t size)
 {
     read_if(size > 2 && data[0] == 0x89, "a.png", data, size);
+}
+
+// As a pipe brings it: pictures are the same however many bytes are there at a time.
+void fuzz_stream(const uint8_t *data, size_t size)
+{
+    size_t begin, length, first, first_length;
+    for (size_t at = 0; at < size; at += begin + length) {
+        bool found = orl_stream_find_picture(data + at, size - at, &begin, &length);
+        fuzz_require(found == (length > 0) && begin + length <= size - at, "a picture lies within the bytes");
+        if (!found)
+            break;
+        fuzz_require(orl_stream_find_picture(data + at, begin + length, &first, &first_length) &&
+                         first == begin && first_length == length,
+                     "no more than its bytes are needed");
+        fuzz_require(!orl_stream_find_picture(data + at, begin + length - 1, &first, &first_length) &&
+                         first == begin,
+                     "and no fewer");
+    }
 }
 
 void fuzz_tiff(const uint8_t *data, size_t size)

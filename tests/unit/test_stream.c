@@ -30,6 +30,7 @@ static void pictures_end_where_their_files_do(void **state)
     memcpy(stream + 3 + sizeof jpeg_file, png_file, sizeof png_file);
     check(stream, sizeof stream, true, 3, sizeof jpeg_file);
     check(stream + 3 + sizeof jpeg_file, sizeof png_file, true, 0, sizeof png_file);
+    check(jpeg_file, sizeof jpeg_file, true, 0, sizeof jpeg_file);
     // However many bytes of it are there yet, it is waited for.
     for (size_t count = 4; count < 3 + sizeof jpeg_file; count++)
         check(stream, count, false, 3, 0);
