@@ -200,10 +200,10 @@ static void report_has_the_agreed_fields(void **state)
                                   {.name = (char[]){"b.jpg"}, .test = true}};
     struct orl_scene scene = {.dir = (char[]){"some/scene"}, .photos = photos, .photo_count = 2};
     struct orl_eval_view views[2] = {
-        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125, 2.5}, {33, 34, 0.25, 0.5}, 3.5,
-         4.5, 0.0625},
-        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125, 7.25}, {35, 36, 0.75, 1}, 1.5,
-         2.5, 0.03125}};
+        {0, 64, 48, {20.5, 21.5, 22.5, 0.75, 0.875, 0.9375, 0.125, 2.5}, {33, 34, 0.25, 0.5}, {0, 0, 0},
+         3.5, 4.5, 0.0625},
+        {1, 32, 24, {30.5, 31.5, 32.5, 0.25, 0.375, 0.4375, 1.125, 7.25}, {35, 36, 0.75, 1}, {0, 0, 0},
+         1.5, 2.5, 0.03125}};
     struct orl_eval eval = {.scene = &scene, .method = "points", .device = "a device",
                             .views = views, .view_count = 2, .mean = views[1],
                             .passes = {{"splat", 0.5}}, .pass_count = 1};
