@@ -415,7 +415,7 @@ page_memory() {
 }
 
 page_trim() {
-    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 6 --size-divide 2 --budget 120 --quiet --json WORK/trimmed/NAME.json'
+    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 6 --size-divide 2 --budget 60 --quiet --json WORK/trimmed/NAME.json'
     local name
     mkdir -p "$work/trimmed"
     for name in $(scene_names fountain temple); do
