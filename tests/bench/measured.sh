@@ -209,10 +209,10 @@ page_charts() {
     cat <<'END'
 
 All methods on two held-out photographs of each of two scenes, at half their size: a wall, and a small subject before
-black. What options are worth is on [another page](parts.md). `cpu ms` is the processor time of a frame, the geometric mean over the scenes; the figure has
-the wall time, which other work on the machine lengthens. *Front*: no other row is both faster, by processor time, and
-better by PSNR. `sd` is the standard deviation over the scenes. A time is of few frames and scatters by up to 15 %
-beside other programs. [Columns](../reference/chart.md).
+black. What options are worth is on [another page](parts.md). `cpu ms` is the processor time of a frame, the geometric
+mean over the scenes; the figure has the wall time, which other work on the machine lengthens. *Front*: no other row is
+both faster, by processor time, and better by PSNR. `sd` is the standard deviation over the scenes. A time is of few
+frames and scatters by up to 15 % beside other programs. [Columns](../reference/chart.md).
 END
     command_block "$chart"
     printf '![PSNR against the time of a frame, means over the scenes](charts.svg)\n\n'
@@ -415,7 +415,7 @@ page_memory() {
 }
 
 page_trim() {
-    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 6 --size-divide 2 --budget 60 --quiet --json WORK/trimmed/NAME.json'
+    local trim='oriel trim SCENES/NAME --out WORK/trimmed/NAME --views 6 --size-divide 2 --budget 200 --quiet --json WORK/trimmed/NAME.json'
     local name
     mkdir -p "$work/trimmed"
     for name in $(scene_names fountain temple); do
@@ -427,9 +427,9 @@ page_trim() {
     cat <<'END'
 
 What `oriel trim` leaves of a scene within 0.1 dB of mean PSNR and 0.01 of SSIM over training photographs, each rendered
-without itself, and no photograph worse by more than 0.5 dB; pictures are compared at half their size. *Model*: points and photographs on the device. The time of
-a frame is processor time on a software renderer, the whole scene and the trimmed one drawn in turns. Held-out
-photographs confirm the result and decide nothing. The budget of time may end a search, which is said.
+without itself, and no photograph worse by more than 0.5 dB; pictures are compared at half their size. *Model*: points
+and photographs on the device. The time of a frame is processor time on a software renderer, the whole scene and the
+trimmed one drawn in turns. Held-out photographs confirm the result and decide nothing.
 END
     command_block "$trim"
     jq -r '.[] | select(.complete | not) | "The time ended the search of *\(.scene)*."' "$work/trim.json"
