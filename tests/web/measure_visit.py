@@ -21,12 +21,18 @@ from measure_live import processor_ms, request
 EVERY_S = 0.1 # between two looks at processor time
 FRAMES = 20
 
-# When the poster has given way to the picture.
+# When the poster has given way to a picture that the graphics have finished: reading a pixel of it waits for that.
 WATCH = """
 document.addEventListener("DOMContentLoaded", () => {
-    const poster = document.getElementById("poster");
-    new MutationObserver(() => window.shownAt ||= poster.classList.contains("away") ? performance.now() : 0)
-        .observe(poster, {attributes: true});
+    const poster = document.getElementById("poster"), canvas = document.getElementById("canvas");
+    new MutationObserver(() => {
+        if (window.shownAt || !poster.classList.contains("away"))
+            return;
+        const gl = canvas.getContext("webgl2");
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        window.shownAt = performance.now();
+    }).observe(poster, {attributes: true});
 });
 """
 

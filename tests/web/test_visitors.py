@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What visitors of comparable viewers report, on the published page and the live walk. Made by
 tests/e2e/visitors.sh: test_visitors.py ORIEL TOOL SCENE SITE RADIANCE RADIANCE-SITE."""
+import base64
 import json
 import math
 import os
@@ -10,10 +11,12 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
-from browser import Browser, QuietHandler, Server
+from browser import Browser, CAPTURE, QuietHandler, Server
 from client import Walk as Program
+import firefox
 
 ORIEL, TOOL, SCENE, SITE, RADIANCE, RADIANCE_SITE = sys.argv[1:7]
 AXE = os.environ.get("ORIEL_AXE", "node_modules/axe-core/axe.min.js")
@@ -237,6 +240,72 @@ class Page(Visitors):
                 return getComputedStyle(document.getElementById("unstarted")).visibility === "visible";""")
             self.errors = 1
 
+    def test_first_picture(self):
+        """Nothing is drawn before the photograph of the start has come, and then with that one alone."""
+        with open(f"{SITE}/manifest.json") as file:
+            manifest = json.load(file)
+        first = manifest["photos"][manifest["start"]]["picture"]["file"]
+        come, more = threading.Event(), threading.Event()
+
+        class Handler(QuietHandler):
+            def do_GET(self):
+                held = come if self.path == f"/{first}" else more if re.search("^/(photos|points/0)", self.path) else None
+                if held:
+                    held.wait(60)
+                super().do_GET()
+
+        server = Server(SITE, handler=Handler)
+        self.addCleanup(server.close)
+        self.addCleanup(lambda: [event.set() for event in (come, more)])
+        self.browser.driver.get(server.address)
+        self.browser.wait("return !!window.oriel")
+        self.assertIsNone(self.js("""
+            for (let i = 0; i < 20; i++)
+                await new Promise(done => requestAnimationFrame(done));
+            return oriel.picture.renderer.frame;"""))
+        come.set()
+        self.browser.wait("return document.getElementById('poster').classList.contains('away')")
+        self.assertEqual(self.js("return oriel.picture.renderer.used"), 1)
+        more.set()
+        self.browser.settle()
+        self.assertGreater(self.js("return oriel.picture.renderer.used"), 1)
+
+    def test_headset(self):
+        """A frame for each eye from the pose, by an imitation of WebXR that draws into the canvas."""
+        self.open()
+        self.assertIsNone(self.js("return document.getElementById('tool-headset')"))
+        script = self.browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": HEADSET})
+        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument", script)
+        self.open()
+        self.browser.wait("return document.getElementById('tool-headset') !== null")
+        self.js("oriel.manifest.walk.unit_m = oriel.headset.units = 0.5; document.getElementById('tool-headset').click()")
+        self.browser.wait("return window.headset.frame !== undefined")
+        start = self.eye()
+        eyes = self.js(WEAR, 0)
+        self.assertEqual(self.js("return oriel.navigator.view.eye"), start)
+        up = self.js("return oriel.navigator.up")
+        for side, (camera, picture) in zip((-1, 1), eyes):
+            right, down, ahead = (camera["r"][3 * i:3 * i + 3] for i in range(3))
+            for i in range(3): # half a unit a metre, the eyes 64 mm apart, the horizon level
+                self.assertAlmostEqual(camera["eye"][i], start[i] + 0.5 * side * 0.032 * right[i], places=5)
+                self.assertAlmostEqual(down[i], -up[i], places=5)
+            self.assertGreater(sum(a * b for a, b in zip(ahead, self.js("return oriel.navigator.view.r.slice(6)"))), 0.9)
+            # Each eye sees farther to its own side.
+            self.assertEqual([round(camera[k], 3) for k in ("width", "height", "fx", "fy", "cx", "cy")],
+                             [180, 240, 90, 120, 90 - side * 18, 120])
+            self.assertLess(picture, 3) # of 255, to that camera's frame
+        # Pushed ahead for half a second, then turned by a sixth of a half turn.
+        before = eyes[0][0]
+        ((camera, _), _) = self.js(WEAR, 500, {"left": [0, 0, 0, -1]})
+        for i in range(3): # a frame stands for a tenth of a second at most
+            self.assertAlmostEqual(camera["eye"][i] - before["eye"][i], 0.5 * 0.15 * before["r"][6 + i], places=5)
+        ((turned, _), (other, _)) = self.js(WEAR, 600, {"right": [0, 0, 1, 0]})
+        self.assertAlmostEqual(sum(a * b for a, b in zip(turned["r"][6:], camera["r"][:3])), math.sin(math.pi / 6), places=5)
+        self.js("headset.dispatchEvent(new Event('end'))")
+        self.browser.settle()
+        for own, left, right in zip(self.eye(), turned["eye"], other["eye"]):
+            self.assertAlmostEqual(own, (left + right) / 2, places=5)
+
     def test_requests_are_tried_again(self):
         """Of shaders, points and photographs, each first request is reset."""
         seen = set()
@@ -328,6 +397,9 @@ class Live(Visitors):
         before = self.settings()
         self.addCleanup(self.restore, before)
         self.assertNotIn("Kept", before)
+        with socket.create_server(("127.0.0.1", int(walk.port))): # lets the page connect, and never answers
+            self.browser.wait("return oriel.picture.socket.readyState === WebSocket.CONNECTING", 20)
+            self.js("oriel.change(() => {})")
         self.walk(walk.port)
         self.browser.wait("return window.saved === true", 60)
         with open(f"{SCENE}/walk.json") as file:
@@ -399,6 +471,46 @@ class Live(Visitors):
         self.assertEqual(self.hint(), "")
 
 
+@unittest.skipUnless(firefox.PROGRAM, "firefox-esr is missing")
+class Firefox(unittest.TestCase):
+    def setUp(self):
+        self.browser = firefox.Firefox(WIDTH, HEIGHT)
+        self.addCleanup(self.browser.close)
+
+    def open(self, address):
+        self.browser.open(address)
+        self.browser.wait("return !!window.oriel && oriel.settled")
+
+    def test_live(self):
+        walk = Program(ORIEL, SCENE)
+        self.addCleanup(walk.close)
+        self.open(walk.address)
+        self.assertEqual(self.browser.js("return document.getElementById('poster').className"), "away")
+        frame, name = self.browser.js("return [oriel.picture.shown.number, oriel.navigator.at.name]")
+        self.browser.js("oriel.navigator.calm = true; document.getElementById('tool-next').click()")
+        self.browser.wait(f"return oriel.picture.shown.number > {frame} && oriel.settled")
+        self.assertNotEqual(self.browser.js("return oriel.navigator.at.name"), name)
+
+    def test_picture_or_album(self):
+        """As the renderer draws it, or photographs and annotations where Firefox offers no WebGL."""
+        server, browser = Server(SITE), self.browser
+        self.addCleanup(server.close)
+        self.open(server.address)
+        text = "return document.getElementById(arguments[0]).textContent"
+        self.assertEqual(browser.js(text, "problem"), "")
+        if not browser.js("return Boolean(oriel.picture)"):
+            self.assertIn("WebGL 2", browser.js(text, "hint"))
+            self.assertIn("Arch", browser.js(text, "note"))
+            self.assertGreater(browser.js("return document.querySelector('#album').naturalWidth"), 0)
+            return
+        camera = json.loads(run(TOOL, "cameras", SCENE))[0]
+        with tempfile.TemporaryDirectory() as work:
+            with open(f"{work}/page.png", "wb") as file:
+                file.write(base64.b64decode(browser.js(CAPTURE, camera, 0).split(",", 1)[1]))
+            run(ORIEL, "render", SCENE, "--at", camera["name"], "--out", f"{work}/own.png", "--quiet")
+            self.assertGreater(float(run(TOOL, "compare", f"{work}/page.png", f"{work}/own.png").split()[0]), 35)
+
+
 class Without3d(unittest.TestCase):
     def test_photographs_and_notes(self):
         server, browser = Server(SITE), Browser(WIDTH, HEIGHT, flags=("--disable-3d-apis",))
@@ -424,6 +536,57 @@ class Without3d(unittest.TestCase):
             self.assertEqual(wrong, [], size)
             self.assertLessEqual(browser.js("return document.getElementById('tools').scrollWidth"), size[0])
 
+
+# WebXR as far as the page uses it: two halves of the canvas, and frames that the test makes.
+HEADSET = """
+class Headset extends EventTarget {
+    inputSources = [];
+    updateRenderState({baseLayer}) { this.layer = baseLayer; }
+    async requestReferenceSpace() { return "space"; }
+    requestAnimationFrame(frame) { this.frame = frame; }
+}
+window.headset = new Headset();
+Object.defineProperty(navigator, "xr", {value: {isSessionSupported: async () => true,
+                                                requestSession: async () => window.headset}});
+WebGL2RenderingContext.prototype.makeXRCompatible = async () => {};
+window.XRWebGLLayer = class {
+    framebuffer = null;
+    getViewport({eye}) { return {x: eye === "left" ? 0 : 180, y: 0, width: 180, height: 240}; }
+};
+"""
+
+# One frame at a time (ms) with these sticks: the camera of each eye, and how far its half of the canvas is from
+# what that camera shows.
+WEAR = """
+const [time, sticks = {}] = arguments, {picture} = oriel, {renderer} = picture, gl = renderer.device.gl;
+headset.inputSources = Object.entries(sticks).map(([handedness, axes]) => ({handedness, gamepad: {axes}}));
+Object.assign(picture.canvas, {width: 360, height: 240});
+const matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const views = [-1, 1].map(side => ({
+    eye: side < 0 ? "left" : "right", transform: {position: {x: 0.032 * side, y: 0, z: 0}, matrix},
+    projectionMatrix: [1, 0, 0, 0, 0, 1, 0, 0, 0.2 * side, 0, -1, -1, 0, 0, -0.1, 0]}));
+const cameras = [], show = renderer.show;
+renderer.show = (...args) => {
+    cameras.push(renderer.camera);
+    show.apply(renderer, args);
+};
+headset.frame(1000 + time, {getViewerPose: () => ({views, transform: {position: {x: 0, y: 0, z: 0}, matrix}})});
+delete renderer.show;
+const halves = views.map((_, i) => {
+    const bytes = new Uint8Array(4 * 180 * 240);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(180 * i, 0, 180, 240, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return bytes;
+});
+return cameras.map((camera, i) => {
+    const {data} = renderer.capture(camera, 0);
+    let sum = 0;
+    for (let y = 0; y < 240; y++)
+        for (let x = 0; x < 4 * 180; x++)
+            sum += Math.abs(data[4 * 180 * y + x] - halves[i][4 * 180 * (239 - y) + x]);
+    return [camera, sum / data.length];
+});
+"""
 
 # What the album of a small window shows when it is scrolled: all but the photograph and its buttons.
 SCROLLS = [f"{name} leaves the window" for name in ("thumbs", "hint", "note", "attribution")]

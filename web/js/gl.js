@@ -43,7 +43,7 @@ export class Device {
         gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
     }
 
-    // `sources`: text of every shader file, by name.
+    // `sources`: text of every shader file, by name. The browser compiles programs side by side until they are used.
     program(sources, vertex, fragment, defines = {})
     {
         const gl = this.gl, program = gl.createProgram();
@@ -56,12 +56,7 @@ export class Device {
             return [file, shader];
         });
         gl.linkProgram(program);
-        if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
-            const logs = shaders.map(([file, shader]) => `${file}: ${gl.getShaderInfoLog(shader) || ""}`);
-            throw new Error(`${logs.join("\n")}\n${gl.getProgramInfoLog(program)}`);
-        }
-        shaders.forEach(([, shader]) => gl.deleteShader(shader));
-        return new Program(gl, program, `${vertex} ${fragment}`);
+        return new Program(gl, program, `${vertex} ${fragment}`, shaders);
     }
 
     texture(format, width, height, {levels = 1, layers = 0} = {})
@@ -131,7 +126,7 @@ export class Device {
     {
         const gl = this.gl;
         gl.bindFramebuffer(gl.FRAMEBUFFER, target ? target.fbo : null);
-        gl.viewport(0, 0, target ? target.width : gl.drawingBufferWidth,
+        gl.viewport((target && target.x) || 0, (target && target.y) || 0, target ? target.width : gl.drawingBufferWidth,
                     target ? target.height : gl.drawingBufferHeight);
     }
 
@@ -170,20 +165,35 @@ function expand(sources, file, done)
 }
 
 class Program {
-    constructor(gl, id, name)
+    // shaders: name and object of each, which are not waited for
+    constructor(gl, id, name, shaders)
     {
-        this.gl = gl;
-        this.id = id;
-        this.name = name;
-        this.uniforms = new Map();
+        Object.assign(this, {gl, id, name, shaders, linked: null});
+    }
+
+    // Its uniforms by name, once it is linked.
+    get uniforms()
+    {
+        this.linked ||= this.finish();
+        return this.linked;
+    }
+
+    finish()
+    {
+        const {gl, id, shaders} = this, uniforms = new Map();
+        if (!gl.getProgramParameter(id, gl.LINK_STATUS)) {
+            const logs = shaders.map(([file, shader]) => `${file}: ${gl.getShaderInfoLog(shader) || ""}`);
+            throw new Error(`${logs.join("\n")}\n${gl.getProgramInfoLog(id)}`);
+        }
+        shaders.forEach(([, shader]) => gl.deleteShader(shader));
         const count = gl.getProgramParameter(id, gl.ACTIVE_UNIFORMS);
         for (let i = 0, unit = 0; i < count; i++) {
             const {name: key, type} = gl.getActiveUniform(id, i);
             const samples = type === gl.SAMPLER_2D || type === gl.SAMPLER_2D_ARRAY ||
                             type === gl.UNSIGNED_INT_SAMPLER_2D;
-            this.uniforms.set(key, {type, place: gl.getUniformLocation(id, key),
-                                    unit: samples ? unit++ : -1});
+            uniforms.set(key, {type, place: gl.getUniformLocation(id, key), unit: samples ? unit++ : -1});
         }
+        return uniforms;
     }
 
     // `values`: textures and numbers by uniform name; what the program does not read is ignored, what

@@ -20,5 +20,6 @@ export const icons = {
     record: "M12 5v14M5 12h14",
     maker: "M12 21s-6-6-6-11a6 6 0 0112 0c0 5-6 11-6 11zM12 8v4M10 10h4",
     method: "M4 20l9-9M13 11a4 4 0 106-4l-2 2-2-2 2-2a4 4 0 00-5 5",
+    headset: "M3 8h18v9h-6l-3-3-3 3H3zM7 11v2M17 11v2",
     help: "M9 9a3 3 0 116 0c0 2-3 2-3 5M12 18v.1",
 };

@@ -190,6 +190,7 @@ export class LivePicture {
 
     get complete() { return !this.asked && !this.next && !this.lost && this.shown !== null; }
     get presentable() { return this.shown !== null; }
+    get awaits() { return false; }
     get loadedShare() { return this.shown ? 1 - Math.min(this.shown.missing / LOADING_MAX, 0.9) : 0; }
 
     // A frame of its own.

@@ -30,11 +30,13 @@ export class LocalPicture {
     // onChange: something has arrived that makes the picture better
     static async open(canvas, files, manifest, photos, onChange)
     {
-        const [sources, coarse] = await Promise.all([loadShaders(files), files.get(manifest.points.coarse.file)]);
-        return new LocalPicture(canvas, files, manifest, photos, onChange, sources, coarse);
+        const wanted = [loadShaders(files), files.get(manifest.points.coarse.file)];
+        const device = new Device(canvas); // takes a while, in which files come
+        const [sources, coarse] = await Promise.all(wanted);
+        return new LocalPicture(canvas, device, files, manifest, photos, onChange, sources, coarse);
     }
 
-    constructor(canvas, files, manifest, photos, onChange, sources, coarse)
+    constructor(canvas, device, files, manifest, photos, onChange, sources, coarse)
     {
         this.canvas = canvas;
         this.files = files;
@@ -47,7 +49,7 @@ export class LocalPicture {
         this.remote = false;   // a frame is there once draw() returns
         // Of a picture, whatever the screen: each takes some 120 bytes on the graphics chip.
         this.pixelsMost = handheld ? 1.0e6 : 2.6e6;
-        this.device = new Device(canvas);
+        this.device = device;
         this.cloud = new Cloud(this.device, coarse);
         this.renderer = new Renderer(this.device, sources, manifest, photos, this.cloud, photoBudget());
         this.moving = manifest.steps ? new Moving(this.device, files, manifest, photos, onChange) : null;
@@ -85,6 +87,8 @@ export class LocalPicture {
 
     pointsUrgency(file)
     {
+        if (this.rankedAt === undefined)
+            return Infinity; // the first frame does without
         const nearest = [0, 1, 2].map(k => clamp(this.eye[k], file.box[k], file.box[3 + k]));
         return 1.5 + 8 * distance(nearest, this.eye) / this.manifest.distance;
     }
@@ -130,8 +134,11 @@ export class LocalPicture {
                this.rank.slice(0, this.renderer.photos.slots).every(p => p.slot >= 0);
     }
 
-    // Good enough to take the poster's place: the photograph that shows most of the view is there.
-    get presentable() { return this.renderer.used > 0 && this.rank[0].slot >= 0; }
+    // Good enough to take the poster's place: the photograph that shows most of the view is there, or a
+    // frame would put it there.
+    get presentable() { return this.rank[0].slot >= 0 || Boolean(this.moving && this.moving.ready); }
+    // Frames would show the coarse points alone until the first photograph has come.
+    get awaits() { return !this.moving && !this.presentable; }
     get loadedShare() { return this.complete ? 1 : Math.min(this.files.bytes / this.allBytes, 0.99); }
 
     // --- frames ---
@@ -139,15 +146,28 @@ export class LocalPicture {
     // full: the window's camera at full resolution; camera: the same with fewer pixels, perhaps.
     draw(full, camera, layer)
     {
-        if (this.canvas.width !== full.width || this.canvas.height !== full.height)
-            Object.assign(this.canvas, {width: full.width, height: full.height});
+        const {width, height} = camera;
+        if (this.canvas.width !== width || this.canvas.height !== height)
+            Object.assign(this.canvas, {width, height});
         this.rankFor(full, camera === full);
+        this.drawInto(camera, layer, camera === full);
+        if (camera === full || performance.now() - this.lookedAt > LOOK_EVERY)
+            this.look(camera);
+    }
+
+    // An eye of a headset, into its part of a framebuffer.
+    drawEye(camera, layer, part)
+    {
+        this.rankFor(camera, false);
+        this.drawInto(camera, layer, false, part);
+    }
+
+    drawInto(camera, layer, whole, part)
+    {
         if (this.moving)
             this.moving.show(this.renderer, ...(this.timeSteps ? this.timeSteps.pair : [0, 0]));
         this.renderer.draw(camera, layer);
-        this.renderer.show(layer);
-        if (camera === full || performance.now() - this.lookedAt > LOOK_EVERY)
-            this.look(camera);
+        this.renderer.show(layer, whole, part);
     }
 
     // Milliseconds of a frame, which is waited for.

@@ -2,12 +2,13 @@
 import {Album} from "./album.js";
 import {benchmark} from "./benchmark.js";
 import {Files} from "./files.js";
+import {hasHeadset, Headset} from "./headset.js";
 import {NoDevice} from "./gl.js";
 import {Input} from "./input.js";
 import {LivePicture} from "./live.js";
 import {LocalPicture} from "./local.js";
 import {Map2d} from "./map.js";
-import {clamp} from "./math.js";
+import {clamp, cross, scale} from "./math.js";
 import {MethodPanel} from "./methods.js";
 import {TimeSteps} from "./time_steps.js";
 import {Navigator} from "./navigation.js";
@@ -17,7 +18,7 @@ import {PathEditor} from "./path.js";
 import {makePhotos} from "./photos.js";
 import {language, text} from "./strings.js";
 import {buildHelp, byId, Compare, make, Panel, save, showHint, showProblem, showProgress, Thumbs, Tools} from "./ui.js";
-import {cameraOf, frameHeight, photoView, viewFromText, viewToText} from "./view.js";
+import {cameraOf, frameHeight, levelAxes, photoView, viewFromText, viewToText} from "./view.js";
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
 const FRAME_LONG = 38, FRAME_SHORT = 20;  // milliseconds: fewer pixels, more pixels. Screens show 60 frames a second.
@@ -37,6 +38,7 @@ class Walk {
         this.photos = photos;
         this.layer = 0;
         this.scale = 0;          // index into SCALES
+        this.sharpMs = 0;        // that a frame at full resolution may take
         this.finest = 0;         // of SCALES that this movement may have
         this.frames = [];        // milliseconds of the last frames while moving
         this.dirty = true;
@@ -48,6 +50,7 @@ class Walk {
             pivotAt: () => this.picture.middle(),
         });
         this.running = false;
+        this.headset = null;
         this.ev = 0; // exposure, stops
         this.asked = Object.fromEntries(new URLSearchParams(location.search)); // by whoever made the link
     }
@@ -65,7 +68,7 @@ class Walk {
         this.buildTools();
         this.readAddress();
         this.resized();
-        this.scale = this.firstScale();
+        this.scale = picture.remote ? 0 : SCALES.length - 1; // until a frame has told
         byId("over").classList.toggle("bare", this.asked.ui === "none");
         window.addEventListener("hashchange", () => this.readAddress());
         window.addEventListener("resize", () => this.resized());
@@ -73,6 +76,32 @@ class Walk {
         NARROW.addEventListener("change", () => this.reveal(SHEETS.find(id => !byId(id).hidden)));
         this.canvas.setAttribute("aria-label", text.canvas);
         this.wake();
+        if (this.own)
+            this.offerHeadset();
+    }
+
+    async offerHeadset()
+    {
+        if (!await hasHeadset())
+            return;
+        const headset = new Headset(this.own, this.manifest, this.navigator.up, stood => this.leftHeadset(stood));
+        const run = () => headset.on ? headset.leave() : headset.enter(this.navigator.view, this.layer, this.sharpMs)
+            .catch(error => showHint(text.failed(error.message)));
+        this.headset = headset;
+        this.tools.add("headset", {key: "v", run, pressed: () => headset.on});
+        this.tools.fit();
+        this.input.actions.set("v", run);
+    }
+
+    // The walk goes on where its wearer stood, with a level horizon.
+    leftHeadset(stood)
+    {
+        const nav = this.navigator;
+        if (stood) {
+            const [, up, ahead] = levelAxes(stood, nav.up);
+            nav.setView({...nav.view, eye: stood.eye, r: [...cross(ahead, up), ...scale(up, -1), ...ahead]});
+        }
+        this.change(() => {});
     }
 
     resized()
@@ -464,10 +493,19 @@ class Walk {
 
     tick(time)
     {
+        if (this.headset && this.headset.on) {
+            this.running = false;
+            return;
+        }
         const passed = this.lastTime ? time - this.lastTime : 16;
         this.lastTime = time;
         const {keys, turn, fast} = this.input.state(), nav = this.navigator;
         const moves = nav.update(Math.min(passed, 100) / 1000, keys, turn, fast);
+        if (this.picture.awaits && !this.shouldShowPicture()) {
+            this.showState();
+            this.running = false;
+            return;
+        }
         const plays = this.timeSteps !== null && this.timeSteps.playing;
         if (plays)
             this.timeSteps.advance();
@@ -475,7 +513,7 @@ class Walk {
         nav.changed = false;
         if (changed || moves)
             this.restSince = time;
-        const rests = time - this.restSince > REFINE_AFTER && !this.input.dragging;
+        const rests = time - this.restSince > this.refineAfter && !this.input.dragging;
         if (changed || (this.dirty && !rests))
             this.drawFrame(rests ? 0 : this.scale, passed);
         else if (rests && !this.refined)
@@ -491,16 +529,19 @@ class Walk {
         requestAnimationFrame(next => this.tick(next));
     }
 
-    // Of the first frames, so that a slow device shows something soon. The first draw of all makes programs.
+    // Of frames that a device can keep up with, told by the coarsest.
     firstScale()
     {
         if (this.picture.remote)
             return 0;
-        const coarsest = SCALES.length - 1, camera = this.windowCamera(SCALES[coarsest]);
-        const [, ms] = [0, 1].map(() => this.picture.timeOf(camera));
-        const fits = SCALES.findIndex(scale => ms * (scale / SCALES[coarsest]) ** 2 < FRAME_LONG);
+        const coarsest = SCALES.length - 1;
+        this.sharpMs = this.picture.timeOf(this.windowCamera(SCALES[coarsest])) / SCALES[coarsest] ** 2;
+        const fits = SCALES.findIndex(scale => this.sharpMs * scale ** 2 < FRAME_LONG);
         return fits < 0 ? coarsest : fits;
     }
+
+    // A sharp frame holds up what is loading. It waits as long as it takes for more to come.
+    get refineAfter() { return Math.max(REFINE_AFTER, this.picture.complete ? 0 : this.sharpMs); }
 
     refine()
     {
@@ -569,8 +610,11 @@ class Walk {
         showHint(this.picture.problem || (this.compare.on && !nav.at && !nav.flying ? text.standAtPhoto
                                           : nav.farOut ? text.farOut : ""));
         showProgress(this.picture.loadedShare);
-        if (this.shouldShowPicture())
-            byId("poster").classList.add("away");
+        const poster = byId("poster").classList;
+        if (this.shouldShowPicture() && !poster.contains("away")) {
+            poster.add("away");
+            requestAnimationFrame(() => this.scale = this.firstScale()); // once this frame is seen
+        }
         if (byId("panel").hidden)
             return;
         this.panel.show({frame: this.frameMs ? text.milliseconds(this.frameMs) : "–",
@@ -580,8 +624,8 @@ class Walk {
     // The poster is the start view: it stays until the picture is as good, or the viewer moves on.
     shouldShowPicture()
     {
-        const start = this.navigator.view === this.navigator.home;
-        return !start || this.picture.presentable;
+        const start = this.navigator.view === this.navigator.home, gone = byId("poster").classList.contains("away");
+        return gone || !start || this.picture.presentable;
     }
 
     placePoster()
@@ -589,8 +633,6 @@ class Walk {
         const poster = byId("poster"), frame = this.navigator.home.frame;
         const h = frameHeight(frame, window.innerWidth, window.innerHeight);
         Object.assign(poster.style, {height: `${h}px`, width: `${h / POSTER_SHARE}px`});
-        if (this.navigator.view !== this.navigator.home)
-            poster.classList.add("away");
     }
 }
 

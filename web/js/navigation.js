@@ -2,7 +2,7 @@
 import {add, clamp, distance, dot, length, mix, multiply, normalize, rotate, rotateBack, rotation,
         scale, sub} from "./math.js";
 import {nearestPhoto} from "./photos.js";
-import {forwardOf, mixViews, photoView, rightOf, upOf, viewFromSaved} from "./view.js";
+import {forwardOf, levelAxes, mixViews, photoView, rightOf, upOf, viewFromSaved} from "./view.js";
 
 const SPEED = 0.35;          // of the scene's distance, a second
 const FASTER = 3;
@@ -114,11 +114,7 @@ export class Navigator {
         const forward = forwardOf(this.view), right = rightOf(this.view);
         if (this.mode !== "walk")
             return [right, this.mode === "fly" ? this.up : upOf(this.view), forward];
-        const level = v => sub(v, scale(this.up, dot(v, this.up)));
-        let ahead = level(forward);
-        if (length(ahead) < 0.2) // looking straight down or up
-            ahead = level(scale(upOf(this.view), dot(forward, this.up) < 0 ? 1 : -1));
-        return [normalize(level(right)), this.up, normalize(ahead)];
+        return levelAxes(this.view, this.up);
     }
 
     shift(by)

@@ -280,17 +280,18 @@ export class Renderer {
                          {...colors, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});
     }
 
-    // The last frame onto a target; null: the canvas, whatever its size.
-    show(layer, target = null)
+    // The last frame onto a place of its size: the canvas, or {fbo, x, y, width, height}, whose first row is the lowest.
+    // whole: with all that moving frames go without
+    show(layer, whole, place = null) { this.showBy(this.programs.show, layer, whole, place); }
+
+    showBy(program, layer, whole, target)
     {
-        const gl = this.device.gl, f = this.frame;
-        const width = target ? target.width : gl.drawingBufferWidth;
-        const height = target ? target.height : gl.drawingBufferHeight;
-        this.device.pass(target ? this.programs.capture : this.programs.show, target,
-                         {composed: f.composed.textures[0], depth: this.depth.textures[0],
+        const f = this.frame;
+        this.device.pass(program, target,
+                         {corner: target && target.x !== undefined ? [target.x, target.y] : [0, 0], composed: f.composed.textures[0], depth: this.depth.textures[0],
                           normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
-                          exposure: this.exposure, tone: this.tone, antialiases: !this.manifest.radiance, scale: [f.width / width, f.height / height]});
+                          exposure: this.exposure, tone: this.tone, antialiases: whole && !this.manifest.radiance});
     }
 
     // A frame of its own as RGBA bytes, top row first.
@@ -299,7 +300,7 @@ export class Renderer {
         const gl = this.device.gl, {width, height} = camera;
         this.draw(camera, layer);
         const target = this.device.target(width, height, ["RGBA8"]);
-        this.show(layer, target);
+        this.showBy(this.programs.capture, layer, true, target);
         const bytes = new Uint8ClampedArray(4 * width * height);
         gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
         this.device.releaseTarget(target);

@@ -50,16 +50,20 @@ export class Tools {
         bar.setAttribute("aria-label", text.toolbar);
         this.toggles = [];
         this.count = 0;
-        for (const [id, action] of Object.entries(actions)) {
-            const label = `${text.actions[id]} (${action.key.toUpperCase()})`;
-            const button = make("button", {type: "button", title: label, id: `tool-${id}`}, icon(id));
-            button.setAttribute("aria-label", label);
-            button.addEventListener("click", action.run);
-            bar.append(button);
-            this.count++;
-            if (action.pressed)
-                this.toggles.push([button, action.pressed]);
-        }
+        for (const [id, action] of Object.entries(actions))
+            this.add(id, action);
+    }
+
+    add(id, action)
+    {
+        const label = `${text.actions[id]} (${action.key.toUpperCase()})`;
+        const button = make("button", {type: "button", title: label, id: `tool-${id}`}, icon(id));
+        button.setAttribute("aria-label", label);
+        button.addEventListener("click", action.run);
+        byId("tools").append(button);
+        this.count++;
+        if (action.pressed)
+            this.toggles.push([button, action.pressed]);
     }
 
     // In rows of equal length, as few as the window has room for.

@@ -1,7 +1,7 @@
 // Views: where the viewer is, where they look, and what part of it the window frames.
 // A frame is a picture of height 1: focal lengths and the principal point's offset from the
 // middle in that unit, so that a photograph's own framing survives any window.
-import {dot, mix, mix3, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
+import {dot, length, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
         sub} from "./math.js";
 
 // Quarters, clockwise, that turn a picture of each EXIF orientation upright (orl_photo_upright).
@@ -38,6 +38,16 @@ export function cameraOf(view, width, height)
 export const forwardOf = view => row(view.r, 2);
 export const rightOf = view => row(view.r, 0);
 export const upOf = view => scale(row(view.r, 1), -1);
+
+// Right, up and ahead of a view that looks straight ahead there.
+export function levelAxes(view, up)
+{
+    const level = v => sub(v, scale(up, dot(v, up))), forward = forwardOf(view);
+    let ahead = level(forward);
+    if (length(ahead) < 0.2) // looking straight down or up
+        ahead = level(scale(upOf(view), dot(forward, up) < 0 ? 1 : -1));
+    return [normalize(level(rightOf(view))), up, normalize(ahead)];
+}
 
 export function mixViews(a, b, t)
 {

@@ -6,7 +6,7 @@ uniform float typical; // depth
 uniform float exposure; // factor on light
 uniform int tone;      // as TONES of renderer.js
 uniform bool antialiases;
-uniform vec2 scale;    // pixels of the frame per pixel of the target
+uniform vec2 corner;   // of the frame in the target
 layout(location = 0) out vec4 color;
 
 // Second differences of inverse depth, parts of the largest: from none of it to all.
@@ -67,13 +67,11 @@ vec3 toned(vec3 light)
 
 void main()
 {
-    ivec2 area = textureSize(depth, 0);
-    vec2 place = gl_FragCoord.xy * scale;
+    ivec2 at = ivec2(gl_FragCoord.xy - corner);
 #ifdef FLIP
-    place.y = float(area.y) - place.y;
+    at.y = textureSize(depth, 0).y - 1 - at.y;
 #endif
-    ivec2 at = clamp(ivec2(place), ivec2(0), area - 1);
-    vec3 light = antialiases && scale == vec2(1.0) ? antialiased(at) : texture(composed, place / vec2(area)).rgb;
+    vec3 light = antialiases ? antialiased(at) : texelFetch(composed, at, 0).rgb;
     vec3 plain = srgb_encode(toned(light * exposure));
     float z = texelFetch(depth, at, 0).x;
     vec4 normal = texelFetch(normals, at, 0), from = texelFetch(source, at, 0);
