@@ -68,8 +68,8 @@ finish() {
 }
 
 step dependencies "checking dependencies"
-extra=(libcmocka-dev git jq curl openexr imagemagick libheif-examples sqlite3 chromium chromium-driver python3-selenium
-    python3-flask python3-matplotlib python3-numpy python3-pil
+extra=(libcmocka-dev git jq curl openexr imagemagick libheif-examples sqlite3
+    chromium chromium-driver firefox-esr python3-selenium python3-flask python3-matplotlib python3-numpy python3-pil
     glslang-tools spirv-tools cppcheck)
 # HEIC and AVIF files are written by plugins, where libheif has such.
 apt-cache show libheif-plugin-x265 >/dev/null 2>&1 && extra+=(libheif-plugin-x265 libheif-plugin-aomenc)
