@@ -2,17 +2,19 @@
 """Makes small wrong changes, one at a time, and runs the tests that should notice.
 
 usage: tests/mutants/run.py BUILD [--changed COMMIT] [--minutes N] [--jobs N] [--table FILE] [NAME...]
+       tests/mutants/run.py --texts LIST
 
 BUILD is a build folder (Ninja) whose tests are built. A change of list.json to a C file is made in a
 copy, which is compiled and linked into the test ahead of the library; one to a shader in a copy of
-all shaders, which the test reads (ORIEL_TEST_SHADERS); one to a file of web/ in a copy of a published
-site, on which the named test of tests/web/test_page.py runs in a browser (page/CLASS.TEST). Neither the
+all shaders, which the test reads (ORIEL_TEST_SHADERS); one to a file of a published site in a copy of
+that, on which the named tests of tests/web/test_page.py run in a browser (page/CLASS.TEST). Neither the
 source nor BUILD is touched.
 Named changes alone are tried, with --changed those of files that differ from COMMIT, and with
 --minutes only as many as begin within that time: what is left is told, and is no failure.
 
 A change that no test notices fails the run, unless its entry says why none can ("survives"). So does
-an entry whose text is not in its file exactly once, and a test that fails without any change.
+an entry whose text is not in its file exactly once, and a test that fails without any change. --texts
+looks for the texts alone.
 """
 import argparse
 import concurrent.futures
@@ -141,10 +143,10 @@ def changed_text(entry):
 def prepare(build, entry, work):
     """What runs a test with the change."""
     path, text = os.path.realpath(os.path.join(SOURCE, entry["file"])), changed_text(entry)
-    if entry["file"].startswith("web/"):
+    if entry["tests"][0].startswith(PAGE):
         site = os.path.join(work, "served/path/site")
         shutil.copytree(os.path.join(build.page_folder(), "served/path/site"), site)
-        with open(os.path.join(site, entry["file"][len("web/"):]), "w") as file:
+        with open(os.path.join(site, entry["file"].removeprefix("web/")), "w") as file:
             file.write(text)
         return lambda test: build.page_passes(test, site)
     if entry["file"].startswith("shaders/"):
@@ -217,15 +219,32 @@ def write_table(path, found):
             file.write("\n`%s` in `%s` is %s: %s\n" % (entry["name"], entry["file"], what, why))
 
 
+def check_texts(path):
+    bad = 0
+    with open(path) as file:
+        for entry in json.load(file):
+            try:
+                changed_text(entry)
+            except (Broken, OSError) as problem:
+                bad += 1
+                print("%s: %s" % (entry["name"], problem))
+    return 1 if bad else 0
+
+
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("build")
+    parser.add_argument("build", nargs="?")
+    parser.add_argument("--texts", metavar="LIST")
     parser.add_argument("--changed")
     parser.add_argument("--minutes", type=float)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--table")
     parser.add_argument("names", nargs="*")
     asked = parser.parse_intermixed_args()
+    if asked.texts:
+        return check_texts(asked.texts)
+    if not asked.build:
+        parser.error("no build folder")
     with open(os.path.join(HERE, "list.json")) as file:
         entries = json.load(file)
     if asked.changed:
