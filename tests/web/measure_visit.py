@@ -54,7 +54,7 @@ class Processor(threading.Thread):
     def since_start(self, at):
         """Seconds, until the last look before `at`."""
         before = [used for when, used in self.seen if when <= at]
-        return ((before or [self.seen[0][1]])[-1] - self.seen[0][1]) / 1000
+        return max((before or [self.seen[0][1]])[-1] - self.seen[0][1], 0) / 1000
 
 
 def visit(address, size):
