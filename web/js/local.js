@@ -225,7 +225,7 @@ export class LocalPicture {
         return {
             size: text.size(f.width, f.height), points: `${renderer.drawn} / ${this.cloud.loaded}`,
             photos: text.ofLoaded(renderer.used, renderer.photos.ready.length, this.all.length),
-            loaded: text.bytes(this.files.bytes, this.allBytes),
+            loaded: text.bytes(Math.min(this.files.bytes, this.allBytes), this.allBytes), // which leaves thumbnails out
             memory: text.memory(this.device.bytes + this.cloud.bytes), device: this.device.name,
         };
     }
