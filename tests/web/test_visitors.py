@@ -259,10 +259,10 @@ class Page(Visitors):
         self.addCleanup(lambda: [event.set() for event in (come, more)])
         self.browser.driver.get(server.address)
         self.browser.wait("return !!window.oriel")
-        self.assertIsNone(self.js("""
+        self.assertFalse(self.js("""
             for (let i = 0; i < 20; i++)
                 await new Promise(done => requestAnimationFrame(done));
-            return oriel.picture.renderer.frame;"""))
+            return oriel.picture.renderer.frame !== null;"""))
         come.set()
         self.browser.wait("return document.getElementById('poster').classList.contains('away')")
         self.assertEqual(self.js("return oriel.picture.renderer.used"), 1)
