@@ -235,7 +235,8 @@ static void the_same_input_gives_the_same_bits(void **state)
     teardown(&f);
 }
 
-// A budget for no photograph at all still renders, with smaller photographs one by one.
+// A budget for no photograph at all still renders, with smaller photographs one by one. They are
+// compressed to luma and chroma of 8 bits, of which saturated colours come back within a hundredth.
 static void a_small_budget_plans_instead_of_failing(void **state)
 {
     (void)state;
@@ -248,7 +249,7 @@ static void a_small_budget_plans_instead_of_failing(void **state)
     struct orl_frame whole = draw(gpu, &f, view, &params, 0);
     struct orl_frame tight = draw(gpu, &f, view, &params, 1);
     for (int i = 0; i < 3; i++)
-        assert_float_equal(color_at(&whole, 24, 24)[i], color_at(&tight, 24, 24)[i], 2e-3);
+        assert_float_equal(color_at(&whole, 24, 24)[i], color_at(&tight, 24, 24)[i], 5e-3);
     assert_true(tight.coverage.f32[24 * SIDE + 24] > 0);
     orl_frame_finish(&whole);
     orl_frame_finish(&tight);
