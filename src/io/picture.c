@@ -215,7 +215,7 @@ enum orl_result orl_picture_size(const struct orl_log *log, const char *path, in
 enum orl_result orl_exif_read(const struct orl_log *log, const char *path, struct orl_exif *exif)
 {
     memset(exif, 0, sizeof *exif);
-    struct orl_picture_info info;
+    struct orl_picture_info info = {0};
     return read_header(log, path, &info, exif);
 }
 
