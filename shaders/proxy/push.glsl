@@ -38,11 +38,5 @@ surfel filled(vec2 target, float own_near, surfel disc[4], vec2 centre[4], vec2 
     // A pixel with a surface of its own keeps it unless a nearer surfel occludes it.
     if (total == 0.0 || (own_near > 0.0 && own_near <= front_far))
         return NO_SURFEL;
-    float scale = 1.0 / total;
-    sum.depth *= scale;
-    sum.radius *= scale;
-    sum.displacement *= scale;
-    if (!(dot(sum.normal, sum.normal) > 1e-12))
-        sum.normal = NO_SURFEL.normal;
-    return sum;
+    return surfel_mean(sum, total);
 }

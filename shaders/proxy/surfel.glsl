@@ -37,6 +37,18 @@ uvec4 surfel_pack_b(surfel s)
                  0u);
 }
 
+// The mean of surfels, from the sums of their members and of their weights. `near` and `far` stay.
+surfel surfel_mean(surfel sum, float weight)
+{
+    float scale = 1.0 / weight;
+    sum.depth *= scale;
+    sum.radius *= scale;
+    sum.displacement *= scale;
+    if (!(dot(sum.normal, sum.normal) > 1e-12))
+        sum.normal = NO_SURFEL.normal;
+    return sum;
+}
+
 // --- pull ---
 
 // Merges the 2x2 children of a pixel that lie inside the interval of the nearest one; the others
@@ -64,13 +76,7 @@ surfel surfel_merge(surfel child[4], int child_level)
     }
     if (count == 0.0)
         return NO_SURFEL;
-    float scale = 1.0 / count;
-    sum.depth *= scale;
-    sum.radius *= scale;
-    sum.displacement *= scale;
-    if (!(dot(sum.normal, sum.normal) > 1e-12))
-        sum.normal = NO_SURFEL.normal;
-    return sum;
+    return surfel_mean(sum, count);
 }
 
 // --- push ---
