@@ -12,6 +12,9 @@
 #include "core/memory.h"
 #include "io/internal.h"
 
+// Of one allocation of libpng. A row of ORL_IMAGE_MAX_SIDE pixels takes 512 KiB.
+enum { MEMORY_MAX = 1 << 26 };
+
 struct png_job {
     const struct orl_log *log;
     const char *path;
@@ -46,9 +49,19 @@ static void read_bytes(png_structp png, png_bytep out, size_t size)
     job->size -= size;
 }
 
+// libpng allocates, and zeroes, what a chunk's header claims before it reads the chunk: up to 2 GiB
+// for a file of some bytes.
+static png_voidp allocate(png_structp png, png_alloc_size_t size)
+{
+    if (size > MEMORY_MAX)
+        png_error(png, "a chunk claims to be larger than 64 MiB");
+    return malloc(size);
+}
+
 static enum orl_result start_reading(struct png_job *job)
 {
-    job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, stop, take_warning);
+    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, stop, take_warning, NULL,
+                                        allocate, NULL);
     job->info = job->png ? png_create_info_struct(job->png) : NULL;
     if (!job->info)
         return orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for a PNG reader", job->path);

@@ -408,6 +408,32 @@ static void huge_claims_are_refused(void **state)
     free(data);
 }
 
+// libpng zeroes what a chunk claims to hold ahead of reading it.
+static void a_chunk_takes_no_more_than_the_file(void **state)
+{
+    (void)state;
+    const long most_kib = 1 << 18;
+    const size_t header = 33; // signature and IHDR
+    struct rusage use;
+    struct orl_image image;
+    struct orl_picture_info info;
+    size_t size;
+    write_kind(0, 3);
+    uint8_t *data = file_bytes(&size), *longer = calloc(1, size + 8);
+    assert_non_null(longer);
+    memcpy(longer, data, header);
+    put_be32(longer + header, 0x7f000000);
+    memcpy(longer + header + 4, "tEXt", 4);
+    memcpy(longer + header + 8, data + header, size - header);
+    write_bytes(longer, size + 8);
+    assert_int_equal(read_back(3, &image), ORL_ERR_FORMAT);
+    assert_int_equal(orl_picture_inspect(NULL, file, &info), ORL_ERR_FORMAT);
+    assert_int_equal(getrusage(RUSAGE_SELF, &use), 0);
+    assert_true(use.ru_maxrss < most_kib);
+    free(data);
+    free(longer);
+}
+
 // Room for `room` bytes more than there are, until the test ends.
 static struct rlimit limit_memory(size_t room)
 {
@@ -494,6 +520,7 @@ int main(void)
         cmocka_unit_test(every_truncation_is_an_error),
         cmocka_unit_test(random_damage_never_crashes),
         cmocka_unit_test(huge_claims_are_refused),
+        cmocka_unit_test(a_chunk_takes_no_more_than_the_file),
         cmocka_unit_test(more_than_the_memory_left_is_refused),
         cmocka_unit_test(a_failed_write_leaves_nothing),
     };
