@@ -55,6 +55,7 @@ readers=(
     "shader src/gpu/shader_source.c"
 )
 wanted=" ${*:-} "
+commit=$(git -C "$here" rev-parse --short=8 HEAD)
 
 run_target() {
     local name=$1 corpus=$dir/corpus/$1
@@ -70,7 +71,8 @@ run_target() {
         >"$dir/$name.log" 2>&1; } 2>"$dir/$name.time"
     local status=$? runs
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$dir/$name.log")
-    echo "$name ${runs:-0} $(tail -n 1 "$dir/$name.time")" >>"$dir/tried.txt" # all runs of this build folder
+    # All runs of this build folder, each with its commit.
+    echo "$name ${runs:-0} $(tail -n 1 "$dir/$name.time") $commit" >>"$dir/tried.txt"
     if [ $status -eq 0 ]; then
         echo "$name: ${runs:-0} inputs"
     else

@@ -5,7 +5,7 @@
 # that names its commit; without any, all of them. A step that is not named keeps its section, or
 # gets a new one of what an earlier run left in FUZZ_DIR (build-fuzz).
 #   fuzz       every reader for FUZZ_SECONDS (3; 0: only the inputs that there are); inputs tried add
-#              up over the runs of one commit
+#              up over the runs of one commit, of each reader the last (tests/fuzz/run.sh)
 #   faults     the first calls of a kind and then ever fewer, or with FAULTS=all every call in turn,
 #              which takes hours
 #   soak       SOAK_FRAMES (10000) frames and SOAK_ROUNDS (1000) openings
@@ -24,18 +24,17 @@ mkdir -p "$fuzz/failures"
 # begin STEP: forgets what an earlier run found, and notes the commit that this one tries.
 begin() {
     : >"$fuzz/$1.txt"
-    git -C "$source" rev-parse --short HEAD >"$fuzz/$1.commit"
+    git -C "$source" rev-parse --short=8 HEAD >"$fuzz/$1.commit"
 }
 
 run_step() {
     local script
     case $1 in
     fuzz)
-        # Inputs add up over the runs of one commit.
-        [ "$(cat "$fuzz/fuzz.commit" 2>/dev/null)" = "$(git -C "$source" rev-parse --short HEAD)" ] ||
-            : >"$fuzz/tried.txt"
-        git -C "$source" rev-parse --short HEAD >"$fuzz/fuzz.commit"
         "$source/tests/fuzz/run.sh" "${FUZZ_SECONDS:-3}"
+        local tried=$?
+        fuzz_rows | awk '{ print $4 }' >"$fuzz/fuzz.commit"
+        [ $tried -eq 0 ]
         ;;
     faults)
         begin faults
@@ -66,27 +65,31 @@ run_step() {
     esac || status=1
 }
 
+# Lines "READER INPUTS SECONDS COMMIT": the runs of each reader at the commit of its last one.
+fuzz_rows() {
+    awk '{ last[$1] = $4; n[$1, $4] += $2; s[$1, $4] += $3 }
+         END { for (k in last) print k, n[k, last[k]], s[k, last[k]], last[k] }' "$fuzz/tried.txt" | sort
+}
+
 at_commit() {
     sort -u "$fuzz/$1.commit" | paste -sd, | sed 's/,/, /g; s/.*/At commit &./'
     echo
 }
 
 fuzz_section() {
-    local name inputs time left
+    local name inputs time commit left
     echo "## Inputs tried"
     echo
     echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
     echo
     echo "| reader | inputs tried | seconds of processor time | commit | failures left |"
     echo "|---|--:|--:|---|--:|"
-    awk '{ n[$1] += $2; s[$1] += $3 } END { for (k in n) print k, n[k], s[k] }' "$fuzz/tried.txt" |
-        sort | while read -r name inputs time; do
+    fuzz_rows | while read -r name inputs time commit; do
         left=$(find "$fuzz/failures" -name "$name-*" | wc -l)
-        printf '| %s | %s | %.0f | %s | %s |\n' "$name" "$inputs" "$time" "$(cat "$fuzz/fuzz.commit")" "$left"
+        printf '| %s | %s | %.0f | %s | %s |\n' "$name" "$inputs" "$time" "$commit" "$left"
     done
-    awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | ", n, s, s / 3600 }' \
-        "$fuzz/tried.txt"
-    echo "$(cat "$fuzz/fuzz.commit") | $(find "$fuzz/failures" -type f | wc -l) |"
+    fuzz_rows | awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | | ", n, s, s / 3600 }'
+    echo "$(find "$fuzz/failures" -type f | wc -l) |"
     echo
     echo "### Lines of each reader that these inputs reach"
     echo
