@@ -113,7 +113,8 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
         count++;
     }
     if (result == ORL_OK)
-        result = orl_points_drop_in_free_space(job->log, views, count, points);
+        result = orl_points_drop_in_free_space(job->log, job->progress, views, count,
+                                               points);
     if (result == ORL_OK)
         result = orl_points_set_radii(job->log, job->progress, &radii, (const double (*)[3])eyes,
                                       count, points);

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 
 enum {
+    CHUNK = 1 << 18,    // points between two checks for cancellation
     VIEWS_MAX = 24,     // that vote; more hardly change the result
     PER_CELL = 4,       // points of a cell on average, which sets its size
     VISITED_MAX = 64,   // of a cell: where more crowd, each visited one stands for several
@@ -121,11 +122,13 @@ static void count_around(const struct cells *c, size_t i, double tolerance, size
     }
 }
 
-static void vote(const struct cells *c, size_t points, double focal_px, uint8_t *through,
-                 uint8_t *confirm)
+static enum orl_result vote(const struct orl_progress *progress, const struct cells *c,
+                            size_t points, double focal_px, uint8_t *through, uint8_t *confirm)
 {
     double tolerance = fmax(same_depth, same_cells * c->side_px / focal_px);
     for (size_t i = 0; i < points; i++) {
+        if (i % CHUNK == 0 && orl_progress_cancelled(progress))
+            return ORL_ERR_CANCELLED;
         size_t near, far[SIDES], all = 0;
         bool around = true;
         if (c->cell[i] < 0)
@@ -138,9 +141,11 @@ static void vote(const struct cells *c, size_t points, double focal_px, uint8_t 
         through[i] += around && (double)near <= through_share * (double)all;
         confirm[i] += near > 0 && (double)near >= confirm_share * (double)all;
     }
+    return ORL_OK;
 }
 
 enum orl_result orl_points_drop_in_free_space(const struct orl_log *log,
+                                              const struct orl_progress *progress,
                                               const struct orl_view *views, size_t view_count,
                                               struct orl_points *points)
 {
@@ -164,7 +169,7 @@ enum orl_result orl_points_drop_in_free_space(const struct orl_log *log,
         const struct orl_view *view = &views[v * view_count / voters];
         project(points, view, &c);
         sort(points->count, &c);
-        vote(&c, points->count, view->camera.fx, through, confirm);
+        result = vote(progress, &c, points->count, view->camera.fx, through, confirm);
     }
     for (size_t i = 0; result == ORL_OK && i < points->count; i++)
         if (through[i] < THROUGH_MIN || through[i] < CONFIRM_SHARE * confirm[i] ||

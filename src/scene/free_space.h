@@ -4,6 +4,7 @@
 
 #include "oriel/camera.h"
 #include "oriel/points.h"
+#include "oriel/progress.h"
 
 // Drops points that stand alone in front of what photographs see behind them. A photograph looks
 // through a point when, within a few pixels, points on all sides lie farther and hardly any lies as
@@ -15,6 +16,7 @@
 // After the free-space violations of Merrell et al. 2007, "Real-time visibility-based fusion of
 // depth maps", of points in place of depth maps.
 enum orl_result orl_points_drop_in_free_space(const struct orl_log *log,
+                                              const struct orl_progress *progress,
                                               const struct orl_view *views, size_t view_count,
                                               struct orl_points *points) ORL_CHECK_RESULT;
 

@@ -53,7 +53,7 @@ static void drops_what_photographs_look_through(void **state)
     struct orl_points points;
     place(views);
     make(&points);
-    assert_int_equal(orl_points_drop_in_free_space(NULL, views, VIEWS, &points), ORL_OK);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, NULL, views, VIEWS, &points), ORL_OK);
     assert_int_equal(count(&points, 1), SIDE * SIDE);
     assert_int_equal(count(&points, 2), POLE);
     assert_int_equal(count(&points, 3), 0);
@@ -70,7 +70,7 @@ static void keeps_what_photographs_agree_on(void **state)
     make(&points);
     size_t all = points.count;
     memset(points.photographs, 2, all - 1);
-    assert_int_equal(orl_points_drop_in_free_space(NULL, views, VIEWS, &points), ORL_OK);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, NULL, views, VIEWS, &points), ORL_OK);
     assert_int_equal(points.count, all - 1);
     assert_int_equal(count(&points, 3), STRAYS - 1);
     orl_points_finish(&points);
@@ -86,21 +86,42 @@ static void keeps_what_it_cannot_tell(void **state)
     place(views);
     make(&points);
     size_t all = points.count;
-    assert_int_equal(orl_points_drop_in_free_space(NULL, views, 1, &points), ORL_OK);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, NULL, views, 1, &points), ORL_OK);
     assert_int_equal(points.count, all);
     for (int i = 0; i < VIEWS; i++)
         views[i].cam_from_world.t[2] = -10; // beyond all points
-    assert_int_equal(orl_points_drop_in_free_space(NULL, views, VIEWS, &points), ORL_OK);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, NULL, views, VIEWS, &points), ORL_OK);
     assert_int_equal(points.count, all);
     points.count = 0;
     place(views);
     for (int i = 0; i < 7; i++)
         add(&points, 0.1 * i, 0, 4, 1);
     add(&points, 0, 0, 2, 3);
-    assert_int_equal(orl_points_drop_in_free_space(NULL, views, VIEWS, &points), ORL_OK);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, NULL, views, VIEWS, &points), ORL_OK);
     assert_int_equal(points.count, 8);
     points.count = 0;
-    assert_int_equal(orl_points_drop_in_free_space(NULL, views, VIEWS, &points), ORL_OK);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, NULL, views, VIEWS, &points), ORL_OK);
+    orl_points_finish(&points);
+}
+
+static bool always(void *priv)
+{
+    (void)priv;
+    return true;
+}
+
+static void stops_when_asked(void **state)
+{
+    (void)state;
+    const struct orl_progress progress = {.cancelled = always};
+    struct orl_view views[VIEWS];
+    struct orl_points points;
+    place(views);
+    make(&points);
+    size_t all = points.count;
+    assert_int_equal(orl_points_drop_in_free_space(NULL, &progress, views, VIEWS, &points),
+                     ORL_ERR_CANCELLED);
+    assert_int_equal(points.count, all);
     orl_points_finish(&points);
 }
 
@@ -116,7 +137,7 @@ static double seconds_of_a_crowd(int count)
     for (int i = 0; i < count; i++)
         add(&points, 0, 0, 4, 1);
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
-    assert_int_equal(orl_points_drop_in_free_space(NULL, views, VIEWS, &points), ORL_OK);
+    assert_int_equal(orl_points_drop_in_free_space(NULL, NULL, views, VIEWS, &points), ORL_OK);
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
     assert_int_equal(points.count, count);
     orl_points_finish(&points);
@@ -135,6 +156,7 @@ int main(void)
         cmocka_unit_test(drops_what_photographs_look_through),
         cmocka_unit_test(keeps_what_photographs_agree_on),
         cmocka_unit_test(keeps_what_it_cannot_tell),
+        cmocka_unit_test(stops_when_asked),
         cmocka_unit_test(crowds_take_their_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
