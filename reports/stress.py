@@ -59,6 +59,7 @@ class Case:
         self.points = {key: np.zeros((0, 3)) for key in ("xyz", "normal", "rgb")}
         self.empty, self.steps = {}, {}  # of the figure: pictures without it; its time steps
         self.jpeg = self.hull = None
+        self.truth = None  # where the truth of a vehicle is; stereo makes the points then
 
     def copy(self):
         other = copy.copy(self)
@@ -123,6 +124,8 @@ class Case:
                  "--out", folder / "scene"]
         if self.hull:
             words += ["--masks", folder / "masks", "--mesh", "hull=64,5000", "--points", "none"]
+        elif self.truth:
+            words += ["--points", "densify"]
         else:
             write_points(folder / "points.ply", self.points)
             words += ["--points", folder / "points.ply"]
@@ -205,9 +208,9 @@ def hold_out(case, views):
     case.tests = {names[(k + 1) * len(names) // (views + 1)] for k in range(views)}
 
 
-def monument(run, words=()):
+def monument(run, words=(), name="monument"):
     """The monument with points of the true depth of its photographs."""
-    views, folder = views_of(run), run.work / "monument"
+    views, folder = views_of(run), run.work / name
     case = synth(run, folder, ["--count", int(run.options["photographs"]) + views, *words])
     hold_out(case, views)
     found = {"xyz": [], "normal": [], "rgb": []}
@@ -353,6 +356,13 @@ def photographs(case, level, rng):
                       if not (at + 1) * kept // len(names) > at * kept // len(names)}
     recolor(case)
     return [case]
+
+
+def vehicle(source, level, rng):
+    """Stereo finds what it can of a vehicle, a lamp and two wires before the monument."""
+    case = source.get("vehicle", lambda: monument(source.run, ["--vehicle"], "vehicle"))
+    case.truth = source.run.work / "vehicle-truth"
+    return photographs(case, level, rng)
 
 
 def fewer_points(case, level, rng):
@@ -654,6 +664,8 @@ AXES = {
                    needs="truth", own_truth=True),
     "farther": Axis("the viewer goes away, the framing kept", "times the distance",
                     [1, 1.3, 1.7, 2.2, 3, 4], needs="truth", own_truth=True),
+    "vehicle": Axis("photographs left out (three stay), points by stereo, the pixels of a vehicle, a lamp and wires alone",
+                    "%", [0, 25, 50, 65, 75, 100], make=vehicle, needs="truth"),
 }
 
 
@@ -708,6 +720,11 @@ def settings_of(axis, values):
     return tuple(keys)
 
 
+def figures_of(case, row):
+    """What a row says of a case: of whole pictures, or of the vehicle alone."""
+    return {key: row["mean"].get(f"vehicle_{key}" if case.truth else key) for key in FIGURES}
+
+
 def measure_severity(run, source, name, level, methods):
     """Rows of all methods: means over the cases' views. {}: the scene cannot be made as bad."""
     cases, rows = source.change(name, level), {}
@@ -722,13 +739,14 @@ def measure_severity(run, source, name, level, methods):
         if scene is None:
             return {}
         report.write_json(path, case.walk())
-        walk = ["--path", path]
+        walk, truth = ["--path", path], ["--truth", case.truth] if case.truth else []
         for settings, group in groups.items():
             how = [word for s in settings for word in ("--set", s)]
-            drawn = run.measure(scene, group + paired, how, walk=walk)
+            drawn = run.measure(scene, group + paired, how, truth, walk)
             for found in drawn if drawn is not None else [
                     row for method in group
-                    for row in run.measure(scene, [method] + paired, how, walk=walk) or []]:
+                    for row in run.measure(scene, [method] + paired, how, truth, walk) or []]:
+                found["mean"] = figures_of(case, found)
                 rows.setdefault(found["method"] + (ON_ORIEL if found.get("setting") else ""), []).append(found)
     return {method: {"device": found[0]["device"], "flicker": mean([f["flicker"] for f in found]),
                      "mean": {key: mean([f["mean"][key] for f in found]) for key in FIGURES}}
