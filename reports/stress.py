@@ -104,7 +104,7 @@ class Case:
     # --- files ---
 
     def write(self, run, folder):
-        """The case as a scene, folder/scene. None: its silhouettes leave no hull."""
+        """The case as a scene, folder/scene. None: its silhouettes leave no hull, or stereo finds nothing."""
         shutil.rmtree(folder, ignore_errors=True)
         names = [n for n in sorted(self.cameras) if n not in self.left_out]
         for kind in ("images", *(["masks"] if self.hull else [])):
@@ -130,7 +130,7 @@ class Case:
             write_points(folder / "points.ply", self.points)
             words += ["--points", folder / "points.ply"]
         if run.call(*words) is None:
-            if self.hull:
+            if self.hull or self.truth:
                 return None
             raise Failure("oriel import failed")
         if self.gains:
