@@ -63,6 +63,21 @@ static enum orl_result read_begun(const struct planner *p, json_t **begun)
     return result;
 }
 
+// Takes out options that earlier programs had, each with its value.
+static json_t *without_gone_options(const json_t *arguments)
+{
+    json_t *left = json_array();
+    for (size_t i = 0; i < json_array_size(arguments); i++) {
+        json_t *text = json_array_get(arguments, i);
+        const char *word = json_is_string(text) ? json_string_value(text) : "";
+        if (strcmp(word, "--adapt") == 0 || strcmp(word, "--adapt-budget") == 0)
+            i++;
+        else
+            json_array_append(left, text);
+    }
+    return left;
+}
+
 // Reads p->params, whose texts belong to p->arguments.
 static enum orl_result parse_arguments(struct planner *p, const char *path)
 {
@@ -95,7 +110,7 @@ static enum orl_result read_arguments(struct planner *p)
         result = read_begun(p, &begun);
     p->given = json_array_size(json_object_get(begun, "photographs"));
     json_decref(begun);
-    p->arguments = json_incref(json_object_get(stages, "arguments"));
+    p->arguments = without_gone_options(json_object_get(stages, "arguments"));
     if (result == ORL_OK && ((!p->undistorted && !p->given) || !json_array_size(p->arguments)))
         result = orl_fail(p->log, ORL_ERR_DATA, "%s: nothing to plan yet: run oriel prepare PHOTOS "
                           "--out %s --until undistort (or collect) first", p->dir, p->dir);

@@ -146,8 +146,8 @@ static enum orl_result check_manifest(struct orl_job *job, const json_t *root)
     return result;
 }
 
-// Keeps how the scene is drawn best, as tune and trim found it, while the scene is the same: in
-// place of what the stage adapt found. What cannot be read holds nothing to keep.
+// Keeps how the scene is drawn best, as tune and trim found it, while the scene is the same. What
+// cannot be read holds nothing to keep.
 static enum orl_result keep_tuned(struct orl_job *job, const char *path, json_t *root)
 {
     json_t *old = NULL;
@@ -159,7 +159,6 @@ static enum orl_result keep_tuned(struct orl_job *job, const char *path, json_t 
         orl_logf(job->log, ORL_LOG_WARNING, "%s: cannot be read; written anew", path);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(kept); i++) {
         json_t *value = json_object_get(old, kept[i]);
-        json_t *adapted = json_incref(json_object_get(root, kept[i]));
         if (value && json_object_set(root, kept[i], value) != 0)
             result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
         if (value && result == ORL_OK &&
@@ -167,10 +166,8 @@ static enum orl_result keep_tuned(struct orl_job *job, const char *path, json_t 
             orl_logf(job->log, ORL_LOG_WARNING, "%s: \"%s\" cannot be read and is left out", path,
                      kept[i]);
             json_object_del(root, kept[i]);
-            result = adapted && json_object_set(root, kept[i], adapted) != 0 ? ORL_ERR_MEMORY
-                                                                             : ORL_OK;
+            result = ORL_OK;
         }
-        json_decref(adapted);
     }
     json_decref(old);
     return result;
@@ -182,16 +179,14 @@ static json_t *make_manifest(const struct orl_job *job)
     const json_t *done = json_object_get(job->stages, "done");
     json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"),
                                  stage_value(done, "occluders", "occluded"));
-    return json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O, s:O, s:O*, s:O*}",
+    return json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O, s:O}",
                      "format", "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                      "oriel " ORL_VERSION, "settings", settings(job->params), "counts",
                      counts(job, done, photos), "photographs", photos, "responses",
                      stage_value(done, "expose", "responses"), "left_out", left_out(job, done),
                      "stages", copy_stages(plan, done), "checksums", checksums(plan, done),
                      "ground", stage_value(done, "ground", "ground"), "backdrop",
-                     stage_value(done, "backdrop", "backdrop"), "tuned",
-                     stage_value(done, "adapt", "tuned"), "render",
-                     stage_value(done, "adapt", "render"));
+                     stage_value(done, "backdrop", "backdrop"));
 }
 
 enum orl_result orl_scene_json_open(struct orl_job *job, struct orl_scene **scene)

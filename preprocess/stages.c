@@ -20,7 +20,6 @@
 #include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
 #include "preprocess/densify/densify.h"
-#include "preprocess/adapt_stage.h"
 #include "preprocess/densify_stage.h"
 #include "preprocess/expose/expose.h"
 #include "preprocess/occluders_stage.h"
@@ -97,11 +96,6 @@ static json_t *occluders_settings(const struct orl_job *job)
     return json_pack("{s:b}", "find", are_occluders_wanted(job));
 }
 
-static bool is_adapt_wanted(const struct orl_job *job)
-{
-    return job->params->adapt != ORL_ADAPT_NONE;
-}
-
 // --- the stages ---
 
 enum { RESULTS_MAX = 4 };
@@ -146,8 +140,6 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
     [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_EXPOSE, occluders_settings,
                              orl_stage_occluders, {"occluders"}, "occluded", true,
                              are_occluders_wanted},
-    [ORL_STAGE_ADAPT] = {"adapt", 2, ORL_STAGE_OCCLUDERS, orl_stage_adapt_settings, orl_stage_adapt,
-                         {0}, "render", true, is_adapt_wanted},
 };
 
 static bool is_wanted(const struct orl_job *job, int id)

@@ -29,7 +29,7 @@ OPTIONS = [
     ("sh", "int", "1", "0 to 2", "Degree of the splats' spherical harmonics"),
 ]
 STAGES = ["collect", "calibrate", "undistort", "densify", "fuse", "radii", "ground", "backdrop", "sky",
-          "expose", "occluders", "adapt"]
+          "expose", "occluders"]
 
 
 class Bad(Exception):

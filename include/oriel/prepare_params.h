@@ -57,13 +57,6 @@ enum orl_until { ORL_UNTILS(ORL_ENUMERATOR) };
     NAME(ORL_MESH_DELAUNAY, "delaunay")
 enum orl_prepare_mesh { ORL_PREPARE_MESHES(ORL_ENUMERATOR) };
 
-// How the finished scene will be drawn: as its method is (none), or with what training photographs
-// find better, each rendered from the others. short: a few changes that measured well, in less than
-// a tenth of the time of prepare. long: among all methods and options.
-#define ORL_ADAPT_EFFORTS(NAME) \
-    NAME(ORL_ADAPT_NONE, "none") NAME(ORL_ADAPT_SHORT, "short") NAME(ORL_ADAPT_LONG, "long")
-enum orl_adapt_effort { ORL_ADAPT_EFFORTS(ORL_ENUMERATOR) };
-
 // Whether the visual hull closes surfaces of a subject with silhouettes that stereo leaves open.
 #define ORL_HULL_USES(NAME) NAME(ORL_HULL_NONE, "none") NAME(ORL_HULL_CLOSE, "close")
 enum orl_hull_use { ORL_HULL_USES(ORL_ENUMERATOR) };
@@ -140,10 +133,6 @@ extern const char *const orl_quality_names[], *const orl_matching_names[],
         CHOICE(orl_occluder_search, ORL_OCCLUDER_SEARCHES, ORL_OCCLUDER_SEARCH_FIND, "HOW"), \
         "find what single photographs show before the scene, so that it is not painted onto what " \
         "is behind") \
-    ROW(adapt, "adapt", CHOICE(orl_adapt_effort, ORL_ADAPT_EFFORTS, ORL_ADAPT_SHORT, "EFFORT"), \
-        "find what suits the scene, as its defaults: among a few changes, or all methods and " \
-        "options", "adapt=adapt") \
-    ROW(adapt_budget_s, "adapt-budget", NUMBER(120, 0, 1e6, "SECONDS"), "of --adapt long") \
     ROW(keep, "keep", CHOICE(orl_keep, ORL_KEEPS, ORL_KEEP_MINIMAL, "WHAT"), \
         "minimal is what commands read; all has the stereo's maps, too") \
     ROW(max_ram_bytes, "max-ram", MIB(1 << 24), \

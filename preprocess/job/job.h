@@ -26,7 +26,6 @@ enum orl_stage_id {
     ORL_STAGE_MESH,
     ORL_STAGE_EXPOSE,
     ORL_STAGE_OCCLUDERS,
-    ORL_STAGE_ADAPT,
     ORL_STAGE_COUNT
 };
 

@@ -3,23 +3,17 @@
 
 #include "cli/command.h"
 #include "cli/command_output.h"
-#include "eval/adapt.h"
-#include "oriel/prepare_params.h"
+#include "eval/search.h"
 #include "scene/tuned_settings.h"
-
-enum { VIEWS = 16, ADAPT_BUDGET_S = 120 };
 
 #define TUNE_OPTIONS(ROW) \
     METHOD_OPTIONS(ROW) \
     ROW(keys, "only", LIST("KEY,KEY,.."), "tune these options; default: all that can be") \
     ROW(apply, "apply", FLAG, "keep the result in scene.json: render, eval and others use it") \
     ROW(fresh, "fresh", FLAG, "start from the method's values, not the scene's") \
-    ROW(adapt, "adapt", CHOICE(orl_adapt_effort, ORL_ADAPT_EFFORTS, ORL_ADAPT_NONE, "EFFORT"), \
-        "choose the method, too, and keep the result, as prepare --adapt does") \
     ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
-        "start no trial after so long; default: none, and 120 with --adapt long") \
-    ROW(views, "views", INT(0, 1, 100000, "N"), \
-        "photographs to compare with, at most; default 16, and 6 with --adapt") \
+        "start no trial after so long; default: none") \
+    ROW(views, "views", INT(16, 1, 100000, "N"), "photographs to compare with, at most") \
     ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
     ROW(gain_db, "gain", NUMBER(0.01, 0, 10, "DB"), "a change must bring so much") \
     ROW(json, "json", TEXT("FILE"), "write result and trials as JSON") \
@@ -58,49 +52,10 @@ static enum orl_result report(const struct orl_log *log, const struct tune_optio
     return result;
 }
 
-// As the stage adapt of prepare does.
-static enum orl_result adapt(const struct terminal *terminal, const struct tune_options *o,
-                             const struct common_options *common, const char *dir)
-{
-    const struct orl_log *log = &terminal->log;
-    if (o->method || o->settings.count || o->keys.count || o->fresh || o->json)
-        return orl_fail(log, ORL_ERR_ARGUMENT,
-                        "tune: --adapt chooses the method and its options itself: without "
-                        "--method, --set, --only, --fresh and --json");
-    struct orl_scene *scene = NULL;
-    struct orl_gpu *gpu = NULL;
-    struct orl_adapt found = {0};
-    const struct orl_adapt_params params = {
-        .search = o->adapt == ORL_ADAPT_LONG,
-        .views = (size_t)(o->views ? o->views : ORL_ADAPT_VIEWS), .size_divide = o->size_divide,
-        .budget_s = o->budget_s > 0 ? o->budget_s : ADAPT_BUDGET_S,
-        .progress = &terminal->progress};
-    enum orl_result result = orl_scene_open(log, dir, &scene);
-    if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
-    if (result == ORL_OK)
-        result = orl_adapt_run(gpu, scene, &params, &found);
-    if (result == ORL_OK)
-        result = orl_adapt_store(log, dir, &found);
-    for (size_t i = 0; result == ORL_OK && i < found.row_count; i++)
-        printf("%-14s %7.2f dB %7.4f%s\n", found.rows[i].method->name, found.rows[i].psnr_db,
-               found.rows[i].ssim, i == found.chosen ? "  chosen" : "");
-    if (result == ORL_OK)
-        printf("%-14s %7.2f dB %7.4f\n%-14s %7.2f dB %7.4f%s\n", "plain", found.plain_db,
-               found.plain_ssim, "adapted", found.tuned_db, found.tuned_ssim,
-               found.complete ? "" : "  (the budget ran out)");
-    orl_gpu_destroy(&gpu);
-    orl_scene_destroy(&scene);
-    return result;
-}
-
 static enum orl_result run_tune(struct terminal *terminal, const void *options,
                                 const struct common_options *common, const char *const *inputs)
 {
     const struct tune_options *o = options;
-    if (o->adapt != ORL_ADAPT_NONE)
-        return adapt(terminal, o, common, inputs[0]);
     const struct orl_log *log = &terminal->log;
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
@@ -123,7 +78,8 @@ static enum orl_result run_tune(struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);
     const struct orl_search_params params = {
-        .size_divide = o->size_divide, .views = (size_t)(o->views ? o->views : VIEWS), .gain_db = o->gain_db, .budget_s = o->budget_s,
+        .size_divide = o->size_divide, .views = (size_t)o->views, .gain_db = o->gain_db,
+        .budget_s = o->budget_s,
         .on_trial = common->quiet ? NULL : print_trial, .progress = &terminal->progress};
     if (result == ORL_OK && !common->quiet)
         printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
@@ -141,7 +97,7 @@ static enum orl_result run_tune(struct terminal *terminal, const void *options,
 const struct command command_tune = {
     .name = "tune", .group = COMMAND_FIT,
     .brief = "fit a method's options to a scene",
-    .usage = "SCENE [--method NAME] [--apply | --adapt short|long]",
+    .usage = "SCENE [--method NAME] [--apply]",
     .summary = "Finds the values of a method's options with which training photographs come out best,\n"
                "each rendered from the others. Held-out photographs take no part.",
     COMMAND_TABLE(tune_options), .inputs_min = 1, .inputs_max = 1, .run = run_tune,

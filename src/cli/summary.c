@@ -47,16 +47,6 @@ static void print_stages(const json_t *stages)
     printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  at most\n", "all", wall, cpu, peak);
 }
 
-// What the stage adapt gained.
-static void print_adapted(const json_t *record)
-{
-    if (json_object_get(record, "psnr_db"))
-        printf("adapted      from %.2f dB and SSIM %.4f to %.2f dB and %.4f: %lld training "
-               "photographs, each left out\n", number(record, "plain_psnr_db"),
-               number(record, "plain_ssim"), number(record, "psnr_db"), number(record, "ssim"),
-               count(record, "views"));
-}
-
 enum { LEFT_OUT_SHOWN = 20 };
 
 static void print_left_out(const json_t *list)
@@ -88,7 +78,6 @@ enum orl_result summary_print(const struct orl_log *log, const char *dir)
         print_counts(root);
         print_left_out(json_object_get(root, "left_out"));
         print_stages(json_object_get(root, "stages"));
-        print_adapted(json_object_get(json_object_get(root, "stages"), "adapt"));
     }
     json_decref(root);
     free(path);

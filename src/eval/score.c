@@ -6,13 +6,6 @@
 
 #include "core/memory.h"
 
-// The validation photograph that is the k-th of a score: every other one, then those between.
-static size_t view_of(size_t k, size_t views)
-{
-    size_t half = (views + 1) / 2;
-    return k < half ? 2 * k : 2 * (k - half) + 1;
-}
-
 static void set_means(struct orl_score *score)
 {
     double n = (double)score->count;
@@ -23,42 +16,27 @@ static void set_means(struct orl_score *score)
     }
 }
 
-enum orl_result orl_score_extend(const struct orl_log *log, struct orl_renderer *renderer,
-                                 const struct orl_validation *validation,
-                                 const struct orl_render_params *render,
-                                 const struct orl_progress *progress, size_t count,
-                                 struct orl_score *score)
-{
-    enum orl_result result = ORL_OK;
-    if (!score->views)
-        score->views = orl_array(log, validation->count, sizeof *score->views);
-    if (!score->views)
-        result = ORL_ERR_MEMORY;
-    while (result == ORL_OK && score->count < count) {
-        struct orl_metrics m = {0};
-        size_t view = view_of(score->count, validation->count);
-        result = orl_progress_cancelled(progress)
-                     ? ORL_ERR_CANCELLED
-                     : orl_validation_compare(log, renderer, validation, view, render, NULL, true,
-                                              &m);
-        score->views[score->count][0] = m.psnr_db;
-        score->views[score->count][1] = m.ssim;
-        score->count += result == ORL_OK;
-    }
-    set_means(score);
-    if (result != ORL_OK)
-        orl_score_finish(score);
-    return result;
-}
-
 enum orl_result orl_score_measure(const struct orl_log *log, struct orl_renderer *renderer,
                                   const struct orl_validation *validation,
                                   const struct orl_render_params *render,
                                   const struct orl_progress *progress,
                                   struct orl_score *score)
 {
-    *score = (struct orl_score){0};
-    return orl_score_extend(log, renderer, validation, render, progress, validation->count, score);
+    *score = (struct orl_score){.views = orl_array(log, validation->count, sizeof *score->views)};
+    enum orl_result result = score->views ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < validation->count; i++) {
+        struct orl_metrics m = {0};
+        result = orl_progress_cancelled(progress)
+                     ? ORL_ERR_CANCELLED
+                     : orl_validation_compare(log, renderer, validation, i, render, NULL, true, &m);
+        score->views[i][0] = m.psnr_db;
+        score->views[i][1] = m.ssim;
+        score->count += result == ORL_OK;
+    }
+    set_means(score);
+    if (result != ORL_OK)
+        orl_score_finish(score);
+    return result;
 }
 
 void orl_score_finish(struct orl_score *score)
@@ -74,33 +52,21 @@ static double decibels(const double view[2])
     return (view[0] - 10 * log10(fmax(1 - view[1], least))) / 2;
 }
 
-double orl_score_gain_db(const struct orl_score *now, const struct orl_score *before)
+static double gain_of(const struct orl_score *now, const struct orl_score *before, size_t view)
 {
-    double sum = 0;
-    for (size_t i = 0; i < now->count; i++)
-        sum += decibels(now->views[i]) - decibels(before->views[i]);
-    return now->count ? sum / (double)now->count : 0;
+    return decibels(now->views[view]) - decibels(before->views[view]);
 }
 
 bool orl_score_better(const struct orl_score *now, const struct orl_score *before,
                       double gain_db)
 {
-    double n = (double)now->count, mean = orl_score_gain_db(now, before), square = 0;
+    double n = (double)now->count, mean = 0, square = 0;
     if (now->psnr_db < before->psnr_db || now->ssim < before->ssim)
         return false;
-    for (size_t i = 0; i < now->count; i++) {
-        double gain = decibels(now->views[i]) - decibels(before->views[i]);
-        square += (gain - mean) * (gain - mean) / n;
-    }
+    for (size_t i = 0; i < now->count; i++)
+        mean += gain_of(now, before, i) / n;
+    for (size_t i = 0; i < now->count; i++)
+        square += pow(gain_of(now, before, i) - mean, 2) / n;
     double error = n > 1 ? sqrt(square / (n - 1)) : 0;
     return mean >= gain_db && mean > error;
-}
-
-bool orl_score_clearly_better(const struct orl_score *now, const struct orl_score *before,
-                              double gain_db)
-{
-    size_t gaining = 0;
-    for (size_t i = 0; i < now->count; i++)
-        gaining += decibels(now->views[i]) > decibels(before->views[i]);
-    return 2 * gaining > now->count && orl_score_better(now, before, gain_db);
 }

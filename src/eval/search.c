@@ -11,14 +11,10 @@
 
 enum { ROUNDS_MAX = 8 };
 
-bool orl_method_is_for_stills(const struct orl_method *method)
-{
-    return method->params.reconstructions > 1;
-}
-
-enum orl_result orl_search_begin(struct orl_gpu *gpu, struct orl_renderer *renderer,
-                                 const struct orl_scene *scene,
-                                 const struct orl_search_params *params, struct orl_search *s)
+// Reads the photographs to compare with. ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN.
+static enum orl_result begin(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                             const struct orl_scene *scene,
+                             const struct orl_search_params *params, struct orl_search *s)
 {
     *s = (struct orl_search){.log = orl_gpu_log(gpu), .renderer = renderer, .scene = scene,
                              .params = *params, .start_s = orl_time_s(), .complete = true};
@@ -36,7 +32,8 @@ void orl_search_finish(struct orl_search *s)
     memset(s, 0, sizeof *s);
 }
 
-bool orl_search_is_over(const struct orl_search *s)
+// True when no new trial may start.
+static bool is_over(const struct orl_search *s)
 {
     return s->params.budget_s > 0 && orl_time_s() - s->start_s >= s->params.budget_s;
 }
@@ -56,7 +53,7 @@ static enum orl_result note_trial(struct orl_search *s, const struct orl_trial *
 }
 
 // Measures a choice and keeps it if it is better than the best so far, or the first. `same`: the
-// change has no effect at all; may be NULL.
+// change has no effect at all.
 static enum orl_result try_choice(struct orl_search *s, const struct orl_choice *choice,
                                   struct orl_trial *trial, bool *same)
 {
@@ -71,8 +68,7 @@ static enum orl_result try_choice(struct orl_search *s, const struct orl_choice 
     trial->psnr_db = score.psnr_db;
     trial->ssim = score.ssim;
     trial->kept = !s->score.count || orl_score_better(&score, &s->score, s->params.gain_db);
-    if (same)
-        *same = score.psnr_db == s->score.psnr_db && score.ssim == s->score.ssim;
+    *same = score.psnr_db == s->score.psnr_db && score.ssim == s->score.ssim;
     if (trial->kept) {
         orl_score_finish(&s->score);
         s->score = score;
@@ -81,13 +77,6 @@ static enum orl_result try_choice(struct orl_search *s, const struct orl_choice 
         orl_score_finish(&score);
     }
     return note_trial(s, trial);
-}
-
-enum orl_result orl_search_start(struct orl_search *s, const struct orl_choice *choice)
-{
-    struct orl_trial trial = {.key = NULL};
-    orl_score_finish(&s->score);
-    return try_choice(s, choice, &trial, NULL);
 }
 
 // --- numbers ---
@@ -119,7 +108,7 @@ static enum orl_result move_number(struct orl_search *s, const struct orl_render
     bool moved = false, same = false;
     for (int direction = 1; direction >= -1 && !moved && !same; direction -= 2) {
         struct orl_trial trial = {.key = option->key, .kept = true};
-        while (result == ORL_OK && trial.kept && !orl_search_is_over(s)) {
+        while (result == ORL_OK && trial.kept && !is_over(s)) {
             struct orl_choice choice = s->best;
             double value = next_try(option, (double)*field(&choice.params, option), direction);
             if (isnan(value))
@@ -142,21 +131,23 @@ static bool is_chosen(const struct orl_search *s, const struct orl_render_option
     return !keys || !keys->count || orl_names_contain(keys, option->key);
 }
 
-enum orl_result orl_search_numbers(struct orl_search *s, const struct orl_names *keys)
+// Searches one number after another among its values in orl_render_tries, upwards and downwards
+// while the result gets better. Repeats rounds over all of them until a round brings no gain.
+static enum orl_result numbers(struct orl_search *s, const struct orl_names *keys)
 {
     enum orl_result result = ORL_OK;
     bool better = true;
     s->planned = (double)s->trial_count;
     for (const struct orl_render_option *o = orl_render_options; o->key; o++)
         s->planned += is_chosen(s, o, keys) ? 3 : 0;
-    for (int round = 0; result == ORL_OK && better && round < ROUNDS_MAX && !orl_search_is_over(s);
+    for (int round = 0; result == ORL_OK && better && round < ROUNDS_MAX && !is_over(s);
          round++) {
         better = false;
         for (const struct orl_render_option *o = orl_render_options; result == ORL_OK && o->key; o++)
             if (is_chosen(s, o, keys))
                 result = move_number(s, o, &better);
     }
-    s->complete = !orl_search_is_over(s);
+    s->complete = !is_over(s);
     return result;
 }
 
@@ -180,63 +171,17 @@ enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *rendere
     *s = (struct orl_search){0};
     enum orl_result result = check_keys(orl_gpu_log(gpu), keys);
     if (result == ORL_OK)
-        result = orl_search_begin(gpu, renderer, scene, params, s);
+        result = begin(gpu, renderer, scene, params, s);
+    struct orl_trial first = {.key = NULL};
+    bool same;
     if (result == ORL_OK)
-        result = orl_search_start(s, start);
+        result = try_choice(s, start, &first, &same);
     if (result == ORL_OK)
-        result = orl_search_numbers(s, keys);
+        result = numbers(s, keys);
     if (result == ORL_OK)
         orl_progress_report(params->progress, "search", 1, 1, NULL);
     else
         orl_search_finish(s);
-    return result;
-}
-
-// --- what other methods do ---
-
-// Values that do not go with the other choices change nothing.
-static enum orl_result borrow_value(struct orl_search *s, const struct orl_render_option *option,
-                                    const char *value)
-{
-    char assignment[2 * ORL_OPTION_NAME_BYTES + 2], own[ORL_OPTION_NAME_BYTES];
-    struct orl_choice choice = s->best;
-    struct orl_trial trial = {.key = option->key};
-    orl_render_option_print(option, &choice.params, own, sizeof own);
-    snprintf(assignment, sizeof assignment, "%s=%s", option->key, value);
-    if (strcmp(own, value) == 0 || orl_render_params_set(NULL, &choice.params, assignment) != ORL_OK)
-        return ORL_OK;
-    snprintf(trial.value, sizeof trial.value, "%s", value);
-    enum orl_result result = try_choice(s, &choice, &trial, NULL);
-    if (result == ORL_OK && trial.kept)
-        orl_logf(s->log, ORL_LOG_INFO, "%s: %.2f dB, SSIM %.4f", assignment, trial.psnr_db,
-                 trial.ssim);
-    return result == ORL_ERR_ARGUMENT || result == ORL_ERR_NOT_FOUND ? ORL_OK : result;
-}
-
-static enum orl_result borrow_option(struct orl_search *s, const struct orl_render_option *option)
-{
-    char value[ORL_OPTION_NAME_BYTES], before[ORL_OPTION_NAME_BYTES];
-    enum orl_result result = ORL_OK;
-    for (const struct orl_method *m = orl_methods; result == ORL_OK && m->name; m++) {
-        bool known = false;
-        orl_render_option_print(option, &m->params, value, sizeof value);
-        for (const struct orl_method *other = orl_methods; other < m; other++) {
-            orl_render_option_print(option, &other->params, before, sizeof before);
-            known = known || strcmp(value, before) == 0;
-        }
-        if (!known && !orl_method_is_for_stills(m) && !orl_search_is_over(s))
-            result = borrow_value(s, option, value);
-    }
-    return result;
-}
-
-enum orl_result orl_search_borrow(struct orl_search *s)
-{
-    enum orl_result result = ORL_OK;
-    for (const struct orl_render_option *o = orl_render_options; result == ORL_OK && o->key; o++)
-        // Another proxy or painter would be another method.
-        if (strcmp(o->key, "proxy") != 0 && strcmp(o->key, "paint") != 0)
-            result = borrow_option(s, o);
     return result;
 }
 

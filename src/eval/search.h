@@ -1,7 +1,6 @@
 // The search for options that suit a scene: values are tried one after the other on training
 // photographs, each rendered without itself, and what is better is kept. oriel tune and oriel trim move
-// one method's numbers; adapt also takes what other methods do. Held-out photographs are neither used
-// nor compared with.
+// one method's numbers. Held-out photographs are neither used nor compared with.
 #ifndef ORL_EVAL_SEARCH_H
 #define ORL_EVAL_SEARCH_H
 
@@ -45,39 +44,20 @@ struct orl_search {
     bool complete;           // ended because no value was better; false: the time ran out
 };
 
-// Reads the photographs to compare with. ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN.
-enum orl_result orl_search_begin(struct orl_gpu *gpu, struct orl_renderer *renderer,
-                                 const struct orl_scene *scene,
-                                 const struct orl_search_params *params,
-                                 struct orl_search *search) ORL_CHECK_RESULT;
-void orl_search_finish(struct orl_search *search);
-// True when no new trial may start.
-bool orl_search_is_over(const struct orl_search *search);
-// Measures the choice that the search goes on from.
-enum orl_result orl_search_start(struct orl_search *search,
-                                 const struct orl_choice *choice) ORL_CHECK_RESULT;
-// Searches one number after another among its values in orl_render_tries, upwards and downwards
-// while the result gets better. Repeats rounds over all of them until a round brings no gain. keys:
-// these alone; NULL or none: all. ORL_ERR_ARGUMENT: a key cannot be tuned.
-enum orl_result orl_search_numbers(struct orl_search *search,
-                                   const struct orl_names *keys) ORL_CHECK_RESULT;
-// Tries for each option but proxy and painter the values that other methods have, each of them once.
-enum orl_result orl_search_borrow(struct orl_search *search) ORL_CHECK_RESULT;
-
-// All three on one method's numbers: a complete search. On failure it is finished.
+// Measures `start` and searches on from it: a complete search. keys: these options alone; NULL or
+// none: all. On failure it is finished. ORL_ERR_ARGUMENT: a key cannot be tuned; ORL_ERR_DATA: fewer
+// than ORL_VALIDATION_TRAIN_MIN training photographs.
 enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                                const struct orl_scene *scene,
                                const struct orl_search_params *params,
                                const struct orl_choice *start, const struct orl_names *keys,
                                struct orl_search *search) ORL_CHECK_RESULT;
+void orl_search_finish(struct orl_search *search);
 
 // What was found as the record that scene.json has under "tuned". A new reference; NULL: no memory.
 json_t *orl_search_record(const struct orl_search *search);
 // Writes the record with all trials (docs/reference/json.md).
 enum orl_result orl_search_write_json(const struct orl_log *log, const char *path, const char *device,
                                       const struct orl_search *search) ORL_CHECK_RESULT;
-
-// A frame that is the mean of several is for stills: what a scene is shown with must be fast.
-bool orl_method_is_for_stills(const struct orl_method *method);
 
 #endif

@@ -92,7 +92,7 @@ static enum orl_result start(struct trim_search *s)
     if (result == ORL_OK &&
         !(s->first && s->score && s->first_state.removed))
         result = ORL_ERR_MEMORY;
-    if (result == ORL_OK && !p->settings_only)
+    if (result == ORL_OK)
         result = orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress,
                                         &source->ranking);
     if (result == ORL_OK)
@@ -134,16 +134,16 @@ static enum orl_result tune(struct trim_search *s)
 static enum orl_result write_and_look(struct trim_search *s)
 {
     struct orl_trim *trim = s->trim;
-    enum orl_result result = ORL_OK;
+    trim->choice = *s->params->start;
+    trim->choice.params = s->state.render;
     orl_trim_model_close(&s->model); // so that only the scene's own bytes are counted
     // Only now, when nothing can change any more, are held-out photographs looked at.
-    if (!s->params->settings_only) {
-        result = look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before);
-        if (result == ORL_OK)
-            result = orl_trim_write_scene(&s->source, &s->state, &trim->choice, s->part);
-        if (result == ORL_OK)
-            result = look_at(s, s->part, &s->state.render, &trim->after);
-    }
+    enum orl_result result =
+        look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before);
+    if (result == ORL_OK)
+        result = orl_trim_write_scene(&s->source, &s->state, &trim->choice, s->part);
+    if (result == ORL_OK)
+        result = look_at(s, s->part, &s->state.render, &trim->after);
     return result;
 }
 
@@ -158,12 +158,8 @@ static enum orl_result run(struct trim_search *s)
         result = orl_trim_make_faster(s);
     if (result == ORL_OK)
         result = orl_trim_confirm(s);
-    if (result != ORL_OK)
-        return result;
-    s->trim->choice = *s->params->start;
-    s->trim->choice.params = s->state.render;
-    s->trim->defaults = orl_trim_defaults(&s->source, &s->state);
-    result = write_and_look(s);
+    if (result == ORL_OK)
+        result = write_and_look(s);
     if (result == ORL_OK)
         orl_progress_report(s->params->progress, "trim", 1, 1, NULL);
     return result;
@@ -192,22 +188,20 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
     const struct orl_log *log = orl_gpu_log(gpu);
     memset(trim, 0, sizeof *trim);
     ORL_REQUIRE(log, params->size_divide >= 1 && params->size_divide <= 16);
-    ORL_REQUIRE(log, params->settings_only || (params->out && *params->out));
-    if (scene->lod && !params->settings_only)
+    ORL_REQUIRE(log, params->out && *params->out);
+    if (scene->lod)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: trim needs all points in memory, and they "
                         "are in points.lod: remove it, and where there is no points.ply, oriel "
                         "prepare --resume with a larger --max-ram writes one", scene->dir);
     struct orl_new_dir part = {.fd = -1};
-    enum orl_result result = ORL_OK;
-    if (!params->settings_only)
-        result = orl_new_dir_begin(log, params->out, &part);
+    enum orl_result result = orl_new_dir_begin(log, params->out, &part);
     struct trim_search s = {.source = {.gpu = gpu, .log = log, .scene = scene},
                             .params = params, .trim = trim, .part = part.path,
                             .start_s = orl_time_s()};
     if (result == ORL_OK)
         result = run(&s);
     finish(&s);
-    if (result == ORL_OK && part.path)
+    if (result == ORL_OK)
         result = orl_new_dir_finish(log, &part);
     orl_new_dir_abort(log, &part);
     if (result != ORL_OK)

@@ -53,7 +53,6 @@ struct orl_trim_params {
     int size_divide;      // pictures are compared at 1/n of the photographs' size
     double budget_s;      // no new trial starts after this time; 0: no limit
     bool tune;            // tunes the method's options first, which may make room for other steps
-    bool settings_only;   // only what scene.json can state: nothing is removed, no folder is made
     void (*on_step)(void *priv, const struct orl_trim_step *step); // after each; may be NULL
     void *priv;
     const struct orl_progress *progress;
@@ -66,8 +65,6 @@ struct orl_trim {
     size_t undone;  // steps taken back because all training photographs together lost too much
     bool complete;  // false: the time ran out
     struct orl_choice choice; // the method with the options that were found
-    struct orl_scene_defaults defaults; // and the rest of what scene.json states; texts are not
-                                        // owned
 };
 
 // Times of frames are processor time on a software renderer, else wall time. Frames of two models

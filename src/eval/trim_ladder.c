@@ -109,11 +109,10 @@ static size_t level_of(const struct trim_state *state, enum orl_trim_part part)
 // The last level that the scene and the parameters allow.
 static size_t max_level(const struct trim_search *s, const struct rung *rung)
 {
-    bool all = !s->params->settings_only;
     size_t n = s->targets.count;
     switch (rung->part) {
-    case ORL_TRIM_POINTS: return all && s->source.scene->points.count ? rung->max : 0;
-    case ORL_TRIM_PHOTOGRAPH: return all && n > TRAIN_MIN ? n - TRAIN_MIN : 0;
+    case ORL_TRIM_POINTS: return s->source.scene->points.count ? rung->max : 0;
+    case ORL_TRIM_PHOTOGRAPH: return n > TRAIN_MIN ? n - TRAIN_MIN : 0;
     default: return rung->max;
     }
 }

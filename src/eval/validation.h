@@ -1,5 +1,5 @@
 // Validation photographs: those for training that are compared with renderings from the others, by
-// which tune, trim and adapt decide without looking at a held-out photograph.
+// which tune and trim decide without looking at a held-out photograph.
 #ifndef ORL_EVAL_VALIDATION_H
 #define ORL_EVAL_VALIDATION_H
 

@@ -126,18 +126,3 @@ json_t *orl_defaults_json(const struct orl_scene_defaults *defaults)
                      defaults->depth_divide > 1 ? defaults->depth_divide : 1, "depth_bits",
                      defaults->depth_half ? 16 : 32);
 }
-
-enum orl_result orl_defaults_write(const struct orl_log *log, const char *dir,
-                                   const struct orl_scene_defaults *defaults)
-{
-    json_t *root;
-    char *path;
-    enum orl_result result = open_manifest(log, dir, &path, &root);
-    if (result == ORL_OK)
-        result = json_object_set_new(root, "render", orl_defaults_json(defaults)) == 0
-                     ? orl_json_write(log, path, root)
-                     : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for it", path);
-    json_decref(root);
-    free(path);
-    return result;
-}

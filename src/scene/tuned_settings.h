@@ -13,10 +13,7 @@ enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, cons
 // "settings" maps option keys to numbers or names. ORL_ERR_NOT_FOUND: there is no scene.json.
 enum orl_result orl_tuned_write(const struct orl_log *log, const char *dir, const char *method,
                                 json_t *record) ORL_CHECK_RESULT;
-// Sets "render" of DIR/scene.json in the same way.
-enum orl_result orl_defaults_write(const struct orl_log *log, const char *dir,
-                                   const struct orl_scene_defaults *defaults) ORL_CHECK_RESULT;
-// The value of "render", a new reference.
+// The value of "render" in scene.json, a new reference.
 json_t *orl_defaults_json(const struct orl_scene_defaults *defaults);
 
 #endif

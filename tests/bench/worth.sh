@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What each rule of method oriel is worth: held-out photographs with the rule and without it.
 #     tests/bench/worth.sh ORIEL SCENE...
-# Scenes should be prepared with --adapt none, so that all are drawn alike. Prints a table in Markdown:
+# Prints a table in Markdown:
 # what is lost without the rule, in dB of PSNR and thousandths of SSIM of whole pictures, the mean over
 # the scenes, crumbs added, and the time of a frame without it as a share. Needs jq.
 set -euo pipefail

@@ -77,21 +77,4 @@ if command -v ffmpeg >/dev/null; then
     [ -s walk.mp4 ] && [ ! -e walk.mp4.frames ]
 fi
 
-# What prepare found by default is what is found anew, and a bounded number of renderings.
-grep -q '"complete"' scene/scene.json || { echo "prepare does not adapt the scene" >&2; exit 1; }
-"$oriel" info scene | grep "^adapted  *from .* training photographs"
-"$oriel" info scene | grep "^tuned" >tuned.txt || true
-cp -r scene plain
-"$oriel" prepare photos --out plain --test-list 0004.jpg,0009.jpg --matching retrieval --mesh poisson \
-    --resume --adapt none
-"$oriel" info plain | grep "^tuned" && { echo "--adapt none leaves tuned options" >&2; exit 1; }
-"$oriel" tune plain --adapt short
-"$oriel" info plain | grep "^tuned" >again.txt || true
-cmp tuned.txt again.txt
-
-# Last, because it changes how the scene is drawn: all other stages are done.
-"$oriel" prepare photos --out scene --test-list 0004.jpg,0009.jpg --matching retrieval --resume \
-    --adapt long --adapt-budget 3 2>&1 | tee adapt.txt
-grep -q "dB.*chosen" adapt.txt || { echo "--adapt does not say what it chose" >&2; exit 1; }
-"$oriel" info scene | grep "^drawn  *by "
 "$oriel" eval scene --quiet

@@ -39,7 +39,7 @@ prepare 0 --resume
 [ "$(grep -v help "$work/trace" | uniq)" = patch_match_stereo ] || fail "work that was done was done again"
 run 0 info "$scene"
 prints "5 registered (3 train, 2 held out)"
-prints "adapt   "
+prints "occluders   "
 
 # A whole scene: nothing is left to do, and without --resume it is not touched.
 sum=$(md5sum <"$scene/points.ply")
@@ -48,7 +48,6 @@ prepare 0 --resume
 [ -s "$work/trace" ] && fail "a whole scene was worked on"
 says "ground: done already"
 says "occluders: done already"
-says "adapt: done already"
 # The ground is looked for once a scene, and opening takes what the stage found.
 grep -q '"ground": null' "$scene/scene.json" || fail "scene.json does not tell of the ground"
 sed -i 's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' "$scene/scene.json"
@@ -178,7 +177,7 @@ for damaged in '' '{"version": 1}' '{"version": 1, "done": []}' '{"version": 1, 
     run 0 info "$scene" --check
 done
 for edit in 's/"photographs": \[/"photographs": [1, /' 's/"name": "2.png"/"nme": "2.png"/' \
-    's/"key"/"kex"/' 's/"render": {/"rendr": {/' 's/"ground": null/"grund": null/' \
+    's/"key"/"kex"/' 's/"ground": null/"grund": null/' \
     's/"left_out"/"left_in"/' 's/"files": {/"fills": {/' 's/"points": [0-9][0-9]*/"points": 7/' \
     's/"backdrop": "[a-z]*"/"backdrop": 7/' \
     's/"ground": null/"ground": {"plane": [0, -1, 0, 1], "height": 1.25}/' \
@@ -203,7 +202,7 @@ says "remove this file"
 sed 's/"sum": /"mus": /' "$work/before" >"$scene/.oriel/stages.json"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 says "backdrop: done already"
-sed -i 's/^ *"tuned": {$/&"points": {"settings": {"blend": [1]}},/' "$scene/scene.json"
+sed -i 's/^{$/&"tuned": {"points": {"settings": {"blend": [1]}}},/' "$scene/scene.json"
 run 2 info "$scene"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 says '"tuned" cannot be read and is left out'
@@ -213,27 +212,20 @@ run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
 says "scene.json: cannot be read; written anew"
 run 0 info "$scene"
 
-# Without adapt the scene has no defaults of its own; adding it again changes nothing else.
-grep -q '"render"' "$scene/scene.json" || fail "scene.json does not tell how the scene is drawn"
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --adapt none
-grep -q '"render"\|"tuned"\|"adapt"' "$scene/scene.json" && fail "what adapt found was kept"
+# A stage that is not wanted is not missed.
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --occluders none
 says "expose: done already"
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --adapt none
-grep -q "are done again" "$work/err" && fail "an adapt that is not wanted is missed"
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
-says "expose: done already"
-grep -q '"render"' "$scene/scene.json" || fail "adapt was not done"
-# What tune keeps counts more, until the scene is made anew.
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --occluders none
+grep -q "are done again" "$work/err" && fail "a stage that is not wanted is missed"
+# What tune keeps stays, until the scene is made anew.
 run 0 tune "$scene" --method points --set splat_scale=2 --only min_support --apply --budget 0.000001
-run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
-says "adapt: done already"
+run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --occluders none
 grep -q '"splat_scale": 2' "$scene/scene.json" || fail "what tune found was not kept"
 run 0 prepare "$work/p" --out "$work/few" --test-list 0,1,2
-says "adapt: the usual method stays: needs 3 training photographs"
 says "occluders: none are looked for: needs 3 training photographs"
 run 0 info "$work/few"
-run 2 prepare "$work/p" --out "$scene" --resume --adapt much
-says "must be one of none, short, long"
+run 2 prepare "$work/p" --out "$scene" --resume --occluders much
+says "must be one of none, find"
 
 # A changed photograph changes all.
 printf '\0' >>"$work/p/2.png"

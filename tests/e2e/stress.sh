@@ -50,6 +50,12 @@ for axis in silhouettes unsynchronised backgrounds; do
     db $axis ulr | awk '!($1 > 20 && $2 < $1 - 0.8) { exit 1 }' || fail "wrong $axis cost nothing: $(db $axis ulr)"
 done
 
+# Of the vehicle its own pixels alone count, at points of stereo, which finds nothing in three photographs.
+runs 0 "$oriel" stress synth --out vehicle --axes vehicle --method points --quick --size 128 --photographs 10 --quiet
+jq -e '[.rows[] | select(.mean.psnr_db > 8 and .mean.psnr_db < 18 and .mean.coverage > 0.5 and .mean.crumbs > 0
+                         and .mean.ssim == null)] | length == 1' vehicle/stress.json >jq.txt || fail "no row of the vehicle"
+jq -e '[.rows[].level] == [0]' vehicle/stress.json >jq.txt || fail "stereo without neighbours"
+
 # A scene: what needs the truth is left out.
 workspace 6 || exit 77
 square

@@ -67,30 +67,6 @@ grep -q "fill: not an option that can be tuned" stderr.txt || fail "does not nam
 runs 2 "${tune[@]}" --method nonsense
 runs 0 "${tune[@]}" --budget 0.000001
 grep -q "budget" stdout.txt || fail "does not say that the budget ended it"
-# The few steps mend what was made worse, read no photograph that is held out, and say the same twice.
-sed -i 's/"airieau": {/"oriel": {/; s/"depth_tolerance": .*/"depth_tolerance": 0.00001/' ws/scene.json
-grep -q '"depth_tolerance": 0.00001' ws/scene.json || fail "nothing there to make worse"
-cp ws/scene.json worse.json
-head -c 700 whole.jpg >"ws/images/${names[4]}"
-runs 0 "$oriel" tune ws --adapt short --quiet
-cp stdout.txt first.txt
-grep -q "^plain " stdout.txt || fail "does not say what the scene was before"
-runs 0 "$oriel" info ws
-grep -q "^tuned  *oriel: depth_tolerance=0.00[0-9]*$" stdout.txt || fail "a better step was not taken"
-cp worse.json ws/scene.json
-runs 0 "$oriel" tune ws --adapt short --quiet
-cmp -s stdout.txt first.txt || fail "the steps say something else the second time"
-cp whole.jpg "ws/images/${names[4]}"
-cp kept.json ws/scene.json
-# Of all methods one is chosen and kept, with its options.
-runs 2 "${tune[@]}" --adapt long
-grep -q -- "without --method" stderr.txt || fail "--adapt beside --method"
-runs 0 "$oriel" tune ws --adapt long --views 2 --budget 0.000001 --quiet
-chosen=$(sed -n 's/^\([a-z-]*\) .* chosen$/\1/p' stdout.txt)
-[ -n "$chosen" ] || fail "does not say what it chose"
-grep -q "^adapted .*the budget ran out" stdout.txt || fail "does not say that the time ran out"
-runs 0 "$oriel" info ws
-grep -q "^drawn  *by $chosen" stdout.txt || fail "the chosen method was not kept"
 sed -i "s/\"train\"/\"test\"/" ws/scene.json
 runs 2 "${tune[@]}"
 grep -q "three are needed" stderr.txt || fail "does not say how many are needed"

@@ -250,8 +250,6 @@ void fuzz_manifest(const uint8_t *data, size_t size)
         json_t *record = json_pack("{s:{s:f}}", "settings", "scale", 0.5);
         fuzz_require(orl_tuned_write(&fuzz_log, scene->dir, "oriel", record) == ORL_OK,
                      "settings can be kept");
-        fuzz_require(orl_defaults_write(&fuzz_log, scene->dir, &scene->defaults) == ORL_OK,
-                     "what a scene is drawn by can be kept");
     }
     orl_scene_destroy(&scene);
 }

@@ -40,7 +40,6 @@ static void usual_settings(void **state)
                     "{\"mesh\":\"none\",\"quality\":\"standard\",\"test\":[\"1.jpg\"]}");
     assert_settings(&params, ORL_STAGE_EXPOSE, "{\"exposures\":\"\",\"test\":[\"1.jpg\"]}");
     assert_settings(&params, ORL_STAGE_OCCLUDERS, "{\"find\":true}");
-    assert_settings(&params, ORL_STAGE_ADAPT, "{\"adapt\":\"short\"}");
 }
 
 static void other_settings(void **state)
@@ -54,8 +53,6 @@ static void other_settings(void **state)
     params.densifier = ORL_DENSIFIER_GL;
     params.mesh = ORL_MESH_POISSON;
     params.hull = ORL_HULL_NONE;
-    params.adapt = ORL_ADAPT_LONG;
-    params.adapt_budget_s = 60.5;
     params.seed = 7;
     params.max_size = 1000;
     params.max_vram_bytes = (size_t)512 << 20;
@@ -72,7 +69,6 @@ static void other_settings(void **state)
     assert_settings(&params, ORL_STAGE_RADII, "{\"neighbours\":9}");
     assert_settings(&params, ORL_STAGE_MESH,
                     "{\"mesh\":\"poisson\",\"quality\":\"draft\",\"test\":[\"1.jpg\"]}");
-    assert_settings(&params, ORL_STAGE_ADAPT, "{\"adapt\":\"long\",\"budget_s\":60.5}");
 }
 
 // .oriel/stages.json as the first programs wrote it, and what calibration has begun with.
