@@ -130,9 +130,11 @@ static void finish_values(struct value values[VALUES])
         free(values[i].text.data);
 }
 
-// Modules are found to be needed one after the other, unless the page names all of them.
-static void add_scripts(struct text *text)
+// What is needed is found one after the other, unless the page names all of it.
+static void add_scripts(struct text *text, bool published)
 {
+    if (published) // of a live walk a token may stand in the address
+        add(text, "<link rel=\"preload\" href=\"manifest.json\" as=\"fetch\" crossorigin>\n");
     for (const struct orl_web_file *f = orl_web_table; f->name; f++) {
         if (strncmp(f->name, "js/", 3) != 0)
             continue;
@@ -151,7 +153,7 @@ char *orl_walk_index(const struct orl_log *log, const char *title, const char *p
     add(&values[POSTER].text, poster);
     add(&values[STYLE].text, "<link rel=\"stylesheet\" href=\"style.css\">");
     add(&values[ICON].text, "icon.svg");
-    add_scripts(&values[MODULES].text);
+    add_scripts(&values[MODULES].text, *poster != '\0');
     fill_template(values, VALUES, &page);
     finish_values(values);
     if (page.result == ORL_OK)
@@ -170,19 +172,34 @@ static enum orl_result write_index(struct site *site)
     return result;
 }
 
-// Writes a shader file if the page includes it too.
-static enum orl_result write_shared(struct site *site, const struct orl_shader_file *file)
+static const char own_shaders[] = "shaders/"; // in the table of the page's files
+
+// True for files of the renderer's shaders that the page includes.
+static bool is_shared(const char *name)
 {
-    bool shared = false;
     for (int i = 0; shared_shaders[i]; i++)
-        shared = shared || strcmp(file->name, shared_shaders[i]) == 0;
-    if (!shared)
-        return ORL_OK;
-    char *path = orl_format(site->log, "shaders/%s", file->name);
-    enum orl_result result = path ? orl_site_write(site, path, file->text, strlen(file->text))
+        if (strcmp(name, shared_shaders[i]) == 0)
+            return true;
+    return false;
+}
+
+// All shaders in one file, their text by name: a request for each would hold up the first picture.
+static enum orl_result write_shaders(struct site *site)
+{
+    json_t *shaders = json_object();
+    size_t prefix = strlen(own_shaders);
+    for (const struct orl_web_file *f = orl_web_table; f->name; f++)
+        if (strncmp(f->name, own_shaders, prefix) == 0)
+            json_object_set_new(shaders, f->name + prefix, json_string(f->text));
+    for (const struct orl_shader_file *f = orl_shader_table; f->name; f++)
+        if (is_shared(f->name))
+            json_object_set_new(shaders, f->name, json_string(f->text));
+    char *text = json_dumps(shaders, JSON_COMPACT);
+    enum orl_result result = text ? orl_site_write(site, "shaders.json", text, strlen(text))
                                   : ORL_ERR_MEMORY;
-    free(path);
-    site->report->first_bytes += strlen(file->text);
+    site->report->first_bytes += text ? strlen(text) : 0;
+    free(text);
+    json_decref(shaders);
     return result;
 }
 
@@ -190,14 +207,13 @@ enum orl_result orl_site_page(struct site *site)
 {
     enum orl_result result = write_index(site);
     for (const struct orl_web_file *f = orl_web_table; result == ORL_OK && f->name; f++) {
-        if (strcmp(f->name, index_name) == 0)
+        if (strcmp(f->name, index_name) == 0 ||
+            strncmp(f->name, own_shaders, strlen(own_shaders)) == 0)
             continue;
         result = orl_site_write(site, f->name, f->text, strlen(f->text));
         site->report->first_bytes += strlen(f->text);
     }
-    for (const struct orl_shader_file *f = orl_shader_table; result == ORL_OK && f->name; f++)
-        result = write_shared(site, f);
-    return result;
+    return result == ORL_OK ? write_shaders(site) : result;
 }
 
 // --- the site as one file ---

@@ -68,8 +68,7 @@ static enum orl_result check_out(const struct orl_log *log, const char *out, boo
 
 static enum orl_result make_folders(struct site *site)
 {
-    static const char *const folders[] = {"js", "shaders/gather/sample", "shaders/proxy",
-                                          "shaders/shared", "points", "photos", "depth", "thumbs"};
+    static const char *const folders[] = {"js", "points", "photos", "depth", "thumbs"};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
         char *path = orl_site_path(site, folders[i]);

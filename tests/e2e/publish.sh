@@ -10,8 +10,7 @@ JSON
 runs 0 "$oriel" publish made --out served/path/site --title 'A "test" & <more>'
 grep -q ': 6 photographs' stdout.txt || fail "publish does not say what it wrote"
 site=served/path/site
-for file in index.html style.css manifest.json poster.jpg js/main.js shaders/gather.frag \
-    shaders/proxy/surfel.glsl shaders/gather/photo.glsl points/coarse.bin photos/00000.jpg \
+for file in index.html style.css manifest.json poster.jpg js/main.js shaders.json points/coarse.bin photos/00000.jpg \
     depth/00000.png thumbs/00000.jpg; do
     [ -s "$site/$file" ] || fail "the site lacks $file"
 done
@@ -20,7 +19,7 @@ grep -q '<title>A &quot;test&quot; &amp; &lt;more></title>' "$site/index.html" |
     fail "the title is not in the page as text"
 grep -q '{{' "$site/index.html" && fail "the page has unfilled places"
 # What must be there before the page shows anything.
-first=$(find "$site" \( -path '*/js/*' -o -path '*/shaders/*' -o -path '*/points/coarse.bin' -o \
+first=$(find "$site" \( -path '*/js/*' -o -path '*/points/coarse.bin' -o \
     -path "$site/*" ! -path "$site/*/*" \) -type f -exec cat {} + | wc -c)
 [ "$first" -le 1000000 ] || fail "$first bytes until the first picture"
 

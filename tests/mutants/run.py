@@ -140,14 +140,23 @@ def changed_text(entry):
     return text.replace(entry["old"], entry["new"])
 
 
+def put_into_site(site, name, text):
+    if name.startswith("shaders/"):
+        with open(os.path.join(site, "shaders.json")) as file:
+            shaders = json.load(file)
+        shaders[name.removeprefix("shaders/")] = text
+        name, text = "shaders.json", json.dumps(shaders)
+    with open(os.path.join(site, name), "w") as file:
+        file.write(text)
+
+
 def prepare(build, entry, work):
     """What runs a test with the change."""
     path, text = os.path.realpath(os.path.join(SOURCE, entry["file"])), changed_text(entry)
     if entry["tests"][0].startswith(PAGE):
         site = os.path.join(work, "served/path/site")
         shutil.copytree(os.path.join(build.page_folder(), "served/path/site"), site)
-        with open(os.path.join(site, entry["file"].removeprefix("web/")), "w") as file:
-            file.write(text)
+        put_into_site(site, entry["file"].removeprefix("web/"), text)
         return lambda test: build.page_passes(test, site)
     if entry["file"].startswith("shaders/"):
         shaders = os.path.join(work, "shaders")

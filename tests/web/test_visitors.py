@@ -324,7 +324,7 @@ class Page(Visitors):
         self.addCleanup(server.close)
         self.errors = 1 # the browser tells of each
         self.open(address=server.address)
-        self.assertGreater(len(seen), 20)
+        self.assertGreater(len(seen), 8)
         self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
 
 

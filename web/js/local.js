@@ -4,7 +4,7 @@ import {clamp, distance} from "./math.js";
 import {Moving} from "./moving.js";
 import {rankPhotos} from "./photos.js";
 import {Cloud} from "./points.js";
-import {LAYERS, loadShaders, Renderer, TONES} from "./renderer.js";
+import {LAYERS, Renderer, TONES} from "./renderer.js";
 import {text} from "./strings.js";
 import {isBehind, project} from "./view.js";
 
@@ -26,17 +26,27 @@ function totalBytes(manifest)
     return photos + manifest.points.files.reduce((sum, f) => sum + f.bytes, manifest.points.coarse.bytes);
 }
 
+// A photograph's picture and its depth.
+function decode(files, photo)
+{
+    const options = {colorSpaceConversion: "none", premultiplyAlpha: "none"};
+    return Promise.all([photo.picture, photo.depth].map(
+        async ({file}) => createImageBitmap(new Blob([await files.get(file)]), options)));
+}
+
 export class LocalPicture {
     // onChange: something has arrived that makes the picture better
     static async open(canvas, files, manifest, photos, onChange)
     {
-        const wanted = [loadShaders(files), files.get(manifest.points.coarse.file)];
+        const wanted = [files.json("shaders.json"), files.get(manifest.points.coarse.file)];
+        const first = manifest.steps ? null : decode(files, photos[manifest.start]);
         const device = new Device(canvas); // takes a while, in which files come
         const [sources, coarse] = await Promise.all(wanted);
-        return new LocalPicture(canvas, device, files, manifest, photos, onChange, sources, coarse);
+        return new LocalPicture(canvas, device, files, manifest, photos, onChange, sources, coarse, first);
     }
 
-    constructor(canvas, device, files, manifest, photos, onChange, sources, coarse)
+    // first: what decode() gives of the photograph of the start
+    constructor(canvas, device, files, manifest, photos, onChange, sources, coarse, first)
     {
         this.canvas = canvas;
         this.files = files;
@@ -65,6 +75,7 @@ export class LocalPicture {
             throw new Error(text.lostDevice);
         });
         canvas.addEventListener("webglcontextrestored", () => location.reload());
+        this.first = first;
         for (const photo of this.moving ? [] : photos)
             this.request(photo);
         manifest.points.files.forEach((file, number) =>
@@ -95,10 +106,10 @@ export class LocalPicture {
 
     async loadPhoto(photo)
     {
-        const options = {colorSpaceConversion: "none", premultiplyAlpha: "none"};
-        const picture = async file => createImageBitmap(new Blob([await this.files.get(file)]), options);
-        const both = await Promise.all([picture(photo.picture.file), picture(photo.depth.file)]);
-        this.renderer.photos.add(photo, ...both);
+        const begun = photo.number === this.manifest.start && this.first;
+        if (begun)
+            this.first = null;
+        this.renderer.photos.add(photo, ...await (begun || decode(this.files, photo)));
         this.onChange();
     }
 
@@ -166,7 +177,7 @@ export class LocalPicture {
     {
         if (this.moving)
             this.moving.show(this.renderer, ...(this.timeSteps ? this.timeSteps.pair : [0, 0]));
-        this.renderer.draw(camera, layer);
+        this.renderer.draw(camera, layer, whole);
         this.renderer.show(layer, whole, part);
     }
 
@@ -174,7 +185,7 @@ export class LocalPicture {
     timeOf(camera)
     {
         const start = performance.now();
-        this.renderer.draw(camera, 0);
+        this.renderer.draw(camera, 0, false);
         this.renderer.depthAt(0, 0);
         return performance.now() - start;
     }

@@ -180,7 +180,7 @@ export class PhotoStore {
         const {device} = this, packed = device.texture("RGBA8", picture.width, picture.height);
         const target = device.target(picture.width, picture.height, [to]);
         device.write(packed, picture);
-        device.pass(this.programs.radianceUnpack, target, {packed_radiance: packed, ...this.radiance});
+        device.pass(this.programs.radianceUnpack(), target, {packed_radiance: packed, ...this.radiance});
         device.releaseTarget(target);
         device.release(packed);
     }

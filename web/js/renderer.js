@@ -3,14 +3,6 @@
 import {add, distance, dot, rotate, scale, sub} from "./math.js";
 import {PhotoStore} from "./photos.js";
 
-// The page's own and, in folders, those that it shares with the renderer.
-const SHADERS = ["screen.vert", "points.vert", "splats.frag", "layer.frag", "level0.glsl", "pull.frag",
-    "push.frag", "support.frag", "fill_seed_depth.frag", "fill_pull.frag", "fill_finer.glsl",
-    "fill_push.frag", "fill_depth.frag", "depth_unpack.frag", "radiance_unpack.frag", "gather/photo.glsl", "choose.frag",
-    "gather.frag", "colors.glsl", "seed_color.frag",
-    "compose.frag", "show.frag", "gather/bicubic.glsl", "gather/blend.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl",
-    "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
-    "proxy/octahedron.glsl", "proxy/push.glsl", "proxy/surfel.glsl", "shared/penalty.h", "shared/pixel.glsl", "shared/srgb.glsl"];
 const TILE = 16;           // pixels that share a list of photographs
 const POINTS_PER_PIXEL = 4; // more are thinned
 const BORDER_PX = 2;      // over which photographs fade out at their borders
@@ -21,15 +13,13 @@ export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points
 export const TONES = ["srgb", "reinhard", "filmic"]; // as show.frag numbers them
 const POINTS_LAYER = LAYERS.indexOf("points");
 
-export async function loadShaders(files)
-{
-    const texts = await Promise.all(SHADERS.map(name => files.text(`shaders/${name}`)));
-    return Object.fromEntries(SHADERS.map((name, i) => [name, texts[i]]));
-}
-
 function makePrograms(device, sources)
 {
     const screen = (file, defines) => device.program(sources, "screen.vert", file, defines);
+    const late = (file, defines) => { // the first picture does without
+        let made = null;
+        return () => made ||= screen(file, defines);
+    };
     return {
         splats: device.program(sources, "points.vert", "splats.frag"),
         layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
@@ -39,10 +29,10 @@ function makePrograms(device, sources)
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
         fillPullFar: screen("fill_pull.frag", {FAR: 1}), fillPushFar: screen("fill_push.frag", {FAR: 1}),
         fillDepth: screen("fill_depth.frag", {FAR: 1}), depthUnpack: screen("depth_unpack.frag"),
-        radianceUnpack: screen("radiance_unpack.frag"),
-        choose: screen("choose.frag", {TILE}), gather: screen("gather.frag", {TILE, BICUBIC: 1}),
+        choose: screen("choose.frag", {TILE}), gather: screen("gather.frag", {TILE}),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
-        show: screen("show.frag", {FLIP: 1}), capture: screen("show.frag"),
+        show: screen("show.frag", {FLIP: 1}), capture: late("show.frag"), radianceUnpack: late("radiance_unpack.frag"),
+        gatherSharp: late("gather.frag", {TILE, BICUBIC: 1}),
     };
 }
 
@@ -127,8 +117,8 @@ export class Renderer {
         this.frame = new Frame(this.device, width, height);
     }
 
-    // Everything but showing it. `layer`: one of LAYERS.
-    draw(camera, layer)
+    // Everything but showing it. `layer`: one of LAYERS; whole: as show() has it
+    draw(camera, layer, whole)
     {
         this.resize(camera.width, camera.height);
         const o = this.manifest.options, f = this.frame;
@@ -147,7 +137,7 @@ export class Renderer {
                          {...this.values, known: this.supported,
                           filled: f.fillDepth.pushed[0].textures[0]});
         this.depth = f.depth;
-        this.used = pointsOnly ? 0 : this.gather(camera, o);
+        this.used = pointsOnly ? 0 : this.gather(camera, o, whole);
         this.compose(pointsOnly);
     }
 
@@ -250,7 +240,7 @@ export class Renderer {
         return this.manifest.radiance ? Math.min(near / (OWN_PLACE * this.manifest.distance), 1) : 1;
     }
 
-    gather(camera, o)
+    gather(camera, o, whole)
     {
         const f = this.frame, store = this.photos, count = store.describe(camera, this.values.typical);
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
@@ -263,7 +253,7 @@ export class Renderer {
         for (const [key, value] of Object.entries(o))
             values[`opt.${key}`] = value;
         this.device.pass(this.programs.choose, f.tiles, values);
-        this.device.pass(this.programs.gather, f.painted, values);
+        this.device.pass(whole ? this.programs.gatherSharp() : this.programs.gather, f.painted, values);
         return count;
     }
 
@@ -298,9 +288,9 @@ export class Renderer {
     capture(camera, layer)
     {
         const gl = this.device.gl, {width, height} = camera;
-        this.draw(camera, layer);
+        this.draw(camera, layer, true);
         const target = this.device.target(width, height, ["RGBA8"]);
-        this.showBy(this.programs.capture, layer, true, target);
+        this.showBy(this.programs.capture(), layer, true, target);
         const bytes = new Uint8ClampedArray(4 * width * height);
         gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
         this.device.releaseTarget(target);
