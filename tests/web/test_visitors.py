@@ -14,7 +14,7 @@ import tempfile
 import threading
 import unittest
 
-from browser import Browser, CAPTURE, QuietHandler, Server
+from browser import Browser, CAPTURE, QuietHandler, Server, WAIT_S
 from client import Walk as Program
 import firefox
 
@@ -326,6 +326,30 @@ class Page(Visitors):
         self.open(address=server.address)
         self.assertGreater(len(seen), 8)
         self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
+
+    def test_lost_connections(self):
+        """Of shaders, points and photographs, the first request is never answered; the page's time runs fast."""
+        lost, over = set(), threading.Event()
+
+        class Handler(QuietHandler):
+            def do_GET(self):
+                kind = re.match("/(shaders|points/c|photos|depth)", self.path)
+                if kind and kind[1] not in lost:
+                    lost.add(kind[1])
+                    over.wait(WAIT_S)
+                else:
+                    super().do_GET()
+
+        server = Server(SITE, handler=Handler)
+        self.addCleanup(server.close)
+        self.addCleanup(over.set)
+        fast = self.browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": """
+            const wait = window.setTimeout;
+            window.setTimeout = (run, ms) => wait(run, ms >= 30000 ? ms / 10 : ms);"""})["identifier"]
+        self.addCleanup(lambda: self.browser.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument",
+                                                                    {"identifier": fast}))
+        self.open(address=server.address)
+        self.assertEqual(len(lost), 4)
 
 
 def run(*command):

@@ -5,7 +5,33 @@ import {text} from "./strings.js";
 const AT_ONCE = 4;
 const RETRY_MS = [300, 1500, 6000]; // between the tries of a request that may succeed later
 
+const SILENT_MS = 30000; // after which a connection counts as lost
+
 const pause = ms => new Promise(done => setTimeout(done, ms));
+
+// An answer and its bytes; neither, where the connection is reset or lost.
+async function load(url)
+{
+    const stop = new AbortController(), parts = [];
+    let timer = 0;
+    const heard = () => {
+        clearTimeout(timer);
+        timer = setTimeout(() => stop.abort(), SILENT_MS);
+    };
+    try {
+        heard();
+        const answer = await fetch(url, {signal: stop.signal}), reader = answer.body.getReader();
+        for (let part = {}; !part.done; parts.push(part.value || "")) {
+            heard();
+            part = await reader.read();
+        }
+        return {answer, data: await new Blob(parts).arrayBuffer()};
+    } catch {
+        return {};
+    } finally {
+        clearTimeout(timer);
+    }
+}
 
 function embeddedFiles()
 {
@@ -57,13 +83,12 @@ export class Files {
         return decodeBase64(this.embedded[path]);
     }
 
-    // A connection may be reset, and a server busy, for a moment.
+    // A connection may be reset or lost, and a server busy, for a moment.
     async fetch(path)
     {
         for (const wait of [...RETRY_MS, null]) {
-            const answer = await fetch(this.url(path)).catch(() => null);
-            const data = answer && answer.ok && await answer.arrayBuffer().catch(() => null);
-            if (data)
+            const {answer, data} = await load(this.url(path));
+            if (answer && answer.ok)
                 return data;
             if (wait === null || (answer && !answer.ok && answer.status < 500))
                 throw new Error(text.notLoaded(path, answer ? answer.status : 0));
