@@ -4,6 +4,7 @@ test_page.py ORIEL TOOL SCENE SITE SINGLE, SITE two folders below the served one
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -481,6 +482,12 @@ class Page(unittest.TestCase):
         self.reopen(f"file://{SINGLE}")
         self.browser.capture(single, camera)
         self.assertGreaterEqual(psnr(single, served), 50)
+        count = "return document.querySelectorAll('#tools button, #panel *, #help *').length"
+        tools = self.browser.js(count)
+        with open(self.file("saved.html"), "w") as file: # by the browser, while it ran
+            file.write(re.sub('"blob:[^"]*"', '"data:,"', self.browser.js("return document.documentElement.outerHTML")))
+        self.reopen(f"file://{self.file('saved.html')}")
+        self.assertEqual(self.browser.js(count), tools)
         self.reopen(self.address)
 
 

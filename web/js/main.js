@@ -638,7 +638,12 @@ class Walk {
 
 async function start()
 {
-    byId("unstarted").remove();
+    const started = new CSSStyleSheet(); // which is no part of a saved copy: one that does not start says so
+    started.replaceSync("#unstarted { display: none; }");
+    document.adoptedStyleSheets = [started];
+    // Of a copy that was saved while it ran.
+    for (const made of document.querySelectorAll("#over > :is([role], nav, section), #right > section, #marks, #help, #problem"))
+        made.replaceChildren();
     document.documentElement.lang = language;
     const page = document.documentElement, hold = () => page.classList.toggle("held", document.hasFocus());
     page.classList.toggle("framed", window.top !== window);
