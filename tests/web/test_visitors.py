@@ -392,6 +392,32 @@ class Radiance(unittest.TestCase):
             server.close()
             work.cleanup()
 
+    def brightest(self, screen):
+        """Of the canvas, three stops up, on a screen whose dynamic range is "high" or "standard"."""
+        server, browser = Server(RADIANCE_SITE), Browser(240, 160, flags=("--enable-experimental-web-platform-features",))
+        try:
+            browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": f"""
+                const ask = window.matchMedia;
+                window.matchMedia = query => query === "(dynamic-range: high)" ? {{matches: "{screen}" === "high"}} : ask(query);"""})
+            browser.open(server.address)
+            self.assertEqual(browser.errors(), [])
+            return browser.js("""
+                const {gl} = oriel.picture.device, camera = oriel.windowCamera(1), n = camera.width * camera.height;
+                oriel.picture.setExposure(3);
+                oriel.picture.draw(camera, camera, 0);
+                const wide = gl.drawingBufferFormat === gl.RGBA16F, kind = wide ? Float32Array : Uint8Array, pixels = new kind(4 * n);
+                gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+                gl.readPixels(0, 0, camera.width, camera.height, gl.RGBA, wide ? gl.FLOAT : gl.UNSIGNED_BYTE, pixels);
+                return pixels.reduce((a, b) => Math.max(a, b)) / (wide ? 1 : 255);""")
+        finally:
+            browser.close()
+            server.close()
+
+    def test_bright_screens(self):
+        """The browser is asked for what Chromium 156 has behind a flag; the screen is imitated."""
+        self.assertGreater(self.brightest("high"), 1.5)
+        self.assertEqual(self.brightest("standard"), 1)
+
     def test_render(self):
         with tempfile.TemporaryDirectory() as work:
             said = subprocess.run([ORIEL, "render", RADIANCE, "--at", "0001.jpg", "--out", f"{work}/a.png"],

@@ -24,15 +24,28 @@ const FILTERED = new Set(["RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
 // Why this browser draws no walk.
 export class NoDevice extends Error {}
 
+// Whether screen and browser show what is brighter than white.
+function showsBright()
+{
+    return matchMedia("(dynamic-range: high)").matches &&
+           Boolean(window.WebGL2RenderingContext?.prototype.drawingBufferToneMapping);
+}
+
 export class Device {
-    constructor(canvas)
+    // bright: what it draws may be brighter than white
+    constructor(canvas, bright = false)
     {
-        const gl = canvas.getContext("webgl2", {alpha: false, antialias: false, depth: false,
+        const wide = bright && showsBright(); // of floats, which there are with alpha alone
+        const gl = canvas.getContext("webgl2", {alpha: wide, antialias: false, depth: false,
                                                 powerPreference: "high-performance"});
         if (!gl)
             throw new NoDevice(text.noWebgl);
         if (!gl.getExtension("EXT_color_buffer_float"))
             throw new NoDevice(text.noFloats);
+        if (wide) {
+            gl.drawingBufferStorage(gl.RGBA16F, canvas.width, canvas.height);
+            gl.drawingBufferToneMapping({mode: "extended"});
+        }
         this.gl = gl;
         this.bytes = 0;
         this.nothing = gl.createVertexArray();

@@ -40,7 +40,7 @@ export class LocalPicture {
     {
         const wanted = [files.json("shaders.json"), files.get(manifest.points.coarse.file)];
         const first = manifest.steps ? null : decode(files, photos[manifest.start]);
-        const device = new Device(canvas); // takes a while, in which files come
+        const device = new Device(canvas, Boolean(manifest.radiance)); // takes a while, in which files come
         const [sources, coarse] = await Promise.all(wanted);
         return new LocalPicture(canvas, device, files, manifest, photos, onChange, sources, coarse, first);
     }
