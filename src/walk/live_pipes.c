@@ -15,7 +15,7 @@
 #include "core/process.h"
 #include "io/stream.h"
 
-enum { POLL_MS = 2, READ_SIZE = 1 << 16 }; // the size of a pipe
+enum { POLL_MS = 2, PIPE_SIZE = 1 << 20 }; // Linux lets any user have a pipe of so many bytes
 static const size_t picture_max = (size_t)1 << 28;
 
 struct pipe {
@@ -90,8 +90,8 @@ static enum orl_result read_pipe(struct orl_live_pipes *pipes, struct pipe *pipe
 {
     int64_t now_ms = (int64_t)(1000 * (orl_time_s() - pipes->start_s));
     enum orl_result result = orl_grow(pipes->log, (void **)&pipe->bytes, &pipe->capacity,
-                                      pipe->count + READ_SIZE, 1);
-    ssize_t got = result == ORL_OK ? read(pipe->fd, pipe->bytes + pipe->count, READ_SIZE) : -1;
+                                      pipe->count + PIPE_SIZE, 1);
+    ssize_t got = result == ORL_OK ? read(pipe->fd, pipe->bytes + pipe->count, PIPE_SIZE) : -1;
     if (result == ORL_OK && got < 0 && errno != EAGAIN && errno != EINTR)
         result = orl_fail(pipes->log, ORL_ERR_IO, "%s: %s", pipe->path, strerror(errno));
     if (got == 0)
@@ -142,6 +142,10 @@ enum orl_result orl_live_pipes_start(const struct orl_log *log, const char *cons
             pipes->pipes[i].fd = open(paths[i], O_RDONLY | O_NONBLOCK | O_CLOEXEC);
         if (result == ORL_OK && pipes->pipes[i].fd < 0)
             result = orl_fail(log, ORL_ERR_IO, "%s: %s", paths[i], strerror(errno));
+        // A writer that fills a pipe waits until it is read. When one program writes for all cameras in
+        // turn, the pictures of a time step then begin too far apart to be paired. It may be refused.
+        if (result == ORL_OK)
+            fcntl(pipes->pipes[i].fd, F_SETPIPE_SZ, PIPE_SIZE);
     }
     if (result == ORL_OK)
         pipes->has_thread = pthread_create(&pipes->thread, NULL, read_pipes, pipes) == 0;

@@ -6,11 +6,14 @@ import json
 import os
 import re
 import shutil
+import signal
 import struct
 import subprocess
 import sys
+import threading
 import time
 import unittest
+import zlib
 
 from client import Client, Walk
 
@@ -57,6 +60,12 @@ def feed(out, frames, live):
     """Cameras that show the walking figure, 25 pictures a second."""
     return subprocess.Popen([ORIEL, "synth", "figures", "--out", out, "--cameras", "5", "--frames", str(frames),
                              "--size", "96x72", "--live", live, "--quiet"], stdout=subprocess.DEVNULL)
+
+
+def large(png):
+    """The same picture in more bytes than a pipe holds by itself, which are 64 KiB."""
+    text = b"tEXt" + b"Comment\0" + bytes([32]) * 200000
+    return png[:-12] + struct.pack(">I", len(text) - 4) + text + struct.pack(">I", zlib.crc32(text)) + png[-12:]
 
 
 class Live(unittest.TestCase):
@@ -114,19 +123,25 @@ class Live(unittest.TestCase):
         self.addCleanup(walk.process.kill)
         client, camera = Client(walk), camera_of(json.loads(walk.get("/manifest.json")[1]))
         still = picture(client, camera)
-        feeder = feed(played, 10, live)
-        seen = set()
-        while feeder.poll() is None:
-            seen.add(picture(client, camera))
-        self.assertEqual(feeder.returncode, 0)
-        self.assertGreater(len(seen), 1)
-        # Pictures of one time: on a busy machine their time stamps may be too far apart.
+        self.assertEqual(feed(played, 10, live).wait(), 0)
+        end = time.monotonic() + WAIT_S
+        while picture(client, camera) == still:
+            self.assertLess(time.monotonic(), end, "no picture comes through the pipes")
+        # One program writes for all cameras in turn, and no picture waits for its reader.
+        def write_all():
+            for c, pipe in enumerate(pipes):
+                with open(os.path.join(played, f"images/cam{c:02d}/00000.png"), "rb") as source, open(pipe, "wb") as to:
+                    to.write(large(source.read()))
         end = time.monotonic() + WAIT_S
         while picture(client, camera) != still:
             self.assertLess(time.monotonic(), end, "another picture than what the cameras show")
-            for c, pipe in enumerate(pipes):
-                with open(os.path.join(played, f"images/cam{c:02d}/00000.png"), "rb") as source, open(pipe, "wb") as to:
-                    to.write(source.read())
+            walk.process.send_signal(signal.SIGSTOP)
+            writer = threading.Thread(target=write_all, daemon=True)
+            writer.start()
+            writer.join(WAIT_S)
+            waits = writer.is_alive()
+            walk.process.send_signal(signal.SIGCONT)
+            self.assertFalse(waits, "a large picture waits until the pipe is read")
             time.sleep(0.2)
         client.close()
         self.assertEqual(walk.close(), 0)
