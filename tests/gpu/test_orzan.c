@@ -80,6 +80,19 @@ static void two_against_two_stay(void **state)
     assert_float_equal(color[1], 0.5, 1e-3);
 }
 
+// Of four against three, the three lie 1.155 deviations from the mean.
+static void three_against_four_stay(void **state)
+{
+    (void)state;
+    uint8_t colors[7][3] = {{0}};
+    float color[3], coverage;
+    for (int i = 0; i < 7; i++)
+        colors[i][i % 2] = 255;
+    blend(colors, 7, color, &coverage);
+    assert_float_equal(color[0], 4.0 / 7, 1e-3);
+    assert_float_equal(color[1], 3.0 / 7, 1e-3);
+}
+
 static void fewer_than_three_stay(void **state)
 {
     (void)state;
@@ -314,6 +327,7 @@ int main(void)
         cmocka_unit_test(extremes_of_three_go),
         cmocka_unit_test(every_channel_is_tested),
         cmocka_unit_test(two_against_two_stay),
+        cmocka_unit_test(three_against_four_stay),
         cmocka_unit_test(fewer_than_three_stay),
         cmocka_unit_test(where_none_is_left_nothing_paints),
         cmocka_unit_test(the_nearest_fade_by_the_next),

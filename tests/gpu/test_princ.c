@@ -152,11 +152,13 @@ static void outside_the_middle_decides(void **state)
     teardown(&f);
 }
 
-// Between two walls, and nearer to one, the photograph is taken that looks as the view does.
+// Between two walls, the photograph is taken that looks as the view does. The other one looks as one
+// would look at the model's middle, and shows this place, too.
 static void inside_the_axis_decides(void **state)
 {
     (void)state;
     static const char *const one[] = {"nearest=1", "fill=none"};
+    const double c = cos(0.5235987755982988), s = 0.5;
     struct fixture f;
     setup_empty(&f, 4);
     assert_int_equal(orl_points_init(NULL, &f.scene.points, 2 * GRID * GRID), ORL_OK);
@@ -164,13 +166,55 @@ static void inside_the_axis_decides(void **state)
     set_square(&f.scene.points, GRID * GRID, GRID, 6, 0, -4, red);
     for (size_t i = GRID * GRID; i < 2 * GRID * GRID; i++)
         f.scene.points.normal[i][2] = 1;
-    struct orl_view back = look_from(0, 0, 0, SIDE, 20);
-    back.cam_from_world.r[0][0] = back.cam_from_world.r[2][2] = -1;
-    add_photo(&f, back, green);
+    struct orl_view aside = look_from(0, 0, 0, SIDE, 40);
+    aside.cam_from_world = (struct orl_pose){.r = {{c, 0, -s}, {0, 1, 0}, {s, 0, c}}};
+    add_photo(&f, aside, green);
     add_photo(&f, look_from(0, 0, 0, SIDE, 20), red);
-    struct orl_frame frame = draw_from(&f, look_from(0, 0, 2, SIDE, 40), one, 2);
-    assert_float_equal(frame.coverage.f32[MIDDLE * SIDE + MIDDLE], 1, 0);
-    assert_float_equal(color_at(&frame, MIDDLE, MIDDLE)[0], 1, 1e-3);
+    struct orl_frame frame = draw_from(&f, look_from(-1, 0, -1.73, SIDE, 40), one, 2);
+    assert_float_equal(color_at(&frame, 41, MIDDLE)[0], 1, 1e-3);
+    assert_float_equal(color_at(&frame, 41, MIDDLE)[1], 0, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// A photograph covers nothing beside its picture: what lies there is left to an extra one.
+static void a_photograph_ends_at_its_border(void **state)
+{
+    (void)state;
+    static const char *const one[] = {"nearest=1", "fill=none"};
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view half = look_from(0, 0, 0, SIDE, 40);
+    half.camera.cx = SIDE; // what is left of the middle
+    add_photo(&f, half, red);
+    half.camera.cx = 0;
+    add_photo(&f, half, green);
+    struct orl_frame frame = draw_with(&f, one, 2);
+    assert_float_equal(color_at(&frame, MIDDLE - 12, MIDDLE)[0], 1, 1e-3);
+    assert_float_equal(color_at(&frame, MIDDLE + 12, MIDDLE)[1], 1, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Of normals that no photograph covers, each direction gets an extra one: the floor, too, though most
+// normals are the wall's and others would do for the mean of both.
+static void every_direction_gets_an_extra(void **state)
+{
+    (void)state;
+    static const char *const one[] = {"nearest=1", "fill=none"};
+    enum { TINY = 4 }; // pixels of photographs that show a small part of the wall
+    const double h = sqrt(0.5);
+    struct fixture f;
+    setup_corner(&f);
+    for (int i = 0; i < 3; i++)
+        add_photo(&f, look_from(0.1 * i - 0.1, 0, 0, TINY, 40), red);
+    struct orl_view aslant = look_from(0, 0, 0, TINY, 40);
+    aslant.cam_from_world = (struct orl_pose){.r = {{1, 0, 0}, {0, h, -h}, {0, h, h}},
+                                              .t = {0, 3 * h, 4 - 5 * h}};
+    add_photo(&f, aslant, blue);
+    add_photo(&f, from_above(), green);
+    struct orl_frame frame = draw_with(&f, one, 2);
+    assert_float_equal(color_at(&frame, 24, 44)[1], 1, 1e-3);
     orl_frame_finish(&frame);
     teardown(&f);
 }
@@ -251,6 +295,8 @@ int main(void)
         cmocka_unit_test(extras_give_way),
         cmocka_unit_test(outside_the_middle_decides),
         cmocka_unit_test(inside_the_axis_decides),
+        cmocka_unit_test(a_photograph_ends_at_its_border),
+        cmocka_unit_test(every_direction_gets_an_extra),
         cmocka_unit_test(weights_are_those_of_the_equation),
         cmocka_unit_test(depth_maps_take_no_memory),
     };

@@ -348,10 +348,11 @@ static void reads_opensfm(void **state)
     says(w, "camera v2: its projection_type is none of");
     // The largest of several.
     save(w, "reconstruction.json", "[{\"cameras\": {}, \"shots\": {}}, {\"cameras\": {\"v2\": {"
-         "\"projection_type\": \"perspective\", \"focal\": 1, \"width\": 640, \"height\": 480}}, \"shots\": "
+         "\"projection_type\": \"perspective\", \"focal\": 1, \"width\": 480, \"height\": 640}}, \"shots\": "
          "{\"a.jpg\": " SHOT "}}]");
     assert_int_equal(read(w, ""), ORL_OK);
     says(w, "2 reconstructions; taking the largest, with 1");
+    check_params(w, 1, (double[]){640, 640, 240, 320}, 4);
 }
 
 // The rotation is written column by column.

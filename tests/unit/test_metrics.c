@@ -185,7 +185,8 @@ static void specks_are_crumbs(void **state)
 {
     (void)state;
     struct orl_image a = flat(50, 20, 100, 100, 100), b = flat(50, 20, 100, 100, 100);
-    dab(&a, 4, 4, 134);   // too faint
+    dab(&a, 4, 4, 134);   // too faint; two of them, so that in luma itself there is one crumb more
+    dab(&a, 4, 10, 134);
     dab(&a, 10, 4, 135);  // a crumb
     dab(&a, 20, 4, 66);   // a crumb: darker ones count alike
     dab(&a, 30, 4, 135);  // no crumb: two pixels away the photograph has a detail

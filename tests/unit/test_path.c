@@ -122,6 +122,15 @@ static void a_circle_leads_around_what_they_see(void **state)
     }
     assert_centre(&path.views[2], 2, -2, 8);
     orl_path_finish(&path);
+    // From above, in the photographs' order.
+    const double above[4][3] = {{2, -6, 2}, {5, -6, 5}, {2, -6, 8}, {-1, -6, 5}};
+    struct orl_photo four[4] = {photos[0], photos[0], photos[0], photos[0]};
+    for (int i = 0; i < 4; i++)
+        four[i].view.cam_from_world = orl_pose_look_at(above[i], level, up);
+    assert_int_equal(orl_path_around(NULL, &(struct orl_scene){.photos = four, .photo_count = 4}, 4, &path), ORL_OK);
+    for (size_t i = 0; i < 4; i++)
+        assert_centre(&path.views[i], above[i][0], above[i][1], above[i][2]);
+    orl_path_finish(&path);
     // Parallel axes meet nowhere, and those of cameras that look away meet behind them.
     assert_int_equal(orl_path_around(NULL, &scene, 4, &path), ORL_ERR_DATA);
     for (int i = 0; i < 2; i++) {
