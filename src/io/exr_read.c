@@ -1,4 +1,5 @@
 // Reading OpenEXR: the first part, scanlines or tiles, any compression.
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -218,6 +219,28 @@ enum orl_result orl_exr_size(const struct orl_log *log, const char *path, int *w
     if (reader.context)
         exr_finish(&reader.context);
     return result;
+}
+
+static bool near(const double a[2], const double b[2])
+{
+    return fabs(a[0] - b[0]) < 1e-3 && fabs(a[1] - b[1]) < 1e-3;
+}
+
+bool orl_exr_primaries(const char *path, struct orl_primaries *primaries)
+{
+    struct exr_reader reader = {.path = path};
+    exr_attr_chromaticities_t c;
+    bool told = start(&reader) == ORL_OK &&
+                exr_attr_get_chromaticities(reader.context, 0, "chromaticities", &c) == EXR_ERR_SUCCESS;
+    if (told)
+        *primaries = (struct orl_primaries){
+            .white = {(double)c.white_x, (double)c.white_y}, .red = {(double)c.red_x, (double)c.red_y},
+            .green = {(double)c.green_x, (double)c.green_y}, .blue = {(double)c.blue_x, (double)c.blue_y}};
+    if (reader.context)
+        exr_finish(&reader.context);
+    const struct orl_primaries *usual = &orl_primaries_rec709;
+    return told && !(near(primaries->white, usual->white) && near(primaries->red, usual->red) &&
+                     near(primaries->green, usual->green) && near(primaries->blue, usual->blue));
 }
 
 enum orl_result orl_exr_read(const struct orl_log *log, const char *path,

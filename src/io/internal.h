@@ -21,6 +21,12 @@ enum orl_result orl_picture_check_memory(const struct orl_log *log, const char *
                                          uint64_t width, uint64_t height,
                                          uint64_t bytes_per_pixel);
 
+// Chromaticities x, y of a space of RGB colours.
+struct orl_primaries {
+    double white[2], red[2], green[2], blue[2];
+};
+extern const struct orl_primaries orl_primaries_rec709; // sRGB's, too
+
 // The header of a picture, read from a stream at its start. exif: the EXIF block ("Exif\0\0" and
 // TIFF data), released with free(); NULL when the file has none before its pixels. The same of
 // icc, a colour profile.
@@ -30,7 +36,8 @@ struct orl_picture_header {
     size_t exif_size, icc_size;
     int bits; // of a sample
     bool panorama, gain_map;
-    double gamma; // PNG: samples are light to this power; 0: they are sRGB's
+    double gamma; // PNG: samples are light to this power; 0: they have sRGB's curve
+    struct orl_primaries primaries; // PNG; all 0: sRGB's
 };
 // By Google's Photo Sphere schema, which flat pictures may have, too.
 bool orl_xmp_tells_panorama(const void *xmp, size_t size);
@@ -71,6 +78,9 @@ enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
 enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *path,
                                       struct orl_image *image);
 
+// The primaries that an EXR file states in "chromaticities"; false: they are those of Rec. 709.
+bool orl_exr_primaries(const char *path, struct orl_primaries *primaries);
+
 // HEIC and AVIF, recognised by their first 12 bytes.
 bool orl_heif_is(const uint8_t *data, size_t size);
 enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
@@ -85,10 +95,10 @@ struct orl_profile;
 // cannot be used: the caller then assumes sRGB.
 struct orl_profile *orl_profile_create(const struct orl_log *log, const char *path,
                                        const void *icc, size_t size);
-// That of Adobe RGB (1998), which cameras name in EXIF alone. NULL when memory runs out.
-struct orl_profile *orl_profile_create_adobe(const struct orl_log *log);
-// That of samples with the primaries of sRGB which, to the power `gamma`, are light.
-struct orl_profile *orl_profile_create_gamma(const struct orl_log *log, double gamma);
+// That of samples which are light when raised to the power `gamma`, or with 0 by sRGB's curve. NULL
+// for sRGB itself, and, with a warning, for primaries that no colours have.
+struct orl_profile *orl_profile_create_rgb(const struct orl_log *log, const char *path,
+                                           const struct orl_primaries *primaries, double gamma);
 void orl_profile_destroy(struct orl_profile **profile);
 // Converts stored samples in [0, 1], F32 x3, to linear light. Colours outside the Rec. 709 gamut
 // are clipped to it.

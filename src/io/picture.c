@@ -111,16 +111,22 @@ static bool has_exif_head(const struct orl_picture_header *header)
 static struct orl_profile *make_profile(const struct orl_log *log, const char *path,
                                         const struct orl_picture_header *header)
 {
+    // Adobe RGB (1998), which cameras name in EXIF alone.
+    const struct orl_primaries adobe = {
+        .white = {0.3127, 0.3290}, .red = {0.64, 0.33}, .green = {0.21, 0.71}, .blue = {0.15, 0.06}};
+    const double adobe_gamma = 563.0 / 256;
     struct orl_exif exif = {0};
+    bool told = header->primaries.white[1] > 0;
     if (header->icc)
         return orl_profile_create(log, path, header->icc, header->icc_size);
-    if (header->gamma > 0)
-        return orl_profile_create_gamma(log, 1 / header->gamma);
+    if (header->gamma > 0 || told)
+        return orl_profile_create_rgb(log, path, told ? &header->primaries : &orl_primaries_rec709,
+                                      header->gamma > 0 ? 1 / header->gamma : 0);
     if (!has_exif_head(header) ||
         orl_exif_decode(NULL, path, header->exif, header->exif_size, &exif) != ORL_OK ||
         !exif.adobe_rgb)
         return NULL;
-    return orl_profile_create_adobe(log);
+    return orl_profile_create_rgb(log, path, &adobe, adobe_gamma);
 }
 
 bool orl_xmp_tells_panorama(const void *xmp, size_t size)
@@ -226,8 +232,15 @@ static enum orl_result read_exr(const struct orl_log *log, const char *path,
 {
     static const char *const rgb[] = {"R", "G", "B"}, *const gray[] = {"Y"};
     struct orl_image luma;
-    if (orl_exr_read(NULL, path, rgb, 3, image) == ORL_OK)
+    struct orl_primaries primaries;
+    if (orl_exr_read(NULL, path, rgb, 3, image) == ORL_OK) {
+        struct orl_profile *profile =
+            orl_exr_primaries(path, &primaries) ? orl_profile_create_rgb(log, path, &primaries, 1) : NULL;
+        if (profile)
+            orl_profile_apply(profile, image);
+        orl_profile_destroy(&profile);
         return ORL_OK;
+    }
     if (orl_exr_read(NULL, path, gray, 1, &luma) != ORL_OK)
         return orl_exr_read(log, path, rgb, 3, image); // to get its error message
     enum orl_result result = orl_image_init(log, image, luma.width, luma.height, 3, ORL_PIXEL_F32);

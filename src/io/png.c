@@ -77,16 +77,39 @@ static void end_reading(struct png_job *job)
 
 // --- header ---
 
-// The transfer curves of HDR video (PNG's third edition).
-static bool is_hdr(const struct png_job *job)
+// The space of the colours by their code points (PNG's third edition, ITU-T H.273), which come before
+// profile, gamma and primaries. False: the file has none.
+static bool read_code_points(const struct png_job *job, struct orl_picture_header *header,
+                             enum orl_result *result)
 {
-    enum { PQ = 16, HLG = 18 };
+    enum { REC709 = 1, UNSTATED = 2, REC2020 = 9, P3 = 12 }; // primaries
+    // Curves; those of SDR video (1, 14, 15) are shown as sRGB's.
+    enum { VIDEO = 1, LINEAR = 8, SRGB = 13, VIDEO_10 = 14, VIDEO_12 = 15, PQ = 16, HLG = 18 };
+    static const struct orl_primaries p3 = {
+        {0.3127, 0.3290}, {0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}};
+    static const struct orl_primaries rec2020 = {
+        {0.3127, 0.3290}, {0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}};
     png_unknown_chunkp chunks;
     int count = png_get_unknown_chunks(job->png, job->info, &chunks);
-    for (int i = 0; i < count; i++)
+    const uint8_t *code = NULL;
+    for (int i = 0; i < count && !code; i++)
         if (memcmp(chunks[i].name, "cICP", 4) == 0 && chunks[i].size == 4)
-            return chunks[i].data[1] == PQ || chunks[i].data[1] == HLG;
-    return false;
+            code = chunks[i].data;
+    if (!code)
+        return false;
+    uint8_t primaries = code[0], curve = code[1];
+    if (curve == PQ || curve == HLG)
+        *result = orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: PNG: its samples are HDR (PQ or HLG); "
+                           "save it as SDR or as EXR", job->path);
+    else if ((primaries != REC709 && primaries != UNSTATED && primaries != REC2020 && primaries != P3) ||
+             (curve != VIDEO && curve != UNSTATED && curve != LINEAR && curve != SRGB &&
+              curve != VIDEO_10 && curve != VIDEO_12) || code[2] != 0 || code[3] != 1)
+        *result = orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: PNG: the space of its colours (cICP "
+                           "%d, %d, %d, %d) is not read; save it as sRGB", job->path, primaries, curve,
+                           code[2], code[3]);
+    header->gamma = curve == LINEAR ? 1 : 0;
+    header->primaries = primaries == P3 ? p3 : primaries == REC2020 ? rec2020 : orl_primaries_rec709;
+    return true;
 }
 
 // Samples are sRGB-encoded, of 16 bits too, unless the file says otherwise.
@@ -98,6 +121,14 @@ static double gamma_of(const struct png_job *job)
     bool told = !png_get_sRGB(job->png, job->info, &intent) &&
                 png_get_gAMA(job->png, job->info, &gamma);
     return told && gamma > 0.1 && gamma < 10 && fabs(gamma / srgb - 1) > tolerance ? gamma : 0;
+}
+
+static void read_primaries(const struct png_job *job, struct orl_primaries *p)
+{
+    int intent;
+    if (!png_get_sRGB(job->png, job->info, &intent))
+        (void)png_get_cHRM(job->png, job->info, &p->white[0], &p->white[1], &p->red[0], &p->red[1],
+                           &p->green[0], &p->green[1], &p->blue[0], &p->blue[1]);
 }
 
 static enum orl_result read_header(struct png_job *job, FILE *stream,
@@ -113,9 +144,9 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     enum orl_result result = orl_picture_check_size(job->log, job->path, width, height);
     if (result != ORL_OK)
         return result;
-    if (is_hdr(job))
-        return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: PNG: its samples are HDR (PQ or HLG); save "
-                        "it as SDR or as EXR", job->path);
+    bool by_code = read_code_points(job, header, &result);
+    if (result != ORL_OK)
+        return result;
     header->width = (int)width;
     header->height = (int)height;
     header->bits = png_get_bit_depth(job->png, job->info);
@@ -140,6 +171,8 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     png_bytep icc;
     int compression;
     png_uint_32 icc_size = 0;
+    if (by_code)
+        return ORL_OK;
     if (png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size) && icc_size) {
         header->icc = orl_array(job->log, icc_size, 1);
         if (!header->icc)
@@ -148,6 +181,7 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
         header->icc_size = icc_size;
     } else {
         header->gamma = gamma_of(job);
+        read_primaries(job, &header->primaries);
     }
     return ORL_OK;
 }

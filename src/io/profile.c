@@ -8,18 +8,27 @@
 #include "core/memory.h"
 #include "io/internal.h"
 
+const struct orl_primaries orl_primaries_rec709 = {
+    .white = {0.3127, 0.3290}, .red = {0.64, 0.33}, .green = {0.30, 0.60}, .blue = {0.15, 0.06}};
+
 struct orl_profile {
     cmsContext context;
     cmsHTRANSFORM transform;
     bool grey; // one channel
 };
 
-// A profile with white point D65, the blue and red of Rec. 709, this green, and a power as curve.
-static cmsHPROFILE make_rgb(cmsContext context, const cmsCIExyY *green, double gamma)
+static cmsToneCurve *make_curve(cmsContext context, double gamma)
 {
-    const cmsCIExyY white = {0.3127, 0.3290, 1};
-    const cmsCIExyYTRIPLE primaries = {{0.64, 0.33, 1}, *green, {0.15, 0.06, 1}};
-    cmsToneCurve *line = cmsBuildGamma(context, gamma);
+    const double srgb[5] = {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045};
+    return gamma > 0 ? cmsBuildGamma(context, gamma) : cmsBuildParametricToneCurve(context, 4, srgb);
+}
+
+static cmsHPROFILE make_rgb(cmsContext context, const struct orl_primaries *p, double gamma)
+{
+    const cmsCIExyY white = {p->white[0], p->white[1], 1};
+    const cmsCIExyYTRIPLE primaries = {
+        {p->red[0], p->red[1], 1}, {p->green[0], p->green[1], 1}, {p->blue[0], p->blue[1], 1}};
+    cmsToneCurve *line = make_curve(context, gamma);
     cmsToneCurve *const curves[3] = {line, line, line};
     cmsHPROFILE profile =
         line ? cmsCreateRGBProfileTHR(context, &white, &primaries, curves) : NULL;
@@ -31,8 +40,7 @@ static cmsHPROFILE make_rgb(cmsContext context, const cmsCIExyY *green, double g
 // Takes `from`, which may be NULL.
 static bool make_transform(struct orl_profile *profile, cmsHPROFILE from)
 {
-    const cmsCIExyY green = {0.30, 0.60, 1};
-    cmsHPROFILE to = make_rgb(profile->context, &green, 1);
+    cmsHPROFILE to = make_rgb(profile->context, &orl_primaries_rec709, 1);
     cmsColorSpaceSignature space = from ? cmsGetColorSpace(from) : cmsSigLabData;
     profile->grey = space == cmsSigGrayData;
     if (to && (profile->grey || space == cmsSigRgbData))
@@ -84,25 +92,21 @@ struct orl_profile *orl_profile_create(const struct orl_log *log, const char *pa
     return profile;
 }
 
-static struct orl_profile *create_rgb(const struct orl_log *log, const cmsCIExyY *green, double gamma)
+struct orl_profile *orl_profile_create_rgb(const struct orl_log *log, const char *path,
+                                           const struct orl_primaries *primaries, double gamma)
 {
     struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
-    if (profile)
-        profile->context = cmsCreateContext(NULL, NULL);
-    if (profile && (!profile->context ||
-                    !make_transform(profile, make_rgb(profile->context, green, gamma))))
+    if (!profile)
+        return NULL;
+    profile->context = cmsCreateContext(NULL, NULL);
+    bool usable = profile->context &&
+                  make_transform(profile, make_rgb(profile->context, primaries, gamma));
+    if (!usable)
+        orl_logf(log, ORL_LOG_WARNING, "%s: its primaries cannot be used; taken as those of sRGB",
+                 path);
+    if (!usable || (!gamma && is_srgb(profile)))
         orl_profile_destroy(&profile);
     return profile;
-}
-
-struct orl_profile *orl_profile_create_adobe(const struct orl_log *log)
-{
-    return create_rgb(log, &(cmsCIExyY){0.21, 0.71, 1}, 563.0 / 256);
-}
-
-struct orl_profile *orl_profile_create_gamma(const struct orl_log *log, double gamma)
-{
-    return create_rgb(log, &(cmsCIExyY){0.30, 0.60, 1}, gamma);
 }
 
 void orl_profile_destroy(struct orl_profile **handle)

@@ -22,6 +22,7 @@ struct tiff_job {
     TIFF *tiff;
     uint32_t width, height;
     uint16_t bits, samples, format, photometric, planar;
+    bool multiplied; // by the alpha that follows the colours
     bool encoded; // samples stay as stored, in [0, 1], to be converted by a profile
     char message[512]; // libtiff's first error
 };
@@ -82,6 +83,7 @@ static enum orl_result read_header(struct tiff_job *job)
 {
     struct stat st;
     TIFF *t = job->tiff;
+    uint16_t extra_count = 0, *extra = NULL;
     TIFFGetField(t, TIFFTAG_IMAGEWIDTH, &job->width);
     TIFFGetField(t, TIFFTAG_IMAGELENGTH, &job->height);
     TIFFGetFieldDefaulted(t, TIFFTAG_BITSPERSAMPLE, &job->bits);
@@ -89,6 +91,9 @@ static enum orl_result read_header(struct tiff_job *job)
     TIFFGetFieldDefaulted(t, TIFFTAG_SAMPLEFORMAT, &job->format);
     TIFFGetFieldDefaulted(t, TIFFTAG_PLANARCONFIG, &job->planar);
     TIFFGetField(t, TIFFTAG_PHOTOMETRIC, &job->photometric);
+    job->multiplied = TIFFGetFieldDefaulted(t, TIFFTAG_EXTRASAMPLES, &extra_count, &extra) &&
+                      extra_count && extra[0] == EXTRASAMPLE_ASSOCALPHA &&
+                      job->samples > (job->photometric == PHOTOMETRIC_RGB ? 3 : 1);
     enum orl_result result =
         orl_picture_check_size(job->log, job->path, job->width, job->height);
     if (result != ORL_OK)
@@ -97,6 +102,9 @@ static enum orl_result read_header(struct tiff_job *job)
         return orl_fail(job->log, ORL_ERR_UNSUPPORTED,
                         "%s: a TIFF of %u samples of %u bits in this colour space cannot be read; "
                         "save it as RGB with 8 or 16 bits", job->path, job->samples, job->bits);
+    if (job->multiplied && job->planar == PLANARCONFIG_SEPARATE)
+        return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: a TIFF with premultiplied alpha in a plane "
+                        "of its own cannot be read; save it without alpha", job->path);
     uint64_t bytes = (uint64_t)job->width * job->height * job->samples * (job->bits / 8);
     if (stat(job->path, &st) != 0 || bytes / MAX_RATIO > (uint64_t)st.st_size)
         return orl_fail(job->log, ORL_ERR_FORMAT, "%s: too short for %ux%u pixels", job->path,
@@ -169,18 +177,23 @@ enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
 
 // --- pixels ---
 
-static float light(const struct tiff_job *job, const uint8_t *sample)
+static float stored(const struct tiff_job *job, const uint8_t *sample)
 {
-    if (job->bits <= 16) {
-        uint16_t wide = *sample;
-        if (job->bits == 16)
-            memcpy(&wide, sample, sizeof wide);
-        float encoded = (float)wide / (job->bits == 16 ? 65535 : 255);
-        return job->encoded ? encoded : orl_srgb_decode(encoded);
-    }
-    float value;
-    memcpy(&value, sample, sizeof value);
-    return value;
+    uint16_t wide = *sample;
+    float value = 0;
+    if (job->bits == 32)
+        memcpy(&value, sample, sizeof value);
+    else if (job->bits == 16)
+        memcpy(&wide, sample, sizeof wide);
+    return job->bits == 32 ? value : (float)wide / (job->bits == 16 ? 65535 : 255);
+}
+
+static float light(const struct tiff_job *job, const uint8_t *sample, float alpha)
+{
+    float value = stored(job, sample);
+    if (alpha < 1)
+        value = alpha > 0 ? fminf(value / alpha, 1) : 0;
+    return job->bits == 32 || job->encoded ? value : orl_srgb_decode(value);
 }
 
 // Copies `count` pixels from a buffer into a row of the image. plane -1: samples are interleaved.
@@ -190,13 +203,14 @@ static void take_pixels(const struct tiff_job *job, const uint8_t *from, size_t 
     size_t bytes = job->bits / 8, step = plane < 0 ? bytes * job->samples : bytes;
     bool gray = job->photometric == PHOTOMETRIC_MINISBLACK;
     for (size_t i = 0; i < count; i++, from += step) {
+        float alpha = job->multiplied ? stored(job, from + (gray ? 1 : 3) * bytes) : 1;
         if (gray && plane <= 0)
-            rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = light(job, from);
+            rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = light(job, from, alpha);
         else if (!gray && plane < 0)
             for (size_t c = 0; c < 3; c++)
-                rgb[3 * i + c] = light(job, from + c * bytes);
+                rgb[3 * i + c] = light(job, from + c * bytes, alpha);
         else if (!gray && plane < 3)
-            rgb[3 * i + (size_t)plane] = light(job, from);
+            rgb[3 * i + (size_t)plane] = light(job, from, alpha);
     }
 }
 

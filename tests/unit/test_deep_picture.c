@@ -11,6 +11,7 @@
 #include <tiffio.h>
 
 #include "core/color.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "io/exr.h"
 #include "io/picture.h"
@@ -341,11 +342,10 @@ static void write_jpeg(const char *path, const uint8_t *pixel, int channels,
     fclose(out);
 }
 
-// With a profile of `size` bytes, or a gamma, or the curve of HDR video.
+// With a profile of `size` bytes, or a gamma, or the primaries of P3 (cHRM), or code points (cICP).
 static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUInt32Number size,
-                      double gamma, bool hdr, const char *xmp)
+                      double gamma, bool p3, const uint8_t code[4], const char *xmp)
 {
-    static const uint8_t pq[4] = {9, 16, 0, 1};
     FILE *out = fopen(path, "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png_create_info_struct(png);
@@ -358,13 +358,15 @@ static void write_png(const char *path, const uint8_t pixel[3], int depth, cmsUI
         png_set_iCCP(png, info, "profile", 0, icc, size);
     if (gamma > 0)
         png_set_gAMA(png, info, gamma);
+    if (p3)
+        png_set_cHRM(png, info, 0.3127, 0.3290, 0.680, 0.320, 0.265, 0.690, 0.150, 0.060);
     png_text text = {.compression = PNG_ITXT_COMPRESSION_NONE, .key = (char *)"XML:com.adobe.xmp",
                      .text = (char *)xmp};
     if (xmp)
         png_set_text(png, info, &text, 1);
     png_write_info(png, info);
-    if (hdr)
-        png_write_chunk(png, (png_const_bytep) "cICP", pq, sizeof pq);
+    if (code)
+        png_write_chunk(png, (png_const_bytep) "cICP", code, 4);
     static uint8_t row[W * 6];
     size_t bytes = (size_t)depth / 8;
     for (size_t i = 0; i < W * 3 * bytes; i++)
@@ -406,15 +408,15 @@ static void jpeg_and_png_profiles_are_applied(void **state)
     cmsUInt32Number size = make_adobe();
     write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), want, true);
-    write_png(in_dir("p.png"), pixel, 8, size, 0, false, NULL);
+    write_png(in_dir("p.png"), pixel, 8, size, 0, false, NULL, NULL);
     expect_light(in_dir("p.png"), want, true);
-    write_png(in_dir("p.png"), pixel, 16, size, 0, false, NULL);
+    write_png(in_dir("p.png"), pixel, 16, size, 0, false, NULL, NULL);
     expect_light(in_dir("p.png"), want, true);
     want_prophoto(stored, want);
     size = make_prophoto();
     write_jpeg(in_dir("p.jpg"), pixel, 3, size, 0, NULL, 0);
     expect_light(in_dir("p.jpg"), want, true);
-    write_png(in_dir("p.png"), pixel, 16, size, 0, false, NULL);
+    write_png(in_dir("p.png"), pixel, 16, size, 0, false, NULL, NULL);
     expect_light(in_dir("p.png"), want, true);
     // sRGB itself, under whatever name, changes nothing.
     size = save_profile(cmsCreate_sRGBProfile());
@@ -436,7 +438,6 @@ static void png_gamma_is_applied(void **state)
     (void)state;
     static const double gammas[] = {1, 1 / 1.8, 0.45455};
     const uint8_t pixel[3] = {128, 153, 77};
-    struct orl_picture_info info;
     double want[3];
     for (size_t i = 0; i < ORL_COUNT(gammas); i++)
         for (int depth = 8; depth <= 16; depth += 8) {
@@ -444,14 +445,139 @@ static void png_gamma_is_applied(void **state)
             for (int c = 0; c < 3; c++)
                 want[c] = plain ? (double)orl_srgb_decode((float)(pixel[c] / 255.0))
                                 : pow(pixel[c] / 255.0, 1 / gammas[i]);
-            write_png(in_dir("p.png"), pixel, depth, 0, gammas[i], false, NULL);
+            write_png(in_dir("p.png"), pixel, depth, 0, gammas[i], false, NULL, NULL);
             expect_light(in_dir("p.png"), want, !plain);
         }
-    write_png(in_dir("p.png"), pixel, 16, 0, 0, true, NULL);
+}
+
+// Matrices to Rec. 709 by Lindbloom's method, of the same white point.
+static const double p3_to_709[3][3] = {
+    {1.2249, -0.2247, 0}, {-0.0420, 1.0419, 0}, {-0.0197, -0.0786, 1.0979}};
+static const double rec2020_to_709[3][3] = {
+    {1.6605, -0.5876, -0.0728}, {-0.1246, 1.1329, -0.0083}, {-0.0182, -0.1006, 1.1187}};
+
+static void want_709(const double from_light[3], const double matrix[3][3], double want[3])
+{
+    for (int c = 0; c < 3; c++)
+        want[c] = matrix[c][0] * from_light[0] + matrix[c][1] * from_light[1] + matrix[c][2] * from_light[2];
+}
+
+static void png_primaries_are_applied(void **state)
+{
+    (void)state;
+    const uint8_t pixel[3] = {128, 153, 77};
+    const uint8_t srgb[4] = {1, 13, 0, 1}, p3[4] = {12, 13, 0, 1}, rec2020[4] = {9, 13, 0, 1},
+                  linear[4] = {1, 8, 0, 1};
+    const uint8_t pq[4] = {9, 16, 0, 1}, refused[3][4] = {{1, 13, 0, 0}, {1, 9, 0, 1}, {5, 13, 0, 1}};
+    double light[3], plain[3], want[3];
+    for (int c = 0; c < 3; c++) {
+        plain[c] = pixel[c] / 255.0;
+        light[c] = (double)orl_srgb_decode((float)plain[c]);
+    }
+    write_png(in_dir("p.png"), pixel, 8, 0, 0, false, srgb, NULL);
+    expect_light(in_dir("p.png"), light, false);
+    write_png(in_dir("p.png"), pixel, 16, 0, 0, false, linear, NULL);
+    expect_light(in_dir("p.png"), plain, true);
+    want_709(light, rec2020_to_709, want);
+    write_png(in_dir("p.png"), pixel, 8, 0, 0, false, rec2020, NULL);
+    expect_light(in_dir("p.png"), want, true);
+    want_709(light, p3_to_709, want);
+    write_png(in_dir("p.png"), pixel, 8, 0, 0, false, p3, NULL);
+    expect_light(in_dir("p.png"), want, true);
+    write_png(in_dir("p.png"), pixel, 8, 0, 0.45455, true, NULL, NULL);
+    expect_light(in_dir("p.png"), want, true);
+    // Code points come before the others.
+    write_png(in_dir("p.png"), pixel, 8, 0, 0.45455, true, srgb, NULL);
+    expect_light(in_dir("p.png"), light, false);
+
     struct said said;
     struct orl_log log = log_to(&said);
+    struct orl_picture_info info;
+    write_png(in_dir("p.png"), pixel, 16, 0, 0, false, pq, NULL);
     assert_int_equal(orl_picture_inspect(&log, in_dir("p.png"), &info), ORL_ERR_UNSUPPORTED);
     assert_non_null(strstr(said.text, "its samples are HDR"));
+    for (size_t i = 0; i < ORL_COUNT(refused); i++) {
+        write_png(in_dir("p.png"), pixel, 8, 0, 0, false, refused[i], NULL);
+        assert_int_equal(orl_picture_inspect(&log, in_dir("p.png"), &info), ORL_ERR_UNSUPPORTED);
+        assert_non_null(strstr(said.text, "the space of its colours"));
+    }
+}
+
+// Adds "chromaticities" of P3 at the beginning of a header, and moves what the table of lines says.
+static void state_p3(const char *path)
+{
+    static const float p3[8] = {0.680f, 0.320f, 0.265f, 0.690f, 0.150f, 0.060f, 0.3127f, 0.3290f};
+    static const char head[] = "chromaticities\0chromaticities\0\x20\0\0"; // and the last 0: 32 bytes
+    uint8_t *data;
+    size_t size, first = 8, added = sizeof head + sizeof p3;
+    assert_int_equal(orl_file_read(NULL, path, 1 << 24, &data, &size), ORL_OK);
+    size_t at = first;
+    while (data[at]) {
+        uint32_t length;
+        at += strlen((char *)data + at) + 1;
+        at += strlen((char *)data + at) + 1;
+        memcpy(&length, data + at, 4);
+        at += 4 + length;
+    }
+    uint64_t offset, begin = 0;
+    memcpy(&begin, data + at + 1, 8); // the first line follows the table
+    for (size_t i = at + 1; i < begin; i += 8) {
+        memcpy(&offset, data + i, 8);
+        offset += added;
+        memcpy(data + i, &offset, 8);
+    }
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(data, 1, first, out) + fwrite(head, 1, sizeof head, out) +
+                         fwrite(p3, 1, sizeof p3, out) + fwrite(data + first, 1, size - first, out),
+                     size + added);
+    assert_int_equal(fclose(out), 0);
+    free(data);
+}
+
+static void exr_primaries_are_applied(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"R", "G", "B"};
+    const double light[3] = {0.5, 3, 0.25};
+    double want[3];
+    struct orl_image from;
+    struct orl_exr_params exr = {.width = W, .height = H};
+    assert_int_equal(orl_image_init(NULL, &from, W, H, 3, ORL_PIXEL_F32), ORL_OK);
+    for (int i = 0; i < W * H * 3; i++)
+        from.f32[i] = (float)light[i % 3];
+    for (int c = 0; c < 3; c++)
+        assert_true(orl_exr_add_channel(&exr, names[c], false, &from, c));
+    assert_int_equal(orl_exr_write(NULL, in_dir("p.exr"), &exr), ORL_OK);
+    state_p3(in_dir("p.exr"));
+    want_709(light, p3_to_709, want);
+    struct orl_image image = read_linear(in_dir("p.exr"), 32, true);
+    for (int i = 0; i < W * H * 3; i++)
+        assert_float_equal(image.f32[i], fmax(want[i % 3], 0), 1e-2);
+    orl_image_finish(&image);
+    orl_image_finish(&from);
+}
+
+// Colours that were multiplied by alpha are divided by it; beside other alpha they stay.
+static void tiff_alpha_is_taken_out(void **state)
+{
+    (void)state;
+    const struct variety v = {8, 4, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"};
+    static uint8_t row[W * 4];
+    for (uint16_t kind = EXTRASAMPLE_UNSPECIFIED; kind <= EXTRASAMPLE_UNASSALPHA; kind++) {
+        uint8_t share = kind == EXTRASAMPLE_ASSOCALPHA ? 2 : 1;
+        for (int i = 0; i < W * 4; i++)
+            row[i] = (uint8_t)(i % 4 == 3 ? 127 : 100 / share);
+        TIFF *t = begin_tiff(in_dir("a.tif"), &v, PHOTOMETRIC_RGB);
+        TIFFSetField(t, TIFFTAG_EXTRASAMPLES, 1, &kind);
+        for (uint32_t y = 0; y < H; y++)
+            assert_int_equal(TIFFWriteScanline(t, row, y, 0), 1);
+        TIFFClose(t);
+        struct orl_image image = read_linear(in_dir("a.tif"), 8, false);
+        for (int i = 0; i < W * H * 3; i++)
+            assert_float_equal(orl_srgb_encode(image.f32[i]), 100.0 / 255, 1e-2);
+        orl_image_finish(&image);
+    }
 }
 
 // Cameras that are set to Adobe RGB say so in EXIF (DCF 2.0), without a profile.
@@ -497,7 +623,7 @@ static void panoramas_are_known(void **state)
         assert_false(info.gain_map);
         if (memcmp(cases[i].data, "Exif", 4) == 0)
             continue;
-        write_png(in_dir("p.png"), pixel, 8, 0, 0, false, cases[i].data + sizeof "http://ns.adobe.com/xap/1.0/");
+        write_png(in_dir("p.png"), pixel, 8, 0, 0, false, NULL, cases[i].data + sizeof "http://ns.adobe.com/xap/1.0/");
         assert_int_equal(orl_picture_inspect(NULL, in_dir("p.png"), &info), ORL_OK);
         assert_int_equal(info.panorama, cases[i].found);
     }
@@ -676,6 +802,9 @@ int main(void)
         cmocka_unit_test(tiff_profiles_are_applied),
         cmocka_unit_test(jpeg_and_png_profiles_are_applied),
         cmocka_unit_test(png_gamma_is_applied),
+        cmocka_unit_test(png_primaries_are_applied),
+        cmocka_unit_test(exr_primaries_are_applied),
+        cmocka_unit_test(tiff_alpha_is_taken_out),
         cmocka_unit_test(adobe_rgb_by_exif_is_applied),
         cmocka_unit_test(panoramas_are_known),
         cmocka_unit_test(gain_maps_are_known),
