@@ -1,4 +1,5 @@
 // Undistorted photographs, silhouettes and backgrounds of a single picture or a sequence.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -293,7 +294,7 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
 static enum orl_result check_lens(const struct import_job *job, const struct import_view *view,
                                   const char *path)
 {
-    const double least = 0.05, focal_min = 0.1; // of the side
+    const double least = 0.05, focal_min = 0.1, corner = 0.45; // of the side
     const struct orl_camera *from = &camera_of(job, view)->pinhole;
     struct orl_camera to = orl_import_target(camera_of(job, view), 0);
     int larger = from->width > from->height ? from->width : from->height;
@@ -305,6 +306,11 @@ static enum orl_result check_lens(const struct import_job *job, const struct imp
         return orl_fail(job->log, ORL_ERR_DATA, "%s: its lens distortion leaves %dx%d of %dx%d "
                         "pixels, which no lens does: its terms (k1, ...) are wrong", path, to.width,
                         to.height, from->width, from->height);
+    // Cameras of one file are alike: the first tells.
+    if (view == job->views && fabs(from->cx / from->width - 0.5) > corner &&
+        fabs(from->cy / from->height - 0.5) > corner)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: the principal point of its camera, %.4g, %.4g, is at a "
+                 "corner: Oriel takes it in pixels from the upper left corner", path, from->cx, from->cy);
     return ORL_OK;
 }
 

@@ -297,7 +297,9 @@ static enum orl_result find_model(const struct orl_log *log, const char *dir, ch
     if (result == ORL_OK && models.count > 1)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu COLMAP models; taking the largest, %s, with %zu "
                  "photographs", dir, models.count, models.best, models.most);
-    *file = result == ORL_OK && models.best ? orl_path_join(log, models.best, "cameras.bin") : NULL;
+    bool text = models.best && !orl_colmap_has(log, models.best, "cameras.bin");
+    *file = result == ORL_OK && models.best
+                ? orl_path_join(log, models.best, text ? "cameras.txt" : "cameras.bin") : NULL;
     if (result == ORL_OK && models.best && !*file)
         result = ORL_ERR_MEMORY;
     free(models.best);

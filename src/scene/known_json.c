@@ -121,12 +121,14 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
 {
     static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"};
     static const char *const fisheye[] = {"k1", "k2", "k3", "k4"};
-    double rows[16], f_c[4], terms[5] = {0}, width = 0, height = 0;
+    double rows[16], f_c[4], terms[5] = {0}, width = 0, height = 0, other;
     // Some programs leave out the last row, which is always 0 0 0 1.
     const json_t *matrix = json_object_get(frame, "transform_matrix");
     if (!orl_json_rows(matrix, json_array_size(matrix) == 3 ? 3 : 4, 4, rows) ||
         !orl_pose_from_opengl(rows, &camera->pose))
         return bad(e, "\"transform_matrix\" is not 4 rows of 4 numbers with a rotation");
+    if (json_array_size(matrix) == 4 && (rows[12] != 0 || rows[13] != 0 || rows[14] != 0 || rows[15] != 1))
+        return bad(e, "the last row of \"transform_matrix\" is not 0 0 0 1");
     bool is_fisheye;
     if (!find_lens(root, frame, &is_fisheye))
         return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s: its camera_model, %.60s, is not read: Oriel "
@@ -152,6 +154,11 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
     for (size_t i = 0; is_fisheye ? i < ORL_COUNT(fisheye) : i < ORL_COUNT(brown); i++)
         if (!number(root, frame, is_fisheye ? fisheye[i] : brown[i], &terms[i]))
             terms[i] = 0;
+    const char *const lost[2] = {is_fisheye ? "p1" : "k4", is_fisheye ? "p2" : "k4"};
+    for (size_t i = 0; i < ORL_COUNT(lost); i++)
+        if (number(root, frame, lost[i], &other) && other != 0)
+            return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s: %s of its lens is not read: undistort the "
+                            "pictures with the program that calibrated them", e->file, e->place, lost[i]);
     orl_known_set_opencv(camera, f_c, terms, is_fisheye ? 0 : ORL_COUNT(brown));
     if (is_fisheye) {
         camera->model = ORL_COLMAP_OPENCV_FISHEYE;
@@ -304,7 +311,7 @@ static enum orl_result read_frames(const struct orl_known_source *source,
 {
     const json_t *root = source->root, *frames = json_object_get(root, "frames");
     struct entry e;
-    bool any = split == ORL_KNOWN_UNUSED || !json_array_size(frames);
+    bool held_out = split != ORL_KNOWN_TRAIN, any = split == ORL_KNOWN_UNUSED || !json_array_size(frames);
     enum orl_result result = begin(source, 0.5, &e);
     for (size_t i = 0; result == ORL_OK && i < json_array_size(frames); i++) {
         const json_t *frame = json_array_get(frames, i);
@@ -318,6 +325,7 @@ static enum orl_result read_frames(const struct orl_known_source *source,
             camera.split = split_of(root, camera.path);
         known->splits = known->splits || camera.split != ORL_KNOWN_TRAIN;
         any = any || camera.split != ORL_KNOWN_UNUSED;
+        held_out = held_out || camera.split == ORL_KNOWN_TEST;
         result = read_nerfstudio(&e, root, frame, &camera);
         if (result == ORL_OK)
             result = orl_known_add(e.log, e.file, e.place, &camera, known);
@@ -325,6 +333,9 @@ static enum orl_result read_frames(const struct orl_known_source *source,
     if (result != ORL_OK)
         return result;
     say_unused_of_frames(source, frames);
+    if (!held_out && json_array_size(json_object_get(root, "test_filenames")))
+        orl_logf(source->log, ORL_LOG_WARNING, "%s: test_filenames has none of the frames: none is held "
+                 "out", source->path);
     return any ? ORL_OK
                : orl_fail(source->log, ORL_ERR_DATA, "%s: train_filenames has none of the frames",
                           source->path);

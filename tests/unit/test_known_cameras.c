@@ -308,6 +308,12 @@ static void refuses_damage(void **state)
          "neither fl_x nor camera_angle_x", ORL_ERR_FORMAT},
         {"transforms.json", "{\"fl_x\": 1, \"camera_model\": \"EQUIRECTANGULAR\", \"frames\": "
          "[{\"file_path\": \"a\", " MATRIX "}]}", "camera_model", ORL_ERR_FORMAT},
+        {"transforms.json", "{\"fl_x\": 1, \"k4\": 0.1, \"frames\": [{\"file_path\": \"a\", " MATRIX "}]}",
+         "k4 of its lens is not read", ORL_ERR_FORMAT},
+        {"transforms.json", "{\"fl_x\": 1, \"is_fisheye\": true, \"frames\": [{\"file_path\": \"a\", "
+         "\"p2\": 0.1, " MATRIX "}]}", "p2 of its lens is not read", ORL_ERR_FORMAT},
+        {"transforms.json", "{\"fl_x\": 1, \"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
+         "[[0,-1,0,1],[-1,0,0,2],[0,0,-1,3],[0,0,0,2]]}]}", "the last row", ORL_ERR_FORMAT},
         {"transforms.json", "{\"camera_angle_x\": 9, \"frames\": [{\"file_path\": \"a\", " MATRIX
          "}]}", "focal length is absurd", ORL_ERR_FORMAT},
         {"x_par.txt", "", "line 0", ORL_ERR_FORMAT},

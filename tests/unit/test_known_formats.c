@@ -102,6 +102,7 @@ static void takes_the_largest_model(void **state)
     assert_int_equal(read(w, ""), ORL_OK);
     assert_int_equal(w->known.model.image_count, 2);
     says(w, "2 COLMAP models; taking the largest");
+    says(w, "sparse/1/cameras.txt: COLMAP model: 2 cameras");
     assert_int_equal(read(w, "sparse"), ORL_OK); // the folder of models
     assert_int_equal(w->known.model.image_count, 2);
     assert_int_equal(read(w, "sparse/0"), ORL_OK); // one of them
@@ -229,6 +230,10 @@ static void takes_lists_as_others_write_them(void **state)
     for (size_t i = 0; i < ORL_COUNT(want); i++)
         assert_int_equal(w->known.pictures[i].split, want[i]);
     assert_non_null(strstr(w->known.points_file, "/clouds/c.ply"));
+    save(w, "transforms.json", "{" LENS ", \"test_filenames\": [\"x.jpg\"], \"frames\": ["
+         FRAME("images/a.jpg") "]}");
+    assert_int_equal(read(w, ""), ORL_OK);
+    says(w, "test_filenames has none of the frames");
     save(w, "transforms.json", "{" LENS ", \"train_filenames\": [\"x.jpg\"], \"frames\": ["
          FRAME("images/a.jpg") "]}");
     assert_int_equal(read(w, ""), ORL_ERR_DATA);
