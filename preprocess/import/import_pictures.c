@@ -294,7 +294,7 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
 static enum orl_result check_lens(const struct import_job *job, const struct import_view *view,
                                   const char *path)
 {
-    const double least = 0.05, focal_min = 0.1, corner = 0.45; // of the side
+    const double least = 0.05, focal_min = 0.1, corner = 0.45, kept_min = 0.8; // of the side
     const struct orl_camera *from = &camera_of(job, view)->pinhole;
     struct orl_camera to = orl_import_target(camera_of(job, view), 0);
     int larger = from->width > from->height ? from->width : from->height;
@@ -307,7 +307,17 @@ static enum orl_result check_lens(const struct import_job *job, const struct imp
                         "pixels, which no lens does: its terms (k1, ...) are wrong", path, to.width,
                         to.height, from->width, from->height);
     // Cameras of one file are alike: the first tells.
-    if (view == job->views && fabs(from->cx / from->width - 0.5) > corner &&
+    if (view != job->views)
+        return ORL_OK;
+    const double ends[2][2] = {{-to.cx / to.fx, 0}, {(to.width - to.cx) / to.fx, 0}};
+    double left[2], right[2];
+    orl_colmap_camera_project(camera_of(job, view), ends[0], left);
+    orl_colmap_camera_project(camera_of(job, view), ends[1], right);
+    double kept = (right[0] - left[0]) / from->width;
+    if (kept < kept_min)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: its flat picture keeps %.0f %% of its width: the rest is "
+                 "too far from the axis of so wide a lens", path, 100 * kept);
+    if (fabs(from->cx / from->width - 0.5) > corner &&
         fabs(from->cy / from->height - 0.5) > corner)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: the principal point of its camera, %.4g, %.4g, is at a "
                  "corner: Oriel takes it in pixels from the upper left corner", path, from->cx, from->cy);

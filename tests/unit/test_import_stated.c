@@ -196,6 +196,18 @@ static void takes_the_stated_split_and_cloud(void **state)
     orl_names_finish(&first);
 }
 
+static void says_what_is_too_wide_for_a_flat_picture(void **state)
+{
+    struct work *w = *state;
+    save_picture(w, "images/a.png", false);
+    save_picture(w, "images/b.png", false);
+    // 64 pixels at 18 a radian are 204 degrees.
+    save(w, "transforms.json", "{\"fl_x\": 18, \"w\": 64, \"h\": 48, \"is_fisheye\": true, \"frames\": ["
+         FRAME("images/a.png", "0", "") "," FRAME("images/b.png", "1", "") "]}");
+    assert_int_equal(import(w, NULL), ORL_OK);
+    says(w, "a.png: its flat picture keeps 73 % of its width");
+}
+
 // Programs that count it from the middle, or in shares of the picture.
 static void doubts_a_principal_point_in_a_corner(void **state)
 {
@@ -358,7 +370,7 @@ int main(void)
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(takes_masks), TEST(lays_alpha_on_white), TEST(takes_the_stated_split_and_cloud),
-        TEST(doubts_a_principal_point_in_a_corner),
+        TEST(says_what_is_too_wide_for_a_flat_picture), TEST(doubts_a_principal_point_in_a_corner),
         TEST(leaves_out_what_is_no_picture), TEST(finds_pictures_in_folders), TEST(keeps_a_far_origin), TEST(finds_the_pictures_of_a_model),
         TEST(finds_pictures_by_other_names), TEST(takes_alpha_of_any_format),
     };
