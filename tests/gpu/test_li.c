@@ -204,6 +204,32 @@ static void fat_outlines_stop_leaks(void **state)
     teardown(&f);
 }
 
+// A strip before the photograph, 0.08 of its pixels wide between two of them, has no depth there, and
+// what is not there hides nothing.
+static void what_has_no_depth_is_lit(void **state)
+{
+    (void)state;
+    static const char *const choices[] = {"proxy=mesh", "fill=none"};
+    static const float strip[4][3] = {{-0.02f, -2, 4}, {0.02f, -2, 4}, {0.02f, 2, 4}, {-0.02f, 2, 4}};
+    static const uint32_t faces[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    struct fixture f;
+    struct orl_mesh mesh;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_mesh_init(NULL, &mesh, 4, 2), ORL_OK);
+    memcpy(mesh.position, strip, sizeof strip);
+    memcpy(mesh.triangle, faces, sizeof faces);
+    char *path = orl_path_join(NULL, f.dir, "mesh.ply");
+    assert_int_equal(orl_mesh_write(NULL, path, &mesh), ORL_OK);
+    add_photo(&f, look_from(0, 0, 0, 8, 8), green);
+    struct orl_render_params params = params_of(choices, 2);
+    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, 400), &params, 0);
+    assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[1], 1, 1e-3);
+    orl_frame_finish(&frame);
+    orl_mesh_finish(&mesh);
+    free(path);
+    teardown(&f);
+}
+
 // --- section 5.1: the room ---
 
 // A white ball in a room, photographed from two sides, and with `count` 3 from the other one, from
@@ -398,6 +424,7 @@ int main(void)
         cmocka_unit_test(photographs_count_alike),
         cmocka_unit_test(tangent_surfaces_are_not_coloured),
         cmocka_unit_test(fat_outlines_stop_leaks),
+        cmocka_unit_test(what_has_no_depth_is_lit),
         cmocka_unit_test(the_room_has_its_pictures),
         cmocka_unit_test(unseen_places_take_colors_of_their_own),
         cmocka_unit_test(the_subject_is_not_on_the_walls),
