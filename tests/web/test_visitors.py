@@ -333,6 +333,19 @@ class Page(Visitors):
         self.assertGreater(len(seen), 8)
         self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
 
+    def test_address_is_refused(self):
+        """Safari takes a hundred addresses in half a minute; the walk goes on without."""
+        self.open()
+        self.js("""
+            window.replace = history.replaceState;
+            history.replaceState = () => { throw new DOMException("too often", "SecurityError"); };""")
+        address = self.browser.address()
+        self.assertTrue(self.moves("KeyW", "w"))
+        self.assertEqual((self.browser.address(), self.js("return document.getElementById('problem').textContent")), (address, ""))
+        self.js("history.replaceState = window.replace")
+        self.assertTrue(self.moves("KeyW", "w"))
+        self.assertNotEqual(self.browser.address(), address)
+
     def test_lost_connections(self):
         """Of shaders, points and photographs, the first request is never answered; the page's time runs fast."""
         lost, over = set(), threading.Event()

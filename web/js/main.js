@@ -465,8 +465,10 @@ class Walk {
         if (nav.mode !== nav.homeMode)
             parts.set("mode", nav.mode);
         const hash = `#${parts.toString().replaceAll("%2C", ",")}`;
-        if (hash !== location.hash)
-            history.replaceState(null, "", hash);
+        try {
+            if (hash !== location.hash)
+                history.replaceState(null, "", hash);
+        } catch {} // Safari takes a hundred in half a minute; the next rest tries again
     }
 
     // --- frames ---
