@@ -1,11 +1,9 @@
-// radiance_error SCENE TRUTH [--bound] [--align] [--divide N] [--samples N] [--images DIR] [--set K=V]...:
+// radiance_error SCENE TRUTH [--bound] [--divide N] [--samples N] [--images DIR] [--set K=V]...:
 // log2 error of radiance views of a synthetic scene (truth_scene.c), near edges of light and away
 // from them. With --bound also the error that the truth itself has against the truth, over the
 // same pixels, once it is shifted by part of a pixel, or photographed half a pixel off and
 // resampled. An edge is a step of more than a stop between neighbouring pixels; near it is within
-// EDGE_PX pixels. Dark: below 1/64 of white, away from edges. With --align views are drawn once more with the principal
-// point moved by up to half a pixel, to where the error away from edges is least: what is left is not
-// the pose of the held-out photograph. --divide: views at 1/N of the photographs' size.
+// EDGE_PX pixels. Dark: below 1/64 of white, away from edges. --divide: views at 1/N of the photographs' size.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +28,7 @@ struct job {
     struct orl_truth truth;
     struct orl_synth_params synth;
     const char *truth_dir, *images;
-    bool bound, align;
+    bool bound;
     int samples, divide;
     struct orl_render_params render;
 };
@@ -250,55 +248,6 @@ static enum orl_result report_all(const struct job *job, struct view *v,
     return result == ORL_OK && job->bound ? report_truth(job, v) : result;
 }
 
-// Mean squared error of what is covered, of which a pixel says at most a stop.
-static double misfit(const struct view *v, const struct orl_image *image)
-{
-    double sum = 0, count = 0;
-    for (size_t i = 0; i < 3 * v->pixels; i++)
-        if (v->use[i / 3]) {
-            double e = stops((double)image->f32[i]) - stops((double)v->truth.f32[i]);
-            sum += fmin(e * e, 1);
-            count++;
-        }
-    return sum / fmax(count, 1);
-}
-
-// Draws with the principal point where the view fits the truth best, a downhill search.
-static enum orl_result report_aligned(const struct job *job, struct orl_hdr *hdr, const struct view *v)
-{
-    static const double ways[][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-    struct orl_view best = v->view;
-    double least = INFINITY;
-    enum orl_result result = ORL_OK;
-    for (double step = 0.25; result == ORL_OK && step > 0.05; step /= 2)
-        for (int round = 0; result == ORL_OK && round < 2; round++) {
-            struct orl_view from = best;
-            for (size_t k = 0; result == ORL_OK && k < ORL_COUNT(ways); k++) {
-                struct orl_frame frame = {0};
-                struct orl_view trial = from;
-                trial.camera.cx += step * ways[k][0];
-                trial.camera.cy += step * ways[k][1];
-                result = orl_hdr_draw(hdr, &trial, NULL, &frame);
-                double now = result == ORL_OK ? misfit(v, &frame.color) : INFINITY;
-                if (now < least) {
-                    least = now;
-                    best = trial;
-                }
-                orl_frame_finish(&frame);
-            }
-        }
-    struct orl_frame frame = {0};
-    char what[64];
-    snprintf(what, sizeof what, "fused, moved %+.2f %+.2f px", best.camera.cx - v->view.camera.cx,
-             best.camera.cy - v->view.camera.cy);
-    if (result == ORL_OK)
-        result = orl_hdr_draw(hdr, &best, NULL, &frame);
-    if (result == ORL_OK)
-        result = report(job, v, what, &frame.color);
-    orl_frame_finish(&frame);
-    return result;
-}
-
 static enum orl_result report_view(const struct job *job, struct orl_hdr *hdr[2], size_t index)
 {
     const struct orl_photo *photo = &job->scene->photos[index];
@@ -320,8 +269,6 @@ static enum orl_result report_view(const struct job *job, struct orl_hdr *hdr[2]
         result = orl_hdr_draw(hdr[m], &v.view, NULL, &frames[m]);
     if (result == ORL_OK)
         result = report_all(job, &v, frames);
-    if (result == ORL_OK && job->align)
-        result = report_aligned(job, hdr[0], &v);
     orl_frame_finish(&frames[0]);
     orl_frame_finish(&frames[1]);
     orl_image_finish(&v.truth);
@@ -371,8 +318,6 @@ int main(int argc, char **argv)
     for (int i = 3; result == ORL_OK && i < argc; i++) {
         if (strcmp(argv[i], "--bound") == 0)
             job.bound = true;
-        else if (strcmp(argv[i], "--align") == 0)
-            job.align = true;
         else if (i + 1 == argc)
             result = ORL_ERR_ARGUMENT;
         else if (strcmp(argv[i], "--images") == 0)
@@ -387,7 +332,7 @@ int main(int argc, char **argv)
             result = ORL_ERR_ARGUMENT;
     }
     if (result != ORL_OK || job.divide < 1) {
-        fprintf(stderr, "usage: radiance_error SCENE TRUTH [--bound] [--align] [--divide N] [--samples N] "
+        fprintf(stderr, "usage: radiance_error SCENE TRUTH [--bound] [--divide N] [--samples N] "
                         "[--images DIR] [--set KEY=VALUE]...\n");
         return 2;
     }
