@@ -14,7 +14,7 @@ struct orl_photo {
     struct orl_view view; // size and intrinsics as of the undistorted file, pixels as stored
     int orientation;      // by EXIF, 1 to 8: how the stored picture is turned; 0: not known
     bool test;            // held out: used for calibration only
-    bool linear;          // has a linear version (orl_scene_read_linear)
+    bool linear;          // has a linear version (orl_scene_linear_path)
     bool radiance;        // its linear version is radiance (oriel hdr --replace-series): no value
                           // is clipped, however near to white
     bool masked;          // has a mask (orl_scene_mask_path)

@@ -27,16 +27,6 @@ static int count_matches(const struct wide *a, const struct wide *b)
     return matches;
 }
 
-int orl_preempt_matches(const struct orl_descriptors *a, const struct orl_descriptors *b)
-{
-    struct wide wide_a, wide_b;
-    widen(a, &wide_a);
-    widen(b, &wide_b);
-    return count_matches(&wide_a, &wide_b);
-}
-
-// --- many pairs ---
-
 enum { BLOCK = 256 }; // pairs that a thread takes at once
 
 struct work {

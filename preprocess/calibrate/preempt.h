@@ -9,14 +9,12 @@
 
 enum { ORL_PREEMPT_FEATURES = 256 };
 
-// Matches (orl_sift_is_match) among the first ORL_PREEMPT_FEATURES of both.
-int orl_preempt_matches(const struct orl_descriptors *a, const struct orl_descriptors *b);
-
 struct orl_preempt_pair {
     uint32_t a, b; // indices
     int matches;   // what comes out
 };
-// The same of many pairs, on all processors. The pairs should be in order of `a`.
+// Counts the matches (orl_sift_is_match) among the first ORL_PREEMPT_FEATURES of both photographs of
+// each pair, on all processors. The pairs should be in order of `a`.
 enum orl_result orl_preempt_match_all(const struct orl_log *log,
                                       const struct orl_progress *progress,
                                       const struct orl_descriptors *photos,

@@ -58,7 +58,6 @@ struct densify_device {
 struct level {
     struct orl_tex *reference, *sources, *source_depths, *planes, *costs, *view_costs;
     struct orl_tex *extra; // the first planes are made from this texture
-    bool extra_owned;
     struct densify_block block;
     int number; // 0 = full size
 };

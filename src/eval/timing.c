@@ -53,7 +53,6 @@ static enum orl_result take_frames(const struct orl_timing_params *params, doubl
     timing->median_ms = orl_median(ms, timing->frames); // sorts
     timing->cpu_ms = orl_median(cpu_ms, timing->frames);
     timing->slowest_ms = ms[timing->frames - 1];
-    timing->p95_ms = ms[(timing->frames * 95 + 99) / 100 - 1];
     return result;
 }
 

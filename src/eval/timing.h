@@ -30,7 +30,7 @@ struct orl_timing_pass {
 
 struct orl_timing {
     size_t frames;
-    double median_ms, p95_ms, slowest_ms; // from the call until the device is done
+    double median_ms, slowest_ms; // from the call until the device is done
     double cpu_ms; // median processor time of all threads: on a software renderer the cost of the
                    // frame, nearly independent of other programs
     struct orl_timing_pass passes[ORL_TIMING_PASSES_MAX]; // medians

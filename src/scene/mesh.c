@@ -182,18 +182,6 @@ enum orl_result orl_mesh_set_normals(const struct orl_log *log, struct orl_mesh 
     return ORL_OK;
 }
 
-double orl_mesh_volume(const struct orl_mesh *mesh)
-{
-    double sum = 0;
-    for (size_t i = 0; i < mesh->triangle_count; i++) {
-        double normal[3];
-        face_normal(mesh, i, normal);
-        for (int k = 0; k < 3; k++)
-            sum += normal[k] * (double)mesh->position[mesh->triangle[i][0]][k];
-    }
-    return sum / 6;
-}
-
 // Drops the vertices that no triangle uses. The others keep their order.
 static enum orl_result drop_unused(const struct orl_log *log, struct orl_mesh *mesh)
 {

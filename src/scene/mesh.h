@@ -38,7 +38,4 @@ enum orl_result orl_mesh_set_normals(const struct orl_log *log,
 enum orl_result orl_mesh_decimate(const struct orl_log *log, size_t target,
                                   struct orl_mesh *mesh) ORL_CHECK_RESULT;
 
-// Volume enclosed by a closed mesh, positive when its triangles face outward.
-double orl_mesh_volume(const struct orl_mesh *mesh);
-
 #endif

@@ -9,10 +9,10 @@
 #include "core/memory.h"
 #include "eval/truth.h"
 #include "io/exr.h"
-#include "scene/linear.h"
 #include "io/picture.h"
 #include "opencv_files.h"
 #include "oriel/prepare.h"
+#include "render/photo_loader.h"
 
 enum { W = 96, H = 80 }; // the stand-in's camera
 
@@ -110,11 +110,9 @@ static void check_photo(const struct orl_scene *scene, const char *name, float s
     int index = orl_scene_find_photo(scene, name);
     assert_true(index >= 0);
     struct orl_image linear, eight;
-    bool got;
     char *path = orl_scene_photo_path(NULL, scene, (size_t)index);
     assert_true(scene->photos[index].linear);
-    assert_int_equal(orl_scene_read_linear(NULL, scene, (size_t)index, &linear, &got), ORL_OK);
-    assert_int_equal(got, clips);
+    assert_int_equal(orl_photo_read(NULL, scene, (size_t)index, true, &linear), ORL_OK);
     assert_int_equal(orl_picture_read(NULL, path, 3, &eight), ORL_OK);
     for (int y = 20; y < 60; y++)
         for (int x = 25; x < 75; x++)
@@ -168,11 +166,7 @@ static void deep_photographs_get_copies_and_linear_light(void **state)
     assert_int_equal(info.bits, 8);
     free(deep);
     int plain = orl_scene_find_photo(scene, "f.jpg");
-    struct orl_image none;
-    bool clips;
     assert_false(scene->photos[plain].linear);
-    assert_int_equal(orl_scene_read_linear(NULL, scene, (size_t)plain, &none, &clips), ORL_OK);
-    assert_null(none.data);
     orl_scene_destroy(&scene);
     prepare(&said, true);
     assert_non_null(strstr(said.text, "undistort: done already"));

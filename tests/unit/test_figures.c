@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "datasets/figures.h"
+#include "mesh_volume.h"
 #include "test.h"
 
 static const struct orl_figures_params small = {.cameras = 5, .frames = 1, .width = 80,
@@ -81,7 +82,7 @@ static void meshes_its_shape(void **state)
             for (double x = -1.3; x < 1.3; x += step)
                 inside += orl_figure_distance(&figure, (double[]){x, y, z}, NULL) < 0;
     double volume = (double)inside * step * step * step;
-    assert_float_equal(orl_mesh_volume(&mesh), volume, 0.05 * volume);
+    assert_float_equal(mesh_volume(&mesh), volume, 0.05 * volume);
     orl_mesh_finish(&mesh);
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh_volume.h"
 #include "scene/cones.h"
 #include "test.h"
 
@@ -164,8 +165,8 @@ static void makes_a_mesh(void **state)
     assert_int_equal(orl_cones_mesh(NULL, scene->all, CAMERAS, 48, 500, NULL, &fewer), ORL_OK);
     // 24 silhouettes of 240 pixels leave some room around the sphere.
     const double volume = 4.0 / 3 * pi * RADIUS * RADIUS * RADIUS;
-    assert_true(orl_mesh_volume(&mesh) > volume && orl_mesh_volume(&mesh) < 1.1 * volume);
-    assert_float_equal(orl_mesh_volume(&fewer), orl_mesh_volume(&mesh), 0.02 * volume);
+    assert_true(mesh_volume(&mesh) > volume && mesh_volume(&mesh) < 1.1 * volume);
+    assert_float_equal(mesh_volume(&fewer), mesh_volume(&mesh), 0.02 * volume);
     assert_true(fewer.triangle_count <= 500 && fewer.triangle_count > 400);
     for (size_t i = 0; i < mesh.vertex_count; i++) {
         double out = 0;

@@ -4,11 +4,13 @@
 #include <unistd.h>
 
 #include "datasets/figures.h"
-#include "scene/linear.h"
 #include "io/picture.h"
+#include "mesh_volume.h"
 #include "preprocess/import.h"
 #include "preprocess/import/import_internal.h"
 #include "oriel/scene.h"
+#include "render/photo_loader.h"
+#include "scene/linear.h"
 #include "scene/silhouette.h"
 #include "test.h"
 
@@ -141,8 +143,8 @@ static void imports_sequences(void **state)
     assert_int_equal(orl_mesh_read(NULL, path, &mesh), ORL_OK);
     truth = join(w->set, "mesh/00000.ply");
     assert_int_equal(orl_mesh_read(NULL, truth, &figure), ORL_OK);
-    assert_true(orl_mesh_volume(&mesh) > orl_mesh_volume(&figure));
-    assert_true(orl_mesh_volume(&mesh) < 4 * orl_mesh_volume(&figure));
+    assert_true(mesh_volume(&mesh) > mesh_volume(&figure));
+    assert_true(mesh_volume(&mesh) < 4 * mesh_volume(&figure));
     orl_mesh_finish(&mesh);
     orl_mesh_finish(&figure);
     free(truth);
@@ -455,11 +457,10 @@ static void keeps_linear_light(void **state)
     assert_int_equal(orl_import(NULL, &params, NULL), ORL_OK);
     struct orl_scene *scene;
     struct orl_image kept;
-    bool clips;
     assert_int_equal(orl_scene_open(NULL, out, &scene), ORL_OK);
     assert_string_equal(scene->photos[1].name, "b.jpg");
     assert_true(scene->photos[1].linear);
-    assert_int_equal(orl_scene_read_linear(NULL, scene, 1, &kept, &clips), ORL_OK);
+    assert_int_equal(orl_photo_read(NULL, scene, 1, true, &kept), ORL_OK);
     assert_float_equal(kept.f32[3 * (20 * W + 30) + 1], 2.5, 1e-3);
     orl_image_finish(&kept);
     orl_image_finish(&light);

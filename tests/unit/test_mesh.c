@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "mesh_volume.h"
 #include "scene/isosurface.h"
 #include "scene/mesh.h"
 #include "test.h"
@@ -221,7 +222,7 @@ static void finds_surfaces(void **state)
     check_closed(&mesh);
     // Euler's formula for a sphere, whose edges are 3/2 of its triangles.
     assert_int_equal((long)mesh.vertex_count - (long)mesh.triangle_count / 2, 2);
-    assert_float_equal(orl_mesh_volume(&mesh), volume, 0.01 * volume); // positive: facing outward
+    assert_float_equal(mesh_volume(&mesh), volume, 0.01 * volume); // positive: facing outward
     for (size_t i = 0; i < mesh.vertex_count; i++) {
         const float *p = mesh.position[i];
         assert_float_equal(sqrtf(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]), radius, 0.01);
@@ -250,7 +251,7 @@ static void decimates(void **state)
     assert_between(mesh.triangle_count, 900, 1000);
     assert_between(mesh.vertex_count, 450, 510); // no unused ones
     check_closed(&mesh);
-    assert_float_equal(orl_mesh_volume(&mesh), volume, 0.03 * volume);
+    assert_float_equal(mesh_volume(&mesh), volume, 0.03 * volume);
     for (size_t i = 0; i < mesh.vertex_count; i++) // normals went with their vertices
         for (int k = 0; k < 3; k++)
             assert_float_equal(mesh.normal[i][k], mesh.position[i][k] / 0.8f, 0.1);
