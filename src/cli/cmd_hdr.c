@@ -31,7 +31,6 @@
     ROW(exclude, "exclude", LIST("A,B"), "photographs not to use") \
     LIGHT_OPTION(ROW) \
     OUTPUT_OPTIONS(ROW, "depth, normal, coverage, confidence; default: all in .exr") \
-    ROW(half, "half", FLAG, "of .exr: 16-bit colour, the default") \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 COMMAND_OPTIONS(hdr_options, HDR_OPTIONS)
 
@@ -120,8 +119,6 @@ static enum orl_result check(const struct hdr_options *o, const struct orl_log *
     if (replace && (o->size.width || o->layers.count || o->light))
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --replace-series makes photographs: without "
                         "--size, --layers and --light");
-    if (o->half && o->float_color)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --half and --float exclude each other");
     bool many = o->path || replace, file = orl_frame_can_write(o->out);
     if (many && file)
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: several views need a folder", o->out);

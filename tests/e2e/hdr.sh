@@ -95,7 +95,6 @@ grep -q 'no series 3' stderr.txt || fail "does not say that there is no series 3
 runs 2 "$oriel" hdr scene --panorama 64x32 --out around.exr
 runs 2 "$oriel" hdr scene --panorama 64x32 --position 1,2 --out around.exr
 runs 2 "$oriel" hdr scene --at 0004 --position 1,2,3 --out view.exr
-runs 2 "$oriel" hdr scene --at 0004 --out view.exr --half --float
 runs 2 "$oriel" hdr scene --at 0004 --out view.exr --layers colour
 runs 0 "$oriel" hdr --help
 exit $failed
