@@ -190,8 +190,7 @@ static enum orl_result run_bench(struct terminal *terminal, const void *options,
         result = orl_choices_make(log, scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
                                   &plan.choices);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
+        result = command_device(log, common, &gpu);
     const struct orl_bench_params params = {
         .choices = plan.choices.items, .choice_count = plan.choices.count,
         .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,

@@ -68,8 +68,7 @@ static enum orl_result densify(const struct terminal *terminal, const struct den
     if (result == ORL_OK)
         result = choose_photos(log, workspace, &model, o, &photos);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
+        result = command_device(log, common, &gpu);
     if (result == ORL_OK)
         result = orl_densify(gpu, workspace, &photos, &params, &terminal->progress);
     orl_gpu_destroy(&gpu);

@@ -270,10 +270,7 @@ static enum orl_result evaluate_scene(struct job *job, const char *scene_dir,
     if (result == ORL_OK && o->truth)
         result = orl_truth_open(job->log, job->scene, o->truth, &job->truth);
     if (result == ORL_OK)
-        result = orl_gpu_create(job->log,
-                                &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                         .debug = common->verbose},
-                                &job->gpu);
+        result = command_device(job->log, common, &job->gpu);
     if (result != ORL_OK)
         return result;
     bool array = o->vary || o->methods.count > 1 || orl_names_contain(&o->methods, "all") ||

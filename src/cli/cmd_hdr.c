@@ -166,9 +166,7 @@ static enum orl_result hdr_scene(const struct hdr_options *o, const struct commo
     if (result == ORL_OK)
         result = orl_photos_named(log, job->scene, &o->exclude, &job->skip);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose},
-                                &job->gpu);
+        result = command_device(log, common, &job->gpu);
     if (result == ORL_OK)
         result = orl_hdr_create(job->gpu, job->scene, &job->params, &job->hdr);
     if (result != ORL_OK)

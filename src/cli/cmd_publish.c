@@ -37,8 +37,7 @@ static enum orl_result run_publish(struct terminal *terminal, const void *option
     if (result == ORL_OK)
         params.radiance = radiance_chosen(log, scene, o->wish);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
+        result = command_device(log, common, &gpu);
     if (result == ORL_OK)
         result = orl_publish(gpu, scene, &params, &report);
     if (result == ORL_OK && !common->quiet)

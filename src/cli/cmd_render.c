@@ -133,9 +133,7 @@ static enum orl_result render_scene(const struct render_command *o,
     if (result == ORL_OK)
         result = orl_photos_named(log, job->scene, &o->exclude, &job->skip);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose},
-                                &job->gpu);
+        result = command_device(log, common, &job->gpu);
     if (result == ORL_OK)
         result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
     job->time_runs = o->path && o->time_step < 0 && job->scene &&

@@ -87,8 +87,7 @@ static enum orl_result make_monument(struct terminal *terminal, const struct com
     enum orl_result result = photos && truth ? orl_synth_check(&terminal->log, params)
                                              : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_gpu_create(&terminal->log,
-                                &(struct orl_gpu_params){.shader_dir = common->shader_dir}, &gpu);
+        result = command_device(&terminal->log, common, &gpu);
     if (result == ORL_OK)
         result = orl_synth_run(gpu, &terminal->progress, params, photos, truth);
     orl_gpu_destroy(&gpu);

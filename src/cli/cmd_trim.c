@@ -77,8 +77,7 @@ static enum orl_result run_trim(struct terminal *terminal, const void *options,
     if (result == ORL_OK)
         result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
+        result = command_device(log, common, &gpu);
     const struct orl_trim_params params = {
         .start = &start, .out = o->out, .tolerance_db = o->tolerance_db,
         .tolerance_ssim = o->tolerance_ssim, .worst_db = o->worst_db,

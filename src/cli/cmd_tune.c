@@ -72,8 +72,7 @@ static enum orl_result run_tune(struct terminal *terminal, const void *options,
                                  o->method ? o->method : orl_method_default(scene),
                                  &o->settings, &start);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
+        result = command_device(log, common, &gpu);
     struct orl_renderer_params limits = {.max_vram_bytes = o->max_vram_bytes};
     if (result == ORL_OK)
         result = orl_renderer_create(gpu, scene, &limits, &renderer);

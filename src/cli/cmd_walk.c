@@ -47,8 +47,7 @@ static enum orl_result run_walk(struct terminal *terminal, const void *options,
         result = orl_choice_make(log, scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
                                  o->method, &o->settings, &choice);
     if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = common->shader_dir,
-                                                              .debug = common->verbose}, &gpu);
+        result = command_device(log, common, &gpu);
     const struct orl_renderer_params limits = {.radiance = radiance,
                                                .max_vram_bytes = o->max_vram_bytes};
     if (result == ORL_OK)

@@ -89,6 +89,13 @@ int command_main(const struct command *command, int argc, const char *const *arg
     return command_status(result);
 }
 
+enum orl_result command_device(const struct orl_log *log, const struct common_options *common,
+                               struct orl_gpu **gpu)
+{
+    const struct orl_gpu_params params = {.shader_dir = common->shader_dir, .debug = common->verbose};
+    return orl_gpu_create(log, &params, gpu);
+}
+
 enum orl_result command_held_out(const struct orl_log *log, int every, const struct orl_names *list,
                                  struct orl_test_block block)
 {

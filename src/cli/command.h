@@ -6,6 +6,7 @@
 
 #include "cli/terminal.h"
 #include "core/arguments.h"
+#include "oriel/gpu.h"
 
 // Options of every command.
 #define COMMON_OPTIONS(ROW) \
@@ -74,6 +75,9 @@ const struct command *command_find(const char *name, bool hidden);
 int command_main(const struct command *command, int argc, const char *const *argv);
 int command_status(enum orl_result result);
 
+// The device as the common options ask for it.
+enum orl_result command_device(const struct orl_log *log, const struct common_options *common,
+                               struct orl_gpu **gpu) ORL_CHECK_RESULT;
 // ORL_ERR_ARGUMENT, logged: more than one of the options that hold photographs out is given.
 enum orl_result command_held_out(const struct orl_log *log, int every, const struct orl_names *list,
                                  struct orl_test_block block) ORL_CHECK_RESULT;
