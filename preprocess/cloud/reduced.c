@@ -7,6 +7,7 @@
 #include "bridge/bridge.h"
 #include "core/memory.h"
 #include "io/picture.h"
+#include "scene/depth_buffer.h"
 
 enum { POINT_REACH = 2 }; // a point covers the pixels around it as far as this
 
@@ -14,11 +15,8 @@ static void cover(const struct orl_points *points, struct orl_reduced *reduced)
 {
     int width = reduced->picture.width, height = reduced->picture.height;
     for (size_t i = 0; i < points->count; i++) {
-        const float *p = points->position[i];
-        const double at[3] = {(double)p[0], (double)p[1], (double)p[2]};
         double pixel[2], depth;
-        if (!orl_view_project(&reduced->view, at, pixel, &depth) || !(pixel[0] >= 0) ||
-            !(pixel[1] >= 0) || !(pixel[0] < width) || !(pixel[1] < height))
+        if (!orl_point_project(&reduced->view, points->position[i], pixel, &depth))
             continue;
         int left = (int)fmax(pixel[0] - POINT_REACH, 0);
         int right = (int)fmin(pixel[0] + POINT_REACH, width - 1);

@@ -11,6 +11,7 @@
 #include "core/vec3.h"
 #include "render/frame.h"
 #include "render/photos.h"
+#include "scene/depth_buffer.h"
 
 enum {
     VERTICES_MAX = 20000, // of the model that are projected into a photograph
@@ -57,19 +58,9 @@ static size_t convex_hull(double (*points)[2], size_t count, double (*hull)[2])
 static size_t project(const struct proxy *proxy, const struct orl_view *view, double (*out)[2])
 {
     size_t step = proxy->vertex_count / VERTICES_MAX + 1, count = 0;
-    const struct orl_camera *c = &view->camera;
     for (size_t i = 0; i < proxy->vertex_count; i += step) {
-        const float *v = proxy->vertices[i];
-        const double world[3] = {(double)v[0], (double)v[1], (double)v[2]};
-        double q[3];
-        orl_pose_apply(&view->cam_from_world, world, q);
-        if (!(q[2] > 0))
-            continue;
-        double x = c->fx * q[0] / q[2] + c->cx, y = c->fy * q[1] / q[2] + c->cy;
-        if (!(x >= 0 && y >= 0 && x < c->width && y < c->height))
-            continue;
-        out[count][0] = x;
-        out[count++][1] = y;
+        double depth;
+        count += orl_point_project(view, proxy->vertices[i], out[count], &depth);
     }
     return count;
 }
@@ -158,7 +149,7 @@ static bool is_covered(const struct frame *frame, const double p[3], const doubl
     for (size_t i = 0; i < frame->chosen_count; i++) {
         const struct orl_view *photo = &frame->scene->photos[frame->chosen[i]].view;
         const double *d = frame->proxy->aspects[frame->chosen[i]].direction;
-        double in_view[3], world[3], q[3];
+        double in_view[3], world[3], pixel[2], depth;
         for (int k = 0; k < 3; k++)
             in_view[k] = orl_dot3(frame->view->cam_from_world.r[k], d);
         if (-orl_dot3(normal, in_view) < LIMIT_COS)
@@ -166,10 +157,7 @@ static bool is_covered(const struct frame *frame, const double p[3], const doubl
         orl_view_unproject(frame->view, frame->view->camera.fx * p[0] / p[2] +
                            frame->view->camera.cx, frame->view->camera.fy * p[1] / p[2] +
                            frame->view->camera.cy, p[2], world);
-        orl_pose_apply(&photo->cam_from_world, world, q);
-        const struct orl_camera *c = &photo->camera;
-        double x = c->fx * q[0] / q[2] + c->cx, y = c->fy * q[1] / q[2] + c->cy;
-        if (q[2] > 0 && x >= 0 && y >= 0 && x < c->width && y < c->height)
+        if (orl_view_shows(photo, world, pixel, &depth))
             return true;
     }
     return false;

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "render/frame.h"
+#include "scene/depth_buffer.h"
 #include "shared/penalty.h"
 
 enum { PHOTOS_PER_FRAME_MAX = 48 }; // limit of preselect
@@ -113,13 +114,8 @@ static void sample_point(const struct orl_view *view, int index, double typical,
 double orl_photo_penalty(const struct orl_view *photo, const double eye[3], double view_focal,
                          const double point[3])
 {
-    double q[3], centre[3], u[3], v[3];
-    orl_pose_apply(&photo->cam_from_world, point, q);
-    const struct orl_camera *c = &photo->camera;
-    if (!(q[2] > 0))
-        return -1;
-    double x = c->fx * q[0] / q[2] + c->cx, y = c->fy * q[1] / q[2] + c->cy;
-    if (!(x > 0 && y > 0 && x < c->width && y < c->height))
+    double pixel[2], depth, centre[3], u[3], v[3];
+    if (!orl_view_shows(photo, point, pixel, &depth))
         return -1;
     orl_pose_centre(&photo->cam_from_world, centre);
     double uu = 0, vv = 0, uv = 0;
@@ -132,7 +128,7 @@ double orl_photo_penalty(const struct orl_view *photo, const double eye[3], doub
     }
     double cosine = uv / sqrt(uu * vv);
     double angle = acos(cosine < -1 ? -1 : cosine > 1 ? 1 : cosine);
-    return ORL_PENALTY(angle, sqrt(vv / uu) * (view_focal / c->fx) - 1);
+    return ORL_PENALTY(angle, sqrt(vv / uu) * (view_focal / photo->camera.fx) - 1);
 }
 
 // Adds the scores of one sample point and marks its best PER_SAMPLE photographs.

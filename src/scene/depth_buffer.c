@@ -24,17 +24,18 @@ static void splat(struct orl_depth_buffer *buffer, const double pixel[2], double
         }
 }
 
-static bool in_picture(const struct orl_camera *camera, const double pixel[2])
+bool orl_view_shows(const struct orl_view *view, const double world[3], double pixel[2],
+                    double *depth)
 {
-    return pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < camera->width &&
-           pixel[1] < camera->height;
+    return orl_view_project(view, world, pixel, depth) && pixel[0] >= 0 && pixel[1] >= 0 &&
+           pixel[0] < view->camera.width && pixel[1] < view->camera.height;
 }
 
 bool orl_point_project(const struct orl_view *view, const float position[3], double pixel[2],
                        double *depth)
 {
     const double world[3] = {(double)position[0], (double)position[1], (double)position[2]};
-    return orl_view_project(view, world, pixel, depth) && in_picture(&view->camera, pixel);
+    return orl_view_shows(view, world, pixel, depth);
 }
 
 enum orl_result orl_depth_buffer_draw(const struct orl_log *log, const struct orl_view *view,

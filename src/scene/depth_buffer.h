@@ -16,7 +16,10 @@ enum orl_result orl_depth_buffer_draw(const struct orl_log *log, const struct or
                                       const struct orl_points *points,
                                       struct orl_depth_buffer *buffer) ORL_CHECK_RESULT;
 void orl_depth_buffer_finish(struct orl_depth_buffer *buffer);
-// Where the view shows a point: its pixel and its depth. False when the point lies outside.
+// Where the view shows a place: its pixel and its depth. False when the place lies outside.
+bool orl_view_shows(const struct orl_view *view, const double world[3], double pixel[2],
+                    double *depth);
+// The same for a point.
 bool orl_point_project(const struct orl_view *view, const float position[3], double pixel[2],
                        double *depth);
 // True when nothing is clearly nearer at the photograph's pixel or within one pixel of the buffer

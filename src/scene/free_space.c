@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "scene/depth_buffer.h"
 
 enum {
     CHUNK = 1 << 18,    // points between two checks for cancellation
@@ -59,11 +60,8 @@ static void project(const struct orl_points *points, const struct orl_view *view
     const struct orl_camera *camera = &view->camera;
     size_t seen = 0;
     for (size_t i = 0; i < points->count; i++) {
-        const double world[3] = {(double)points->position[i][0], (double)points->position[i][1],
-                                 (double)points->position[i][2]};
         double pixel[2] = {0, 0}, z = 0;
-        bool inside = orl_view_project(view, world, pixel, &z) && pixel[0] >= 0 &&
-                      pixel[1] >= 0 && pixel[0] < camera->width && pixel[1] < camera->height;
+        bool inside = orl_point_project(view, points->position[i], pixel, &z);
         c->cell[i] = inside ? 0 : -1; // until the size of a cell is known
         c->at[i][0] = (float)pixel[0];
         c->at[i][1] = (float)pixel[1];

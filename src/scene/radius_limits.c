@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "scene/depth_buffer.h"
 
 // Sizes that agree in the upper bits of their float32 are counted together: to one part in 2048.
 enum { SIZE_SHIFT = 12, SIZE_COUNT = 1 << (31 - SIZE_SHIFT) };
@@ -39,14 +40,11 @@ void orl_disc_sizes_finish(struct orl_disc_sizes *sizes)
 
 static float finest_scale(const struct orl_view *views, size_t view_count, const float p[3])
 {
-    const double world[3] = {(double)p[0], (double)p[1], (double)p[2]};
     double finest = 0;
     for (size_t i = 0; i < view_count; i++) {
-        const struct orl_camera *camera = &views[i].camera;
         double pixel[2], depth;
-        if (orl_view_project(&views[i], world, pixel, &depth) && pixel[0] >= 0 && pixel[1] >= 0 &&
-            pixel[0] < camera->width && pixel[1] < camera->height)
-            finest = fmax(finest, camera->fx / depth);
+        if (orl_point_project(&views[i], p, pixel, &depth))
+            finest = fmax(finest, views[i].camera.fx / depth);
     }
     return (float)fmin(finest, (double)HUGE_VALF);
 }

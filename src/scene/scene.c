@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "scene/colmap.h"
+#include "scene/depth_buffer.h"
 #include "scene/ground_plane.h"
 #include "scene/manifest.h"
 #include "scene/free_space.h"
@@ -174,8 +175,7 @@ static size_t sample_distances(struct orl_scene *scene, double *values, size_t p
             const float *at = scene->points.position[p];
             const double world[3] = {(double)at[0], (double)at[1], (double)at[2]};
             double pixel[2], depth;
-            if (orl_view_project(view, world, pixel, &depth) && pixel[0] >= 0 && pixel[1] >= 0 &&
-                pixel[0] < view->camera.width && pixel[1] < view->camera.height)
+            if (orl_view_shows(view, world, pixel, &depth))
                 values[count++] = distance(centre, world);
         }
         lower_near(values + first, count - first, &scene->near_distance);
