@@ -11,9 +11,8 @@ static struct carve_block carve_params(const struct cone *cone, const double cub
     const struct orl_view *view = &cone->view;
     double origin[3];
     struct carve_block block = {.size = {view->camera.width, view->camera.height}, .side = side,
-                                .open = cone->open, .most = (float)(ORL_CONES_MAX * voxel),
-                                .focal = {(float)view->camera.fx, (float)view->camera.fy,
-                                          (float)view->camera.cx, (float)view->camera.cy}};
+                                .open = cone->open, .most = (float)(ORL_CONES_MAX * voxel)};
+    orl_set_focal(&view->camera, block.focal);
     orl_pose_apply(&view->cam_from_world, cube, origin);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)

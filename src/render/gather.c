@@ -168,8 +168,9 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines)
 {
-    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s", frame->gather->options,
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s", frame->gather->options,
                             frame->reads_chroma ? "CHROMA 1\n" : "",
+                            frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
                             defines ? defines : "");
     struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;
     free(text);
@@ -247,11 +248,9 @@ static enum orl_result choose_radiance(const struct frame *frame, const struct g
 static struct orl_prog *generic_program(const struct frame *frame,
                                         const struct gather_slots *slots, int sweep)
 {
-    char defines[64];
+    char defines[32];
     bool limited = frame->radiance && frame->params->paint->finishes;
-    snprintf(defines, sizeof defines, "SWEEP %d\n%s%s", sweep,
-             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
-             limited ? "LIMITED 1\n" : "");
+    snprintf(defines, sizeof defines, "SWEEP %d\n%s", sweep, limited ? "LIMITED 1\n" : "");
     return orl_gather_prog(frame, "gather/gather.comp", slots->slots, defines);
 }
 

@@ -20,11 +20,11 @@ struct gather {
 
 enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather);
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
-// Makes the parameters of a program that reads photographs, and uploads those of this dispatch:
-// `count` photographs of frame->chosen from `first` on, which must be resident.
 // Side of the tiles that share a list of photographs, pixels. It follows the photographs' pixels, since
 // a list that serves a larger part of the scene misses what one photograph sees between others.
 int orl_tile_side(const struct frame *frame);
+// Makes the parameters of a program that reads photographs, and uploads those of this dispatch:
+// `count` photographs of frame->chosen from `first` on, which must be resident.
 struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count);
 // The program of the shader `file` with the declaration of the options and `defines` (NULL: none).
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,

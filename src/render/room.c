@@ -34,16 +34,15 @@ static void project(const struct frame *frame, bool backgrounds, size_t first, s
 {
     struct gather_block block = orl_gather_prepare(frame, first, count);
     struct gather_slots slots;
-    char defines[96];
+    char defines[32];
     place(frame, &block);
     orl_gather_slots(frame, &slots);
     if (frame->radiance)
         orl_gather_set_slot(&slots, "combine", "gather/radiance/mean.glsl");
     // Behind layers the room shows through.
-    snprintf(defines, sizeof defines, "SWEEP 0\nROOM %d\n%s%s",
+    snprintf(defines, sizeof defines, "SWEEP 0\nROOM %d\n%s",
              frame->params->paint->layers ? 2 : 1,
-             frame->scene->room.known ? "" : "SHELL 1\n",
-             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "");
+             frame->scene->room.known ? "" : "SHELL 1\n");
     struct orl_dispatch d = {
         .prog = orl_gather_prog(frame, "gather/gather.comp", slots.slots, defines),
         .params = &block, .params_size = sizeof block,

@@ -163,18 +163,12 @@ static struct splat_block splat_params(const struct cloud *cloud, const struct o
 {
     struct splat_block block = {.view_size = {view->camera.width, view->camera.height},
                                 .near = cloud->near};
-    double eye[3];
     if (params) {
         block.splat_scale = params->splat_scale;
         block.front_layer = params->front_layer;
         block.points_per_pixel = points_per_pixel(params);
     }
-    orl_pose_centre(&view->cam_from_world, eye);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            block.rotation[i][j] = (float)view->cam_from_world.r[i][j];
-        block.eye[i] = (float)eye[i];
-    }
+    orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
     orl_set_focal(&view->camera, block.focal);
     return block;
 }

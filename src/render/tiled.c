@@ -36,13 +36,11 @@ static const char *rest_define(const struct frame *frame)
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
 static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
 {
-    char defines[96];
+    char defines[32];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs per pixel is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%s%sKEPT %d",
-             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
-             rest_define(frame), kept);
+    snprintf(defines, sizeof defines, "%sKEPT %d", rest_define(frame), kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};

@@ -219,7 +219,7 @@ vec3 weigh(bool guessed)
     float noise[ORL_RADIANCE_KEPT];
     EACH_SAMPLE(k) {
         noise[k] = noise_of(photo_at(samples[k].source), inverse);
-        weights[k] = total_weight(samples[k], noise[k]);
+        weights[k] = confident_weight(samples[k].weight, samples[k].clip, noise[k]);
     }
     heed_clipped(guessed);
     // Subtracting slightly less than the limit keeps samples that tie with it. Weights still fall
@@ -230,7 +230,8 @@ vec3 weigh(bool guessed)
     lessen_ghosts(level, noise);
     vec3 sums = vec3(0.0);
     EACH_SAMPLE(k)
-        sums += weights[k] * vec3(samples[k].clip * vec2(MODEL / (MODEL + noise[k]), 1.0), 1.0);
+        sums += weights[k] * vec3(samples[k].clip *
+                                  vec2(model_variance / (model_variance + noise[k]), 1.0), 1.0);
     return sums;
 }
 

@@ -3,8 +3,6 @@
 // run both sides of a condition.
 #include "gather/radiance/alone.glsl"
 
-#define MODEL model_variance
-
 struct Sample {
     vec3 color;   // radiance
     float clip;   // confidence weight with respect to clipping
@@ -13,11 +11,6 @@ struct Sample {
     float mip;
     int source;   // the photograph
 };
-
-float total_weight(Sample s, float noise)
-{
-    return confident_weight(s.weight, s.clip, noise);
-}
 
 // Squared difference in stops, averaged over the channels.
 float stops2(vec3 a, vec3 b)
@@ -53,5 +46,5 @@ Sample sample_of(photo source, Answer a, bool guessed)
 // Weight of a sample by itself: the noise is that of the light that the sample itself shows.
 float weight_alone(photo source, Sample s)
 {
-    return total_weight(s, noise_of(source, 1.0 / s.color));
+    return confident_weight(s.weight, s.clip, noise_of(source, 1.0 / s.color));
 }

@@ -2,7 +2,7 @@
 // projective texture mapping, Li 2003, 5.2. Its depth map is that of a shadow map whose outlines
 // may be fattened, so that only what is clearly nearer hides a point; where it is empty, nothing
 // does.
-#include "gather/photo.glsl"
+#include "gather/hidden.glsl"
 
 // Surfaces seen at less than about 6 degrees are "tangent" and not coloured; the paper names no
 // angle.
@@ -24,9 +24,5 @@ float visible_surface(photo source, Point at, vec4 seen, float z)
 
 float visible_guess(photo source, Point at, vec4 seen, float z)
 {
-    // No part of the subject may paint what lies behind it.
-    float nearest = z - opt.depth_tolerance * z;
-    bool hidden = any(bvec4(seen.x > 0.0 && seen.x < nearest, seen.y > 0.0 && seen.y < nearest,
-                            seen.z > 0.0 && seen.z < nearest, seen.w > 0.0 && seen.w < nearest));
-    return hidden ? 0.0 : 1.0;
+    return photo_unhidden(seen, z) ? 1.0 : 0.0; // no part of the subject may paint what lies behind it
 }
