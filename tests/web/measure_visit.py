@@ -19,6 +19,7 @@ from measure import browser_processes, family, frame_ms, median, resident_mib
 from measure_live import processor_ms, request
 
 EVERY_S = 0.1 # between two looks at processor time
+START_S = 3 # until a browser has started
 FRAMES = 20
 
 # When the poster has given way to a picture that the graphics have finished: reading a pixel of it waits for that.
@@ -62,6 +63,7 @@ def visit(address, size):
     browser = Browser(*size)
     try:
         browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": WATCH})
+        time.sleep(START_S) # the visitor's browser runs already
         processor = Processor(browser)
         browser.open(address, 900)
         whole, processor.ends = time.time(), True

@@ -162,7 +162,7 @@ export class LocalPicture {
             Object.assign(this.canvas, {width, height});
         this.rankFor(full, camera === full);
         this.drawInto(camera, layer, camera === full);
-        if (camera === full || performance.now() - this.lookedAt > LOOK_EVERY)
+        if (this.points.length && (camera === full || performance.now() - this.lookedAt > LOOK_EVERY))
             this.look(camera);
     }
 

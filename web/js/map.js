@@ -21,16 +21,17 @@ export class Map2d {
         // The start looks upwards on the map.
         this.north = normalize(sub(forward, scale(up, dot(forward, up))));
         this.east = cross(this.north, up);
-        this.frame(picture);
+        this.picture = picture;
+        this.points = null; // laid out when the map is first shown
         this.canvas.addEventListener("click", event => this.click(event));
     }
 
     flat(p) { return [dot(p, this.east), -dot(p, this.north)]; }
 
-    frame(picture)
+    frame()
     {
         const points = [];
-        picture.forEachPoint((p, color) => points.push([...this.flat(p), dot(p, this.navigator.up), color]));
+        this.picture.forEachPoint((p, color) => points.push([...this.flat(p), dot(p, this.navigator.up), color]));
         const places = this.navigator.photos.map(p => this.flat(p.eye));
         const range = k => {
             const own = places.map(p => p[k]), reach = AROUND * this.navigator.distance;
@@ -92,6 +93,8 @@ export class Map2d {
     {
         if (this.canvas.hidden)
             return;
+        if (!this.points)
+            this.frame();
         const size = Math.round(this.canvas.clientWidth * window.devicePixelRatio);
         if (this.canvas.width !== size || !this.background) {
             this.canvas.width = this.canvas.height = size;

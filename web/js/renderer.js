@@ -26,9 +26,8 @@ function makePrograms(device, sources)
         pullFinest: screen("pull.frag", {FINEST: 1}), pull: screen("pull.frag"),
         push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}),
         support: screen("support.frag"), seedDepth: screen("fill_seed_depth.frag"),
-        fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"),
-        fillPullFar: screen("fill_pull.frag", {FAR: 1}), fillPushFar: screen("fill_push.frag", {FAR: 1}),
-        fillDepth: screen("fill_depth.frag", {FAR: 1}), depthUnpack: screen("depth_unpack.frag"),
+        fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"), fillDepth: screen("fill_depth.frag"),
+        depthUnpack: screen("depth_unpack.frag"),
         choose: screen("choose.frag", {TILE}), gather: screen("gather.frag", {TILE}),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
         show: screen("show.frag", {FLIP: 1}), capture: late("show.frag"), radianceUnpack: late("radiance_unpack.frag"),
@@ -130,11 +129,10 @@ export class Renderer {
         this.splat(camera, o);
         this.pullPush();
         const pointsOnly = LAYERS[layer] === "points" || this.photos.ready.length === 0;
-        this.fillIn(f.fillDepth, {seed: this.programs.seedDepth, pull: this.programs.fillPullFar,
-                                  push: this.programs.fillPushFar},
-                    {...this.values, known: this.supported, normals: this.normals}, f.fillDepth.pulled[0], 1);
+        this.fillIn(f.fillDepth, this.programs.seedDepth, {...this.values, known: this.supported, normals: this.normals},
+                    f.fillDepth.pulled[0], {factor: 1, far: true});
         this.device.pass(this.programs.fillDepth, f.depth,
-                         {...this.values, known: this.supported,
+                         {...this.values, known: this.supported, far: true,
                           filled: f.fillDepth.pushed[0].textures[0]});
         this.depth = f.depth;
         this.used = pointsOnly ? 0 : this.gather(camera, o, whole);
@@ -218,15 +216,16 @@ export class Renderer {
     }
 
     // Gortler's pull and push from seeds: pyramid.pushed[0] is filled everywhere if anything is known.
-    fillIn(pyramid, {seed, pull, push}, values, seeds, factor)
+    // rules: what the shaders are told of what the values mean
+    fillIn(pyramid, seed, values, seeds, rules)
     {
-        const {device} = this, {pulled, pushed} = pyramid, top = pulled.length - 1;
+        const {device, programs} = this, {pulled, pushed} = pyramid, top = pulled.length - 1;
         device.pass(seed, seeds, values);
         for (let i = 1; i <= top; i++)
-            device.pass(pull, pulled[i], {fine: pulled[i - 1].textures[0], factor});
+            device.pass(programs.fillPull, pulled[i], {...rules, fine: pulled[i - 1].textures[0]});
         let above = pulled[top].textures[0];
         for (let i = top - 1; i >= 0; i--) {
-            device.pass(push, pushed[i], {fine: pulled[i].textures[0], coarse: above});
+            device.pass(programs.fillPush, pushed[i], {...rules, fine: pulled[i].textures[0], coarse: above});
             above = pushed[i].textures[0];
         }
         if (top === 0)
@@ -262,12 +261,11 @@ export class Renderer {
         const gl = this.device.gl, f = this.frame;
         const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
                         normals: this.normals, points_only: pointsOnly};
-        this.fillIn(f.fillColor, {seed: this.programs.seedColor, pull: this.programs.fillPull,
-                                  push: this.programs.fillPush}, colors, f.seeds, 0.25);
+        this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, {factor: 0.25, far: false});
         gl.bindTexture(gl.TEXTURE_2D, f.guesses.id);
         gl.generateMipmap(gl.TEXTURE_2D);
         this.device.pass(this.programs.compose, f.composed,
-                         {...colors, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});
+                         {...colors, far: false, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});
     }
 
     // The last frame onto a place of its size: the canvas, or {fbo, x, y, width, height}, whose first row is the lowest.

@@ -1,14 +1,16 @@
 // What a pixel gets from the coarser level of a filling pyramid: bilinear (Gortler 1996, push).
-// FAR: of inverse depth in x and its slope in yz, per pixel of the level, each times the weight in a.
+// far: of inverse depth in x and its slope in yz, per pixel of the level, each times the weight in a.
 // As in shaders/fill/fill.glsl, they are interpolated with the fourth roots of their weights.
+uniform bool far;
+
 // `to`: where the value is for, in pixels of the level, whose centres are whole numbers.
 vec4 fill_texel(sampler2D level, ivec2 at, vec2 to)
 {
     vec4 value = texelFetch(level, at, 0);
-#ifdef FAR
-    value = value.a > 0.0 ? value * (sqrt(sqrt(value.a)) / value.a) : vec4(0.0);
-    value.x += dot(value.yz, to - vec2(at));
-#endif
+    if (far) {
+        value = value.a > 0.0 ? value * (sqrt(sqrt(value.a)) / value.a) : vec4(0.0);
+        value.x += dot(value.yz, to - vec2(at));
+    }
     return value;
 }
 
@@ -21,9 +23,9 @@ vec4 fill_finer(sampler2D level, ivec2 at)
     vec4 below = fill_texel(level, clamp(parent + ivec2(0, side.y), ivec2(0), last), to);
     vec4 across = fill_texel(level, clamp(parent + side, ivec2(0), last), to);
     vec4 finer = 0.5625 * own + 0.1875 * (aside + below) + 0.0625 * across;
-#ifdef FAR
-    finer.yz *= 0.5; // pixels of the finer level are half as large
-    finer *= finer.a * finer.a * finer.a;
-#endif
+    if (far) {
+        finer.yz *= 0.5; // pixels of the finer level are half as large
+        finer *= finer.a * finer.a * finer.a;
+    }
     return finer;
 }

@@ -1,7 +1,8 @@
 // Sum of 2x2 finer pixels (Gortler 1996, pull); the mean where a format has a small range.
-// FAR: of depths and their slopes, as in shaders/fill/fill_pull.comp.
+// far: of depths and their slopes, as in shaders/fill/fill_pull.comp.
 uniform sampler2D fine;
 uniform float factor;
+uniform bool far;
 layout(location = 0) out vec4 coarse;
 
 const float SLOPE_KEPT = 0.8; // for a block of twice the size
@@ -10,10 +11,10 @@ const float SLOPE_KEPT = 0.8; // for a block of twice the size
 vec4 fine_value(ivec2 at, vec2 by)
 {
     vec4 value = texelFetch(fine, at, 0) * factor;
-#ifdef FAR
-    value.x += dot(value.yz, by);
-    value.yz *= 2.0 * SLOPE_KEPT;
-#endif
+    if (far) {
+        value.x += dot(value.yz, by);
+        value.yz *= 2.0 * SLOPE_KEPT;
+    }
     return value;
 }
 
