@@ -260,8 +260,8 @@ enum orl_result orl_database_commit(struct orl_database *db)
 
 enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide)
 {
-    return run_sql(db, hide ? "UPDATE images SET name = replace(name, ' ', '/')"
-                            : "UPDATE images SET name = replace(name, '/', ' ')");
+    return run_sql(db, hide ? "UPDATE images SET name = replace(name, ' ', char(31))"
+                            : "UPDATE images SET name = replace(name, char(31), ' ')");
 }
 
 // --- databases of parts ---

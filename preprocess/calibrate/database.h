@@ -34,7 +34,8 @@ enum orl_result orl_database_is_connected(struct orl_database *db, uint32_t id,
 enum orl_result orl_database_begin(struct orl_database *db) ORL_CHECK_RESULT;
 enum orl_result orl_database_commit(struct orl_database *db) ORL_CHECK_RESULT;
 // COLMAP splits the lines of its pair lists at spaces. While a list is read, names in the database
-// have '/' in place of ' ', which no name of a photograph holds otherwise.
+// have ORL_HIDDEN_SPACE in place of ' '; '/' stands in those of imported photographs in sub-folders.
+#define ORL_HIDDEN_SPACE '\x1f'
 enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide) ORL_CHECK_RESULT;
 
 // --- databases of parts (parts.h) ---

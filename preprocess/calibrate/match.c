@@ -62,7 +62,7 @@ static char *without_spaces(const struct orl_log *log, const char *name)
     char *copy = orl_strdup(log, name);
     for (char *c = copy; c && *c; c++)
         if (*c == ' ')
-            *c = '/';
+            *c = ORL_HIDDEN_SPACE;
     return copy;
 }
 
