@@ -64,7 +64,7 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
     if (result == ORL_OK && !whole)
         orl_logf(log, ORL_LOG_INFO, "%s: %s; oriel plan says what is left", job.dir,
                  params->until == ORL_UNTIL_COLLECT ? "collected" : "calibrated and undistorted");
-    // Only fuse and ground read the depth maps, so the maps can go once the scene is complete.
+    // Only fuse reads the depth maps, so they can go once the scene is complete.
     if (result == ORL_OK && whole && params->keep == ORL_KEEP_MINIMAL)
         result = orl_job_remove(&job, "stereo");
     orl_job_close(&job);

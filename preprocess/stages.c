@@ -129,7 +129,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                         orl_stage_fuse_settings, orl_stage_fuse, {".oriel/fused.ply"}, "points", true, NULL},
     [ORL_STAGE_RADII] = {"radii", 4, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
                          {"points.ply", ORL_LOD_NAME}, "points", true, NULL},
-    [ORL_STAGE_GROUND] = {"ground", 2, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
+    [ORL_STAGE_GROUND] = {"ground", 3, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
                           "ground", true, NULL},
     [ORL_STAGE_BACKDROP] = {"backdrop", 1, ORL_STAGE_RADII, NULL, orl_stage_backdrop, {0},
                             "backdrop", true, NULL},
@@ -310,10 +310,8 @@ static enum orl_result find_current(const struct orl_job *job, bool current[ORL_
         if (result != ORL_OK)
             return result;
     }
-    // Fuse and ground read the depth maps, which may be deleted after both.
-    bool read = !there[ORL_STAGE_FUSE] || !there[ORL_STAGE_GROUND] ||
-                job->params->keep == ORL_KEEP_ALL;
-    if (read && !orl_job_has(job, "stereo/.oriel-key"))
+    // Fuse reads the depth maps, which may be deleted after it.
+    if ((!there[ORL_STAGE_FUSE] || job->params->keep == ORL_KEEP_ALL) && !orl_job_has(job, "stereo/.oriel-key"))
         there[ORL_STAGE_DENSIFY] = false;
     for (int i = 1; i < ORL_STAGE_COUNT; i++) {
         bool after = settled[stages[i].needs];

@@ -40,6 +40,12 @@ struct sample {
     double up[3];    // mean of the photographs, of those on their side no more than a guess
 };
 
+// Height of a point above the plane of struct orl_ground, in scene units; negative below it.
+static double plane_height(const double plane[4], const double at[3])
+{
+    return orl_dot3(plane, at) + plane[3];
+}
+
 // Principal eigenvector of the centres' covariance, by power iteration.
 static void find_along(struct sample *s)
 {
@@ -126,12 +132,12 @@ static double stood_height(const struct sample *s, double plane[4])
 {
     double sum = 0, squares = 0, least = INFINITY, across[2] = {0};
     for (int i = 0; i < s->photo_count; i++)
-        sum += orl_plane_height(plane, s->centres[i]);
+        sum += plane_height(plane, s->centres[i]);
     for (int k = 0; sum < 0 && k < 4; k++)
         plane[k] = -plane[k];
     double mean = fabs(sum) / s->photo_count;
     for (int i = 0; i < s->photo_count; i++) {
-        double height = orl_plane_height(plane, s->centres[i]);
+        double height = plane_height(plane, s->centres[i]);
         squares += (height - mean) * (height - mean) / s->photo_count;
         least = fmin(least, height);
         for (int k = 0; k < 2; k++)
@@ -150,7 +156,7 @@ static double score(const struct sample *s, const double plane[4], double height
     int on = 0, beneath = 0;
     for (int i = 0; i < s->count; i++) {
         const double *at = s->position[i];
-        double off = orl_plane_height(plane, at);
+        double off = plane_height(plane, at);
         beneath += off < -BENEATH * tolerance;
         if (fabs(off) > tolerance)
             continue;
@@ -220,7 +226,7 @@ bool orl_ground_along_rays(const struct orl_ground *ground, const struct orl_vie
     const struct orl_pose *pose = &view->cam_from_world;
     double eye[3];
     orl_pose_centre(pose, eye);
-    double height = orl_plane_height(ground->plane, eye);
+    double height = plane_height(ground->plane, eye);
     if (!(ground->height > 0 && height > 0))
         return false;
     for (int k = 0; k < 3; k++)

@@ -2,7 +2,6 @@
 #ifndef ORL_SCENE_GROUND_PLANE_H
 #define ORL_SCENE_GROUND_PLANE_H
 
-#include "core/vec3.h"
 #include "oriel/scene.h"
 
 // Searches for a plane with the training photographs at about one height above it and level to it,
@@ -13,11 +12,6 @@
 enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scene *scene,
                                 struct orl_ground *ground) ORL_CHECK_RESULT;
 
-// Height of a point above the plane of struct orl_ground, in scene units; negative below it.
-static inline double orl_plane_height(const double plane[4], const double at[3])
-{
-    return orl_dot3(plane, at) + plane[3];
-}
 // Intersects a view's rays with the ground. The inverse of the depth (z in the camera's frame) is
 // the dot product of `inverse` and the ray (x/z, y/z, 1); a ray misses the ground when that is not
 // positive. False when there is no ground or the view is not above it.

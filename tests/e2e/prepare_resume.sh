@@ -81,7 +81,7 @@ run 0 info "$scene" --check
 # Where they are asked for, or needed, they are.
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all
 grep -q patch_match_stereo "$work/trace" || fail "--keep all made no depth maps"
-# Other radii: with depth maps, which the ground asks for, nothing before them is done again. The
+# Other radii: nothing before them is done again. The
 # usual values are those without the options.
 sum=$(md5sum <"$scene/points.ply")
 : >"$work/trace"
