@@ -64,16 +64,32 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
             a->model.point_count > b->model.point_count);
 }
 
-// Takes the model in `path` if it is better than the best so far. One that cannot
-// be read does not count: the mapper may have left it half-written.
+// Photographs in the best model so far.
+static size_t registered(const struct calibration *c)
+{
+    return c->best.model.image_count;
+}
+
+static void say(const struct calibration *c, const char *what)
+{
+    orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: %zu of %zu photographs register; %s",
+             registered(c), c->job->source_count, what);
+}
+
+// Takes the model in `path` if it is better than the best so far. One with a camera that no lens makes
+// does not count, unless there is no other: the photographs that joined last may have bent it.
 static enum orl_result consider(struct calibration *c, const char *path)
 {
     struct candidate candidate = {.features = c->features};
-    enum orl_result result = orl_colmap_read(c->job->log, path, &candidate.model);
+    enum orl_result result = orl_colmap_read(c->best.path ? NULL : c->job->log, path, &candidate.model);
+    if (result == ORL_ERR_FORMAT && c->best.path) {
+        say(c, "COLMAP's next model has a camera that no ordinary lens makes and does not count");
+        return ORL_OK;
+    }
     if (result == ORL_ERR_FORMAT)
         return orl_fail(c->job->log, ORL_ERR_DATA, "%s: " LENS_ADVICE, path);
     if (result != ORL_OK)
-        return result;
+        return orl_fail(c->job->log, result, "%s: the model cannot be read", path);
     for (size_t i = 0; i < candidate.model.camera_count; i++)
         candidate.bent |= !orl_colmap_camera_reaches_corners(&candidate.model.cameras[i]);
     candidate.path = orl_strdup(c->job->log, path);
@@ -152,12 +168,6 @@ static enum orl_result map(struct calibration *c, bool loose, const char *from)
 
 // --- attempts ---
 
-// Photographs in the best model so far.
-static size_t registered(const struct calibration *c)
-{
-    return c->best.model.image_count;
-}
-
 static bool enough(const struct calibration *c)
 {
     return registered(c) >= 3 && 2 * registered(c) >= c->job->source_count;
@@ -166,12 +176,6 @@ static bool enough(const struct calibration *c)
 static bool all(const struct calibration *c)
 {
     return registered(c) == c->job->source_count;
-}
-
-static void say(const struct calibration *c, const char *what)
-{
-    orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: %zu of %zu photographs register; %s",
-             registered(c), c->job->source_count, what);
 }
 
 // Marks the database as whole for these inputs and settings.

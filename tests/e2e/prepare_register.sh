@@ -82,6 +82,10 @@ says "a focal length of 15 pixels for photographs of 96x80"
 says "panoramas must be cut into flat views"
 DOUBLE_FOCAL=0 run 2 prepare "$work/p" --out "$work/flat"
 says "photographs of a fisheye lens"
+# Where others were placed before, those count.
+DOUBLE_ALONE=3.png DOUBLE_JOINED_FOCAL=0 run 0 prepare "$work/p" --out "$work/bent-later"
+says "a camera that no ordinary lens makes and does not count"
+prints "5 used, 4 registered"
 
 # Masks reach COLMAP under its names, are undistorted as photographs are, and leave points out.
 photos "$work/m" 1.png.png
