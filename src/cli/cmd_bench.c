@@ -172,25 +172,22 @@ static enum orl_result report(const struct orl_log *log, const struct bench_opti
     return result;
 }
 
-static enum orl_result run_bench(struct terminal *terminal, const void *options,
-                                 const struct common_options *common, const char *const *inputs)
+static enum orl_result run_bench(struct call *call)
 {
-    const struct bench_options *o = options;
-    const struct orl_log *log = &terminal->log;
+    const struct bench_options *o = call->options;
+    const struct orl_log *log = call->log;
     struct plan plan = {0};
-    struct orl_scene *scene = NULL;
-    struct orl_gpu *gpu = NULL;
     struct orl_bench bench = {0};
     enum orl_result result = plan_sizes(log, o, &plan);
     if (result == ORL_OK)
         result = plan_points(log, o, &plan);
     if (result == ORL_OK)
-        result = orl_scene_open(log, inputs[0], &scene);
+        result = command_scene(call, NULL);
     if (result == ORL_OK)
-        result = orl_choices_make(log, scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
+        result = orl_choices_make(log, call->scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
                                   &plan.choices);
     if (result == ORL_OK)
-        result = command_device(log, common, &gpu);
+        result = command_device(call);
     const struct orl_bench_params params = {
         .choices = plan.choices.items, .choice_count = plan.choices.count,
         .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
@@ -199,14 +196,12 @@ static enum orl_result run_bench(struct terminal *terminal, const void *options,
         .max_vram_bytes = o->max_vram_bytes,
         .textures = o->textures,
         .image_dir = o->images, .trace = o->trace,
-        .progress = &terminal->progress};
+        .progress = call->progress};
     if (result == ORL_OK)
-        result = orl_bench_run(gpu, scene, &params, &bench);
+        result = orl_bench_run(call->gpu, call->scene, &params, &bench);
     if (result == ORL_OK)
         result = report(log, o, &bench);
     orl_bench_finish(&bench);
-    orl_gpu_destroy(&gpu);
-    orl_scene_destroy(&scene);
     orl_choices_finish(&plan.choices);
     return result;
 }

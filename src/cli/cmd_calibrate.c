@@ -10,18 +10,15 @@
     ROW(part, "part", PART, "the K-th of N parts of the photographs or pairs")
 COMMAND_OPTIONS(calibrate_options, CALIBRATE_OPTIONS)
 
-static enum orl_result run_calibrate(struct terminal *terminal, const void *options,
-                                     const struct common_options *common, const char *const *inputs)
+static enum orl_result run_calibrate(struct call *call)
 {
-    const struct calibrate_options *o = options;
-    const struct orl_log *log = &terminal->log;
-    (void)common;
+    const struct calibrate_options *o = call->options;
     if (!o->part.count && o->step != ORL_PART_PAIRS)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "calibrate: --part K/N is missing");
+        return orl_fail(call->log, ORL_ERR_ARGUMENT, "calibrate: --part K/N is missing");
     if (o->part.count > 1 && o->step == ORL_PART_PAIRS)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "calibrate: pairs are chosen in one part");
-    return orl_part_run(log, inputs[0], o->step, o->part.index, o->part.count ? o->part.count : 1,
-                        &terminal->progress);
+        return orl_fail(call->log, ORL_ERR_ARGUMENT, "calibrate: pairs are chosen in one part");
+    return orl_part_run(call->log, call->inputs[0], o->step, o->part.index,
+                        o->part.count ? o->part.count : 1, call->progress);
 }
 
 const struct command command_calibrate = {

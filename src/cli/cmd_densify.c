@@ -53,48 +53,38 @@ static enum orl_result choose_photos(const struct orl_log *log, const char *work
     return result;
 }
 
-static enum orl_result densify(const struct terminal *terminal, const struct densify_options *o,
-                               const struct common_options *common, const char *workspace,
-                               const struct orl_densify_params *asked)
+static enum orl_result densify(struct call *call, const struct orl_densify_params *asked)
 {
-    const struct orl_log *log = &terminal->log;
+    const char *workspace = call->inputs[0];
     struct orl_colmap_model model = {0};
     struct orl_names photos = {0};
-    struct orl_gpu *gpu = NULL;
-    char *sparse = orl_path_join(log, workspace, "sparse");
-    enum orl_result result = sparse ? orl_colmap_read(log, sparse, &model) : ORL_ERR_MEMORY;
+    char *sparse = orl_path_join(call->log, workspace, "sparse");
+    enum orl_result result = sparse ? orl_colmap_read(call->log, sparse, &model) : ORL_ERR_MEMORY;
     struct orl_densify_params params = *asked;
     params.model = &model;
     if (result == ORL_OK)
-        result = choose_photos(log, workspace, &model, o, &photos);
+        result = choose_photos(call->log, workspace, &model, call->options, &photos);
     if (result == ORL_OK)
-        result = command_device(log, common, &gpu);
+        result = command_device(call);
     if (result == ORL_OK)
-        result = orl_densify(gpu, workspace, &photos, &params, &terminal->progress);
-    orl_gpu_destroy(&gpu);
+        result = orl_densify(call->gpu, workspace, &photos, &params, call->progress);
     orl_names_finish(&photos);
     orl_colmap_finish(&model);
     free(sparse);
     return result;
 }
 
-static enum orl_result run_densify(struct terminal *terminal, const void *options,
-                                   const struct common_options *common, const char *const *inputs)
+static enum orl_result run_densify(struct call *call)
 {
-    const struct densify_options *o = options;
-    const struct orl_log *log = &terminal->log;
+    const struct densify_options *o = call->options;
     const struct orl_densify_part part = {o->pass, o->part.index, o->part.count};
     struct orl_densify_params params = {ORL_DENSIFY_OPTIONS(ORL_OPTION_COPY)};
     bool whole = false;
     if (o->photos && o->exclude.count)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--photos and --exclude exclude each other");
-    enum orl_result result =
-        o->part.count ? command_is_whole(log, inputs[0], &whole) : ORL_OK;
+        return orl_fail(call->log, ORL_ERR_ARGUMENT, "--photos and --exclude exclude each other");
+    enum orl_result result = o->part.count ? command_is_whole(call, &whole) : ORL_OK;
     params.part = o->part.count ? &part : NULL;
-    if (result != ORL_OK || !whole)
-        return result == ORL_OK ? densify(terminal, o, common, inputs[0], &params) : result;
-    orl_logf(log, ORL_LOG_INFO, "%s: a whole scene, so there is nothing left to do", inputs[0]);
-    return ORL_OK;
+    return result == ORL_OK && !whole ? densify(call, &params) : result;
 }
 
 const struct command command_densify = {

@@ -41,14 +41,9 @@
 COMMAND_OPTIONS(eval_options, EVAL_OPTIONS)
 
 struct job {
-    const struct orl_log *log;
-    const struct orl_progress *progress;
+    struct call *call;           // its renderer: of the current method; NULL with --merge
     const struct eval_options *options;
-    bool verbose;
-    struct orl_scene *scene;
-    struct orl_gpu *gpu;
-    struct orl_renderer *renderer; // of the current method; NULL with --merge
-    struct orl_hdr *hdr;           // of the current method, with --merge
+    struct orl_hdr *hdr;         // of the current method, with --merge
     struct orl_truth truth;
     struct orl_choices choices;
     struct orl_eval *evals; // one per choice
@@ -133,27 +128,28 @@ static enum orl_result start_hdr(struct job *job, const struct orl_render_params
     params.render = *render;
     params.max_vram_bytes = job->options->max_vram_bytes;
     params.merge = (enum orl_hdr_merge)job->options->merge;
-    return orl_hdr_create(job->gpu, job->scene, &params, &job->hdr);
+    return orl_hdr_create(job->call->gpu, job->call->scene, &params, &job->hdr);
 }
 
 static enum orl_result start_renderer(struct job *job)
 {
     const struct orl_renderer_params limits = {
         .max_vram_bytes = job->options->max_vram_bytes, .textures = job->options->textures,
-        .photo_divide = job->options->photo_divide, .progress = job->progress};
-    return orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
+        .photo_divide = job->options->photo_divide, .progress = job->call->progress};
+    return orl_renderer_create(job->call->gpu, job->call->scene, &limits, &job->call->renderer);
 }
 
 // Measures a method with a renderer of its own, so that it answers for its memory alone.
 static enum orl_result evaluate(struct job *job, const struct orl_choice *choice)
 {
+    struct call *call = job->call;
     const struct eval_options *o = job->options;
     struct orl_eval_params params = {.method = choice->method->name, .setting = choice->setting,
                                      .render = &choice->params, .image_dir = o->images,
                                      .pictures = o->pictures, .views = o->views,
-                                     .divide = o->divide, .progress = job->progress,
-                                     .sequence = o->time_step < 0 && job->scene->frame_count
-                                                     ? job->scene : NULL,
+                                     .divide = o->divide, .progress = call->progress,
+                                     .sequence = o->time_step < 0 && call->scene->frame_count
+                                                     ? call->scene : NULL,
                                      .truth = o->truth ? &job->truth : NULL};
     struct orl_eval *eval = &job->evals[job->count];
     enum orl_result result = ORL_OK;
@@ -167,9 +163,9 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
         result = start_renderer(job);
     }
     if (result == ORL_OK)
-        result = orl_eval_run(job->gpu, job->renderer, job->scene, &params, eval);
+        result = orl_eval_run(call->gpu, call->renderer, call->scene, &params, eval);
     orl_hdr_destroy(&job->hdr);
-    orl_renderer_destroy(&job->renderer);
+    orl_renderer_destroy(&call->renderer);
     if (result != ORL_OK)
         return result;
     job->count++;
@@ -178,7 +174,7 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
     if (job->count > 1)
         printf("\n");
     print_table(eval);
-    if (job->verbose)
+    if (call->common->verbose)
         print_passes(eval);
     fflush(stdout);
     return ORL_OK;
@@ -186,20 +182,21 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
 
 static enum orl_result measure_walk(struct job *job, bool array)
 {
+    struct call *call = job->call;
     const struct eval_options *o = job->options;
     bool first = true;
     const struct orl_walk_params params = {
         .choices = job->choices.items, .choice_count = job->choices.count, .frames = o->walk,
         .path = o->path, .divide = o->divide, .image_dir = o->images, .priv = &first,
         .on_result = report_on_stdout(o->json) ? NULL : print_walk_row,
-        .progress = job->progress};
-    struct orl_stability *all = orl_array(job->log, job->choices.count, sizeof *all);
+        .progress = call->progress};
+    struct orl_stability *all = orl_array(call->log, job->choices.count, sizeof *all);
     enum orl_result result = all ? start_renderer(job) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_stability_walk_all(job->gpu, job->renderer, job->scene, &params, all);
+        result = orl_stability_walk_all(call->gpu, call->renderer, call->scene, &params, all);
     if (result == ORL_OK && o->json)
-        result = report_write(job->log, o->json, orl_stability_to_json(
-            job->log, job->scene, all, job->choices.count, array));
+        result = report_write(call->log, o->json, orl_stability_to_json(
+            call->log, call->scene, all, job->choices.count, array));
     for (size_t i = 0; all && i < job->choices.count; i++)
         orl_stability_finish(&all[i]);
     free(all);
@@ -209,13 +206,13 @@ static enum orl_result measure_walk(struct job *job, bool array)
 static enum orl_result measure_heldout(struct job *job, bool array)
 {
     const struct eval_options *o = job->options;
-    job->evals = orl_array(job->log, job->choices.count, sizeof *job->evals);
+    job->evals = orl_array(job->call->log, job->choices.count, sizeof *job->evals);
     enum orl_result result = job->evals ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; i < job->choices.count && result == ORL_OK; i++)
         result = evaluate(job, &job->choices.items[i]);
     if (result == ORL_OK && o->json)
-        result = report_write(job->log, o->json,
-                              orl_eval_to_json(job->log, job->evals, job->count, array));
+        result = report_write(job->call->log, o->json,
+                              orl_eval_to_json(job->call->log, job->evals, job->count, array));
     return result;
 }
 
@@ -247,30 +244,30 @@ static enum orl_result choose(struct job *job, const struct orl_scene *scene)
 {
     const struct eval_options *o = job->options;
     orl_choices_finish(&job->choices);
-    return orl_choices_make(job->log, scene,
+    return orl_choices_make(job->call->log, scene,
                             o->merge < 0 ? ORL_SAMPLE_SRGB : ORL_SAMPLE_RADIANCE, &o->methods,
                             &o->settings, o->vary, &job->choices);
 }
 
-static enum orl_result evaluate_scene(struct job *job, const char *scene_dir,
-                                      const struct common_options *common)
+static enum orl_result evaluate_scene(struct job *job)
 {
+    struct call *call = job->call;
     const struct eval_options *o = job->options;
-    enum orl_result result = check_together(job->log, o);
+    enum orl_result result = check_together(call->log, o);
     if (result == ORL_OK && o->methods.count) // reports wrong settings before the long work
         result = choose(job, NULL);
     if (result == ORL_OK)
-        result = orl_scene_open(job->log, scene_dir, &job->scene);
+        result = command_scene(call, NULL);
     if (result == ORL_OK && o->time_step >= 0)
-        result = orl_scene_set_frame(job->log, job->scene, o->time_step);
+        result = orl_scene_set_frame(call->log, call->scene, o->time_step);
     if (result == ORL_OK)
-        result = choose(job, job->scene);
+        result = choose(job, call->scene);
     if (result == ORL_OK && !o->walk && !o->path)
-        result = orl_eval_check(job->log, job->scene);
+        result = orl_eval_check(call->log, call->scene);
     if (result == ORL_OK && o->truth)
-        result = orl_truth_open(job->log, job->scene, o->truth, &job->truth);
+        result = orl_truth_open(call->log, call->scene, o->truth, &job->truth);
     if (result == ORL_OK)
-        result = command_device(job->log, common, &job->gpu);
+        result = command_device(call);
     if (result != ORL_OK)
         return result;
     bool array = o->vary || o->methods.count > 1 || orl_names_contain(&o->methods, "all") ||
@@ -278,26 +275,16 @@ static enum orl_result evaluate_scene(struct job *job, const char *scene_dir,
     return o->walk || o->path ? measure_walk(job, array) : measure_heldout(job, array);
 }
 
-static void finish(struct job *job)
+static enum orl_result run_eval(struct call *call)
 {
-    for (size_t i = 0; i < job->count; i++)
-        orl_eval_finish(&job->evals[i]);
-    free(job->evals);
-    orl_choices_finish(&job->choices);
-    orl_hdr_destroy(&job->hdr);
-    orl_truth_finish(&job->truth);
-    orl_renderer_destroy(&job->renderer);
-    orl_gpu_destroy(&job->gpu);
-    orl_scene_destroy(&job->scene);
-}
-
-static enum orl_result run_eval(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
-{
-    struct job job = {.log = &terminal->log, .progress = &terminal->progress, .options = options,
-                      .verbose = common->verbose};
-    enum orl_result result = evaluate_scene(&job, inputs[0], common);
-    finish(&job);
+    struct job job = {.call = call, .options = call->options};
+    enum orl_result result = evaluate_scene(&job);
+    for (size_t i = 0; i < job.count; i++)
+        orl_eval_finish(&job.evals[i]);
+    free(job.evals);
+    orl_choices_finish(&job.choices);
+    orl_hdr_destroy(&job.hdr);
+    orl_truth_finish(&job.truth);
     return result;
 }
 

@@ -64,32 +64,29 @@ static enum orl_result check(const struct orl_log *log, const struct export_opti
     return ORL_OK;
 }
 
-static enum orl_result run_export(struct terminal *terminal, const void *given,
-                                  const struct common_options *common, const char *const *inputs)
+static enum orl_result run_export(struct call *call)
 {
-    const struct export_options *o = given;
-    const struct orl_log *log = &terminal->log;
+    const struct export_options *o = call->options;
+    const struct orl_log *log = call->log;
     const struct orl_export_params params = {.out = o->out, .degree = o->degree, .thin = o->thin,
                                              .at = o->at, .width = o->width,
-                                             .shader_dir = common->shader_dir};
-    struct orl_scene *scene = NULL;
+                                             .shader_dir = call->common->shader_dir};
     if (o->kind < 0)
         return orl_fail(log, ORL_ERR_ARGUMENT, "export: --as KIND is needed");
     const struct orl_export_kind *kind = &orl_export_kinds[o->kind];
     enum orl_result result = check(log, o, kind);
     if (result == ORL_OK)
-        result = orl_scene_open(log, inputs[0], &scene);
-    if (result == ORL_OK && scene->lod && kind->points)
-        result = take_points(log, scene);
+        result = command_scene(call, NULL);
+    if (result == ORL_OK && call->scene->lod && kind->points)
+        result = take_points(log, call->scene);
     if (result == ORL_OK && !kind->placed)
-        say_origin(log, scene);
+        say_origin(log, call->scene);
     if (result == ORL_OK && !kind->write)
-        printf("%s is a COLMAP workspace: open its sparse/ with its images/\n", inputs[0]);
+        printf("%s is a COLMAP workspace: open its sparse/ with its images/\n", call->inputs[0]);
     else if (result == ORL_OK)
-        result = kind->write(log, &terminal->progress, scene, &params);
-    if (result == ORL_OK && kind->write && !common->quiet)
+        result = kind->write(log, call->progress, call->scene, &params);
+    if (result == ORL_OK && kind->write && !call->common->quiet)
         printf("%s: %s\n", params.out, kind->what);
-    orl_scene_destroy(&scene);
     return result;
 }
 

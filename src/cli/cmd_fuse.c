@@ -13,24 +13,18 @@
         "memory to keep to; default: half of what is free")
 COMMAND_OPTIONS(fuse_options, FUSE_OPTIONS)
 
-static enum orl_result run_fuse(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_fuse(struct call *call)
 {
-    const struct fuse_options *o = options;
-    const struct orl_log *log = &terminal->log;
+    const struct fuse_options *o = call->options;
     struct orl_fuse_params params = {.size = o->photographs, .masks = o->masks,
                                      .max_ram_bytes = o->max_ram_bytes,
                                      .cluster = o->part.index, .count = o->part.count};
     bool whole = false;
-    (void)common;
     if (!o->part.count)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "fuse: --part K/N is missing");
-    enum orl_result result = command_is_whole(log, inputs[0], &whole);
-    if (result != ORL_OK || !whole)
-        return result == ORL_OK ? orl_fuse_cluster(log, inputs[0], &params, &terminal->progress)
-                                : result;
-    orl_logf(log, ORL_LOG_INFO, "%s: a whole scene, so there is nothing left to do", inputs[0]);
-    return ORL_OK;
+        return orl_fail(call->log, ORL_ERR_ARGUMENT, "fuse: --part K/N is missing");
+    enum orl_result result = command_is_whole(call, &whole);
+    return result == ORL_OK && !whole
+               ? orl_fuse_cluster(call->log, call->inputs[0], &params, call->progress) : result;
 }
 
 const struct command command_fuse = {

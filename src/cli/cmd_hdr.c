@@ -12,8 +12,6 @@
 #include "hdr/replace.h"
 #include "oriel/hdr.h"
 #include "render/sequence.h"
-#include "scene/light.h"
-#include "scene/view_choice.h"
 
 #define HDR_OPTIONS(ROW) \
     VIEW_OPTIONS(ROW) \
@@ -35,24 +33,16 @@
 COMMAND_OPTIONS(hdr_options, HDR_OPTIONS)
 
 struct job {
-    const struct orl_log *log;
-    const struct orl_progress *progress;
-    struct orl_gpu *gpu;
-    struct orl_scene *scene;
+    struct call *call;
     struct orl_hdr *hdr;
-    struct orl_path path;
-    struct orl_hdr_params params;
     struct orl_frame_output output;
     const char *method; // name
-    bool *skip;         // per photograph
 };
-
-// --- output ---
 
 static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_frame *frame)
 {
-    struct job *job = priv;
-    return orl_hdr_draw(job->hdr, view, job->skip, frame);
+    const struct job *job = priv;
+    return orl_hdr_draw(job->hdr, view, job->call->skip, frame);
 }
 
 // --- panorama ---
@@ -69,34 +59,37 @@ static enum orl_result parse_vector(const struct orl_log *log, const char *optio
     return ORL_OK;
 }
 
-static enum orl_result draw_panorama(const struct hdr_options *options, struct job *job)
+static enum orl_result draw_panorama(struct job *job)
 {
-    struct orl_panorama p = {.width = options->panorama.width, .height = options->panorama.height};
+    const struct call *call = job->call;
+    const struct hdr_options *o = call->options;
+    struct orl_panorama p = {.width = o->panorama.width, .height = o->panorama.height};
     struct orl_frame frame;
     struct orl_view view;
-    enum orl_result result = orl_panorama_place(job->log, job->scene, options->at, &p);
-    if (result == ORL_OK && !options->at)
-        result = parse_vector(job->log, "position", &options->position, p.position);
-    if (result == ORL_OK && options->up.count)
-        result = parse_vector(job->log, "up", &options->up, p.up);
+    enum orl_result result = orl_panorama_place(call->log, call->scene, o->at, &p);
+    if (result == ORL_OK && !o->at)
+        result = parse_vector(call->log, "position", &o->position, p.position);
+    if (result == ORL_OK && o->up.count)
+        result = parse_vector(call->log, "up", &o->up, p.up);
     if (result == ORL_OK)
-        result = orl_hdr_draw_panorama(job->hdr, &p, job->skip, &frame);
+        result = orl_hdr_draw_panorama(job->hdr, &p, call->skip, &frame);
     if (result != ORL_OK)
         return result;
     job->output.attributes.latlong = orl_panorama_view(&p, &view);
-    result = orl_frame_write(job->log, options->out, &view, &frame, &job->output);
+    result = orl_frame_write(call->log, o->out, &view, &frame, &job->output);
     orl_frame_finish(&frame);
     return result;
 }
 
 // --- a series ---
 
-static enum orl_result replace_series(const struct hdr_options *o, struct job *job)
+static enum orl_result replace_series(const struct job *job)
 {
+    const struct hdr_options *o = job->call->options;
     const struct orl_replace_params params = {.series = o->replace_series, .out = o->out,
-                                              .skip = job->skip, .tone = job->output.tone,
+                                              .skip = job->call->skip, .tone = job->output.tone,
                                               .method = job->method};
-    return orl_hdr_replace_series(job->hdr, &params, job->progress);
+    return orl_hdr_replace_series(job->hdr, &params, job->call->progress);
 }
 
 // --- the command ---
@@ -134,65 +127,63 @@ static void default_layers(const struct hdr_options *o, struct orl_frame_layers 
         *layers = (struct orl_frame_layers){true, true, true, true};
 }
 
-static enum orl_result hdr_scene(const struct hdr_options *o, const struct common_options *common,
-                                 const char *scene_dir, struct job *job)
+// Opens all that pictures are made of.
+static enum orl_result open_all(struct job *job)
 {
-    const struct orl_log *log = job->log;
-    enum orl_result result = check(o, log);
+    struct call *call = job->call;
+    const struct hdr_options *o = call->options;
+    struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
     struct orl_choice choice = {0};
-    const struct orl_view_choice views = {o->at, o->camera, o->path, o->frames, o->size.width,
-                                          o->size.height};
+    enum orl_result result = check(o, call->log);
     if (result == ORL_OK && o->method) // reports wrong settings before the long work
-        result = orl_choice_make(log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
+        result = orl_choice_make(call->log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
     if (result == ORL_OK)
-        result = output_choose(log, OUTPUT_OPTIONS_COPY, true, &job->output);
+        result = output_choose(call->log, OUTPUT_OPTIONS_COPY, true, &job->output);
     if (result == ORL_OK)
         default_layers(o, &job->output.layers);
-    job->params.merge = o->merge;
-    job->params.samples = o->samples;
-    job->params.max_vram_bytes = o->max_vram_bytes;
     if (result == ORL_OK)
-        result = orl_scene_open(log, scene_dir, &job->scene);
+        result = command_scene(call, o->light);
     if (result == ORL_OK)
-        result = orl_scene_set_light(log, job->scene, o->light);
-    if (result == ORL_OK)
-        result = orl_choice_make(log, job->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings,
+        result = orl_choice_make(call->log, call->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings,
                                  &choice);
-    if (result == ORL_OK)
-        job->method = choice.method->name;
-    job->params.render = choice.params;
     if (result == ORL_OK && !o->panorama.width && o->replace_series < 0)
-        result = orl_views_choose(log, job->scene, &views, &job->path);
+        result = orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path);
     if (result == ORL_OK)
-        result = orl_photos_named(log, job->scene, &o->exclude, &job->skip);
+        result = orl_photos_named(call->log, call->scene, &o->exclude, &call->skip);
     if (result == ORL_OK)
-        result = command_device(log, common, &job->gpu);
-    if (result == ORL_OK)
-        result = orl_hdr_create(job->gpu, job->scene, &job->params, &job->hdr);
+        result = command_device(call);
     if (result != ORL_OK)
         return result;
-    if (o->panorama.width)
-        return draw_panorama(o, job);
-    if (o->replace_series >= 0)
-        return replace_series(o, job);
-    const struct orl_sequence all = {.views = job->path.views, .count = job->path.count,
-                                     .draw = draw, .priv = job, .output = &job->output,
-                                     .step = "hdr", .progress = job->progress};
-    return o->path ? orl_sequence_write_dir(log, &all, o->out, "exr")
-                         : orl_sequence_write_view(log, &all, &job->path.views[0], o->out);
+    job->method = choice.method->name;
+    params.merge = o->merge;
+    params.render = choice.params;
+    params.samples = o->samples;
+    params.max_vram_bytes = o->max_vram_bytes;
+    return orl_hdr_create(call->gpu, call->scene, &params, &job->hdr);
 }
 
-static enum orl_result run_hdr(struct terminal *terminal, const void *options,
-                               const struct common_options *common, const char *const *inputs)
+static enum orl_result draw_all(struct job *job)
 {
-    struct job job = {.log = &terminal->log, .progress = &terminal->progress,
-                      .params = {ORL_HDR_DEFAULTS}, .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
-    enum orl_result result = hdr_scene(options, common, inputs[0], &job);
+    const struct call *call = job->call;
+    const struct hdr_options *o = call->options;
+    if (o->panorama.width)
+        return draw_panorama(job);
+    if (o->replace_series >= 0)
+        return replace_series(job);
+    const struct orl_sequence all = {.views = call->path.views, .count = call->path.count,
+                                     .draw = draw, .priv = job, .output = &job->output,
+                                     .step = "hdr", .progress = call->progress};
+    return o->path ? orl_sequence_write_dir(call->log, &all, o->out, "exr")
+                   : orl_sequence_write_view(call->log, &all, &call->path.views[0], o->out);
+}
+
+static enum orl_result run_hdr(struct call *call)
+{
+    struct job job = {.call = call, .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
+    enum orl_result result = open_all(&job);
+    if (result == ORL_OK)
+        result = draw_all(&job);
     orl_hdr_destroy(&job.hdr);
-    orl_gpu_destroy(&job.gpu);
-    orl_scene_destroy(&job.scene);
-    orl_path_finish(&job.path);
-    free(job.skip);
     return result;
 }
 

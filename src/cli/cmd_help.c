@@ -12,20 +12,18 @@ enum help_form { HELP_FORMS(ORL_ENUMERATOR) };
         "of all commands: the man page, completions for a shell, or the reference")
 COMMAND_OPTIONS(help_options, HELP_OPTIONS)
 
-static enum orl_result run_help(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_help(struct call *call)
 {
     static void (*const pages[])(FILE *out) = {
         [HELP_TEXT] = help_print_overview, [HELP_MAN] = page_man, [HELP_BASH] = page_bash,
         [HELP_ZSH] = page_zsh, [HELP_FISH] = page_fish, [HELP_MARKDOWN] = page_markdown};
-    const struct help_options *o = options;
+    const struct help_options *o = call->options;
     const struct command *command = NULL;
-    (void)common;
-    if (inputs[0] && !(command = command_find(inputs[0], false)))
-        command = command_find(inputs[0], true);
-    if (inputs[0] && !command)
-        return orl_fail(&terminal->log, ORL_ERR_ARGUMENT, "unknown command %s; oriel help lists all",
-                        inputs[0]);
+    if (call->inputs[0] && !(command = command_find(call->inputs[0], false)))
+        command = command_find(call->inputs[0], true);
+    if (call->inputs[0] && !command)
+        return orl_fail(call->log, ORL_ERR_ARGUMENT, "unknown command %s; oriel help lists all",
+                        call->inputs[0]);
     if (command)
         help_print(stdout, command);
     else

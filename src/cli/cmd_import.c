@@ -128,13 +128,12 @@ static enum orl_result parse_room(const struct orl_log *log, const char *text,
     return ORL_OK;
 }
 
-static enum orl_result run_import(struct terminal *terminal, const void *options,
-                                  const struct common_options *common, const char *const *inputs)
+static enum orl_result run_import(struct call *call)
 {
-    const struct import_options *o = options;
-    const struct orl_log *log = &terminal->log;
+    const struct import_options *o = call->options;
+    const struct orl_log *log = call->log;
     struct orl_import_params params = {ORL_IMPORT_DEFAULTS};
-    params.cameras = inputs[0];
+    params.cameras = call->inputs[0];
     params.out = o->out;
     params.images_dir = o->images_dir;
     params.masks_dir = o->masks_dir;
@@ -145,7 +144,7 @@ static enum orl_result run_import(struct terminal *terminal, const void *options
     params.test_list = &o->test_list;
     params.test_block = o->test_block;
     params.densify.quality = o->quality;
-    params.densify.shader_dir = common->shader_dir;
+    params.densify.shader_dir = call->common->shader_dir;
     params.densify.max_vram_bytes = o->max_vram_bytes;
     choose_points(o, &params);
     enum orl_result result =
@@ -159,7 +158,7 @@ static enum orl_result run_import(struct terminal *terminal, const void *options
     if (result == ORL_OK)
         result = parse_room(log, o->room, &params.room);
     if (result == ORL_OK)
-        result = orl_import(log, &params, &terminal->progress);
+        result = orl_import(log, &params, call->progress);
     return result == ORL_OK ? summary_print(log, params.out) : result;
 }
 

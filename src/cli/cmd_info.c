@@ -123,19 +123,15 @@ static enum orl_result check(const struct orl_log *log, const char *dir)
     return ORL_OK;
 }
 
-static enum orl_result run_info(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_info(struct call *call)
 {
-    (void)common;
-    const struct info_options *o = options;
-    struct orl_scene *scene = NULL;
+    const struct info_options *o = call->options;
     if (o->check)
-        return check(&terminal->log, inputs[0]);
-    enum orl_result result = orl_scene_open(&terminal->log, inputs[0], &scene);
-    if (result == ORL_OK)
-        result = o->json ? print_json(&terminal->log, scene) : print_text(&terminal->log, scene);
-    orl_scene_destroy(&scene);
-    return result;
+        return check(call->log, call->inputs[0]);
+    enum orl_result result = command_scene(call, NULL);
+    if (result != ORL_OK)
+        return result;
+    return o->json ? print_json(call->log, call->scene) : print_text(call->log, call->scene);
 }
 
 const struct command command_info = {

@@ -25,31 +25,26 @@ static enum orl_result report(const struct orl_log *log, const char *path)
     return result;
 }
 
-static enum orl_result run_lod(struct terminal *terminal, const void *options,
-                               const struct common_options *common, const char *const *inputs)
+static enum orl_result run_lod(struct call *call)
 {
-    const struct lod_options *o = options;
-    const struct orl_log *log = &terminal->log;
-    struct orl_scene *scene = NULL;
+    const struct lod_options *o = call->options;
+    const struct orl_log *log = call->log;
+    const char *dir = call->inputs[0];
     struct orl_view *views = NULL;
-    char *from = NULL, *to = orl_path_join(log, inputs[0], ORL_LOD_NAME);
+    char *from = o->points ? orl_strdup(log, o->points) : orl_path_join(log, dir, "points.ply");
+    char *to = orl_path_join(log, dir, ORL_LOD_NAME);
     struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = o->max_ram_bytes};
-    enum orl_result result = to ? orl_scene_open_photos(log, inputs[0], &scene) : ORL_ERR_MEMORY;
+    enum orl_result result = from && to ? orl_scene_open_photos(log, dir, &call->scene) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = orl_scene_training_views(log, scene, &views, &params.view_count);
+        result = orl_scene_training_views(log, call->scene, &views, &params.view_count);
     params.views = views;
-    if (result == ORL_OK) {
-        from = o->points ? orl_strdup(log, o->points) : orl_path_join(log, inputs[0], "points.ply");
-        result = from ? ORL_OK : ORL_ERR_MEMORY;
-    }
     if (result == ORL_OK)
-        result = orl_lod_write(log, &terminal->progress, &params, from, to);
-    if (result == ORL_OK && !common->quiet)
+        result = orl_lod_write(log, call->progress, &params, from, to);
+    if (result == ORL_OK && !call->common->quiet)
         result = report(log, to);
     free(from);
     free(to);
     free(views);
-    orl_scene_destroy(&scene);
     return result;
 }
 

@@ -52,13 +52,10 @@ static enum orl_result print_method(const struct orl_log *log, const char *name)
     return ORL_OK;
 }
 
-static enum orl_result run_methods(struct terminal *terminal, const void *options,
-                                   const struct common_options *common, const char *const *inputs)
+static enum orl_result run_methods(struct call *call)
 {
-    (void)options;
-    (void)common;
-    if (inputs[0])
-        return print_method(&terminal->log, inputs[0]);
+    if (call->inputs[0])
+        return print_method(call->log, call->inputs[0]);
     print_list();
     return ORL_OK;
 }

@@ -36,16 +36,14 @@ static void print_kind(const json_t *jobs, const char *kind)
                kind, count, count == 1 ? " " : "s", cpu, memory / (1 << 20), written / (1 << 20));
 }
 
-static enum orl_result run_plan(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_plan(struct call *call)
 {
     static const char *const kinds[] = {"features", "pairs", "matches", "calibrate",
                                         "densify",  "fuse",  "finish"};
-    const struct plan_options *o = options;
-    const struct orl_log *log = &terminal->log;
+    const struct plan_options *o = call->options;
+    const struct orl_log *log = call->log;
     json_t *plan;
-    (void)common;
-    enum orl_result result = orl_plan(log, inputs[0], o->photographs, &plan);
+    enum orl_result result = orl_plan(log, call->inputs[0], o->photographs, &plan);
     if (result != ORL_OK)
         return result;
     const json_t *jobs = json_object_get(plan, "jobs");
@@ -55,7 +53,7 @@ static enum orl_result run_plan(struct terminal *terminal, const void *options,
     else if (text)
         printf("%s\n", text);
     else if (!json_array_size(jobs))
-        printf("%s is whole: there is nothing left to do\n", inputs[0]);
+        printf("%s is whole: there is nothing left to do\n", call->inputs[0]);
     for (size_t i = 0; !o->json && i < ORL_COUNT(kinds); i++)
         print_kind(jobs, kinds[i]);
     free(text);

@@ -5,22 +5,21 @@
 #include "cli/summary.h"
 #include "oriel/prepare.h"
 
-static enum orl_result run_prepare(struct terminal *terminal, const void *options,
-                                   const struct common_options *common, const char *const *inputs)
+static enum orl_result run_prepare(struct call *call)
 {
-    const struct orl_log *log = &terminal->log;
-    struct orl_prepare_params params = *(const struct orl_prepare_params *)options;
-    params.inputs = inputs;
-    params.shader_dir = common->shader_dir;
-    while (inputs[params.input_count])
+    const struct orl_log *log = call->log;
+    struct orl_prepare_params params = *(const struct orl_prepare_params *)call->options;
+    params.inputs = call->inputs;
+    params.shader_dir = call->common->shader_dir;
+    while (call->inputs[params.input_count])
         params.input_count++;
     if (params.fps > 0 && params.frames)
         return orl_fail(log, ORL_ERR_ARGUMENT, "prepare: --fps and --frames exclude each other");
     enum orl_result result =
         command_held_out(log, params.test_every, &params.test_list, params.test_block);
     if (result == ORL_OK)
-        result = orl_prepare(log, &params, &terminal->progress);
-    terminal_finish(terminal);
+        result = orl_prepare(log, &params, call->progress);
+    terminal_finish(call->terminal);
     if (result == ORL_OK && params.until == ORL_UNTIL_END)
         result = summary_print(log, params.out);
     else if (result == ORL_ERR_CANCELLED)

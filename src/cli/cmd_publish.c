@@ -21,29 +21,21 @@ static void print_report(const struct publish_options *o, const struct orl_publi
         printf("to look at it here: python3 -m http.server --directory '%s'\n", o->out);
 }
 
-static enum orl_result run_publish(struct terminal *terminal, const void *options,
-                                   const struct common_options *common, const char *const *inputs)
+static enum orl_result run_publish(struct call *call)
 {
-    const struct publish_options *o = options;
-    const struct orl_log *log = &terminal->log;
+    const struct publish_options *o = call->options;
     struct orl_publish_params params = {ORL_PUBLISH_OPTIONS(ORL_OPTION_COPY)};
     struct orl_publish_report report;
-    struct orl_scene *scene = NULL;
-    struct orl_gpu *gpu = NULL;
-    params.progress = &terminal->progress;
-    enum orl_result result = orl_scene_open(log, inputs[0], &scene);
+    params.progress = call->progress;
+    enum orl_result result = command_scene(call, o->light);
     if (result == ORL_OK)
-        result = orl_scene_set_light(log, scene, o->light);
+        params.radiance = radiance_chosen(call->log, call->scene, o->wish);
     if (result == ORL_OK)
-        params.radiance = radiance_chosen(log, scene, o->wish);
+        result = command_device(call);
     if (result == ORL_OK)
-        result = command_device(log, common, &gpu);
-    if (result == ORL_OK)
-        result = orl_publish(gpu, scene, &params, &report);
-    if (result == ORL_OK && !common->quiet)
+        result = orl_publish(call->gpu, call->scene, &params, &report);
+    if (result == ORL_OK && !call->common->quiet)
         print_report(o, &report);
-    orl_gpu_destroy(&gpu);
-    orl_scene_destroy(&scene);
     return result;
 }
 

@@ -1,24 +1,15 @@
 // oriel render: renders one view, or every view of a camera path.
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "eval/choice.h"
 #include "render/sequence.h"
-#include "scene/light.h"
-#include "scene/view_choice.h"
 
 struct job {
-    const struct orl_log *log;
-    const struct orl_progress *progress;
-    struct orl_gpu *gpu;
-    struct orl_scene *scene;
-    struct orl_renderer *renderer;
-    struct orl_path path;
+    struct call *call;
     struct orl_choice choice;
     struct orl_frame_output output;
-    bool *skip;     // per photograph
     bool time_runs; // the path leads through the time steps of a sequence
     size_t end;     // pictures of the path before this one are drawn
 };
@@ -40,24 +31,25 @@ struct job {
 COMMAND_OPTIONS(render_command, RENDER_OPTIONS)
 
 // Of the picture of a path, when time runs.
-static int time_step_of(const struct job *job, size_t picture)
+static int time_step_of(const struct call *call, size_t picture)
 {
-    return (int)(picture * job->scene->frame_count / job->path.count);
+    return (int)(picture * call->scene->frame_count / call->path.count);
 }
 
 static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_frame *frame)
 {
-    struct job *job = priv;
-    size_t picture = (size_t)(view - job->path.views); // sequences draw the views of the path
+    const struct job *job = priv;
+    struct call *call = job->call;
+    size_t picture = (size_t)(view - call->path.views); // sequences draw the views of the path
     enum orl_result result = ORL_OK;
     if (job->time_runs) {
-        result = orl_scene_set_frame(job->log, job->scene, time_step_of(job, picture));
+        result = orl_scene_set_frame(call->log, call->scene, time_step_of(call, picture));
         if (picture + 1 < job->end)
-            orl_renderer_expect(job->renderer, time_step_of(job, picture + 1));
+            orl_renderer_expect(call->renderer, time_step_of(call, picture + 1));
     }
     if (result != ORL_OK)
         return result;
-    return orl_renderer_draw(job->renderer, view, &job->choice.params, job->skip, frame);
+    return orl_renderer_draw(call->renderer, view, &job->choice.params, call->skip, frame);
 }
 
 static bool is_video(const char *out)
@@ -66,26 +58,28 @@ static bool is_video(const char *out)
     return extension && strcmp(extension, ".mp4") == 0;
 }
 
-static enum orl_result draw_all(const struct render_command *o, struct job *job)
+static enum orl_result draw_all(struct job *job)
 {
-    const char *out = o->out;
+    const struct call *call = job->call;
+    const struct render_command *o = call->options;
+    const struct orl_path *path = &call->path;
     size_t index = (size_t)o->part.index;
     size_t parts = o->part.count ? (size_t)o->part.count : 1;
-    job->end = job->path.count * (index + 1) / parts;
+    job->end = path->count * (index + 1) / parts;
     const struct orl_sequence sequence = {
-        .views = job->path.views, .first = job->path.count * index / parts,
+        .views = path->views, .first = path->count * index / parts,
         .count = job->end, .draw = draw, .priv = job,
-        .output = &job->output, .step = "render", .progress = job->progress};
+        .output = &job->output, .step = "render", .progress = call->progress};
     if (!o->path)
-        return orl_sequence_write_view(job->log, &sequence, &job->path.views[0], out);
-    if (is_video(out))
-        return orl_sequence_write_video(job->log, &sequence, out, o->fps);
-    if (orl_frame_can_write(out))
-        return orl_fail(job->log, ORL_ERR_ARGUMENT,
-                        "--out %s: a path needs a folder or an .mp4 file", out);
+        return orl_sequence_write_view(call->log, &sequence, &path->views[0], o->out);
+    if (is_video(o->out))
+        return orl_sequence_write_video(call->log, &sequence, o->out, o->fps);
+    if (orl_frame_can_write(o->out))
+        return orl_fail(call->log, ORL_ERR_ARGUMENT,
+                        "--out %s: a path needs a folder or an .mp4 file", o->out);
     const struct orl_frame_layers *layers = &job->output.layers;
     bool exr = layers->depth || layers->normal || layers->coverage;
-    return orl_sequence_write_dir(job->log, &sequence, out, exr ? "exr" : "png");
+    return orl_sequence_write_dir(call->log, &sequence, o->out, exr ? "exr" : "png");
 }
 
 static enum orl_result check(const struct orl_log *log, const struct render_command *o)
@@ -101,58 +95,37 @@ static enum orl_result check(const struct orl_log *log, const struct render_comm
     return o->method && !orl_method_find(log, o->method) ? ORL_ERR_ARGUMENT : ORL_OK;
 }
 
-static enum orl_result render_scene(const struct render_command *o,
-                                    const struct common_options *common, const char *scene_dir,
-                                    struct job *job)
+static enum orl_result run_render(struct call *call)
 {
-    const struct orl_log *log = job->log;
-    const struct orl_view_choice views = {o->at, o->camera, o->path,
-                                          o->frames, o->size.width,
-                                          o->size.height};
+    const struct render_command *o = call->options;
+    struct job job = {.call = call, .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
     struct orl_renderer_params limits = {
         .max_vram_bytes = o->max_vram_bytes,
         .textures = o->textures,
-        .progress = job->progress};
-    enum orl_result result = check(log, o);
+        .progress = call->progress};
+    enum orl_result result = check(call->log, o);
     if (result == ORL_OK)
-        result = output_choose(log, OUTPUT_OPTIONS_COPY, false, &job->output);
+        result = output_choose(call->log, OUTPUT_OPTIONS_COPY, false, &job.output);
     if (result == ORL_OK)
-        result = orl_scene_open(log, scene_dir, &job->scene);
-    if (result == ORL_OK)
-        result = orl_scene_set_light(log, job->scene, o->light);
+        result = command_scene(call, o->light);
     if (result == ORL_OK && o->time_step >= 0)
-        result = orl_scene_set_frame(log, job->scene, o->time_step);
+        result = orl_scene_set_frame(call->log, call->scene, o->time_step);
     if (result == ORL_OK)
-        limits.radiance = radiance_chosen(log, job->scene, o->wish);
+        limits.radiance = radiance_chosen(call->log, call->scene, o->wish);
     if (result == ORL_OK)
-        result = orl_choice_make(log, job->scene,
+        result = orl_choice_make(call->log, call->scene,
                                  limits.radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
-                                 o->method, &o->settings, &job->choice);
+                                 o->method, &o->settings, &job.choice);
     if (result == ORL_OK)
-        result = orl_views_choose(log, job->scene, &views, &job->path);
+        result = orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path);
     if (result == ORL_OK)
-        result = orl_photos_named(log, job->scene, &o->exclude, &job->skip);
+        result = orl_photos_named(call->log, call->scene, &o->exclude, &call->skip);
     if (result == ORL_OK)
-        result = command_device(log, common, &job->gpu);
-    if (result == ORL_OK)
-        result = orl_renderer_create(job->gpu, job->scene, &limits, &job->renderer);
-    job->time_runs = o->path && o->time_step < 0 && job->scene &&
-                     job->scene->frame_count > 0;
-    return result == ORL_OK ? draw_all(o, job) : result;
-}
-
-static enum orl_result run_render(struct terminal *terminal, const void *options,
-                                  const struct common_options *common, const char *const *inputs)
-{
-    struct job job = {.log = &terminal->log, .progress = &terminal->progress,
-                      .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
-    enum orl_result result = render_scene(options, common, inputs[0], &job);
-    orl_renderer_destroy(&job.renderer);
-    orl_gpu_destroy(&job.gpu);
-    orl_scene_destroy(&job.scene);
-    orl_path_finish(&job.path);
-    free(job.skip);
-    return result;
+        result = command_renderer(call, &limits);
+    if (result != ORL_OK)
+        return result;
+    job.time_runs = o->path && o->time_step < 0 && call->scene->frame_count > 0;
+    return draw_all(&job);
 }
 
 const struct command command_render = {

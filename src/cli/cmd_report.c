@@ -85,25 +85,21 @@ static enum orl_result become(const struct orl_log *log, const char *script, con
     return orl_fail(log, ORL_ERR_EXTERNAL, "python3 is missing, which makes this report");
 }
 
-static enum orl_result make_report(struct terminal *terminal, const char *name,
-                                   const struct orl_option *rows, const void *options,
-                                   const struct orl_names *methods,
-                                   const struct common_options *common, const char *const *inputs)
+static enum orl_result make_report(struct call *call, const char *name,
+                                   const struct orl_option *rows, const struct orl_names *methods)
 {
-    const struct orl_log *log = &terminal->log;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < methods->count; i++)
-        result = strcmp(methods->items[i], "paired") == 0 || orl_method_find(log, methods->items[i])
-                     ? ORL_OK : ORL_ERR_ARGUMENT;
-    if (result != ORL_OK)
-        return result;
+    const struct orl_log *log = call->log;
+    for (size_t i = 0; i < methods->count; i++)
+        if (strcmp(methods->items[i], "paired") != 0 && !orl_method_find(log, methods->items[i]))
+            return ORL_ERR_ARGUMENT;
     json_t *words = json_array();
     char *program = realpath("/proc/self/exe", NULL);
     char *script = program ? find_script(log, program, name) : NULL;
-    orl_arguments_record(words, rows, options, NULL);
-    orl_arguments_record(words, common_option_rows(), common, NULL);
-    terminal_finish(terminal);
-    result = script ? become(log, script, program, words, inputs) : ORL_ERR_NOT_FOUND;
+    orl_arguments_record(words, rows, call->options, NULL);
+    orl_arguments_record(words, common_option_rows(), call->common, NULL);
+    terminal_finish(call->terminal);
+    enum orl_result result =
+        script ? become(log, script, program, words, call->inputs) : ORL_ERR_NOT_FOUND;
     free(script);
     free(program);
     json_decref(words);
@@ -112,25 +108,22 @@ static enum orl_result make_report(struct terminal *terminal, const char *name,
 
 // --- the commands ---
 
-static enum orl_result run_chart(struct terminal *terminal, const void *options,
-                                 const struct common_options *common, const char *const *inputs)
+static enum orl_result run_chart(struct call *call)
 {
-    const struct chart_options *o = options;
-    return make_report(terminal, "chart", chart_options_rows(), o, &o->methods, common, inputs);
+    const struct chart_options *o = call->options;
+    return make_report(call, "chart", chart_options_rows(), &o->methods);
 }
 
-static enum orl_result run_stress(struct terminal *terminal, const void *options,
-                                  const struct common_options *common, const char *const *inputs)
+static enum orl_result run_stress(struct call *call)
 {
-    const struct stress_options *o = options;
-    return make_report(terminal, "stress", stress_options_rows(), o, &o->methods, common, inputs);
+    const struct stress_options *o = call->options;
+    return make_report(call, "stress", stress_options_rows(), &o->methods);
 }
 
-static enum orl_result run_plot(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_plot(struct call *call)
 {
     const struct orl_names none = {0};
-    return make_report(terminal, "plot", plot_options_rows(), options, &none, common, inputs);
+    return make_report(call, "plot", plot_options_rows(), &none);
 }
 
 const struct command command_chart = {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "datasets/figures.h"
 #include "datasets/synth.h"
@@ -67,31 +68,17 @@ static enum orl_result read_path(const struct orl_log *log, const char *file,
     return result;
 }
 
-// `path` without trailing slashes, followed by `suffix`.
-static char *sibling(const struct orl_log *log, const char *path, const char *suffix)
+static enum orl_result make_monument(struct call *call, const struct orl_synth_params *params)
 {
-    size_t length = strlen(path);
-    while (length > 1 && path[length - 1] == '/')
-        length--;
-    return orl_format(log, "%.*s%s", (int)length, path, suffix);
-}
-
-static enum orl_result make_monument(struct terminal *terminal, const struct common_options *common,
-                                     const struct orl_synth_params *params, const char *out,
-                                     const char *truth_given)
-{
-    struct orl_gpu *gpu = NULL;
-    char *photos = sibling(&terminal->log, out, "");
-    char *truth = sibling(&terminal->log, truth_given ? truth_given : out,
-                          truth_given ? "" : "-truth");
-    enum orl_result result = photos && truth ? orl_synth_check(&terminal->log, params)
-                                             : ORL_ERR_MEMORY;
+    const struct synth_options *o = call->options;
+    char *photos = orl_path_append(call->log, o->out, "");
+    char *truth = orl_path_append(call->log, o->truth ? o->truth : o->out, o->truth ? "" : "-truth");
+    enum orl_result result = photos && truth ? orl_synth_check(call->log, params) : ORL_ERR_MEMORY;
     if (result == ORL_OK)
-        result = command_device(&terminal->log, common, &gpu);
+        result = command_device(call);
     if (result == ORL_OK)
-        result = orl_synth_run(gpu, &terminal->progress, params, photos, truth);
-    orl_gpu_destroy(&gpu);
-    terminal_finish(terminal);
+        result = orl_synth_run(call->gpu, call->progress, params, photos, truth);
+    terminal_finish(call->terminal);
     if (result == ORL_OK)
         printf("%d photographs in %s, truth in %s\n", params->count, photos, truth);
     free(truth);
@@ -124,48 +111,43 @@ static enum orl_result check_options(const struct orl_log *log, const struct syn
     return ORL_OK;
 }
 
-static enum orl_result make_figures(struct terminal *terminal,
-                                   const struct orl_figures_params *params, const char *out,
-                                    const char *live)
+static enum orl_result make_figures(struct call *call, const struct orl_figures_params *params)
 {
-    char *dir = sibling(&terminal->log, out, "");
-    enum orl_result result = dir ? orl_figures_run(&terminal->log, &terminal->progress, params, dir)
+    const struct synth_options *o = call->options;
+    char *dir = orl_path_append(call->log, o->out, "");
+    enum orl_result result = dir ? orl_figures_run(call->log, call->progress, params, dir)
                                  : ORL_ERR_MEMORY;
-    if (result == ORL_OK && live)
-        result = orl_figures_play(&terminal->log, &terminal->progress, params, dir, live);
-    terminal_finish(terminal);
+    if (result == ORL_OK && o->live)
+        result = orl_figures_play(call->log, call->progress, params, dir, o->live);
+    terminal_finish(call->terminal);
     if (result == ORL_OK)
         printf("%d cameras, %d time steps in %s\n", params->cameras, params->frames, dir);
     free(dir);
     return result;
 }
 
-static enum orl_result run_synth(struct terminal *terminal, const void *options,
-                                 const struct common_options *common, const char *const *inputs)
+static enum orl_result run_synth(struct call *call)
 {
-    const struct synth_options *o = options;
-    const struct orl_log *log = &terminal->log;
-    struct orl_synth_params monument = {ORL_SYNTH_OPTIONS(ORL_OPTION_COPY) .name = inputs[0],
+    const struct synth_options *o = call->options;
+    const struct orl_log *log = call->log;
+    struct orl_synth_params monument = {ORL_SYNTH_OPTIONS(ORL_OPTION_COPY) .name = call->inputs[0],
                                         .width = 768, .height = 512};
     struct orl_figures_params figures = {ORL_FIGURES_OPTIONS(ORL_OPTION_COPY) .width = 640,
                                          .height = 480};
-    bool is_figures = strcmp(inputs[0], "figures") == 0;
+    bool is_figures = strcmp(call->inputs[0], "figures") == 0;
     if (o->size.width) {
         monument.width = figures.width = o->size.width;
         monument.height = figures.height = o->size.height;
     }
-    struct orl_path path = {0};
     enum orl_result result = parse_exposures(log, &o->exposures, &monument);
     if (result == ORL_OK)
-        result = check_options(log, o, inputs[0], is_figures);
+        result = check_options(log, o, call->inputs[0], is_figures);
     if (result == ORL_OK && o->path)
         result = orl_synth_check(log, &monument);
     if (result == ORL_OK && o->path)
-        result = read_path(log, o->path, &monument, &path);
+        result = read_path(log, o->path, &monument, &call->path);
     if (result == ORL_OK)
-        result = is_figures ? make_figures(terminal, &figures, o->out, o->live)
-                            : make_monument(terminal, common, &monument, o->out, o->truth);
-    orl_path_finish(&path);
+        result = is_figures ? make_figures(call, &figures) : make_monument(call, &monument);
     return result;
 }
 

@@ -64,38 +64,32 @@ static void print_summary(const struct trim_options *o, const struct orl_trim *t
 
 // --- the job ---
 
-static enum orl_result run_trim(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_trim(struct call *call)
 {
-    const struct trim_options *o = options;
-    const struct orl_log *log = &terminal->log;
-    struct orl_scene *scene = NULL;
-    struct orl_gpu *gpu = NULL;
+    const struct trim_options *o = call->options;
     struct orl_choice start;
     struct orl_trim trim = {0};
-    enum orl_result result = orl_scene_open(log, inputs[0], &scene);
+    enum orl_result result = command_scene(call, NULL);
     if (result == ORL_OK)
-        result = orl_choice_make(log, scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
+        result = orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
     if (result == ORL_OK)
-        result = command_device(log, common, &gpu);
+        result = command_device(call);
     const struct orl_trim_params params = {
         .start = &start, .out = o->out, .tolerance_db = o->tolerance_db,
         .tolerance_ssim = o->tolerance_ssim, .worst_db = o->worst_db,
         .max_bytes = (size_t)(o->max_mib * MIB), .max_frame_ms = o->max_frame_ms,
         .views = (size_t)o->views, .size_divide = o->size_divide, .budget_s = o->budget_s,
         .tune = !o->keep_options,
-        .on_step = common->quiet ? NULL : print_step, .progress = &terminal->progress};
-    if (result == ORL_OK && !common->quiet)
+        .on_step = call->common->quiet ? NULL : print_step, .progress = call->progress};
+    if (result == ORL_OK && !call->common->quiet)
         printf("%-36s %8s %8s %9s %9s\n", "step", "loss dB", "all dB", "MiB", "frame ms");
     if (result == ORL_OK)
-        result = orl_trim_run(gpu, scene, &params, &trim);
+        result = orl_trim_run(call->gpu, call->scene, &params, &trim);
     if (result == ORL_OK)
         print_summary(o, &trim);
     if (result == ORL_OK && o->json)
-        result = orl_trim_write_json(log, o->json, scene, orl_gpu_caps(gpu)->renderer, &trim);
+        result = orl_trim_write_json(call->log, o->json, call->scene, orl_gpu_caps(call->gpu)->renderer, &trim);
     orl_trim_finish(&trim);
-    orl_gpu_destroy(&gpu);
-    orl_scene_destroy(&scene);
     return result;
 }
 

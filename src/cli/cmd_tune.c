@@ -52,44 +52,35 @@ static enum orl_result report(const struct orl_log *log, const struct tune_optio
     return result;
 }
 
-static enum orl_result run_tune(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_tune(struct call *call)
 {
-    const struct tune_options *o = options;
-    const struct orl_log *log = &terminal->log;
-    struct orl_scene *scene = NULL;
-    struct orl_gpu *gpu = NULL;
-    struct orl_renderer *renderer = NULL;
+    const struct tune_options *o = call->options;
+    const struct orl_log *log = call->log;
     struct orl_choice start = {0};
     struct orl_search search = {0};
     enum orl_result result = ORL_OK;
     if (o->method) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
     if (result == ORL_OK)
-        result = orl_scene_open(log, inputs[0], &scene);
+        result = command_scene(call, NULL);
     if (result == ORL_OK) // unless `fresh`, starts from the scene's tuned values
-        result = orl_choice_make(log, o->fresh ? NULL : scene, ORL_SAMPLE_SRGB,
-                                 o->method ? o->method : orl_method_default(scene),
+        result = orl_choice_make(log, o->fresh ? NULL : call->scene, ORL_SAMPLE_SRGB,
+                                 o->method ? o->method : orl_method_default(call->scene),
                                  &o->settings, &start);
-    if (result == ORL_OK)
-        result = command_device(log, common, &gpu);
     struct orl_renderer_params limits = {.max_vram_bytes = o->max_vram_bytes};
     if (result == ORL_OK)
-        result = orl_renderer_create(gpu, scene, &limits, &renderer);
+        result = command_renderer(call, &limits);
     const struct orl_search_params params = {
         .size_divide = o->size_divide, .views = (size_t)o->views, .gain_db = o->gain_db,
         .budget_s = o->budget_s,
-        .on_trial = common->quiet ? NULL : print_trial, .progress = &terminal->progress};
-    if (result == ORL_OK && !common->quiet)
+        .on_trial = call->common->quiet ? NULL : print_trial, .progress = call->progress};
+    if (result == ORL_OK && !call->common->quiet)
         printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
     if (result == ORL_OK)
-        result = orl_search_run(gpu, renderer, scene, &params, &start, &o->keys, &search);
+        result = orl_search_run(call->gpu, call->renderer, call->scene, &params, &start, &o->keys, &search);
     if (result == ORL_OK)
-        result = report(log, o, orl_gpu_caps(gpu)->renderer, &search);
+        result = report(log, o, orl_gpu_caps(call->gpu)->renderer, &search);
     orl_search_finish(&search);
-    orl_renderer_destroy(&renderer);
-    orl_gpu_destroy(&gpu);
-    orl_scene_destroy(&scene);
     return result;
 }
 

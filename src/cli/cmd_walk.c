@@ -28,41 +28,27 @@ static void print_address(void *priv, const char *address)
     fflush(stdout);
 }
 
-static enum orl_result run_walk(struct terminal *terminal, const void *options,
-                                const struct common_options *common, const char *const *inputs)
+static enum orl_result run_walk(struct call *call)
 {
-    const struct walk_options *o = options;
-    const struct orl_log *log = &terminal->log;
-    struct orl_scene *scene = NULL;
-    struct orl_gpu *gpu = NULL;
-    struct orl_renderer *renderer = NULL;
+    const struct walk_options *o = call->options;
     struct orl_choice choice;
     bool radiance = false;
-    enum orl_result result = orl_scene_open(log, inputs[0], &scene);
+    enum orl_result result = command_scene(call, o->light);
     if (result == ORL_OK)
-        result = orl_scene_set_light(log, scene, o->light);
+        radiance = radiance_chosen(call->log, call->scene, o->wish);
     if (result == ORL_OK)
-        radiance = radiance_chosen(log, scene, o->wish);
-    if (result == ORL_OK)
-        result = orl_choice_make(log, scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+        result = orl_choice_make(call->log, call->scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
                                  o->method, &o->settings, &choice);
-    if (result == ORL_OK)
-        result = command_device(log, common, &gpu);
     const struct orl_renderer_params limits = {.radiance = radiance,
                                                .max_vram_bytes = o->max_vram_bytes};
     if (result == ORL_OK)
-        result = orl_renderer_create(gpu, scene, &limits, &renderer);
+        result = command_renderer(call, &limits);
     const struct orl_walk_params params = {
         .host = o->host ? o->host : "127.0.0.1", .port = o->port, .title = o->title, .edits = o->edits,
         .radiance = radiance,
         .embed_in = o->embed_in, .live = o->live,
-        .choice = &choice, .progress = &terminal->progress, .ready = print_address};
-    if (result == ORL_OK)
-        result = orl_walk_serve(gpu, renderer, scene, &params);
-    orl_renderer_destroy(&renderer);
-    orl_gpu_destroy(&gpu);
-    orl_scene_destroy(&scene);
-    return result;
+        .choice = &choice, .progress = call->progress, .ready = print_address};
+    return result == ORL_OK ? orl_walk_serve(call->gpu, call->renderer, call->scene, &params) : result;
 }
 
 const struct command command_walk = {

@@ -6,6 +6,7 @@
 #include "cli/help.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "scene/light.h"
 
 ORL_OPTION_ROWS(common_option_rows, common_options, COMMON_OPTIONS)
 
@@ -47,19 +48,26 @@ int command_status(enum orl_result result)
     }
 }
 
-static enum orl_result run(const struct orl_log *log, const struct command *command,
-                           const struct common_options *common, const void *options,
-                           const char *const *inputs, size_t input_count)
+static enum orl_result run(const struct orl_log *log, const struct command *command, struct call *call,
+                           size_t input_count)
 {
     struct terminal terminal;
     if (input_count < command->inputs_min)
         return orl_fail(log, ORL_ERR_ARGUMENT, "usage: oriel %s %s", command->name,
                         command->usage);
-    enum orl_result result = orl_arguments_check(log, command->name, command->rows(), options);
+    enum orl_result result = orl_arguments_check(log, command->name, command->rows(), call->options);
     if (result != ORL_OK)
         return result;
-    terminal_init(&terminal, common->verbose ? ORL_LOG_DEBUG : ORL_LOG_INFO, common->quiet);
-    result = command->run(&terminal, options, common, inputs);
+    terminal_init(&terminal, call->common->verbose ? ORL_LOG_DEBUG : ORL_LOG_INFO, call->common->quiet);
+    call->terminal = &terminal;
+    call->log = &terminal.log;
+    call->progress = &terminal.progress;
+    result = command->run(call);
+    orl_renderer_destroy(&call->renderer);
+    orl_gpu_destroy(&call->gpu);
+    orl_scene_destroy(&call->scene);
+    orl_path_finish(&call->path);
+    free(call->skip);
     terminal_finish(&terminal);
     return result;
 }
@@ -70,6 +78,7 @@ int command_main(const struct command *command, int argc, const char *const *arg
     struct common_options common = {COMMON_OPTIONS(ORL_OPTION_PRESET)};
     void *options = orl_array(&log, 1, command->size + 1);
     const char **inputs = orl_array(&log, command->inputs_max + 1, sizeof *inputs);
+    struct call call = {.options = options, .common = &common, .inputs = inputs};
     size_t count;
     enum orl_result result = options && inputs ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
@@ -81,7 +90,7 @@ int command_main(const struct command *command, int argc, const char *const *arg
         if (result == ORL_OK && common.help)
             help_print(stdout, command);
         else if (result == ORL_OK)
-            result = run(&log, command, &common, options, inputs, count);
+            result = run(&log, command, &call, count);
         orl_arguments_finish(command->rows(), options);
     }
     free(options);
@@ -89,11 +98,23 @@ int command_main(const struct command *command, int argc, const char *const *arg
     return command_status(result);
 }
 
-enum orl_result command_device(const struct orl_log *log, const struct common_options *common,
-                               struct orl_gpu **gpu)
+enum orl_result command_scene(struct call *call, const char *light)
 {
-    const struct orl_gpu_params params = {.shader_dir = common->shader_dir, .debug = common->verbose};
-    return orl_gpu_create(log, &params, gpu);
+    enum orl_result result = orl_scene_open(call->log, call->inputs[0], &call->scene);
+    return result == ORL_OK ? orl_scene_set_light(call->log, call->scene, light) : result;
+}
+
+enum orl_result command_device(struct call *call)
+{
+    const struct orl_gpu_params params = {.shader_dir = call->common->shader_dir,
+                                          .debug = call->common->verbose};
+    return orl_gpu_create(call->log, &params, &call->gpu);
+}
+
+enum orl_result command_renderer(struct call *call, const struct orl_renderer_params *params)
+{
+    enum orl_result result = command_device(call);
+    return result == ORL_OK ? orl_renderer_create(call->gpu, call->scene, params, &call->renderer) : result;
 }
 
 enum orl_result command_held_out(const struct orl_log *log, int every, const struct orl_names *list,
@@ -105,10 +126,12 @@ enum orl_result command_held_out(const struct orl_log *log, int every, const str
     return ORL_OK;
 }
 
-enum orl_result command_is_whole(const struct orl_log *log, const char *scene, bool *whole)
+enum orl_result command_is_whole(const struct call *call, bool *whole)
 {
-    char *path = orl_path_join(log, scene, "scene.json");
+    char *path = orl_path_join(call->log, call->inputs[0], "scene.json");
     *whole = path && orl_path_is_file(path);
+    if (*whole)
+        orl_logf(call->log, ORL_LOG_INFO, "%s: a whole scene, so there is nothing left to do", call->inputs[0]);
     free(path);
     return path ? ORL_OK : ORL_ERR_MEMORY;
 }

@@ -6,7 +6,8 @@
 
 #include "cli/terminal.h"
 #include "core/arguments.h"
-#include "oriel/gpu.h"
+#include "oriel/path.h"
+#include "oriel/render.h"
 
 // Options of every command.
 #define COMMON_OPTIONS(ROW) \
@@ -28,10 +29,21 @@ enum command_group {
     COMMAND_GROUP_COUNT
 };
 
-// The work of a command with its struct of options and its positionals, which a NULL ends.
-typedef enum orl_result command_run(struct terminal *terminal, const void *options,
-                                    const struct common_options *common,
-                                    const char *const *inputs);
+// One run of a command: what it was asked for, and what it works with. command_main releases the
+// latter.
+struct call {
+    struct terminal *terminal;
+    const struct orl_log *log;           // the terminal's
+    const struct orl_progress *progress; // the terminal's
+    const void *options;                 // the command's struct
+    const struct common_options *common;
+    const char *const *inputs;           // positionals, which a NULL ends
+    struct orl_scene *scene;             // these are NULL until the command opens them
+    struct orl_gpu *gpu;
+    struct orl_renderer *renderer;
+    struct orl_path path;
+    bool *skip; // per photograph of the scene
+};
 
 struct command {
     const char *name;
@@ -45,7 +57,7 @@ struct command {
     const void *presets; // a struct of the options with their defaults
     size_t size;         // of that struct
     size_t inputs_min, inputs_max;
-    command_run *run;
+    enum orl_result (*run)(struct call *call);
 };
 
 // Defines the struct, the rows and the defaults of a command's options.
@@ -75,15 +87,18 @@ const struct command *command_find(const char *name, bool hidden);
 int command_main(const struct command *command, int argc, const char *const *argv);
 int command_status(enum orl_result result);
 
-// The device as the common options ask for it.
-enum orl_result command_device(const struct orl_log *log, const struct common_options *common,
-                               struct orl_gpu **gpu) ORL_CHECK_RESULT;
+// Opens the scene that the first positional names, in the light of a photograph unless that is NULL.
+enum orl_result command_scene(struct call *call, const char *light) ORL_CHECK_RESULT;
+// Opens the device as the common options ask for it.
+enum orl_result command_device(struct call *call) ORL_CHECK_RESULT;
+// Opens the device and a renderer of the scene.
+enum orl_result command_renderer(struct call *call,
+                                 const struct orl_renderer_params *params) ORL_CHECK_RESULT;
 // ORL_ERR_ARGUMENT, logged: more than one of the options that hold photographs out is given.
 enum orl_result command_held_out(const struct orl_log *log, int every, const struct orl_names *list,
                                  struct orl_test_block block) ORL_CHECK_RESULT;
-// Sets *whole when the folder has a scene.json: a job of a scene that is whole has nothing to do,
-// and the files that it would read may be gone.
-enum orl_result command_is_whole(const struct orl_log *log, const char *scene,
-                                 bool *whole) ORL_CHECK_RESULT;
+// Sets *whole, and says so, when the scene's folder has a scene.json: a job of a scene that is whole
+// has nothing to do, and the files that it would read may be gone.
+enum orl_result command_is_whole(const struct call *call, bool *whole) ORL_CHECK_RESULT;
 
 #endif

@@ -6,6 +6,7 @@
 #include "oriel/render.h"
 #include "oriel/scene.h"
 #include "render/output.h"
+#include "scene/view_choice.h"
 
 // --- options that several commands have ---
 
@@ -17,6 +18,9 @@
         "look at") \
     ROW(frames, "frames", INT(120, 2, 100000, "N"), "of --path photos and circle") \
     ROW(size, "size", SIZE, "picture size; default: the camera's")
+// The options above of a command's own `o`.
+#define VIEW_OPTIONS_COPY \
+    (struct orl_view_choice){o->at, o->camera, o->path, o->frames, o->size.width, o->size.height}
 #define METHOD_OPTIONS(ROW) \
     ROW(method, "method", TEXT("NAME"), \
         "a method; default: the scene's, or else the first of oriel methods") \
