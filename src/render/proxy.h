@@ -58,7 +58,7 @@ struct orl_proxy_kind {
 };
 extern const struct orl_proxy_kind orl_proxy_splats; // splats.c
 extern const struct orl_proxy_kind orl_proxy_mesh;   // mesh_proxy.c
-extern const struct orl_proxy_kind orl_proxy_hull;   // hull_proxy.c
+extern const struct orl_proxy_kind orl_proxy_hull;   // voxel_proxy.c
 extern const struct orl_proxy_kind orl_proxy_voxels; // voxel_proxy.c
 
 // Extent of the proxy's vertices, world. A cloud has single points hundreds of times as far away as its

@@ -1,5 +1,7 @@
-// Voxels as the proxy: each is a square parallel to the image plane, wide enough to cover it from
-// any side (Goldluecke 2003, section 3).
+// Proxies made of silhouettes. `voxels`: each voxel at the surface is a square parallel to the image
+// plane, wide enough to cover it from any side (Goldluecke 2003, section 3). `hull`: their visual hull as
+// a mesh (Li 2003, section 4). The paper intersects cones; here the surface is found on a grid of voxels,
+// at the distance from the cones.
 #include "render/voxel_proxy.h"
 
 #include <math.h>
@@ -16,13 +18,14 @@
 static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
                               size_t max_bytes, void **out)
 {
-    (void)scene, (void)max_bytes; // update makes the voxels
+    (void)scene, (void)max_bytes; // update makes what is drawn
     *out = orl_array(orl_gpu_log(gpu), 1, sizeof(struct voxel_state));
     return *out ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 static void forget(struct orl_gpu *gpu, struct voxel_state *state)
 {
+    orl_mesh_state_finish(gpu, &state->mesh);
     orl_buf_destroy(gpu, &state->centres);
     orl_voxels_finish(&state->voxels);
     free(state->seen);
@@ -38,33 +41,65 @@ static void destroy(struct orl_gpu *gpu, void **handle)
     *handle = NULL;
 }
 
+// Takes the voxels, and with `hull` their mesh, from what was prepared for the frame, or makes them.
+static enum orl_result make(const struct frame *frame, struct voxel_state *state, bool hull)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    struct voxels *voxels = &state->voxels;
+    struct orl_mesh *mesh = hull ? &state->mesh.mesh : NULL;
+    enum orl_result result = ORL_OK;
+    if (hull && !orl_voxels_silhouettes(frame))
+        return orl_fail(log, ORL_ERR_NOT_FOUND,
+                        "%s: no silhouettes to make a hull of; see oriel import",
+                        frame->scene->dir);
+    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, state->key, voxels, mesh)) {
+        result = orl_voxels_make(frame, voxels);
+        if (result == ORL_OK && hull)
+            result = orl_hull_field_mesh(log, &voxels->cube, voxels->field, 0, mesh);
+    }
+    orl_voxels_warn(log, voxels, &state->said_endless);
+    if (result == ORL_OK && !hull && !voxels->count)
+        result = orl_fail(log, ORL_ERR_DATA, "%s: no voxel is left", frame->scene->dir);
+    return result;
+}
+
+static enum orl_result upload(struct orl_gpu *gpu, struct voxel_state *state, bool hull)
+{
+    struct voxels *voxels = &state->voxels;
+    if (!hull)
+        return orl_buf_create(gpu, ORL_OWNER_POINTS, "voxel centres",
+                              voxels->count * sizeof *voxels->centre, voxels->centre,
+                              &state->centres);
+    orl_voxels_finish(voxels); // the mesh is all that is drawn
+    return orl_mesh_state_upload(gpu, &state->mesh);
+}
+
 static enum orl_result update(const struct frame *frame, void *handle, bool *changed)
 {
     struct voxel_state *state = handle;
+    bool hull = frame->proxy->kind == &orl_proxy_hull;
     uint64_t key = orl_voxels_key(frame);
-    if (state->centres && state->key == key)
+    if ((state->centres || state->mesh.vertices) && state->key == key)
         return ORL_OK;
     forget(frame->gpu, state);
+    state->key = key;
     *changed = true;
     orl_pass_begin(frame->gpu, "hull");
-    enum orl_result result = ORL_OK;
-    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, key, &state->voxels, NULL))
-        result = orl_voxels_make(frame, &state->voxels);
-    orl_pass_end(frame->gpu);
-    orl_voxels_warn(orl_gpu_log(frame->gpu), &state->voxels, &state->said_endless);
-    const struct voxels *voxels = &state->voxels;
-    if (result == ORL_OK && !voxels->count)
-        result = orl_fail(orl_gpu_log(frame->gpu), ORL_ERR_DATA, "%s: no voxel is left",
-                          frame->scene->dir);
+    enum orl_result result = make(frame, state, hull);
     if (result == ORL_OK)
-        result = orl_buf_create(frame->gpu, ORL_OWNER_POINTS, "voxel centres",
-                                voxels->count * sizeof *voxels->centre, voxels->centre,
-                                &state->centres);
-    state->key = key;
+        result = upload(frame->gpu, state, hull);
+    orl_pass_end(frame->gpu);
     if (result != ORL_OK)
         forget(frame->gpu, state);
     return result;
 }
+
+const struct orl_proxy_kind orl_proxy_hull = {
+    .name = "hull", .create = create, .update = update, .vertices = orl_mesh_vertices,
+    .destroy = destroy, .resize = orl_raster_target_resize,
+    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,
+    .draw = orl_mesh_draw,
+};
 
 static void vertices(const void *handle, const struct orl_scene *scene, const float (**out)[3],
                      size_t *count)
