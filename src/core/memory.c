@@ -38,6 +38,19 @@ enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capaci
     return ORL_OK;
 }
 
+enum orl_result orl_bytes_add(const struct orl_log *log, struct orl_bytes *bytes, const void *data, size_t size)
+{
+    enum orl_result result =
+        orl_grow(log, (void **)&bytes->data, &bytes->capacity, bytes->size + size + 1, 1);
+    if (result != ORL_OK)
+        return result;
+    if (size) // no bytes may have no address, which memcpy asks for
+        memcpy(bytes->data + bytes->size, data, size);
+    bytes->size += size;
+    bytes->data[bytes->size] = '\0';
+    return ORL_OK;
+}
+
 // The number after `key` at the start of a line; UINT64_MAX when there is none.
 static uint64_t read_number(const char *path, const char *key)
 {

@@ -15,6 +15,15 @@ void *orl_array(const struct orl_log *log, size_t count, size_t size);
 enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capacity,
                          size_t needed, size_t size) ORL_CHECK_RESULT;
 
+// Bytes or text that grow. `data` is owned, and ends with a zero byte that `size` does not count; NULL:
+// nothing has been added.
+struct orl_bytes {
+    char *data;
+    size_t size, capacity;
+};
+enum orl_result orl_bytes_add(const struct orl_log *log, struct orl_bytes *bytes, const void *data,
+                              size_t size) ORL_CHECK_RESULT;
+
 // Bytes that this process can still allocate without swapping, by the limits of the system, of its
 // control group and of its address space. UINT64_MAX: unknown.
 uint64_t orl_memory_available(void);

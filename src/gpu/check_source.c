@@ -171,21 +171,13 @@ struct writer {
     const struct orl_log *log;
     const char *text, *end; // without comments
     unsigned file;
-    char *out;
-    size_t length, capacity;
+    struct orl_bytes out;
     bool failed;
 };
 
 static void put(struct writer *w, const char *text, size_t length)
 {
-    if (w->failed || orl_grow(w->log, (void **)&w->out, &w->capacity, w->length + length + 1, 1) !=
-                         ORL_OK) {
-        w->failed = true;
-        return;
-    }
-    memcpy(w->out + w->length, text, length);
-    w->length += length;
-    w->out[w->length] = '\0';
+    w->failed = w->failed || orl_bytes_add(w->log, &w->out, text, length) != ORL_OK;
 }
 
 static void put_text(struct writer *w, const char *text)
@@ -302,10 +294,10 @@ char *orl_check_source(const struct orl_log *log, const char *text, unsigned fil
     rewrite(&w, w.text, w.end);
     free(blank);
     if (w.failed) {
-        free(w.out);
+        free(w.out.data);
         return NULL;
     }
-    return w.out;
+    return w.out.data;
 }
 
 const char *orl_check_expression(const char *text, const struct orl_check_site *site,

@@ -4,6 +4,7 @@
 
 #include <epoxy/egl.h>
 
+#include "core/memory.h"
 #include "oriel/gpu.h"
 
 enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256, ORL_MEMORY_ROWS_MAX = 64,
@@ -48,8 +49,7 @@ struct orl_gpu {
 // Expanded source of shaders/`file`: version, defines, includes, #line. Owned by the caller
 // (orl_shader_source_finish). files: file names by source number of #line, for messages.
 struct shader_source {
-    char *text;
-    size_t length, capacity;
+    struct orl_bytes text;
     const char *files[ORL_SHADER_FILES_MAX]; // static strings
     size_t file_count;
     bool checked; // its indexes are (check.h)

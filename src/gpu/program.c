@@ -37,7 +37,7 @@ static bool attach(struct orl_gpu *gpu, GLenum type, const struct shader_source 
     char message[2048] = "";
     GLint ok = 0;
     GLuint shader = glCreateShader(type);
-    const GLchar *text = source->text;
+    const GLchar *text = source->text.data;
     glShaderSource(shader, 1, &text, NULL);
     glCompileShader(shader);
     glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);

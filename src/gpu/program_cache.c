@@ -87,7 +87,7 @@ void orl_program_cache_close(struct orl_gpu *gpu)
 static char *entry_path(const struct orl_gpu *gpu, const struct shader_source *source)
 {
     const struct orl_gpu_caps *caps = &gpu->caps;
-    const char *const parts[] = {source->text, caps->vendor, caps->renderer, caps->version,
+    const char *const parts[] = {source->text.data, caps->vendor, caps->renderer, caps->version,
                                  ORL_VERSION};
     XXH3_state_t *state = XXH3_createState();
     if (!state)

@@ -11,19 +11,6 @@
 
 enum { SHADER_MAX_BYTES = 1 << 20, INCLUDE_DEPTH_MAX = 8 };
 
-static enum orl_result append(struct orl_gpu *gpu, struct shader_source *source, const char *text,
-                              size_t length)
-{
-    enum orl_result result = orl_grow(gpu->log, (void **)&source->text, &source->capacity,
-                                      source->length + length + 1, 1);
-    if (result != ORL_OK)
-        return result;
-    memcpy(source->text + source->length, text, length);
-    source->length += length;
-    source->text[source->length] = '\0';
-    return ORL_OK;
-}
-
 enum orl_result orl_shader_text(struct orl_gpu *gpu, const char *file, const char **name,
                                 const char **text, uint8_t **owned)
 {
@@ -53,7 +40,7 @@ static enum orl_result append_line_mark(struct orl_gpu *gpu, struct shader_sourc
 {
     char mark[64];
     int length = snprintf(mark, sizeof mark, "#line %d %zu\n", line, file_index);
-    return append(gpu, source, mark, (size_t)length);
+    return orl_bytes_add(gpu->log, &source->text, mark, (size_t)length);
 }
 
 // The file that a line includes; NULL: none. `quoted` has room for a name.
@@ -117,12 +104,12 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
             if (result == ORL_OK)
                 result = append_line_mark(gpu, source, number + 1, index);
         } else {
-            result = append(gpu, source, line, length);
+            result = orl_bytes_add(gpu->log, &source->text, line, length);
         }
         line += length;
     }
     if (result == ORL_OK)
-        result = append(gpu, source, "\n", 1);
+        result = orl_bytes_add(gpu->log, &source->text, "\n", 1);
     free(owned);
     return result;
 }
@@ -133,14 +120,14 @@ enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
 {
     static const char head[] = "#version 450 core\n";
     *source = (struct shader_source){.checked = checked};
-    enum orl_result result = append(gpu, source, head, sizeof head - 1);
+    enum orl_result result = orl_bytes_add(gpu->log, &source->text, head, sizeof head - 1);
     for (const char *line = defines; result == ORL_OK && line && *line;) {
         size_t length = strcspn(line, "\n");
-        result = append(gpu, source, "#define ", 8);
+        result = orl_bytes_add(gpu->log, &source->text, "#define ", 8);
         if (result == ORL_OK)
-            result = append(gpu, source, line, length);
+            result = orl_bytes_add(gpu->log, &source->text, line, length);
         if (result == ORL_OK)
-            result = append(gpu, source, "\n", 1);
+            result = orl_bytes_add(gpu->log, &source->text, "\n", 1);
         line += length + (line[length] == '\n');
     }
     if (result == ORL_OK)
@@ -161,6 +148,6 @@ const char *orl_shader_file(const char *folder, size_t index)
 
 void orl_shader_source_finish(struct shader_source *source)
 {
-    free(source->text);
+    free(source->text.data);
     memset(source, 0, sizeof *source);
 }

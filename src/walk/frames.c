@@ -72,20 +72,6 @@ static bool read_picks(const json_t *root, struct walk_request *request)
     return true;
 }
 
-enum orl_result orl_walk_message_add(const struct orl_log *log, struct walk_message *message,
-                                     const char *part, size_t size)
-{
-    if (!size) // no bytes have no address, which memcpy asks for
-        return ORL_OK;
-    enum orl_result result = orl_grow(log, (void **)&message->text, &message->room,
-                                      message->size + size, 1);
-    if (result != ORL_OK)
-        return result;
-    memcpy(message->text + message->size, part, size);
-    message->size += size;
-    return ORL_OK;
-}
-
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request)
 {
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);

@@ -115,14 +115,6 @@ enum walk_layer { WALK_COLOR, WALK_DEPTH, WALK_NORMAL, WALK_COVERAGE, WALK_POINT
 
 enum { WALK_PICKS_MAX = 256 };
 
-// A client's message, which arrives in parts.
-struct walk_message {
-    char *text; // owned; NULL until a part of some bytes has come
-    size_t size, room;
-};
-enum orl_result orl_walk_message_add(const struct orl_log *log, struct walk_message *message,
-                                     const char *part, size_t size);
-
 // A client's request for a frame.
 struct walk_request {
     uint32_t number; // the client's number for the request, returned with the frame

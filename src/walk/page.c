@@ -21,21 +21,14 @@ static const size_t FILE_MAX = (size_t)1 << 30;
 
 struct text {
     const struct orl_log *log;
-    char *data; // owned; ends with a zero byte
-    size_t size, capacity;
+    struct orl_bytes bytes;
     enum orl_result result; // the first failure; nothing is added after it
 };
 
 static void add_bytes(struct text *text, const char *data, size_t size)
 {
     if (text->result == ORL_OK)
-        text->result = orl_grow(text->log, (void **)&text->data, &text->capacity,
-                                text->size + size + 1, 1);
-    if (text->result != ORL_OK)
-        return;
-    memcpy(text->data + text->size, data, size);
-    text->size += size;
-    text->data[text->size] = '\0';
+        text->result = orl_bytes_add(text->log, &text->bytes, data, size);
 }
 
 static void add(struct text *text, const char *string)
@@ -100,7 +93,7 @@ static void fill_template(const struct value *values, size_t count, struct text 
             if (strlen(v->key) != length || strncmp(v->key, open + 2, length) != 0)
                 continue;
             found = true;
-            add_bytes(page, v->text.data ? v->text.data : "", v->text.size);
+            add_bytes(page, v->text.bytes.data, v->text.bytes.size);
             if (page->result == ORL_OK)
                 page->result = v->text.result;
         }
@@ -127,7 +120,7 @@ static void start_values(const struct orl_log *log, const char *title,
 static void finish_values(struct value values[VALUES])
 {
     for (int i = 0; i < VALUES; i++)
-        free(values[i].text.data);
+        free(values[i].text.bytes.data);
 }
 
 // What is needed is found one after the other, unless the page names all of it.
@@ -157,8 +150,8 @@ char *orl_walk_index(const struct orl_log *log, const char *title, const char *p
     fill_template(values, VALUES, &page);
     finish_values(values);
     if (page.result == ORL_OK)
-        return page.data;
-    free(page.data);
+        return page.bytes.data;
+    free(page.bytes.data);
     return NULL;
 }
 
@@ -229,10 +222,10 @@ static void add_module(struct text *text, const char *module)
         add(&plain, named);
     }
     add(&plain, module);
-    add_base64(text, (const uint8_t *)plain.data, plain.size);
+    add_base64(text, (const uint8_t *)plain.bytes.data, plain.bytes.size);
     if (text->result == ORL_OK)
         text->result = plain.result;
-    free(plain.data);
+    free(plain.bytes.data);
 }
 
 // Adds every module under the name by which others import it.
@@ -303,7 +296,7 @@ static void add_file(const struct site *site, const char *path, struct text *tex
         text->result = file ? orl_file_read(site->log, file, FILE_MAX, &data, &size)
                             : ORL_ERR_MEMORY;
     if (data) {
-        add(text, text->size ? ",\n\"" : "\"");
+        add(text, text->bytes.size ? ",\n\"" : "\"");
         add(text, path);
         add(text, "\": \"");
         add_base64(text, data, size);
@@ -334,16 +327,16 @@ enum orl_result orl_site_pack(struct site *site, const char *file)
     add_modules(&values[MODULES].text);
     add_files(site, &files);
     add(&values[FILES].text, "<script type=\"application/json\" id=\"files\">{");
-    add_bytes(&values[FILES].text, files.data ? files.data : "", files.size);
+    add_bytes(&values[FILES].text, files.bytes.data, files.bytes.size);
     add(&values[FILES].text, "}</script>");
     // The page finds the poster in its own table of files, so it needs no address for it.
     fill_template(values, VALUES, &page);
     enum orl_result result = files.result != ORL_OK ? files.result : page.result;
     if (result == ORL_OK)
-        result = orl_file_write(site->log, file, page.data, page.size);
-    site->report->bytes = site->report->first_bytes = page.size;
+        result = orl_file_write(site->log, file, page.bytes.data, page.bytes.size);
+    site->report->bytes = site->report->first_bytes = page.bytes.size;
     finish_values(values);
-    free(files.data);
-    free(page.data);
+    free(files.bytes.data);
+    free(page.bytes.data);
     return result;
 }

@@ -42,7 +42,7 @@ struct session {
     unsigned waits_since;
     uint8_t *frame; // owned, with LWS_PRE bytes of room before it; NULL: no frame to send
     size_t frame_size;
-    struct walk_message message;
+    struct orl_bytes message; // of a client, which arrives in parts
     json_t *reply;      // owned: an object to send; NULL: none
     bool asks_site;     // waits for the published site's data
     // A request for a file.
@@ -212,7 +212,7 @@ static void remove_session(struct server *server, struct session *session)
     if (server->renders_for == session)
         server->renders_for = NULL;
     free(session->frame);
-    free(session->message.text);
+    free(session->message.data);
     json_decref(session->reply);
     *session = (struct session){0};
 }
@@ -312,7 +312,7 @@ static bool take_site_request(const struct server *server, struct session *sessi
 // name, "set": options} or {"site": true}. Returns false for a message that is none of these.
 static bool take_command(struct server *server, struct session *session)
 {
-    json_t *root = json_loadb(session->message.text, session->message.size,
+    json_t *root = json_loadb(session->message.data, session->message.size,
                               JSON_REJECT_DUPLICATES, NULL);
     json_t *settings = json_object_get(root, "save");
     bool known = settings && server->content.edits;
@@ -340,12 +340,12 @@ static int take_message(struct server *server, struct lws *wsi, struct session *
         return close_for(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE);
     if (size > MESSAGE_MAX - session->message.size)
         return close_for(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE);
-    if (orl_walk_message_add(server->log, &session->message, data, size) != ORL_OK)
+    if (orl_bytes_add(server->log, &session->message, data, size) != ORL_OK)
         return -1;
     if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi) > 0)
         return 0;
     struct walk_request request;
-    bool asks = orl_walk_request_read(session->message.text, session->message.size,
+    bool asks = orl_walk_request_read(session->message.data, session->message.size,
                                       &request);
     bool valid = asks || take_command(server, session);
     session->message.size = 0;

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/json.h"
+#include "core/memory.h"
 #include "fuzz.h"
 #include "io/picture.h"
 #include "walk/choices.h"
@@ -119,7 +120,7 @@ static struct site_table one_file(void)
 }
 
 // Serves a scene with the walk.json that is there. message: of a client; NULL: none.
-static void walk(const struct walk_message *message)
+static void walk(const struct orl_bytes *message)
 {
     struct orl_scene *scene = fuzz_scene();
     fuzz_require(orl_points_init(NULL, &scene->points, 2) == ORL_OK, "memory");
@@ -134,7 +135,7 @@ static void walk(const struct walk_message *message)
         if (orl_walk_settings_start(content.settings, &scene->photos[0].view.camera, &view))
             fuzz_require(!orl_view_problem(&view), "the start view is usable");
         if (message)
-            use_message(&content, &choice, message->text, message->size);
+            use_message(&content, &choice, message->data, message->size);
         orl_content_finish(&content);
     }
     orl_scene_destroy(&scene);
@@ -143,14 +144,14 @@ static void walk(const struct walk_message *message)
 void fuzz_walk_message(const uint8_t *data, size_t size)
 {
     // It arrives in two parts, of which either may be empty.
-    struct walk_message message = {0};
+    struct orl_bytes message = {0};
     const char *text = (const char *)data;
     unlink(fuzz_path("walk.json"));
-    fuzz_require(orl_walk_message_add(&fuzz_log, &message, text, size / 2) == ORL_OK &&
-                     orl_walk_message_add(&fuzz_log, &message, text + size / 2, size - size / 2) ==
+    fuzz_require(orl_bytes_add(&fuzz_log, &message, text, size / 2) == ORL_OK &&
+                     orl_bytes_add(&fuzz_log, &message, text + size / 2, size - size / 2) ==
                          ORL_OK && message.size == size, "a message is put together");
     walk(&message);
-    free(message.text);
+    free(message.data);
 }
 
 void fuzz_walk_settings(const uint8_t *data, size_t size)
