@@ -5,72 +5,51 @@
 #include "eval/view_figures.h"
 #include "eval/internal.h"
 
-// Takes over `value`, also on failure: `object` or `value` is NULL, or memory ran out.
-static bool set(json_t *object, const char *key, json_t *value)
+// Adds a view's figures to the object; NULL, which releases the object: one is no number.
+static json_t *add_figures(const struct orl_eval *eval, const struct orl_eval_view *view, json_t *object)
 {
-    return json_object_set_new(object, key, value) == 0;
+    for (const struct orl_figure *f = orl_figures; f->name; f++) {
+        if (!orl_figures_known(f->group, eval) ||
+            json_object_set_new(object, f->name, json_real(orl_figure_value(f, view))) == 0)
+            continue;
+        json_decref(object);
+        return NULL;
+    }
+    return object;
 }
 
-static bool set_figures(json_t *object, const struct orl_eval *eval,
-                        const struct orl_eval_view *view)
+// NULL: a figure is no number.
+static json_t *views_json(const struct orl_eval *eval)
 {
-    bool ok = true;
-    for (const struct orl_figure *f = orl_figures; ok && f->name; f++)
-        if (orl_figures_known(f->group, eval))
-            ok = set(object, f->name, json_real(orl_figure_value(f, view)));
-    return ok;
-}
-
-static json_t *size_json(const struct orl_eval_view *view)
-{
-    return json_pack("[ii]", view->width, view->height);
-}
-
-static bool add_views(json_t *views, const struct orl_eval *eval)
-{
+    json_t *views = json_array();
     for (size_t i = 0; views && i < eval->view_count; i++) {
         const struct orl_eval_view *view = &eval->views[i];
-        json_t *object = json_object();
-        bool ok = set(object, "photo", orl_json_string(eval->scene->photos[view->photo].name)) &&
-                  set(object, "size", size_json(view)) && set_figures(object, eval, view);
-        if (json_array_append_new(views, object) != 0 || !ok)
-            return false;
+        json_t *object = json_pack("{s:o, s:[ii]}", "photo",
+                                   orl_json_string(eval->scene->photos[view->photo].name), "size",
+                                   view->width, view->height);
+        if (json_array_append_new(views, add_figures(eval, view, object)) != 0) {
+            json_decref(views);
+            views = NULL;
+        }
     }
-    return views != NULL;
+    return views;
 }
 
-static bool set_passes(json_t *object, const struct orl_eval *eval)
+static json_t *eval_json(const struct orl_eval *eval)
 {
-    json_t *passes = json_object();
-    bool ok = true;
+    const struct orl_eval_view *first = &eval->views[0];
+    json_t *passes = json_object(), *owners = json_object();
     for (size_t i = 0; i < eval->pass_count; i++)
-        ok = set(passes, eval->passes[i].name, json_real(eval->passes[i].ms)) && ok;
-    return set(object, "passes_ms", passes) && ok;
-}
-
-static bool set_bytes(json_t *object, const struct orl_eval *eval)
-{
-    json_t *owners = json_object();
-    bool ok = true;
+        json_object_set_new(passes, eval->passes[i].name, json_real(eval->passes[i].ms));
     for (int owner = 0; owner < ORL_OWNER_COUNT; owner++)
-        ok = set(owners, orl_owner_names[owner],
-                 json_integer((json_int_t)eval->device_bytes[owner])) && ok;
-    return set(object, "device_bytes", owners) && ok;
-}
-
-static bool add_eval(json_t *array, const struct orl_eval *eval)
-{
-    json_t *object = json_object(), *views = json_array(), *mean = json_object();
-    bool ok = set(object, "scene", orl_json_string(eval->scene->dir)) &&
-              set(object, "method", json_string(eval->method)) &&
-              (!eval->setting[0] || set(object, "setting", json_string(eval->setting))) &&
-              set(object, "device", json_string(eval->device)) &&
-              set(object, "size", size_json(&eval->views[0])) && add_views(views, eval) &&
-              set_figures(mean, eval, &eval->mean);
-    ok = set(object, "views", views) && ok;
-    ok = set(object, "mean", mean) && ok;
-    ok = set_passes(object, eval) && set_bytes(object, eval) && ok;
-    return json_array_append_new(array, object) == 0 && ok;
+        json_object_set_new(owners, orl_owner_names[owner],
+                            json_integer((json_int_t)eval->device_bytes[owner]));
+    return json_pack("{s:o, s:s, s:s*, s:s, s:[ii], s:o, s:o, s:o, s:o}", "scene",
+                     orl_json_string(eval->scene->dir), "method", eval->method, "setting",
+                     eval->setting[0] ? eval->setting : NULL, "device", eval->device, "size",
+                     first->width, first->height, "views", views_json(eval), "mean",
+                     add_figures(eval, &eval->mean, json_object()), "passes_ms", passes,
+                     "device_bytes", owners);
 }
 
 char *orl_reports_to_text(const struct orl_log *log, json_t *all, bool whole, bool array,
@@ -93,6 +72,6 @@ char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, 
     json_t *all = json_array();
     bool ok = all != NULL;
     for (size_t i = 0; i < count && ok; i++)
-        ok = add_eval(all, &evals[i]);
+        ok = json_array_append_new(all, eval_json(&evals[i])) == 0;
     return orl_reports_to_text(log, all, ok, array, 8);
 }
