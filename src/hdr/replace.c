@@ -2,8 +2,6 @@
 
 #include <jansson.h>
 #include <stdlib.h>
-#include <string.h>
-#include <strings.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -37,12 +35,6 @@ static bool is_replaced(const struct replacement *r, size_t photo)
 
 // --- pictures ---
 
-static bool is_jpeg(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return dot && (strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
-}
-
 static enum orl_result write_picture(const struct replacement *r, const char *name,
                                      const struct orl_image *light)
 {
@@ -52,7 +44,7 @@ static enum orl_result write_picture(const struct replacement *r, const char *na
     if (result == ORL_OK)
         result = orl_tone_apply(r->log, light, &r->params->tone, &picture);
     if (result == ORL_OK)
-        result = is_jpeg(name) ? orl_jpeg_write(r->log, path, &picture, JPEG_QUALITY, NULL)
+        result = orl_path_has_extension(name, "jpg jpeg") ? orl_jpeg_write(r->log, path, &picture, JPEG_QUALITY, NULL)
                                : orl_png_write(r->log, path, &picture);
     orl_image_finish(&picture);
     free(path);
