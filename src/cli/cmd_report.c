@@ -85,21 +85,30 @@ static enum orl_result become(const struct orl_log *log, const char *script, con
     return orl_fail(log, ORL_ERR_EXTERNAL, "python3 is missing, which makes this report");
 }
 
-static enum orl_result make_report(struct call *call, const char *name,
-                                   const struct orl_option *rows, const struct orl_names *methods)
+// ORL_ERR_ARGUMENT, logged: a report of methods is asked for one that there is not.
+static enum orl_result check_methods(const struct call *call)
 {
-    const struct orl_log *log = call->log;
-    for (size_t i = 0; i < methods->count; i++)
-        if (strcmp(methods->items[i], "paired") != 0 && !orl_method_find(log, methods->items[i]))
-            return ORL_ERR_ARGUMENT;
+    for (const struct orl_option *row = call->command->rows(); row->name; row++) {
+        const struct orl_names *names = (const void *)((const char *)call->options + row->offset);
+        for (size_t i = 0; strcmp(row->name, "method") == 0 && i < names->count; i++)
+            if (strcmp(names->items[i], "paired") != 0 && !orl_method_find(call->log, names->items[i]))
+                return ORL_ERR_ARGUMENT;
+    }
+    return ORL_OK;
+}
+
+static enum orl_result run_report(struct call *call)
+{
+    enum orl_result result = check_methods(call);
+    if (result != ORL_OK)
+        return result;
     json_t *words = json_array();
     char *program = realpath("/proc/self/exe", NULL);
-    char *script = program ? find_script(log, program, name) : NULL;
-    orl_arguments_record(words, rows, call->options, NULL);
+    char *script = program ? find_script(call->log, program, call->command->name) : NULL;
+    orl_arguments_record(words, call->command->rows(), call->options, NULL);
     orl_arguments_record(words, common_option_rows(), call->common, NULL);
     terminal_finish(call->terminal);
-    enum orl_result result =
-        script ? become(log, script, program, words, call->inputs) : ORL_ERR_NOT_FOUND;
+    result = script ? become(call->log, script, program, words, call->inputs) : ORL_ERR_NOT_FOUND;
     free(script);
     free(program);
     json_decref(words);
@@ -108,31 +117,13 @@ static enum orl_result make_report(struct call *call, const char *name,
 
 // --- the commands ---
 
-static enum orl_result run_chart(struct call *call)
-{
-    const struct chart_options *o = call->options;
-    return make_report(call, "chart", chart_options_rows(), &o->methods);
-}
-
-static enum orl_result run_stress(struct call *call)
-{
-    const struct stress_options *o = call->options;
-    return make_report(call, "stress", stress_options_rows(), &o->methods);
-}
-
-static enum orl_result run_plot(struct call *call)
-{
-    const struct orl_names none = {0};
-    return make_report(call, "plot", plot_options_rows(), &none);
-}
-
 const struct command command_chart = {
     .name = "chart", .group = COMMAND_MEASURE,
     .brief = "accuracy against time and memory, all methods",
     .usage = "SCENE... --out DIR [--quick] [options]",
     .summary = "Charts accuracy on held-out photographs against time and memory: every method and its\n"
                "settings, with the Pareto front. Goes on where an earlier run ended.",
-    COMMAND_TABLE(chart_options), .inputs_min = 1, .inputs_max = SCENES_MAX, .run = run_chart,
+    COMMAND_TABLE(chart_options), .inputs_min = 1, .inputs_max = SCENES_MAX, .run = run_report,
 };
 
 const struct command command_stress = {
@@ -142,7 +133,7 @@ const struct command command_stress = {
     .summary = "Measures every method as one thing at a time gets worse, in six severities, on a scene's\n"
                "held-out photographs or on the synthetic monument (synth), whose truth is known. Goes on\n"
                "where an earlier run ended. docs/reference/stress.md lists the axes.",
-    COMMAND_TABLE(stress_options), .inputs_min = 1, .inputs_max = 1, .run = run_stress,
+    COMMAND_TABLE(stress_options), .inputs_min = 1, .inputs_max = 1, .run = run_report,
 };
 
 const struct command command_plot = {
@@ -151,5 +142,5 @@ const struct command command_plot = {
     .usage = "FILE.json --out DIR",
     .summary = "Draws figures of what oriel bench --json has written (time by pass, memory by owner,\n"
                "growth), or oriel trim --json (bytes after each step, loss against bytes).",
-    COMMAND_TABLE(plot_options), .inputs_min = 1, .inputs_max = 1, .run = run_plot,
+    COMMAND_TABLE(plot_options), .inputs_min = 1, .inputs_max = 1, .run = run_report,
 };

@@ -48,9 +48,9 @@ int command_status(enum orl_result result)
     }
 }
 
-static enum orl_result run(const struct orl_log *log, const struct command *command, struct call *call,
-                           size_t input_count)
+static enum orl_result run(const struct orl_log *log, struct call *call, size_t input_count)
 {
+    const struct command *command = call->command;
     struct terminal terminal;
     if (input_count < command->inputs_min)
         return orl_fail(log, ORL_ERR_ARGUMENT, "usage: oriel %s %s", command->name,
@@ -78,7 +78,7 @@ int command_main(const struct command *command, int argc, const char *const *arg
     struct common_options common = {COMMON_OPTIONS(ORL_OPTION_PRESET)};
     void *options = orl_array(&log, 1, command->size + 1);
     const char **inputs = orl_array(&log, command->inputs_max + 1, sizeof *inputs);
-    struct call call = {.options = options, .common = &common, .inputs = inputs};
+    struct call call = {.command = command, .options = options, .common = &common, .inputs = inputs};
     size_t count;
     enum orl_result result = options && inputs ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
@@ -90,7 +90,7 @@ int command_main(const struct command *command, int argc, const char *const *arg
         if (result == ORL_OK && common.help)
             help_print(stdout, command);
         else if (result == ORL_OK)
-            result = run(&log, command, &call, count);
+            result = run(&log, &call, count);
         orl_arguments_finish(command->rows(), options);
     }
     free(options);

@@ -32,6 +32,7 @@ enum command_group {
 // One run of a command: what it was asked for, and what it works with. command_main releases the
 // latter.
 struct call {
+    const struct command *command;
     struct terminal *terminal;
     const struct orl_log *log;           // the terminal's
     const struct orl_progress *progress; // the terminal's
