@@ -28,7 +28,6 @@ struct orl_gpu_caps {
     int max_texture_size;        // pixels
     int max_buffer_texels;       // texels of one buffer bound as an image
     int max_texture_layers;
-    int max_texture_units;       // samplers of one compute shader
 };
 
 // Opens a device without a display: tries the EGL device platform, then Mesa's surfaceless one.

@@ -117,7 +117,6 @@ static void query_caps(struct orl_gpu_caps *caps)
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &caps->max_texture_size);
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &caps->max_buffer_texels);
     glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &caps->max_texture_layers);
-    glGetIntegerv(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, &caps->max_texture_units);
 }
 
 // A software driver that gets no memory for a thread ends the program by a segmentation fault. Each
