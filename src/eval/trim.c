@@ -24,10 +24,8 @@ static enum orl_result compare_held(struct trim_search *s, struct orl_renderer *
                                     struct orl_trim_figures *figures)
 {
     const struct orl_scene *scene = s->source.scene;
-    size_t held = 0;
+    size_t held = orl_heldout_count(scene);
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        held += scene->photos[i].test;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         struct orl_heldout view = {0};
         struct orl_metrics m;
@@ -83,24 +81,24 @@ static enum orl_result start(struct trim_search *s)
         orl_validation_load(source->log, source->scene, 0, p->size_divide, &s->targets);
     size_t n = s->targets.count;
     s->first = orl_array(source->log, n, sizeof *s->first);
-    s->score = orl_array(source->log, n, sizeof *s->score);
+    s->now.score = orl_array(source->log, n, sizeof *s->now.score);
     s->tolerance_db = orl_trim_has_budget(s) ? INFINITY : p->tolerance_db;
     s->tolerance_ssim = orl_trim_has_budget(s) ? INFINITY : p->tolerance_ssim;
     s->worst_db = orl_trim_has_budget(s) ? INFINITY : p->worst_db;
     s->first_state.render = p->start->params;
     s->first_state.removed = orl_array(source->log, photos, sizeof *s->first_state.removed);
     if (result == ORL_OK &&
-        !(s->first && s->score && s->first_state.removed))
+        !(s->first && s->now.score && s->first_state.removed))
         result = ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress,
                                         &source->ranking);
     if (result == ORL_OK)
-        result = orl_trim_state_copy(source->log, &s->first_state, photos, &s->state);
+        result = orl_trim_state_copy(source->log, &s->first_state, photos, &s->now.state);
     if (result == ORL_OK)
         result = orl_trim_order_photos(s);
     if (result == ORL_OK)
-        result = orl_trim_model_open(source, &s->state, &s->model);
+        result = orl_trim_model_open(source, &s->now.state, &s->model);
     orl_trim_plan(s);
     if (result == ORL_OK)
         result = orl_trim_measure_all(s, true, &s->trim->before);
@@ -108,8 +106,8 @@ static enum orl_result start(struct trim_search *s)
         result = orl_trim_time_first(s);
     if (result != ORL_OK)
         return result;
-    s->bytes = orl_trim_model_bytes(s, s->model, &s->state);
-    s->slower = 1;
+    s->now.bytes = orl_trim_model_bytes(s, s->model, &s->now.state);
+    s->now.slower = 1;
     s->trim->before.frame_ms = s->first_ms;
     return ORL_OK;
 }
@@ -135,15 +133,15 @@ static enum orl_result write_and_look(struct trim_search *s)
 {
     struct orl_trim *trim = s->trim;
     trim->choice = *s->params->start;
-    trim->choice.params = s->state.render;
+    trim->choice.params = s->now.state.render;
     orl_trim_model_close(&s->model); // so that only the scene's own bytes are counted
     // Only now, when nothing can change any more, are held-out photographs looked at.
     enum orl_result result =
         look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before);
     if (result == ORL_OK)
-        result = orl_trim_write_scene(&s->source, &s->state, &trim->choice, s->part);
+        result = orl_trim_write_scene(&s->source, &s->now.state, &trim->choice, s->part);
     if (result == ORL_OK)
-        result = look_at(s, s->part, &s->state.render, &trim->after);
+        result = look_at(s, s->part, &s->now.state.render, &trim->after);
     return result;
 }
 
@@ -170,16 +168,13 @@ static void finish(struct trim_search *s)
     orl_trim_model_close(&s->model);
     orl_point_ranking_finish(&s->source.ranking);
     orl_validation_finish(&s->targets);
-    for (size_t i = 0; i < s->history_count; i++) {
-        free(s->history[i].state.removed);
-        free(s->history[i].score);
-    }
+    for (size_t i = 0; i < s->history_count; i++)
+        orl_trim_standing_finish(&s->history[i].before);
+    orl_trim_standing_finish(&s->now);
     free(s->history);
     free(s->order);
     free(s->first);
-    free(s->score);
     free(s->first_state.removed);
-    free(s->state.removed);
 }
 
 enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,

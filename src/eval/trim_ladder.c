@@ -136,7 +136,7 @@ static void remove_photographs(const struct trim_search *s, size_t count, struct
 static void set_level(const struct trim_search *s, enum orl_trim_part part, size_t level,
                       struct trim_trial *t)
 {
-    struct trim_state *state = &t->state;
+    struct trim_state *state = &t->now.state;
     struct orl_scene_defaults defaults;
     enum { SIZE = sizeof t->what };
     switch (part) {
@@ -168,12 +168,12 @@ bool orl_trim_has_budget(const struct trim_search *s)
 
 static bool has_bytes(const struct trim_search *s)
 {
-    return !s->params->max_bytes || s->bytes <= (double)s->params->max_bytes;
+    return !s->params->max_bytes || s->now.bytes <= (double)s->params->max_bytes;
 }
 
 static bool has_time(const struct trim_search *s)
 {
-    return !(s->params->max_frame_ms > 0) || s->first_ms * s->slower <= s->params->max_frame_ms;
+    return !(s->params->max_frame_ms > 0) || s->first_ms * s->now.slower <= s->params->max_frame_ms;
 }
 
 bool orl_trim_within_budget(const struct trim_search *s)
@@ -190,8 +190,8 @@ static bool is_spent(const struct trim_search *s, double share)
 static bool is_wanted(const struct trim_search *s, const struct trim_trial *t)
 {
     if (orl_trim_has_budget(s))
-        return (!has_bytes(s) && t->bytes < s->bytes) || (!has_time(s) && t->slower < 1);
-    return t->part == ORL_TRIM_OPTION ? t->slower < 1 : t->bytes < s->bytes;
+        return (!has_bytes(s) && t->now.bytes < s->now.bytes) || (!has_time(s) && t->now.slower < 1);
+    return t->part == ORL_TRIM_OPTION ? t->now.slower < 1 : t->now.bytes < s->now.bytes;
 }
 
 // --- steps ---
@@ -222,14 +222,14 @@ static enum orl_result decide(struct trim_search *s, struct trim_trial *t, bool 
 // Photographs come back that views beside them, or views that lose too much, need.
 static enum orl_result mend(struct trim_search *s, struct trim_trial *t)
 {
-    enum orl_result result = orl_trim_put_back(s, &t->state);
+    enum orl_result result = orl_trim_put_back(s, &t->now.state);
     for (int i = 0; result == ORL_OK && i < MENDS_MAX; i++) {
         result = orl_trim_trial_measure(s, t, true);
         if (result == ORL_OK && !orl_trim_mend(s, t))
             break;
     }
     snprintf(t->what, sizeof t->what, "photographs %zu of %zu",
-             s->targets.count - t->state.removed_count, s->targets.count);
+             s->targets.count - t->now.state.removed_count, s->targets.count);
     return result;
 }
 
@@ -257,10 +257,10 @@ static enum orl_result try_option(struct trim_search *s, const char *assignment)
     struct orl_render_params next;
     const struct orl_render_option *option = option_of(assignment);
     bool taken;
-    if (!assign(&s->state.render, assignment, &next))
+    if (!assign(&s->now.state.render, assignment, &next))
         return ORL_OK;
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
-    t.state.render = next;
+    t.now.state.render = next;
     snprintf(t.what, sizeof t.what, "%s", assignment);
     // Where the splats change, the photographs' depth maps are drawn anew.
     if (result == ORL_OK)
@@ -282,7 +282,7 @@ static bool ends(struct trim_search *s)
 static enum orl_result bisect(struct trim_search *s, const struct rung *rung)
 {
     enum orl_result result = ORL_OK;
-    size_t low = level_of(&s->state, rung->part), high = max_level(s, rung);
+    size_t low = level_of(&s->now.state, rung->part), high = max_level(s, rung);
     for (int i = 0; result == ORL_OK && low < high && i < BISECTIONS && !ends(s); i++) {
         size_t level = (low + high + 1) / 2;
         bool taken;
@@ -299,7 +299,7 @@ static enum orl_result climb_levels(struct trim_search *s, const struct rung *ru
 {
     enum orl_result result = ORL_OK;
     bool taken = true;
-    for (size_t level = level_of(&s->state, rung->part) + by;
+    for (size_t level = level_of(&s->now.state, rung->part) + by;
          result == ORL_OK && taken && level <= max_level(s, rung) && !ends(s); level += by)
         if (has_level(s, rung, level))
             result = try_level(s, rung, level, &taken);
@@ -311,7 +311,7 @@ static enum orl_result climb_options(struct trim_search *s, bool until_fast)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(cheaper); i++) {
-        if (until_fast ? s->slower <= orl_trim_slow_limit(s) || is_spent(s, 1) : ends(s))
+        if (until_fast ? s->now.slower <= orl_trim_slow_limit(s) || is_spent(s, 1) : ends(s))
             break;
         result = try_option(s, cheaper[i]);
     }
@@ -359,8 +359,8 @@ enum orl_result orl_trim_climb(struct trim_search *s)
     if (result == ORL_OK && s->trim->complete && !orl_trim_within_budget(s))
         result = orl_fail(s->source.log, ORL_ERR_DATA,
                           "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
-                          "than is allowed", s->source.scene->dir, s->bytes / (1 << 20),
-                          s->first_ms * s->slower);
+                          "than is allowed", s->source.scene->dir, s->now.bytes / (1 << 20),
+                          s->first_ms * s->now.slower);
     return result;
 }
 
@@ -371,7 +371,7 @@ static enum orl_result drop_textures(struct trim_search *s)
 {
     struct trim_trial t;
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_TEXTURES, &t);
-    t.state.textures = ORL_TEXTURES_AUTO;
+    t.now.state.textures = ORL_TEXTURES_AUTO;
     snprintf(t.what, sizeof t.what, "textures as they were");
     if (result == ORL_OK)
         result = orl_trim_trial_measure(s, &t, false);
@@ -389,7 +389,7 @@ enum orl_result orl_trim_make_faster(struct trim_search *s)
         result = climb_options(s, true);
     if (result == ORL_OK && slow)
         result = orl_trim_time_whole(s, &slow);
-    if (result == ORL_OK && slow && s->state.textures != ORL_TEXTURES_AUTO) {
+    if (result == ORL_OK && slow && s->now.state.textures != ORL_TEXTURES_AUTO) {
         result = drop_textures(s);
         if (result == ORL_OK)
             result = orl_trim_time_whole(s, &slow);
@@ -404,14 +404,14 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
 {
     struct trim_trial t;
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
-    t.state.render = *render;
+    t.now.state.render = *render;
     snprintf(t.what, sizeof t.what, "tuned options");
     if (result == ORL_OK)
         result = orl_trim_trial_measure(s, &t, false);
     bool better = result == ORL_OK && t.step_db < 0 && orl_trim_trial_fits(s, &t, 1);
     if (better)
         result = orl_trim_time_trial(s, &t);
-    if (better && result == ORL_OK && t.slower <= orl_trim_slow_limit(s))
+    if (better && result == ORL_OK && t.now.slower <= orl_trim_slow_limit(s))
         result = orl_trim_trial_take(s, &t);
     orl_trim_trial_end(&t);
     return result;

@@ -101,7 +101,7 @@ static enum orl_result between_loss(struct trim_search *s, const struct trim_sta
     const struct orl_view view = orl_view_interpolate(&s->targets.views[target].view,
                                                       &s->targets.views[other].view, 0.5);
     struct orl_image with = {0}, without = {0};
-    enum orl_result result = draw_srgb(s, &view, &s->state, s->first_state.removed, &with);
+    enum orl_result result = draw_srgb(s, &view, &s->now.state, s->first_state.removed, &with);
     if (result == ORL_OK)
         result = draw_srgb(s, &view, state, state->removed, &without);
     if (result == ORL_OK)
@@ -152,13 +152,13 @@ bool orl_trim_mend(const struct trim_search *s, struct trim_trial *t)
 {
     bool mended = false;
     for (size_t v = 0; v < s->targets.count; v++) {
-        size_t near = nearest_removed(s, &t->state, v);
-        if (near == s->targets.count || !(s->first[v].db - t->score[v].db > s->worst_db))
+        size_t near = nearest_removed(s, &t->now.state, v);
+        if (near == s->targets.count || !(s->first[v].db - t->now.score[v].db > s->worst_db))
             continue;
-        put_back(&t->state, s->targets.views[near].photo);
+        put_back(&t->now.state, s->targets.views[near].photo);
         mended = true;
     }
     for (size_t v = 0; mended && v < s->targets.count; v++)
-        t->score[v] = (struct trim_score){NAN, NAN};
+        t->now.score[v] = (struct trim_score){NAN, NAN};
     return mended;
 }

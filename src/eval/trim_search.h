@@ -15,25 +15,28 @@ struct trim_loss {
     double db, ssim, worst_db;
 };
 
+// A state and what is known of it. `state.removed` and `score` are owned.
+struct trim_standing {
+    struct trim_state state;
+    struct trim_score *score; // per target; NAN: not measured
+    struct trim_loss loss;    // against the whole scene
+    double bytes;
+    double slower; // the time of a frame, as a multiple of the whole scene's; of a trial, of the state
+                   // before it; 1: the same, or not timed
+};
+
 // A state on trial.
 struct trim_trial {
     enum orl_trim_part part;
     char what[96];
-    struct trim_state state;  // `removed` is owned
-    struct trim_model *own;   // NULL: the search's model serves
-    struct trim_score *score; // owned, per target; NAN: not measured
-    struct trim_loss loss;    // against the whole scene
+    struct trim_standing now;
+    struct trim_model *own;    // NULL: the search's model serves
     double step_db, step_ssim; // loss against the state before
-    double bytes;
-    double slower; // the time of a frame is multiplied by this; 1: the same, or not timed
 };
 
-// A step that was taken: the search before it. `state.removed` and `score` are owned.
+// A step that was taken.
 struct trim_past {
-    struct trim_state state;
-    struct trim_score *score;
-    struct trim_loss loss;
-    double bytes, slower;
+    struct trim_standing before;
     size_t step; // index of the report's step
 };
 
@@ -46,13 +49,11 @@ struct trim_search {
     size_t validation_count; // targets that look at a step first
     size_t deciding_count;   // targets that decide on it then
     size_t *order;           // owned: targets in the order in which their photographs go
-    struct trim_score *first, *score; // owned, per target: of the whole scene, of `state`
-    struct trim_loss loss;            // of `state`
+    struct trim_score *first; // owned, per target: of the whole scene
     double tolerance_db, tolerance_ssim, worst_db; // at this time; they grow towards a budget
-    struct trim_state first_state, state;
-    struct trim_model *model; // of `state`
-    double bytes;
-    double slower; // the time of its frame, as a multiple of the whole scene's
+    struct trim_state first_state;
+    struct trim_standing now;
+    struct trim_model *model; // of `now`
     double first_ms;
     struct trim_past *history; // owned
     size_t history_count, history_capacity;
@@ -79,6 +80,7 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
 
 // --- trim_trial.c ---
 
+void orl_trim_standing_finish(struct trim_standing *standing);
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
                             const struct trim_state *state);
 // Begins a trial with the search's state, which the caller changes.

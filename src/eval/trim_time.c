@@ -88,7 +88,7 @@ double orl_trim_slow_limit(const struct trim_search *s)
 enum orl_result orl_trim_time_first(struct trim_search *s)
 {
     double ms[FRAMES_FIRST];
-    const struct trim_drawn drawn = {s->model->renderer, &s->state};
+    const struct trim_drawn drawn = {s->model->renderer, &s->now.state};
     struct pair same = {s, {drawn, drawn}, 0};
     enum orl_result result = warm_up(&same);
     for (size_t i = 0; result == ORL_OK && i < FRAMES_FIRST; i++)
@@ -101,14 +101,14 @@ enum orl_result orl_trim_time_first(struct trim_search *s)
 enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_trial *t)
 {
     struct orl_pair_timing timing;
-    struct pair pair = {s, {{s->model->renderer, &s->state},
-                            {t->own ? t->own->renderer : s->model->renderer, &t->state}}, 0};
-    double limit = orl_trim_slow_limit(s) / s->slower;
+    struct pair pair = {s, {{s->model->renderer, &s->now.state},
+                            {t->own ? t->own->renderer : s->model->renderer, &t->now.state}}, 0};
+    double limit = orl_trim_slow_limit(s) / s->now.slower;
     enum orl_result result = compare(&pair, limit, trial_error, ROUNDS_OF_TRIAL, &timing);
     if (result != ORL_OK)
         return result;
     bool same = fabs(log(timing.ratio)) <= same_errors * timing.error;
-    t->slower = same ? 1 : timing.ratio;
+    t->now.slower = same ? 1 : timing.ratio;
     return ORL_OK;
 }
 
@@ -118,7 +118,7 @@ enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow)
     struct orl_pair_timing timing = {0};
     double limit = orl_trim_slow_limit(s);
     enum orl_result result = orl_trim_model_open(&s->source, &s->first_state, &whole);
-    struct pair pair = {s, {{NULL, &s->first_state}, {s->model->renderer, &s->state}}, 0};
+    struct pair pair = {s, {{NULL, &s->first_state}, {s->model->renderer, &s->now.state}}, 0};
     if (result == ORL_OK)
         pair.drawn[0].renderer = whole->renderer;
     if (result == ORL_OK)
@@ -128,7 +128,7 @@ enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow)
         return result;
     s->trim->before.frame_ms = timing.ms;
     s->trim->after.frame_ms = timing.ratio * timing.ms;
-    s->slower = timing.ratio;
+    s->now.slower = timing.ratio;
     *slow = !orl_trim_has_budget(s) && orl_pair_timing_above(&timing, limit);
     return ORL_OK;
 }

@@ -50,39 +50,45 @@ static struct trim_loss loss_between(const struct trim_search *s, const struct t
     return loss;
 }
 
+void orl_trim_standing_finish(struct trim_standing *standing)
+{
+    free(standing->state.removed);
+    free(standing->score);
+    *standing = (struct trim_standing){0};
+}
+
 // --- a trial ---
 
 enum orl_result orl_trim_trial_begin(struct trim_search *s, enum orl_trim_part part,
                                      struct trim_trial *t)
 {
-    *t = (struct trim_trial){.part = part, .slower = 1};
-    t->score = orl_array(s->source.log, s->targets.count, sizeof *t->score);
-    if (!t->score)
+    *t = (struct trim_trial){.part = part, .now.slower = 1};
+    t->now.score = orl_array(s->source.log, s->targets.count, sizeof *t->now.score);
+    if (!t->now.score)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < s->targets.count; i++)
-        t->score[i] = (struct trim_score){NAN, NAN};
-    return orl_trim_state_copy(s->source.log, &s->state, s->source.scene->photo_count, &t->state);
+        t->now.score[i] = (struct trim_score){NAN, NAN};
+    return orl_trim_state_copy(s->source.log, &s->now.state, s->source.scene->photo_count, &t->now.state);
 }
 
 void orl_trim_trial_end(struct trim_trial *t)
 {
     orl_trim_model_close(&t->own);
-    free(t->state.removed);
-    free(t->score);
+    orl_trim_standing_finish(&t->now);
 }
 
 static enum orl_result measure_one(struct trim_search *s, struct trim_trial *t, size_t view)
 {
     struct orl_renderer *renderer = t->own ? t->own->renderer : s->model->renderer;
-    return isnan(t->score[view].db)
-               ? measure_view(s, renderer, &t->state, view, &t->score[view])
+    return isnan(t->now.score[view].db)
+               ? measure_view(s, renderer, &t->now.state, view, &t->now.score[view])
                : ORL_OK;
 }
 
 static void set_losses(struct trim_search *s, struct trim_trial *t)
 {
-    struct trim_loss step = loss_between(s, s->score, t->score);
-    t->loss = loss_between(s, s->first, t->score);
+    struct trim_loss step = loss_between(s, s->now.score, t->now.score);
+    t->now.loss = loss_between(s, s->first, t->now.score);
     t->step_db = step.db;
     t->step_ssim = step.ssim;
 }
@@ -91,19 +97,19 @@ static void set_losses(struct trim_search *s, struct trim_trial *t)
 static bool is_open(const struct trim_search *s, const struct trim_trial *t)
 {
     struct trim_trial half = *t;
-    half.loss.db /= t->loss.db > 0 ? 2 : 1;
-    half.loss.ssim /= t->loss.ssim > 0 ? 2 : 1;
+    half.now.loss.db /= t->now.loss.db > 0 ? 2 : 1;
+    half.now.loss.ssim /= t->now.loss.ssim > 0 ? 2 : 1;
     return orl_trim_trial_fits(s, &half, 1);
 }
 
 enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial *t, bool shares)
 {
     enum orl_result result =
-        shares ? ORL_OK : orl_trim_model_open(&s->source, &t->state, &t->own);
+        shares ? ORL_OK : orl_trim_model_open(&s->source, &t->now.state, &t->own);
     if (result != ORL_OK)
         return result;
     const struct trim_model *model = shares ? s->model : t->own;
-    t->bytes = orl_trim_model_bytes(s, model, &t->state);
+    t->now.bytes = orl_trim_model_bytes(s, model, &t->now.state);
     for (size_t i = 0; result == ORL_OK && i < s->validation_count; i++) {
         size_t deciding = (2 * i + 1) * s->deciding_count / (2 * s->validation_count);
         result = measure_one(s, t, orl_trim_validation_view(s, deciding, s->deciding_count));
@@ -117,16 +123,16 @@ enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial 
 
 bool orl_trim_trial_fits(const struct trim_search *s, const struct trim_trial *t, double share)
 {
-    double db = s->loss.db + share * (s->tolerance_db - s->loss.db);
-    double ssim = s->loss.ssim + share * (s->tolerance_ssim - s->loss.ssim);
-    return t->loss.db <= fmin(db, s->tolerance_db) &&
-           t->loss.ssim <= fmin(ssim, s->tolerance_ssim) && t->loss.worst_db <= s->worst_db;
+    double db = s->now.loss.db + share * (s->tolerance_db - s->now.loss.db);
+    double ssim = s->now.loss.ssim + share * (s->tolerance_ssim - s->now.loss.ssim);
+    return t->now.loss.db <= fmin(db, s->tolerance_db) &&
+           t->now.loss.ssim <= fmin(ssim, s->tolerance_ssim) && t->now.loss.worst_db <= s->worst_db;
 }
 
 void orl_trim_trial_log(const struct trim_search *s, const struct trim_trial *t, bool taken)
 {
     orl_logf(s->source.log, ORL_LOG_DEBUG, "%s: loses %.3f dB, SSIM %.4f; in all %.3f dB, the worst "
-             "%.3f dB%s", t->what, t->step_db, t->step_ssim, t->loss.db, t->loss.worst_db,
+             "%.3f dB%s", t->what, t->step_db, t->step_ssim, t->now.loss.db, t->now.loss.worst_db,
              taken ? ": taken" : "");
 }
 
@@ -141,8 +147,8 @@ static enum orl_result note(struct trim_search *s, const struct trim_trial *t)
     struct orl_trim_step *step = &trim->steps[trim->step_count++];
     *step = (struct orl_trim_step){
         .part = t->part, .loss_db = t->step_db, .loss_ssim = t->step_ssim, .taken = true,
-        .bytes = t->bytes, .ms = s->first_ms * s->slower * t->slower,
-        .total_loss_db = t->loss.db, .total_loss_ssim = t->loss.ssim};
+        .bytes = t->now.bytes, .ms = s->first_ms * s->now.slower * t->now.slower,
+        .total_loss_db = t->now.loss.db, .total_loss_ssim = t->now.loss.ssim};
     memcpy(step->what, t->what, sizeof step->what);
     if (s->params->on_step)
         s->params->on_step(s->params->priv, step);
@@ -157,17 +163,10 @@ enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t)
                           s->history_count + 1, sizeof *s->history);
     if (result != ORL_OK)
         return result;
-    s->history[s->history_count++] =
-        (struct trim_past){.state = s->state, .score = s->score, .loss = s->loss,
-                           .bytes = s->bytes, .slower = s->slower,
-                           .step = s->trim->step_count - 1};
-    s->state = t->state;
-    s->score = t->score;
-    s->loss = t->loss;
-    s->bytes = t->bytes;
-    s->slower *= t->slower;
-    t->state.removed = NULL;
-    t->score = NULL;
+    s->history[s->history_count++] = (struct trim_past){s->now, s->trim->step_count - 1};
+    t->now.slower *= s->now.slower;
+    s->now = t->now;
+    t->now = (struct trim_standing){0};
     if (t->own) {
         orl_trim_model_close(&s->model);
         s->model = t->own;
@@ -187,18 +186,18 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
     for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++) {
         orl_progress_report(s->params->progress, first ? "whole scene" : "trimmed scene",
                             (double)i, n, NULL);
-        result = measure_view(s, s->model->renderer, &s->state, i, &s->score[i]);
+        result = measure_view(s, s->model->renderer, &s->now.state, i, &s->now.score[i]);
         if (first)
-            s->first[i] = s->score[i];
-        figures->psnr_db += s->score[i].db / n;
-        figures->ssim += s->score[i].ssim / n;
+            s->first[i] = s->now.score[i];
+        figures->psnr_db += s->now.score[i].db / n;
+        figures->ssim += s->now.score[i].ssim / n;
     }
-    s->loss = loss_between(s, s->first, s->score);
-    figures->worst_loss_db = s->loss.worst_db;
+    s->now.loss = loss_between(s, s->first, s->now.score);
+    figures->worst_loss_db = s->now.loss.worst_db;
     figures->points = s->model->scene.points.count;
-    figures->photographs = s->targets.count - s->state.removed_count;
+    figures->photographs = s->targets.count - s->now.state.removed_count;
     figures->point_bytes = s->model->point_bytes;
-    figures->photo_bytes = (size_t)orl_trim_model_bytes(s, s->model, &s->state) -
+    figures->photo_bytes = (size_t)orl_trim_model_bytes(s, s->model, &s->now.state) -
                            s->model->point_bytes;
     return result;
 }
@@ -208,23 +207,18 @@ static enum orl_result take_back(struct trim_search *s)
     struct trim_past *past = &s->history[--s->history_count];
     s->trim->steps[past->step].taken = false;
     s->trim->undone++;
-    free(s->state.removed);
-    free(s->score);
-    s->state = past->state;
-    s->score = past->score;
-    s->loss = past->loss;
-    s->bytes = past->bytes;
-    s->slower = past->slower;
+    orl_trim_standing_finish(&s->now);
+    s->now = past->before;
     orl_trim_model_close(&s->model);
-    return orl_trim_model_open(&s->source, &s->state, &s->model);
+    return orl_trim_model_open(&s->source, &s->now.state, &s->model);
 }
 
 enum orl_result orl_trim_confirm(struct trim_search *s)
 {
     enum orl_result result = orl_trim_measure_all(s, false, &s->trim->after);
     while (result == ORL_OK && s->history_count > 0 &&
-           (s->loss.db > s->tolerance_db || s->loss.ssim > s->tolerance_ssim ||
-            s->loss.worst_db > s->worst_db)) {
+           (s->now.loss.db > s->tolerance_db || s->now.loss.ssim > s->tolerance_ssim ||
+            s->now.loss.worst_db > s->worst_db)) {
         result = take_back(s);
         if (result == ORL_OK)
             result = orl_trim_measure_all(s, false, &s->trim->after);

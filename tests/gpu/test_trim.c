@@ -277,20 +277,20 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
         const struct orl_trim_params params = {0};
         struct trim_search s = {.source = {.gpu = gpu, .scene = &f.scene}, .params = &params,
                                 .trim = &report, .tolerance_db = 0.5, .tolerance_ssim = 1,
-                                .worst_db = 9, .bytes = 100};
+                                .worst_db = 9, .now.bytes = 100};
         struct trim_score first[PHOTOS_MAX] = {0};
         s.first = first;
-        s.state.render = orl_method_find(NULL, "points")->params;
+        s.now.state.render = orl_method_find(NULL, "points")->params;
         assert_int_equal(orl_validation_load(NULL, &f.scene, 0, 1, &s.targets), ORL_OK);
-        s.state.removed = calloc(f.scene.photo_count, sizeof *s.state.removed);
-        s.score = calloc(f.scene.photo_count, sizeof *s.score);
-        assert_int_equal(orl_trim_model_open(&s.source, &s.state, &s.model), ORL_OK);
+        s.now.state.removed = calloc(f.scene.photo_count, sizeof *s.now.state.removed);
+        s.now.score = calloc(f.scene.photo_count, sizeof *s.now.score);
+        assert_int_equal(orl_trim_model_open(&s.source, &s.now.state, &s.model), ORL_OK);
         assert_int_equal(orl_trim_measure_all(&s, true, &report.before), ORL_OK);
         for (size_t level = 1; level <= 2; level++) {
             struct trim_trial t;
             assert_int_equal(orl_trim_trial_begin(&s, ORL_TRIM_DEPTH, &t), ORL_OK);
-            t.state.depth = level;
-            t.bytes = s.bytes - 10;
+            t.now.state.depth = level;
+            t.now.bytes = s.now.bytes - 10;
             assert_int_equal(orl_trim_trial_take(&s, &t), ORL_OK);
             orl_trim_trial_end(&t);
         }
@@ -298,18 +298,15 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
             first[i].db += fine ? 0.4 : 0.6;
         assert_int_equal(orl_trim_confirm(&s), ORL_OK);
         assert_int_equal(s.history_count, fine ? 2 : 0);
-        assert_int_equal(s.state.depth, fine ? 2 : 0);
+        assert_int_equal(s.now.state.depth, fine ? 2 : 0);
         assert_int_equal(report.undone, fine ? 0 : 2);
         assert_true(report.steps[1].taken == fine);
-        assert_float_equal(s.bytes, fine ? 80 : 100, 0);
+        assert_float_equal(s.now.bytes, fine ? 80 : 100, 0);
         orl_trim_model_close(&s.model);
-        for (size_t i = 0; i < s.history_count; i++) {
-            free(s.history[i].state.removed);
-            free(s.history[i].score);
-        }
+        for (size_t i = 0; i < s.history_count; i++)
+            orl_trim_standing_finish(&s.history[i].before);
         free(s.history);
-        free(s.state.removed);
-        free(s.score);
+        orl_trim_standing_finish(&s.now);
         orl_validation_finish(&s.targets);
         orl_trim_finish(&report);
     }
