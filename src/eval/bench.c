@@ -41,6 +41,12 @@ static struct orl_bench_run new_run(const struct bench_job *job, enum orl_bench_
                                   .points = job->scene->points.count, .photo_divide = 1};
 }
 
+static struct orl_renderer_params new_params(const struct bench_job *job)
+{
+    return (struct orl_renderer_params){.max_vram_bytes = job->params->max_vram_bytes,
+                                        .textures = job->params->textures};
+}
+
 // Measures all methods with one renderer.
 static enum orl_result measure_methods(struct bench_job *job, struct orl_renderer *renderer,
                                        const struct orl_bench_run *like, const char *what)
@@ -58,11 +64,22 @@ static enum orl_result measure_methods(struct bench_job *job, struct orl_rendere
     return result;
 }
 
+// The same with a renderer of these parameters.
+static enum orl_result measure_with(struct bench_job *job, const struct orl_renderer_params *params,
+                                    const struct orl_bench_run *like, const char *what)
+{
+    struct orl_renderer *renderer = NULL;
+    enum orl_result result = orl_renderer_create(job->gpu, job->scene, params, &renderer);
+    if (result == ORL_OK)
+        result = measure_methods(job, renderer, like, what);
+    orl_renderer_destroy(&renderer);
+    return result;
+}
+
 static enum orl_result measure_sizes(struct bench_job *job)
 {
     struct orl_renderer *renderer = NULL;
-    struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes,
-                                         .textures = job->params->textures};
+    const struct orl_renderer_params params = new_params(job);
     enum orl_result result = orl_renderer_create(job->gpu, job->scene, &params, &renderer);
     for (size_t i = 0; result == ORL_OK && i < job->params->size_count; i++) {
         char what[48];
@@ -90,20 +107,15 @@ static enum orl_result measure_photographs(struct bench_job *job)
     enum orl_result result = use ? ORL_OK : ORL_ERR_MEMORY;
     size_t least = all > 1 && orl_scene_silhouettes(job->scene) ? 2 : 1; // a hull needs two
     for (size_t count = least; result == ORL_OK; count = 2 * count < all ? 2 * count : all) {
-        struct orl_renderer *renderer = NULL;
         char what[48];
         snprintf(what, sizeof what, "%zu photographs", count);
         orl_bench_choose_photos(job->scene, count, use);
-        struct orl_renderer_params params = {.use = use,
-                                             .max_vram_bytes = job->params->max_vram_bytes,
-                                             .textures = job->params->textures};
+        struct orl_renderer_params params = new_params(job);
+        params.use = use;
         struct orl_bench_run like =
             new_run(job, ORL_BENCH_PHOTOGRAPHS, 0, job->params->sizes[0]);
         like.photographs = count;
-        result = orl_renderer_create(job->gpu, job->scene, &params, &renderer);
-        if (result == ORL_OK)
-            result = measure_methods(job, renderer, &like, what);
-        orl_renderer_destroy(&renderer);
+        result = measure_with(job, &params, &like, what);
         if (count == all)
             break;
     }
@@ -142,22 +154,17 @@ static enum orl_result measure_point_count(struct bench_job *job, size_t count)
 {
     struct orl_scene scene = *job->scene, *whole = job->scene;
     scene.lod = NULL; // its points take the place of all points
-    struct orl_renderer *renderer = NULL;
+    const struct orl_renderer_params params = new_params(job);
     char what[48];
     snprintf(what, sizeof what, "%zu points", count);
     enum orl_result result =
         orl_bench_resample(job->log, &job->scene->points, count, &scene.points);
     if (result != ORL_OK)
         return result;
-    struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes,
-                                         .textures = job->params->textures};
     struct orl_bench_run like = new_run(job, ORL_BENCH_POINTS, 0, job->params->sizes[0]);
     like.points = count;
     job->scene = &scene;
-    result = orl_renderer_create(job->gpu, &scene, &params, &renderer);
-    if (result == ORL_OK)
-        result = measure_methods(job, renderer, &like, what);
-    orl_renderer_destroy(&renderer);
+    result = measure_with(job, &params, &like, what);
     job->scene = whole;
     if (result == ORL_OK) {
         // Uses the first method's time: all methods have the same splatting passes.
@@ -227,9 +234,8 @@ static enum orl_result measure_resolutions(struct bench_job *job)
     enum orl_result result = ORL_OK;
     for (int divide = 1; result == ORL_OK && divide <= 8; divide *= 2) {
         struct orl_renderer *renderer = NULL;
-        struct orl_renderer_params params = {.max_vram_bytes = job->params->max_vram_bytes,
-                                             .textures = job->params->textures,
-                                             .photo_divide = divide};
+        struct orl_renderer_params params = new_params(job);
+        params.photo_divide = divide;
         struct orl_bench_run like = new_run(job, ORL_BENCH_RESOLUTION, 0, job->params->sizes[0]);
         char what[48];
         snprintf(what, sizeof what, "photographs at 1/%d", divide);

@@ -5,7 +5,7 @@
 
 #include "core/color.h"
 #include "core/memory.h"
-#include "io/picture.h"
+#include "render/photo_loader.h"
 #include "render/reexpose.h"
 
 enum { METRIC_SIDE = 11 }; // side of SSIM's window, pixels
@@ -41,19 +41,6 @@ static struct orl_camera shrunk_camera(const struct orl_camera *c, int n)
                                .fy = c->fy / n, .cx = c->cx / n, .cy = c->cy / n};
 }
 
-static enum orl_result read_photograph(const struct orl_log *log, const struct orl_scene *scene,
-                                       size_t photo, struct orl_image *image)
-{
-    const struct orl_camera *camera = &scene->photos[photo].view.camera;
-    char *path = orl_scene_photo_path(log, scene, photo);
-    enum orl_result result = path ? orl_picture_read(log, path, 3, image) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && (image->width != camera->width || image->height != camera->height))
-        result = orl_fail(log, ORL_ERR_DATA, "%s has %dx%d pixels, its camera %dx%d", path,
-                          image->width, image->height, camera->width, camera->height);
-    free(path);
-    return result;
-}
-
 enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_scene *scene,
                                  size_t photo, int divide, struct orl_heldout *heldout)
 {
@@ -63,7 +50,7 @@ enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_sce
     int n = divide;
     while (n > 1 && (view->camera.width / n < METRIC_SIDE || view->camera.height / n < METRIC_SIDE))
         n--;
-    enum orl_result result = read_photograph(log, scene, photo, &full);
+    enum orl_result result = orl_photo_read(log, scene, photo, false, &full);
     if (result == ORL_OK && n == 1) {
         heldout->picture = full;
         memset(&full, 0, sizeof full);

@@ -133,35 +133,31 @@ static enum orl_result contradict(const struct orl_log *log,
     static const struct orl_mask_cleaning no_specks = {.open_px = OPEN_PX};
     const struct orl_image *photo = &pictures->photo;
     size_t count = (size_t)photo->width * (size_t)photo->height;
-    struct orl_image consensus = {0}, nearest = {0}, points = {0};
-    struct orl_image like[2] = {{0}, {0}}, rough[2] = {{0}, {0}};
-    enum orl_result result = differ(log, &pictures->consensus, pictures, &consensus);
-    if (result == ORL_OK)
-        result = differ(log, &pictures->nearest, pictures, &nearest);
-    if (result == ORL_OK)
-        result = differ(log, &pictures->points, pictures, &points);
-    if (result == ORL_OK)
-        result = correlate(log, photo, &pictures->consensus, &like[0]);
-    if (result == ORL_OK)
-        result = correlate(log, photo, &pictures->nearest, &like[1]);
+    enum { CONSENSUS, NEAREST, POINTS, RENDERINGS };
+    const struct orl_image *const renderings[] = {&pictures->consensus, &pictures->nearest, &pictures->points};
+    struct orl_image off[RENDERINGS] = {{0}}, like[POINTS] = {{0}}, rough[2] = {{0}, {0}};
+    enum orl_result result = ORL_OK;
+    for (int k = 0; result == ORL_OK && k < RENDERINGS; k++)
+        result = differ(log, renderings[k], pictures, &off[k]);
+    for (int k = 0; result == ORL_OK && k < POINTS; k++)
+        result = correlate(log, photo, renderings[k], &like[k]);
     for (int k = 0; result == ORL_OK && k < 2; k++)
         result = orl_image_init(log, &rough[k], photo->width, photo->height, 1, ORL_PIXEL_U8);
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         bool surface = pictures->covered.f32[i] > 0;
         float least = surface ? surface_difference : guess_difference;
-        rough[0].u8[i] = length_of(consensus.f32 + 3 * i) > least ? 255 : 0;
-        bool proves = surface && length_of(nearest.f32 + 3 * i) > least &&
-                      length_of(points.f32 + 3 * i) > least &&
-                      fmaxf(like[0].f32[i], like[1].f32[i]) < likeness_max;
+        rough[0].u8[i] = length_of(off[CONSENSUS].f32 + 3 * i) > least ? 255 : 0;
+        bool proves = surface && length_of(off[NEAREST].f32 + 3 * i) > least &&
+                      length_of(off[POINTS].f32 + 3 * i) > least &&
+                      fmaxf(like[CONSENSUS].f32[i], like[NEAREST].f32[i]) < likeness_max;
         rough[1].u8[i] = proves ? rough[0].u8[i] : 0;
     }
     if (result == ORL_OK)
         result = orl_bridge_clean_mask(log, &rough[0], &no_specks, mask);
     if (result == ORL_OK)
         result = orl_bridge_clean_mask(log, &rough[1], &no_specks, proof);
-    orl_image_finish(&consensus);
-    orl_image_finish(&nearest);
-    orl_image_finish(&points);
+    for (int k = 0; k < RENDERINGS; k++)
+        orl_image_finish(&off[k]);
     for (int k = 0; k < 2; k++) {
         orl_image_finish(&like[k]);
         orl_image_finish(&rough[k]);
@@ -283,21 +279,21 @@ static enum orl_result find_of(const struct finder *f, size_t photo, const bool 
     struct orl_heldout shot;
     struct orl_occluder_pictures pictures = {0};
     struct orl_image covered = {0};
+    const struct {
+        const struct orl_render_params *params;
+        struct orl_image *picture, *covered;
+    } ways[] = {{&f->nearest, &pictures.nearest, &covered},
+                {&f->consensus, &pictures.consensus, &pictures.covered},
+                {&f->points, &pictures.points, &covered}};
     if (orl_progress_cancelled(f->progress))
         return ORL_ERR_CANCELLED;
     orl_image_finish(&f->masks[photo]);
     set_skip(f, photo, removed);
     enum orl_result result = orl_heldout_load(f->log, f->scene, photo, divide, &shot);
-    if (result == ORL_OK)
-        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->nearest, f->skip,
-                                  &pictures.nearest, &covered);
-    if (result == ORL_OK)
-        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->consensus, f->skip,
-                                  &pictures.consensus, &pictures.covered);
-    if (result == ORL_OK) {
+    for (size_t k = 0; result == ORL_OK && k < ORL_COUNT(ways); k++) {
         orl_image_finish(&covered);
-        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->points, f->skip,
-                                  &pictures.points, &covered);
+        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, ways[k].params, f->skip,
+                                  ways[k].picture, ways[k].covered);
     }
     if (result == ORL_OK) {
         pictures.photo = shot.picture;
